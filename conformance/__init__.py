@@ -1,0 +1,1 @@
+"""Cases, quantities, verdicts, systems under test, identification, reports, command line, pytest plugin."""

@@ -1,0 +1,51 @@
+"""Writing files so that nobody ever sees half of one."""
+
+import os
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+from pantocheck.conformance.errors import InputError
+
+
+def write_in_place(path: Path, content: bytes) -> None:
+    """Write a file under a temporary name and move it into place.
+
+    Parameters
+    ----------
+    path : the file to write; its folder is made if need be
+    content : all of it
+
+    Raises
+    ------
+    InputError : the folder cannot be made or written
+    """
+    produce_in_place(path, lambda temporary: temporary.write_bytes(content))
+
+
+def produce_in_place(path: Path, produce: Callable[[Path], object]) -> None:
+    """Let `produce` write a temporary file beside `path`, then move it into place; nothing is left if it fails.
+
+    Raises
+    ------
+    InputError : the folder cannot be made or written
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(prefix=".", suffix=path.suffix, dir=path.parent)
+    except OSError as error:
+        raise InputError(
+            str(path), f"cannot be written ({error.strerror})", "Name a folder that you may write to, with --out."
+        ) from None
+    os.close(handle)
+    temporary = Path(name)
+    try:
+        produce(temporary)
+        temporary.chmod(0o644)
+        temporary.replace(path)
+    except OSError as error:
+        raise InputError(
+            str(path), f"cannot be written ({error.strerror})", "Name a folder that you may write to, with --out."
+        ) from None
+    finally:
+        temporary.unlink(missing_ok=True)

@@ -1,0 +1,1 @@
+"""Pages and machine-readable summaries made from results.json alone."""

@@ -1,0 +1,1 @@
+"""Systems under test: the reference simulator, a record on disk, a command."""

@@ -1,0 +1,1 @@
+"""Published reference cases: data only, one folder per publication and edition."""

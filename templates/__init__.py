@@ -1,0 +1,1 @@
+"""Page templates: Jinja2 for HTML and Markdown, Typst for PDF."""
