@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-
 from pantocheck.model import beam
 from pantocheck.model.beams import wire_matrices
 from pantocheck.model.line import Discretised

@@ -9,7 +9,6 @@ from typing import NamedTuple
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-
 from pantocheck.model import beam
 from pantocheck.model.catenary import Catenary, Kind, Rayleigh
 from pantocheck.model.mesh import Mesh

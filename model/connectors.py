@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-
 from pantocheck.model.beams import Beams
 from pantocheck.model.catenary import Catenary, Kind, Rayleigh
 from pantocheck.model.initial_state import InitialState

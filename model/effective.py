@@ -10,7 +10,6 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-
 from pantocheck.model import beam
 from pantocheck.model.beams import Beams
 

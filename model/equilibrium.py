@@ -5,10 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from scipy.sparse.linalg import splu
-
 from pantocheck.model.assembly import assemble, connector_directions, order
 from pantocheck.model.line import Discretised
+from scipy.sparse.linalg import splu
 
 Array = NDArray[np.float64]
 

@@ -10,11 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from scipy.sparse.linalg import splu
-
 from pantocheck.model.beams import Beams, weight, wire_matrices
 from pantocheck.model.catenary import GRAVITY, Catenary, Kind
 from pantocheck.model.mesh import Mesh
+from scipy.sparse.linalg import splu
 
 Array = NDArray[np.float64]
 

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-
 from pantocheck.model import beam
 from pantocheck.model.beams import Beams, build_beams
 from pantocheck.model.catenary import Catenary

@@ -10,7 +10,6 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-
 from pantocheck.model.catenary import Catenary, Kind, Wire
 
 Array = NDArray[np.float64]

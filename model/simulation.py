@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-
 from pantocheck.model import beam
 from pantocheck.model.assembly import point_load
 from pantocheck.model.equilibrium import Deflection, Statics
