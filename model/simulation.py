@@ -89,7 +89,7 @@ def run(line: Discretised, passage: Passage, progress: Callable[[float], None] |
     force, height = np.zeros((steps, len(passage.pantographs))), np.zeros((steps, len(passage.pantographs)))
     uplift, nothing = np.zeros((steps, len(passage.watched))), np.zeros((steps, 0))
     work = workspace(stepping, motion, train)
-    for first in range(0, steps, BLOCK):
+    for first in range(0, max(steps, 1), BLOCK):
         part = slice(first, min(first + BLOCK, steps))
         done = march(
             stepping, motion, train, work, rows, stations, force[part], height[part], uplift[part], nothing[part]
@@ -97,7 +97,7 @@ def run(line: Discretised, passage: Passage, progress: Callable[[float], None] |
         if done < part.stop - first:
             raise DidNotConverge(f"the forces of the step at {(first + done) * passage.time_step:.3f} s did not settle")
         if progress:
-            progress(part.stop / steps)
+            progress(part.stop / max(steps, 1))
     time: Array = passage.time_step * np.arange(1, steps + 1)
     position: Array = np.array(passage.start)[:, None] + passage.speed * time
     return History(time, position, force.T.copy(), height.T.copy(), uplift.T.copy())
