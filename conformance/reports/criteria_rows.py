@@ -23,7 +23,7 @@ def criterion(row: dict[str, Any], sources: list[str]) -> Criterion:
         pantograph=pantograph(row.get("pantograph")),
         value=shown,
         error="–" if error is None else f"± {number(error, 2)}",
-        unit=row.get("unit") or "",
+        unit="" if value is None else row.get("unit") or "",
         limits=limits(lower, upper),
         margin="–" if row.get("margin") is None else signed(row["margin"]),
         bar=margin_bar(value, lower, upper, error, row["verdict"]) if drawn else "",

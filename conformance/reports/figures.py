@@ -143,6 +143,7 @@ def histogram(trace: dict[str, Any]) -> Figure:
     edges, share = trace["histogram"]["edges_N"], trace["histogram"]["share_pct"]
     figure = Figure(figsize=(HALF, 2.3))
     axes = figure.subplots()
+    axes.set_ylim(0, 1.08 * max(share))
     axes.stairs(share, edges, fill=True, facecolor="#c3cad2", edgecolor=INK, linewidth=0.6)
     mean, std = trace.get("mean_N"), trace.get("std_N")
     if mean is not None and std is not None:

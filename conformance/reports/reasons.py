@@ -49,7 +49,7 @@ def reasons(results: dict[str, Any]) -> tuple[Reasons, ...]:
         ("What failed", [*whole("fail"), *(_where(case, row) for case, row in of("fail"))]),
         ("What could not be evaluated", [*whole("skip"), *(_why(case, row) for case, row in of("skip"))]),
         ("Not decided by the discretisation", [_where(case, row) for case, row in unsure]),
-        ("Closest margins", [_where(case, row) for case, row in of("pass")[:CLOSEST]]),
+        ("Closest margins", [_where(case, row) for case, row in of("pass") if _has_width(row)][:CLOSEST]),
     )
     return tuple(Reasons(name, tuple(sentences)) for name, sentences in groups if sentences)
 
@@ -72,6 +72,11 @@ def who(row: dict[str, Any]) -> str:
     """The owner of a value and the quantity's name in words."""
     owner = pantograph(row.get("pantograph"))
     return f"{'line' if owner == 'line' else f'pantograph {owner}'}, {label(row['quantity'])}"
+
+
+def _has_width(row: dict[str, Any]) -> bool:
+    """Whether a margin above 0 is possible: between two equal limits it is 0 at best, and tells nothing."""
+    return bool(row["lower"] != row["upper"])
 
 
 def _where(case: dict[str, Any], row: dict[str, Any]) -> str:

@@ -262,8 +262,7 @@ HOSTILE = [
 ]
 
 
-@pytest.fixture
-def hostile() -> dict[str, Any]:
+def with_hostile_text() -> dict[str, Any]:
     """Every free text of the example replaced by text that tries to leave its place."""
     results = example()
     results["system"] |= {"name": HOSTILE[0], "version": HOSTILE[1]}
@@ -277,3 +276,8 @@ def hostile() -> dict[str, Any]:
             row["source"] = HOSTILE[at % len(HOSTILE)]
             row["reason"] = HOSTILE[(at + 1) % len(HOSTILE)]
     return results
+
+
+@pytest.fixture
+def hostile() -> dict[str, Any]:
+    return with_hostile_text()
