@@ -64,13 +64,16 @@ def statistics(raw: Signal, filtered: Signal) -> dict[str, float]:
     }
 
 
-def criterion(values: dict[str, float], pantograph: int, quantity: str, unit: str, *limits: float | None) -> dict[str, Any]:
+def criterion(
+    values: dict[str, float], pantograph: int, quantity: str, unit: str, *limits: float | None
+) -> dict[str, Any]:
     lower, upper = limits
     value = values[quantity]
     nearness = margin(value, lower, upper)
     return {
         "quantity": quantity,
         "pantograph": pantograph,
+        "item": None,
         "value": value,
         "unit": unit,
         "lower": lower,
@@ -171,7 +174,13 @@ def failing_case() -> dict[str, Any]:
     provisional |= {"verdict": "info", "trust": "provisional", "source": "not traced to a printed source"}
     provisional["reason"] = "a provisional limit does not count; it would be fail"
     skipped = criterion(q, 1, "std_force_N", "N", 10, 20)
-    skipped |= {"quantity": "rms_20_50_N", "value": None, "verdict": "skip", "margin": None, "discretisation_error": None}
+    skipped |= {
+        "quantity": "rms_20_50_N",
+        "value": None,
+        "verdict": "skip",
+        "margin": None,
+        "discretisation_error": None,
+    }
     skipped["reason"] = "the record is already filtered at 20 Hz; it says nothing about 20-50 Hz"
     return {
         "id": "en50318-2002/300",
@@ -207,11 +216,11 @@ def skipped_case() -> dict[str, Any]:
         "notes": [],
         "warnings": [],
         "inputs": [],
-        "input_digest": None,
+        "input_digest": "sha256:fcde2b2edba56bf408601fb721fe9b5c338d10ee429ea04fae5511b68fbf8fb9",
         "criteria": [],
         "quantities": {},
         "skipped": {},
-        "run": {},
+        "run": run_facts(320) | dict.fromkeys(("simulated_s", "wall_s", "dt_s", "element_m", "rate_Hz", "evaluated_m")),
         "traces": {},
         "uplift": [],
     }
