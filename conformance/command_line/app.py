@@ -9,6 +9,7 @@ from pantocheck.conformance.command_line.run import run
 from pantocheck.conformance.command_line.schema import schema
 from pantocheck.conformance.command_line.show import show
 from pantocheck.conformance.command_line.simulate import simulate
+from pantocheck.conformance.command_line.verify import verify
 
 app = typer.Typer(
     name="pantocheck",
@@ -19,7 +20,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
-for command in (run, cases, show, simulate, schema):
+for command in (run, cases, show, simulate, verify, schema):
     app.command()(guarded(command))
 
 

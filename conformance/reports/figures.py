@@ -30,7 +30,7 @@ P = ParamSpec("P")
 
 
 @cache
-def _style() -> dict[str, Any]:
+def _style() -> Any:
     with as_file(TEMPLATES / "figure.mplstyle") as path:
         settings = dict(matplotlib.rc_params_from_file(path, use_default_template=True))
     # The backend belongs to whoever imported matplotlib; a canvas is named here directly.
@@ -46,7 +46,8 @@ def drawn(paint: Callable[P, Figure]) -> Callable[P, str]:
             buffer = io.StringIO()
             # No metadata: it would hold the date and matplotlib's version.
             nothing = dict.fromkeys(("Date", "Creator", "Format", "Type"))
-            FigureCanvasSVG(paint(*args, **kwargs)).print_svg(buffer, metadata=nothing)
+            canvas: Any = FigureCanvasSVG(paint(*args, **kwargs))
+            canvas.print_svg(buffer, metadata=nothing)
         text = buffer.getvalue()
         return text[text.index("<svg") :]
 

@@ -36,7 +36,7 @@ def render(results: dict[str, Any]) -> bytes:
     root = ElementTree.Element("testsuites", {"name": "pantocheck", **total})
     root.extend(suites)
     ElementTree.indent(root)
-    return ElementTree.tostring(root, encoding="utf-8", xml_declaration=True) + b"\n"
+    return bytes(ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)) + b"\n"
 
 
 def _counters() -> tuple[str, ...]:

@@ -48,7 +48,8 @@ def render(results: dict[str, Any], seconds: int) -> bytes:
         "verdicts": words()["verdict"],
         "trusts": words()["trust"],
     }
-    sources = {
+    # typst takes a dictionary of files, which its type hints do not know.
+    sources: Any = {
         "main.typ": (TEMPLATES / "certificate.typ").read_bytes(),
         "page.json": json.dumps(showable(data)).encode("ascii"),
         NAME: encoded(results),

@@ -50,7 +50,7 @@ def reasons(results: dict[str, Any]) -> tuple[Reasons, ...]:
         ("What could not be run", [*whole("error"), *(_why(case, row) for case, row in of("error"))]),
         ("What failed", [*whole("fail"), *(_where(case, row) for case, row in of("fail"))]),
         ("What could not be evaluated", [*whole("skip"), *(_why(case, row) for case, row in of("skip"))]),
-        ("Not decided by the discretisation", [_where(case, row) for case, row in unsure]),
+        ("Closer to a limit than the discretisation error", [_where(case, row) for case, row in unsure]),
         ("Closest margins", [_where(case, row) for case, row in of("pass") if _has_width(row)][:CLOSEST]),
     )
     return tuple(Reasons(name, tuple(sentences)) for name, sentences in groups if sentences)

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from pantocheck.conformance.reports import html, pdf
 
 SOURCE = "Wang et al., An extended Habedank's equation-based EMTP model, IEEE Trans. Power Delivery, Table III"
 SPEED = 250 / 3.6
@@ -290,3 +291,21 @@ def with_hostile_text() -> dict[str, Any]:
 @pytest.fixture
 def hostile() -> dict[str, Any]:
     return with_hostile_text()
+
+
+@pytest.fixture(scope="session")
+def page_text() -> str:
+    """The example as HTML."""
+    return html.render(example())
+
+
+@pytest.fixture(scope="session")
+def hostile_text() -> str:
+    """The example with hostile text as HTML."""
+    return html.render(with_hostile_text())
+
+
+@pytest.fixture(scope="session")
+def certificate() -> bytes:
+    """The example as PDF."""
+    return pdf.render(example(), 1_700_000_000)
