@@ -133,7 +133,9 @@ def _read_hdf5(path: Path, sidecar: Sidecar, where: str) -> dict[str, Array]:
                         f"{where}, dataset {key}", f"its shape is {dataset.shape}", f"Expected {rows} rows of samples."
                     )
                 channels[key] = np.asarray(dataset[()], dtype=np.float64).reshape(shape)
-    except (OSError, RuntimeError, KeyError) as error:
+    except InputError:
+        raise
+    except (OSError, RuntimeError, KeyError, ValueError, TypeError) as error:  # all that h5py says of damaged bytes
         raise InputError(
             where, f"is not a readable HDF5 file ({str(error)[:120]})", "Write the record again."
         ) from None

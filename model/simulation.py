@@ -1,0 +1,215 @@
+"""Runs: pantographs along a line, or a line left to itself."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from pantocheck.model import beam
+from pantocheck.model.assembly import point_load
+from pantocheck.model.equilibrium import Deflection, Statics
+from pantocheck.model.line import Discretised, time_stepping
+from pantocheck.model.newmark import Line, Motion, Train, Workspace, march
+from pantocheck.model.pantograph import Pantograph
+
+Array = NDArray[np.float64]
+
+BLOCK = 500
+"""Steps between two reports of progress."""
+
+
+class DidNotConverge(ArithmeticError):
+    """The forces of a time step did not settle; what followed would be noise."""
+
+
+@dataclass(frozen=True)
+class Passage:
+    """What is to be run.
+
+    Parameters
+    ----------
+    pantographs : in running order, the leading one first
+    start : (pantographs,) place of each at the start [m]
+    speed : [m/s]
+    duration : [s]
+    time_step : [s]
+    watched : places along the contact wire where the uplift is recorded [m]
+    """
+
+    pantographs: tuple[Pantograph, ...]
+    start: tuple[float, ...]
+    speed: float
+    duration: float
+    time_step: float
+    watched: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class History:
+    """What a run gives; T steps, P pantographs, U watched places.
+
+    Parameters
+    ----------
+    time : (T,) [s]
+    position : (P, T) of the pantographs [m]
+    force : (P, T) contact force, unfiltered [N]
+    height : (P, T) of the head over the contact wire at the supports [m]
+    uplift : (U, T) of the contact wire at the watched places [m]
+    """
+
+    time: Array
+    position: Array
+    force: Array
+    height: Array
+    uplift: Array
+
+
+def run(line: Discretised, passage: Passage, progress: Callable[[float], None] | None = None) -> History:
+    """Drive pantographs along a line from rest.
+
+    Parameters
+    ----------
+    line : the discretised line
+    passage : pantographs, speed, duration
+    progress : called now and then with the share done, 0 to 1
+
+    Returns
+    -------
+    the history
+
+    Raises
+    ------
+    DidNotConverge : a time step has no solution
+    """
+    stepping = time_stepping(line, passage.time_step)
+    motion, train = start(line, stepping, passage)
+    steps = round(passage.duration / passage.time_step)
+    rows = np.full(len(passage.watched), line.contact_rows[0], dtype=np.int64)
+    stations = np.array([line.mesh.station(x) for x in passage.watched], dtype=np.int64)
+    force, height = np.zeros((steps, len(passage.pantographs))), np.zeros((steps, len(passage.pantographs)))
+    uplift, nothing = np.zeros((steps, len(passage.watched))), np.zeros((steps, 0))
+    work = workspace(stepping, motion, train)
+    for first in range(0, max(steps, 1), BLOCK):
+        part = slice(first, min(first + BLOCK, steps))
+        done = march(
+            stepping, motion, train, work, rows, stations, force[part], height[part], uplift[part], nothing[part]
+        )
+        if done < part.stop - first:
+            raise DidNotConverge(f"the forces of the step at {(first + done) * passage.time_step:.3f} s did not settle")
+        if progress:
+            progress(part.stop / max(steps, 1))
+    time: Array = passage.time_step * np.arange(1, steps + 1)
+    position: Array = np.array(passage.start)[:, None] + passage.speed * time
+    return History(time, position, force.T.copy(), height.T.copy(), uplift.T.copy())
+
+
+def start(line: Discretised, stepping: Line, passage: Passage) -> tuple[Motion, Train]:
+    """Line and pantographs at rest, each pantograph pressing with its static force.
+
+    Parameters
+    ----------
+    line : the discretised line
+    stepping : its arrays for the time step
+    passage : pantographs and their places
+
+    Returns
+    -------
+    state of the line, state of the pantographs
+    """
+    share = 1 / len(line.contact_rows)
+    load = np.zeros(line.beams.free.size)
+    for pantograph, x in zip(passage.pantographs, passage.start, strict=True):
+        for row in line.contact_rows:
+            load += share * pantograph.static_force * point_load(line, row, x)
+    at_rest = Statics(line).deflection(load)
+    return still(at_rest), _train(line, stepping, passage, at_rest)
+
+
+def still(deflection: Deflection) -> Motion:
+    """A line held at rest in a static deflection."""
+    w, r = (np.zeros((3, *deflection.displacement.shape[:2])) for _ in range(2))
+    # Far from the loads the deflection fades into denormal numbers, which processors handle a hundred times slower.
+    displacement = np.where(np.abs(deflection.displacement) < 1e-30, 0.0, deflection.displacement)
+    w[0], r[0] = displacement[..., 0], displacement[..., 1]
+    return Motion(w, r, deflection.tension.copy())
+
+
+def no_train(contact_wires: int) -> Train:
+    """No pantograph at all, for a line left to itself."""
+    return Train(
+        position=np.zeros(0),
+        speed=np.zeros(1),
+        inverse=np.zeros((0, 1, 1)),
+        damping=np.zeros((0, 1, 1)),
+        stiffness=np.zeros((0, 1, 1)),
+        head=np.zeros((0, 1)),
+        force=np.zeros((0, 1)),
+        contact_stiffness=np.zeros(0),
+        z=np.zeros((3, 0, 1)),
+        contact=np.zeros((0, contact_wires)),
+    )
+
+
+def _train(line: Discretised, stepping: Line, passage: Passage, at_rest: Deflection) -> Train:
+    count, most = len(passage.pantographs), max(p.head.size for p in passage.pantographs)
+    wires = len(line.contact_rows)
+    inverse, damping, stiffness = (np.zeros((count, most, most)) for _ in range(3))
+    head, force = np.zeros((count, most)), np.zeros((count, most))
+    z = np.zeros((3, count, most))
+    half, quarter = passage.time_step / 2, passage.time_step**2 / 4
+    profile = at_rest.displacement[line.contact_rows]
+    for p, pantograph in enumerate(passage.pantographs):
+        n = pantograph.head.size
+        inverse[p, :n, :n] = np.linalg.inv(pantograph.mass + half * pantograph.damping + quarter * pantograph.stiffness)
+        damping[p, :n, :n], stiffness[p, :n, :n] = pantograph.damping, pantograph.stiffness
+        head[p, :n], force[p, :n] = pantograph.head, pantograph.force
+        wire = np.mean([_height(stepping, profile[k], k, passage.start[p]) for k in range(wires)])
+        z[0, p, :n] = _rest(pantograph, float(wire) + pantograph.static_force / wires / pantograph.contact_stiffness)
+    contact = np.array([[p.static_force / wires] * wires for p in passage.pantographs])
+    return Train(
+        position=np.array(passage.start),
+        speed=np.array([passage.speed]),
+        inverse=inverse,
+        damping=damping,
+        stiffness=stiffness,
+        head=head,
+        force=force,
+        contact_stiffness=np.array([p.contact_stiffness for p in passage.pantographs]),
+        z=z,
+        contact=contact,
+    )
+
+
+def _height(stepping: Line, profile: Array, wire: int, position: float) -> float:
+    """Height of a contact wire at one place in a static deflection."""
+    x = stepping.position
+    e = int(np.clip(np.searchsorted(x, position) - 1, 0, x.size - 2))
+    values = (stepping.rest[wire] + profile)[e : e + 2].ravel()
+    return float(beam.shape((position - x[e]) / (x[e + 1] - x[e]), x[e + 1] - x[e]) @ values)
+
+
+def _rest(pantograph: Pantograph, head_height: float) -> Array:
+    """Displacements of a pantograph whose head is held at a height and whose other parts are at rest."""
+    n = pantograph.head.size
+    system = np.zeros((n + 1, n + 1))
+    system[:n, :n] = pantograph.stiffness
+    system[:n, n] = system[n, :n] = pantograph.head
+    return np.asarray(np.linalg.solve(system, np.append(pantograph.force, head_height))[:n])
+
+
+def workspace(line: Line, motion: Motion, train: Train) -> Workspace:
+    """Arrays for the time step of one run."""
+    rows, stations = motion.w.shape[1:]
+    pantographs, wires = train.contact.shape
+    return Workspace(
+        w=np.zeros((2, rows, stations)),
+        r=np.zeros((2, rows, stations)),
+        seen_w=np.zeros((rows, stations)),
+        seen_r=np.zeros((rows, stations)),
+        elongation=np.zeros((2, line.station.size)),
+        shape=np.zeros((pantographs, wires, 4)),
+        element=np.zeros(pantographs, dtype=np.int64),
+        closing=np.zeros((pantographs, wires)),
+        compliance=np.zeros((pantographs, wires)),
+        z=np.zeros((2, pantographs, train.z.shape[2])),
+    )
