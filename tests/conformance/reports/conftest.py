@@ -281,6 +281,8 @@ def with_hostile_text() -> dict[str, Any]:
         case["title"] = HOSTILE[number]
         case["notes"] = list(HOSTILE)
         case["warnings"] = list(HOSTILE)
+        for row in case["criteria"][-1:]:
+            row["quantity"] = "a|b<i>"
         case["inputs"] = [{"group": text, "trust": "secondary", "source": text} for text in HOSTILE]
         for at, row in enumerate(case["criteria"]):
             row["source"] = HOSTILE[at % len(HOSTILE)]

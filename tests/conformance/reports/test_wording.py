@@ -86,6 +86,17 @@ def test_margin_bar_marks_are_told_apart_without_colour():
     assert "l-9 -6v12z" in beyond
 
 
+def test_a_row_says_all_there_is(passing):
+    row = passing["cases"][0]["criteria"][0] | {"value": 118.2, "margin": 0.36, "discretisation_error": 0.1234}
+    sources = ["another"]
+    shown = criterion(row, sources)
+    assert (shown.value, shown.unit, shown.error, shown.limits) == ("118.2", "N", "± 0.12", "110 to 120")
+    assert (shown.margin, shown.verdict, shown.trust, shown.pantograph) == ("+0.36", "pass", "secondary", "1")
+    assert sources[shown.source - 1] == row["source"]
+    of_line = criterion(row | {"pantograph": 0, "item": 3, "discretisation_error": None}, sources)
+    assert (of_line.pantograph, of_line.error) == ("line, no. 3", "–")
+
+
 def test_a_value_within_its_discretisation_error_is_named(passing):
     row = passing["cases"][0]["criteria"][0]
     row |= {"value": 119.9, "discretisation_error": 0.2, "margin": 0.02}
