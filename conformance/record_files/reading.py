@@ -2,6 +2,7 @@
 
 import hashlib
 import re
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -73,7 +74,9 @@ def _read_csv(path: Path, sidecar: Sidecar, where: str) -> dict[str, Array]:
                     )
             if len(set(names)) != len(names):
                 raise InputError(where, "two columns have the same name", "Each channel stands in one column.")
-            samples = np.loadtxt(file, delimiter=",", ndmin=2, max_rows=MAX_SAMPLES // len(names) + 1)
+            with warnings.catch_warnings():
+                warnings.filterwarnings("ignore", "loadtxt: input contained no data")  # said below, as an error
+                samples = np.loadtxt(file, delimiter=",", ndmin=2, max_rows=MAX_SAMPLES // len(names) + 1)
     except UnicodeDecodeError as error:
         raise InputError(where, f"byte {error.start + 1} is not text", "A CSV record is UTF-8 text.") from None
     except ValueError as error:
@@ -130,7 +133,9 @@ def _read_hdf5(path: Path, sidecar: Sidecar, where: str) -> dict[str, Array]:
                         f"{where}, dataset {key}", f"its shape is {dataset.shape}", f"Expected {rows} rows of samples."
                     )
                 channels[key] = np.asarray(dataset[()], dtype=np.float64).reshape(shape)
-    except (OSError, RuntimeError, KeyError) as error:
+    except InputError:
+        raise
+    except (OSError, RuntimeError, KeyError, ValueError, TypeError) as error:  # all that h5py says of damaged bytes
         raise InputError(
             where, f"is not a readable HDF5 file ({str(error)[:120]})", "Write the record again."
         ) from None

@@ -14,10 +14,11 @@ FILES = {
     "json": "results.json",
     "junit": "junit.xml",
     "md": "summary.md",
+    "badge": "badge.svg",
 }
 """File that each format is written to."""
 
-_MODULES = {"html": "html", "pdf": "pdf", "junit": "junit", "md": "summary"}
+_MODULES = {"html": "html", "pdf": "pdf", "junit": "junit", "md": "summary", "badge": "badge"}
 
 
 def checked_formats(names: Sequence[str]) -> tuple[str, ...]:
