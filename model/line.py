@@ -1,5 +1,6 @@
 """From the description of a line to the arrays that the time step works on."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -64,13 +65,14 @@ def discretise(catenary: Catenary, element_length: float) -> Discretised:
     return Discretised(catenary, mesh, beams, build_connectors(catenary, mesh, state), state)
 
 
-def time_stepping(line: Discretised, time_step: float) -> Line:
+def time_stepping(line: Discretised, time_step: float, reach: float = math.inf) -> Line:
     """Arrays of the time step: factors, local columns, connectors.
 
     Parameters
     ----------
     line : the discretised line
     time_step : [s]
+    reach : what lies farther than this from every pantograph is left standing still [m]
 
     Returns
     -------
@@ -97,8 +99,11 @@ def time_stepping(line: Discretised, time_step: float) -> Line:
     contact_columns = inverse_columns(factor, contact[:, 0].copy(), contact[:, 1].copy(), slopes, width)
     return Line(
         time_step=time_step,
+        reach=reach,
         position=line.mesh.position,
-        elements=_elements(beams),
+        length=beams.length,
+        stiffness_entries=_stiffness_entries(beams),
+        mass_scale=beams.mass_per_length * beams.length / 420,
         mass_coefficient=beams.mass_coefficient,
         stiffness_coefficient=beams.stiffness_coefficient,
         lumped_stiffness=beams.lumped_stiffness,
@@ -119,25 +124,12 @@ def time_stepping(line: Discretised, time_step: float) -> Line:
     )
 
 
-def _elements(beams: Beams) -> Array:
-    """Distinct entries of the element matrices, with what is held fixed taken out by the factor alone."""
+def _stiffness_entries(beams: Beams) -> Array:
+    """The four distinct entries 11, 12, 22, 24 of every element's stiffness."""
     rows, elements = beams.mass_per_length.shape
-    entries = np.zeros((rows, 10, elements))
+    entries = np.zeros((rows, 4, elements))
     for row in range(rows):
         for e in np.flatnonzero(beams.mass_per_length[row]):
-            h = beams.length[e]
-            k = beam.stiffness(h, beams.tension[row, e], beams.bending_stiffness[row, e])
-            m = beam.mass(h, beams.mass_per_length[row, e])
-            entries[row, :, e] = (
-                k[0, 0],
-                k[0, 1],
-                k[1, 1],
-                k[1, 3],
-                m[0, 0],
-                m[0, 2],
-                m[0, 1],
-                m[1, 2],
-                m[1, 1],
-                -m[1, 3],
-            )
+            k = beam.stiffness(beams.length[e], beams.tension[row, e], beams.bending_stiffness[row, e])
+            entries[row, :, e] = k[0, 0], k[0, 1], k[1, 1], k[1, 3]
     return entries

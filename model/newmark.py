@@ -17,6 +17,8 @@ Indices = NDArray[np.int64]
 
 FORCE_TOLERANCE = 1e-9
 """A step has converged when no force changed by more than this in a turn [N]; forces are of the order of 100 N."""
+NEGLIGIBLE_FORCE = 1e-13
+"""Changes of a force below this are rounding, and are not passed on [N]."""
 MOST_TURNS = 200
 """After so many turns a step is given up."""
 
@@ -27,8 +29,11 @@ class Line(NamedTuple):
     Parameters
     ----------
     time_step : [s]
+    reach : what lies farther than this from every pantograph stands still [m]
     position : (S,) [m]
-    elements : (B, 10, S-1) stiffness entries 11, 12, 22, 24 and mass entries 11, 13, 12, -14, 22, -24 of each element
+    length : (S-1,) of the elements [m]
+    stiffness_entries : (B, 4, S-1) entries 11, 12, 22, 24 of each element's stiffness [N/m, N, N m, N m]
+    mass_scale : (B, S-1) mass per length times length over 420 of each element [kg]
     mass_coefficient, stiffness_coefficient : (B,) damping of the wires [1/s, s]
     lumped_stiffness, lumped_damping : (B, S) [N/m, N s/m]
     factor : of the effective matrix
@@ -44,8 +49,11 @@ class Line(NamedTuple):
     """
 
     time_step: float
+    reach: float
     position: Array
-    elements: Array
+    length: Array
+    stiffness_entries: Array
+    mass_scale: Array
     mass_coefficient: Array
     stiffness_coefficient: Array
     lumped_stiffness: Array
@@ -114,6 +122,7 @@ class Workspace(NamedTuple):
     ----------
     w, r : (2, B, S) predicted displacement and velocity
     seen_w, seen_r : (B, S) predicted displacement plus stiffness coefficient times predicted velocity
+    shear : (S-1,) of the elements of one row [N]
     elongation : (2, N) predicted, and its rate [m, m/s]
     shape : (P, W, 4) Hermite functions at the contacts
     element : (P,) element over each pantograph
@@ -126,6 +135,7 @@ class Workspace(NamedTuple):
     r: Array
     seen_w: Array
     seen_r: Array
+    shear: Array
     elongation: Array
     shape: Array
     element: Indices
@@ -135,50 +145,101 @@ class Workspace(NamedTuple):
 
 
 @njit(cache=True)
-def predict_wires(line: Line, motion: Motion, work: Workspace) -> None:
+def moving_part(line: Line, train: Train) -> tuple[int, int]:
+    """First and last of the stations that move: those within reach of a pantograph, or all without one."""
+    first, last = 0, line.position.size - 1
+    if train.position.size > 0:
+        first = max(first, np.searchsorted(line.position, train.position.min() - line.reach))
+        last = min(last, np.searchsorted(line.position, train.position.max() + line.reach))
+    return first, last
+
+
+@njit(cache=True)
+def predict_wires(line: Line, motion: Motion, work: Workspace, first: int, last: int) -> None:
     """Newmark predictors of the rows, and the displacement that their stiffness sees."""
     dt = line.time_step
-    rows, stations = motion.w.shape[1:]
-    for b in range(rows):
-        c = line.stiffness_coefficient[b]
-        for s in range(stations):
-            work.w[0, b, s] = motion.w[0, b, s] + dt * motion.w[1, b, s] + dt * dt / 4 * motion.w[2, b, s]
-            work.w[1, b, s] = motion.w[1, b, s] + dt / 2 * motion.w[2, b, s]
-            work.seen_w[b, s] = work.w[0, b, s] + c * work.w[1, b, s]
-        for s in range(stations):
-            work.r[0, b, s] = motion.r[0, b, s] + dt * motion.r[1, b, s] + dt * dt / 4 * motion.r[2, b, s]
-            work.r[1, b, s] = motion.r[1, b, s] + dt / 2 * motion.r[2, b, s]
-            work.seen_r[b, s] = work.r[0, b, s] + c * work.r[1, b, s]
+    for now, predicted, seen in ((motion.w, work.w, work.seen_w), (motion.r, work.r, work.seen_r)):
+        for b in range(now.shape[1]):
+            c = line.stiffness_coefficient[b]
+            q, v, a = now[0, b, first : last + 1], now[1, b, first : last + 1], now[2, b, first : last + 1]
+            to_q, to_v = predicted[0, b, first : last + 1], predicted[1, b, first : last + 1]
+            _predict(dt, c, q, v, a, to_q, to_v, seen[b, first : last + 1])
 
 
 @njit(cache=True)
-def wire_forces(line: Line, work: Workspace, w: Array, r: Array) -> None:
-    """Forces and moments that wires and lumped parts exert on the stations in the predicted state, into w and r."""
-    rows, stations = w.shape
-    for b in range(rows):
-        p, t, k, c = work.seen_w[b], work.seen_r[b], line.elements[b], line.mass_coefficient[b]
-        v, u = work.w[1, b], work.r[1, b]
-        force, moment = 0.0, 0.0
-        for e in range(stations - 1):
-            drop = p[e] - p[e + 1]
-            shear = k[0, e] * drop + k[1, e] * (t[e] + t[e + 1])
-            w0, r0, w1, r1 = c * v[e], c * u[e], c * v[e + 1], c * u[e + 1]
-            w[b, e] = force - shear - k[4, e] * w0 - k[6, e] * r0 - k[5, e] * w1 + k[7, e] * r1
-            r[b, e] = moment - k[1, e] * drop - k[2, e] * t[e] - k[3, e] * t[e + 1]
-            r[b, e] -= k[6, e] * w0 + k[8, e] * r0 + k[7, e] * w1 - k[9, e] * r1
-            force = shear - k[5, e] * w0 - k[7, e] * r0 - k[4, e] * w1 + k[6, e] * r1
-            moment = k[7, e] * w0 + k[9, e] * r0 + k[6, e] * w1 - k[8, e] * r1
-            moment -= k[1, e] * drop + k[3, e] * t[e] + k[2, e] * t[e + 1]
-        w[b, stations - 1], r[b, stations - 1] = force, moment
-        for s in range(stations):
-            w[b, s] -= line.lumped_stiffness[b, s] * work.w[0, b, s] + line.lumped_damping[b, s] * work.w[1, b, s]
+def _predict(dt: float, c: float, q: Array, v: Array, a: Array, to_q: Array, to_v: Array, seen: Array) -> None:
+    for s in range(q.size):
+        to_q[s] = q[s] + dt * v[s] + dt * dt / 4 * a[s]
+    for s in range(q.size):
+        to_v[s] = v[s] + dt / 2 * a[s]
+    for s in range(q.size):
+        seen[s] = to_q[s] + c * to_v[s]
 
 
 @njit(cache=True)
-def predict_connectors(line: Line, motion: Motion, work: Workspace, w: Array) -> None:
+def wire_forces(line: Line, work: Workspace, w: Array, r: Array, first: int, last: int) -> None:
+    """Forces and moments that wires and lumped parts exert on the stations in the predicted state, into w and r.
+
+    The loops are cut so that each fills one array from a few others, in which form they compile to vector instructions.
+    """
+    h, shear = line.length[first:last], work.shear[first:last]
+    for b in range(w.shape[0]):
+        f, m = w[b, first : last + 1], r[b, first : last + 1]
+        f[:] = 0.0
+        m[:] = 0.0
+        k = line.stiffness_entries[b]
+        p, t = work.seen_w[b, first : last + 1], work.seen_r[b, first : last + 1]
+        k11, k12, k22, k24 = k[0, first:last], k[1, first:last], k[2, first:last], k[3, first:last]
+        _add_stiffness_forces(k11, k12, k22, k24, p, t, shear, f, m)
+        q, v, u = work.w[0, b, first : last + 1], work.w[1, b, first : last + 1], work.r[1, b, first : last + 1]
+        if line.mass_coefficient[b] != 0.0:
+            _add_mass_damping(line.mass_coefficient[b], line.mass_scale[b, first:last], h, v, u, f, m)
+        spring, damper = line.lumped_stiffness[b, first : last + 1], line.lumped_damping[b, first : last + 1]
+        for s in range(f.size):
+            f[s] -= spring[s] * q[s] + damper[s] * v[s]
+
+
+@njit(cache=True)
+def _add_stiffness_forces(
+    k11: Array, k12: Array, k22: Array, k24: Array, p: Array, t: Array, shear: Array, w: Array, r: Array
+) -> None:
+    """Forces of beam elements in deflections p and slopes t."""
+    p0, p1, t0, t1 = p[:-1], p[1:], t[:-1], t[1:]
+    w0, w1, r0, r1 = w[:-1], w[1:], r[:-1], r[1:]
+    for e in range(shear.size):
+        shear[e] = k11[e] * (p0[e] - p1[e]) + k12[e] * (t0[e] + t1[e])
+    for e in range(shear.size):
+        w0[e] -= shear[e]
+    for e in range(shear.size):
+        w1[e] += shear[e]
+    for e in range(shear.size):
+        r0[e] -= k12[e] * (p0[e] - p1[e]) + k22[e] * t0[e] + k24[e] * t1[e]
+    for e in range(shear.size):
+        r1[e] -= k12[e] * (p0[e] - p1[e]) + k24[e] * t0[e] + k22[e] * t1[e]
+
+
+@njit(cache=True)
+def _add_mass_damping(c: float, scale: Array, length: Array, v: Array, u: Array, w: Array, r: Array) -> None:
+    """Damping proportional to the consistent mass of beam elements, in velocities v and u of deflection and slope."""
+    v0, v1, u0, u1 = v[:-1], v[1:], u[:-1], u[1:]
+    w0, w1, r0, r1 = w[:-1], w[1:], r[:-1], r[1:]
+    for e in range(scale.size):
+        w0[e] -= c * scale[e] * (156 * v0[e] + 54 * v1[e] + length[e] * (22 * u0[e] - 13 * u1[e]))
+    for e in range(scale.size):
+        w1[e] -= c * scale[e] * (54 * v0[e] + 156 * v1[e] + length[e] * (13 * u0[e] - 22 * u1[e]))
+    for e in range(scale.size):
+        r0[e] -= c * scale[e] * length[e] * (22 * v0[e] + 13 * v1[e] + length[e] * (4 * u0[e] - 3 * u1[e]))
+    for e in range(scale.size):
+        r1[e] += c * scale[e] * length[e] * (13 * v0[e] + 22 * v1[e] + length[e] * (3 * u0[e] - 4 * u1[e]))
+
+
+@njit(cache=True)
+def predict_connectors(line: Line, motion: Motion, work: Workspace, w: Array, first: int, last: int) -> None:
     """Predicted elongations; the connectors pull with their tensions of the last step to begin with."""
     for n in range(line.station.size):
         s = line.station[n]
+        if s < first or s > last:
+            continue
         change = motion.tension[n] - line.preload[n]
         d, rate = 0.0, 0.0
         for e in range(line.end_row.shape[1]):
@@ -239,24 +300,31 @@ def predict_train(line: Line, train: Train, work: Workspace, w: Array, r: Array)
 
 
 @njit(cache=True)
-def add_column(w: Array, r: Array, column: Array, station: int, value: float) -> None:
-    """Add `value` times a local column of the inverse to the accelerations of one row."""
-    width = column.shape[1]
-    shift = station - width // 2
-    first, last = max(0, -shift), min(width, w.size - shift)
-    for i in range(first, last):
-        w[i + shift] += value * column[0, i]
-        r[i + shift] += value * column[1, i]
+def add_column(w: Array, r: Array, column: Array, station: int, value: float, limits: tuple[int, int]) -> None:
+    """Add `value` times a local column of the inverse to the accelerations of one row, between two stations."""
+    half = column.shape[1] // 2
+    first, last = max(limits[0], station - half), min(limits[1], station + half) + 1
+    shift = half - station
+    _add_scaled(w[first:last], column[0, first + shift : last + shift], value)
+    _add_scaled(r[first:last], column[1, first + shift : last + shift], value)
 
 
 @njit(cache=True)
-def turn_connectors(line: Line, motion: Motion, work: Workspace, w: Array, r: Array) -> float:
-    """Solve every connector once, the other forces held; returns the largest change of a tension [N]."""
+def _add_scaled(target: Array, source: Array, value: float) -> None:
+    for i in range(target.size):
+        target[i] += value * source[i]
+
+
+@njit(cache=True)
+def turn_connectors(line: Line, motion: Motion, work: Workspace, w: Array, r: Array, first: int, last: int) -> float:
+    """Solve every connector between two stations once, the others held; returns the largest change of a tension [N]."""
     dt = line.time_step
     half = line.columns.shape[2] // 2
     largest = 0.0
     for n in range(line.station.size):
         s, k, c = line.station[n], line.stiffness[n], line.damping[n]
+        if s < first or s > last:
+            continue
         acceleration, compliance = 0.0, 0.0
         for e in range(line.end_row.shape[1]):
             f = line.end_coefficient[n, e]
@@ -268,18 +336,18 @@ def turn_connectors(line: Line, motion: Motion, work: Workspace, w: Array, r: Ar
         if line.unilateral[n] and tension < 0.0:
             tension = 0.0
         change = tension - motion.tension[n]
-        if change != 0.0:
+        if abs(change) > NEGLIGIBLE_FORCE:
             motion.tension[n] = tension
             for e in range(line.end_row.shape[1]):
                 row, f = line.end_row[n, e], line.end_coefficient[n, e]
                 if f != 0.0:
-                    add_column(w[row], r[row], line.columns[line.end_column[n, e]], s, -f * change)
+                    add_column(w[row], r[row], line.columns[line.end_column[n, e]], s, -f * change, (first, last))
         largest = max(largest, abs(change))
     return largest
 
 
 @njit(cache=True)
-def turn_contacts(line: Line, train: Train, work: Workspace, w: Array, r: Array) -> float:
+def turn_contacts(line: Line, train: Train, work: Workspace, w: Array, r: Array, first: int, last: int) -> float:
     """Solve every contact once, the other forces held; returns the largest change of a contact force [N]."""
     dt = line.time_step
     largest = 0.0
@@ -296,16 +364,25 @@ def turn_contacts(line: Line, train: Train, work: Workspace, w: Array, r: Array)
             force = (k * work.closing[p, m] + gain * approach + stiff * train.contact[p, m]) / (1 + stiff)
             force = max(force, 0.0)
             change = force - train.contact[p, m]
-            if change != 0.0:
+            if abs(change) > NEGLIGIBLE_FORCE:
                 train.contact[p, m] = force
                 for i in range(2):
                     for j in range(2):
-                        add_column(w[row], r[row], line.contact_columns[m, e + i, j], e + i, n[2 * i + j] * change)
+                        column, value = line.contact_columns[m, e + i, j], n[2 * i + j] * change
+                        add_column(w[row], r[row], column, e + i, value, (first, last))
                 for i in range(train.z.shape[2]):
                     for j in range(train.z.shape[2]):
                         train.z[2, p, i] -= train.inverse[p, i, j] * train.head[p, j] * change
             largest = max(largest, abs(change))
     return largest
+
+
+@njit(cache=True)
+def _correct(dt: float, q: Array, v: Array, a: Array, from_q: Array, from_v: Array) -> None:
+    for s in range(q.size):
+        q[s] = from_q[s] + dt * dt / 4 * a[s]
+    for s in range(q.size):
+        v[s] = from_v[s] + dt / 2 * a[s]
 
 
 @njit(cache=True)
@@ -325,27 +402,27 @@ def step(line: Line, motion: Motion, train: Train, work: Workspace) -> int:
     """
     dt = line.time_step
     w, r = motion.w[2], motion.r[2]
-    rows, stations = w.shape
-    predict_wires(line, motion, work)
-    wire_forces(line, work, w, r)
-    predict_connectors(line, motion, work, w)
+    rows = w.shape[0]
+    first, last = moving_part(line, train)
+    # One station more on either side stands still and holds the moving part.
+    before, behind = max(first - 1, 0), min(last + 1, line.position.size - 1)
+    predict_wires(line, motion, work, before, behind)
+    wire_forces(line, work, w, r, before, behind)
+    predict_connectors(line, motion, work, w, first, last)
     predict_train(line, train, work, w, r)
     for b in range(rows):
-        solve_row(line.factor, b, 0, stations - 1, w[b], r[b])
+        solve_row(line.factor, b, first, last, w[b, first : last + 1], r[b, first : last + 1])
     turns = 0
     while turns < MOST_TURNS:
         turns += 1
-        largest = turn_contacts(line, train, work, w, r)
-        largest = max(largest, turn_connectors(line, motion, work, w, r))
+        largest = turn_contacts(line, train, work, w, r, first, last)
+        largest = max(largest, turn_connectors(line, motion, work, w, r, first, last))
         if largest < FORCE_TOLERANCE:
             break
-    for b in range(rows):
-        for s in range(stations):
-            motion.w[0, b, s] = work.w[0, b, s] + dt * dt / 4 * w[b, s]
-            motion.w[1, b, s] = work.w[1, b, s] + dt / 2 * w[b, s]
-        for s in range(stations):
-            motion.r[0, b, s] = work.r[0, b, s] + dt * dt / 4 * r[b, s]
-            motion.r[1, b, s] = work.r[1, b, s] + dt / 2 * r[b, s]
+    for now, predicted in ((motion.w, work.w), (motion.r, work.r)):
+        for b in range(rows):
+            q, v, a = now[0, b, first : last + 1], now[1, b, first : last + 1], now[2, b, first : last + 1]
+            _correct(dt, q, v, a, predicted[0, b, first : last + 1], predicted[1, b, first : last + 1])
     for p in range(train.position.size):
         for i in range(train.z.shape[2]):
             train.z[0, p, i] = work.z[0, p, i] + dt * dt / 4 * train.z[2, p, i]

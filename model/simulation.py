@@ -1,5 +1,6 @@
 """Runs: pantographs along a line, or a line left to itself."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -34,6 +35,7 @@ class Passage:
     duration : [s]
     time_step : [s]
     watched : places along the contact wire where the uplift is recorded [m]
+    reach : what lies farther than this from every pantograph is left standing still [m]
     """
 
     pantographs: tuple[Pantograph, ...]
@@ -42,6 +44,7 @@ class Passage:
     duration: float
     time_step: float
     watched: tuple[float, ...] = ()
+    reach: float = math.inf
 
 
 @dataclass(frozen=True)
@@ -81,7 +84,7 @@ def run(line: Discretised, passage: Passage, progress: Callable[[float], None] |
     ------
     DidNotConverge : a time step has no solution
     """
-    stepping = time_stepping(line, passage.time_step)
+    stepping = time_stepping(line, passage.time_step, passage.reach)
     motion, train = start(line, stepping, passage)
     steps = round(passage.duration / passage.time_step)
     rows = np.full(len(passage.watched), line.contact_rows[0], dtype=np.int64)
@@ -206,6 +209,7 @@ def workspace(line: Line, motion: Motion, train: Train) -> Workspace:
         r=np.zeros((2, rows, stations)),
         seen_w=np.zeros((rows, stations)),
         seen_r=np.zeros((rows, stations)),
+        shear=np.zeros(stations - 1),
         elongation=np.zeros((2, line.station.size)),
         shape=np.zeros((pantographs, wires, 4)),
         element=np.zeros(pantographs, dtype=np.int64),

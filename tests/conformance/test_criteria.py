@@ -7,7 +7,8 @@ from pantocheck.conformance.cases.library import library_folder, load
 from pantocheck.conformance.criteria import margin, verdict_of, worst
 from pantocheck.conformance.trust import counts
 
-NAMES = "mean_force_N std_force_N statistical_max_N statistical_min_N max_force_N min_force_N max_uplift_at_support_mm contact_loss_pct"
+NAMES = """mean_force_N std_force_N statistical_max_N statistical_min_N
+max_force_N min_force_N max_uplift_at_support_mm contact_loss_pct"""
 KNOWN_PASSING_CODE = {  # Wang et al., Table III: one published code's own results
     "250": (118.2, 27.6, 201.1, 35.5, 193.7, 70.3, 52.2, 0.0),
     "300": (118.7, 32.8, 213.2, 19.2, 195.4, 54.7, 59.7, 0.0),

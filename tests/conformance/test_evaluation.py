@@ -23,9 +23,13 @@ def record(force=None, rate: float = RATE, length: float = 600.0, **changes) -> 
     time = np.arange(int(length / SPEED * rate)) / rate
     if force is None:
         force = 100 + sum(a * np.sin(2 * np.pi * f * time) for a, f in ((20, 2), (10, 10), (8, 30)))
-    given = dict(
-        time=time, speed=SPEED, position=SPEED * time[None], force=np.atleast_2d(force), evaluated=(200.0, 400.0)
-    )
+    given = {
+        "time": time,
+        "speed": SPEED,
+        "position": SPEED * time[None],
+        "force": np.atleast_2d(force),
+        "evaluated": (200.0, 400.0),
+    }
     return Record(**(given | changes))
 
 
@@ -146,8 +150,9 @@ def test_gain_and_offset_of_the_force_go_through():
 
 def test_registry_has_every_name_of_the_contract():
     names = """mean_force_N std_force_N std_force_50_N cov_20 cov_50 rms_0_5_N rms_5_20_N rms_20_50_N statistical_max_N
-    statistical_min_N max_force_N min_force_N contact_loss_pct max_uplift_at_support_mm contact_height_range_mm presag_mm
-    dropper_length_m elasticity_mm_N elasticity_non_uniformity_pct wave_speed_m_s mode_frequency_Hz damping_ratio"""
+    statistical_min_N max_force_N min_force_N contact_loss_pct max_uplift_at_support_mm contact_height_range_mm
+    presag_mm dropper_length_m elasticity_mm_N elasticity_non_uniformity_pct wave_speed_m_s mode_frequency_Hz
+    damping_ratio"""
     assert set(QUANTITIES) == set(names.split())
     assert len(QUANTITIES) == len(PANTOGRAPH_QUANTITIES) + len(LINE_QUANTITIES) + len(GIVEN_QUANTITIES)
     assert all(

@@ -65,7 +65,8 @@ LINE, PANTOGRAPH, CASE = "line.toml", "pantograph.toml", "250.toml"
             PANTOGRAPH,
             'uplift_force_on = "frame"',
             'uplift_force_on = "knee"',
-            "pantograph 'pantograph.toml', key chain.uplift_force_on: no mass is called 'knee'.\n  Names are: frame, head.",
+            "pantograph 'pantograph.toml', key chain.uplift_force_on: no mass is called 'knee'.\n"
+            "  Names are: frame, head.",
         ),
         (
             LINE,
@@ -237,7 +238,8 @@ def test_absent_file(tmp_path):
 def test_limit_for_a_line_quantity_has_no_pantograph(tmp_path):
     path = tmp_path / "limits.toml"
     path.write_text(
-        '[[limit]]\nquantity = "max_uplift_at_support_mm"\npantograph = 1\nupper = 60.0\ntrust = "primary"\nsource = "own"\n'
+        '[[limit]]\nquantity = "max_uplift_at_support_mm"\npantograph = 1\nupper = 60.0\n'
+        'trust = "primary"\nsource = "own"\n'
     )
     with pytest.raises(InputError, match=r"key limit\[1\]\.pantograph: max_uplift_at_support_mm belongs to the line"):
         read_limits(path)
