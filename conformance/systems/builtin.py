@@ -10,7 +10,8 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.evaluation import Value
 from pantocheck.conformance.record import Record
 from pantocheck.conformance.systems import Outcome
-from pantocheck.conformance.systems.translation import catenary, pantograph, starts, watched_supports
+from pantocheck.conformance.systems.line_model import catenary
+from pantocheck.conformance.systems.passage import pantograph, starts, watched_supports
 from pantocheck.model import Discretised, History, Passage, discretise, run
 from pantocheck.model.beam import wave_speed
 from pantocheck.model.statics import non_uniformity, static_uplift
