@@ -95,6 +95,13 @@ def test_own_case_by_path_with_files_of_its_own_and_of_the_library(own_case):
     assert load(path).line.geometry.spans == 10
 
 
+def test_two_files_with_one_id_are_refused(own_case):
+    changed = str(own_case("250.toml", "order = 6", "order = 4"))
+    assert len(select([changed, changed])) == 1
+    with pytest.raises(InputError, match="two different files have this id"):
+        select([changed, "en50318-2002/250"])
+
+
 def test_required_cases_come_first(own_case, monkeypatch):
     path = own_case("250.toml", 'line = "line', 'requires = ["en50318-2002/300"]\nline = "line')
     assert [case.id for case in select([str(path)])] == ["en50318-2002/300", "en50318-2002/250"]
