@@ -168,7 +168,7 @@ def _upper_wire(line: Line, messenger: str, position: float) -> str:
 def _steady_arms(line: Line) -> Iterator[SteadyArm]:
     arm = line.steady_arm
     # A bar that turns about its hinge moves a third of its mass with the claw.
-    mass = arm.mass_kg / 3 + arm.clamp_kg
+    mass = arm.mass_kg_m * (arm.length_m or 0.0) / 3 + arm.clamp_kg
     for x in _supports(line):
         for contact in _names(line, "contact wire"):
             yield SteadyArm(
