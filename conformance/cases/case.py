@@ -116,7 +116,7 @@ class Case:
             source = (table.source,) if isinstance(table.source, str) else tuple(table.source)
             found.append(Input(name, table.trust, source))
             found += [
-                Input(f"{name}.{key}", "provisional", ("not traced to a printed source",)) for key in table.provisional
+                Input(f"{name}.{key}", "provisional", ("untraced",)) for key in table.provisional
             ]
         return tuple(found)
 
