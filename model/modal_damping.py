@@ -1,7 +1,7 @@
 """Modal damping on chosen modes, the Rayleigh part compensated there.
 
 C = C_R + M Phi diag(2 zeta_j w_j - phi_j' C_R phi_j) Phi' M   (Bianchi et al. 2010). The second term gives the chosen
-modes exactly their ratios and leaves all other modes alone. As a matrix it is full, but low in rank: it is never formed.
+modes exactly their ratios and leaves all others alone. As a matrix it is full, but low in rank: it is never formed.
 """
 
 from dataclasses import dataclass
