@@ -5,6 +5,7 @@ closed form (the local columns of the inverse), so each is solved exactly in tur
 force changes any more. Forces far apart do not feel each other within a step, so two or three turns do.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -331,6 +332,12 @@ def _add_scaled(target: Array, source: Array, value: float) -> None:
 
 
 @njit(cache=True)
+def larger(a: float, b: float) -> float:
+    """The larger of two numbers, or NaN where either is: `max` would drop it, and a lost run would look settled."""
+    return a if a >= b or math.isnan(a) else b
+
+
+@njit(cache=True)
 def turn_connectors(line: Line, motion: Motion, work: Workspace, w: Array, r: Array, first: int, last: int) -> float:
     """Solve every connector between two stations once, the others held; returns the largest change of a tension [N]."""
     dt = line.time_step
@@ -357,7 +364,7 @@ def turn_connectors(line: Line, motion: Motion, work: Workspace, w: Array, r: Ar
                 row, f = line.end_row[n, e], line.end_coefficient[n, e]
                 if f != 0.0:
                     add_column(w[row], r[row], line.columns[line.end_column[n, e]], s, -f * change, (first, last))
-        largest = max(largest, abs(change))
+        largest = larger(largest, abs(change))
     return largest
 
 
@@ -388,7 +395,7 @@ def turn_contacts(line: Line, train: Train, work: Workspace, w: Array, r: Array,
                 for i in range(train.z.shape[2]):
                     for j in range(train.z.shape[2]):
                         train.z[2, p, i] -= train.inverse[p, i, j] * train.head[p, j] * change
-            largest = max(largest, abs(change))
+            largest = larger(largest, abs(change))
     return largest
 
 
@@ -418,7 +425,7 @@ def turn_modes(line: Line, motion: Motion, work: Workspace, w: Array, r: Array) 
         if abs(change) > NEGLIGIBLE_FORCE:
             motion.modal[j] = force
             _add_mode(w, r, line.modal_response[j], change)
-        largest = max(largest, abs(change))
+        largest = larger(largest, abs(change))
     return largest
 
 
@@ -464,8 +471,8 @@ def step(line: Line, motion: Motion, train: Train, work: Workspace) -> int:
     while turns < MOST_TURNS:
         turns += 1
         largest = turn_contacts(line, train, work, w, r, first, last)
-        largest = max(largest, turn_connectors(line, motion, work, w, r, first, last))
-        largest = max(largest, turn_modes(line, motion, work, w, r))
+        largest = larger(largest, turn_connectors(line, motion, work, w, r, first, last))
+        largest = larger(largest, turn_modes(line, motion, work, w, r))
         if largest < FORCE_TOLERANCE:
             break
     for now, predicted in ((motion.w, work.w), (motion.r, work.r)):

@@ -149,7 +149,7 @@ def start(line: Discretised, stepping: Line, passage: Passage) -> tuple[Motion, 
     return still(at_rest, stepping.modal_damping.size), _train(line, stepping, passage, at_rest)
 
 
-def still(deflection: Deflection, modes: int) -> Motion:
+def still(deflection: Deflection, modes: int = 0) -> Motion:
     """A line held at rest in a static deflection; `modes` of its modes have a damping of their own."""
     w, r = (np.zeros((3, *deflection.displacement.shape[:2])) for _ in range(2))
     # Far from the loads the deflection fades into denormal numbers, which processors handle a hundred times slower.
