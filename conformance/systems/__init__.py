@@ -1,1 +1,58 @@
 """Systems under test: the reference simulator, a record on disk, a command."""
+
+from dataclasses import dataclass, field
+from typing import Literal, Protocol
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.evaluation import Value
+from pantocheck.conformance.record import Record
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a system delivers for a case.
+
+    Parameters
+    ----------
+    record : of the run; None for a static case, and when the system could not run
+    static : quantities of the line at rest, by name
+    simulated_s : time that was simulated or measured [s]; None if unknown
+    wall_s : time the computation took [s]; None if unknown
+    dt_s, element_m : time step [s] and length of an element [m]; None if unknown
+    notes : what a reader of the report should know of this run
+    warnings : what should make him careful
+    skipped : why the system does not run this case; None if it did
+    errored : one line on what went wrong; None if nothing did
+    refined : the same case with element and time step halved, from which the discretisation error is taken
+    """
+
+    record: Record | None = None
+    static: dict[str, Value] = field(default_factory=dict)
+    simulated_s: float | None = None
+    wall_s: float | None = None
+    dt_s: float | None = None
+    element_m: float | None = None
+    notes: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+    skipped: str | None = None
+    errored: str | None = None
+    refined: "Outcome | None" = None
+
+
+class System(Protocol):
+    """Anything that can be graded. It is sent to other processes, so it holds plain data only."""
+
+    @property
+    def name(self) -> str:
+        """As printed in reports."""
+
+    @property
+    def version(self) -> str:
+        """As printed in reports."""
+
+    @property
+    def kind(self) -> Literal["builtin", "record", "command"]:
+        """How it is spoken to."""
+
+    def run(self, case: Case) -> Outcome:
+        """Run a case. An exception it raises becomes the verdict `error` of that case alone."""

@@ -1,0 +1,145 @@
+"""A case as systems under test get it: the case file with its line and pantographs read."""
+
+import hashlib
+import json
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from pantocheck.conformance.cases.base import Sourced
+from pantocheck.conformance.cases.case_file import CaseFile
+from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.cases.line import Line
+from pantocheck.conformance.cases.pantograph import Pantograph
+from pantocheck.conformance.trust import Trust
+
+
+@dataclass(frozen=True)
+class Input:
+    """Where a group of inputs comes from.
+
+    Parameters
+    ----------
+    group : dotted name of the table, or of one key of it
+    trust, source : as the file says; source keys
+    """
+
+    group: str
+    trust: Trust
+    source: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Case:
+    """What is simulated, what is evaluated, and the limits.
+
+    Parameters
+    ----------
+    file : the case file
+    line : its line
+    pantographs : one per [[pantograph]] table, in running order
+    limits : those of the file, or a user's in their place
+    """
+
+    file: CaseFile
+    line: Line
+    pantographs: tuple[Pantograph, ...]
+    limits: tuple[Limit, ...]
+
+    @property
+    def id(self) -> str:
+        """Path-like name."""
+        return self.file.id
+
+    @property
+    def is_static(self) -> bool:
+        """Whether nothing runs: a check of the line at rest."""
+        return self.file.speed_km_h is None
+
+    @property
+    def speed(self) -> float:
+        """Speed of the train [m/s]; 0 for a static case."""
+        return (self.file.speed_km_h or 0.0) / 3.6
+
+    @property
+    def evaluated(self) -> tuple[float, float]:
+        """Start and end of the evaluated stretch [m]; the line begins at 0."""
+        spans, span = self.file.evaluated_spans or (1, self.line.geometry.spans), self.line.geometry.span_m
+        return (spans[0] - 1) * span, spans[-1] * span
+
+    @property
+    def offsets(self) -> tuple[float, ...]:
+        """How far each pantograph runs behind the first [m]."""
+        spacing = self.file.spacing_m or ()
+        return tuple(sum(spacing[:i]) for i in range(len(self.pantographs)))
+
+    @property
+    def start(self) -> float:
+        """Where the last pantograph is at the beginning of a run [m]."""
+        return self.line.geometry.span_m if self.file.start_m is None else self.file.start_m
+
+    @property
+    def end(self) -> float:
+        """Where the last pantograph is at the end of a run [m]; by default up to a span past the evaluated stretch."""
+        geometry, (_, evaluated_end), behind = self.line.geometry, self.evaluated, self.offsets[-1]
+        if self.file.run_out_m is not None:
+            return evaluated_end + self.file.run_out_m
+        # The first pantograph stays on the line, half a span away from its end.
+        furthest = (geometry.spans - 0.5) * geometry.span_m - behind
+        return max(evaluated_end, min(evaluated_end + geometry.span_m, furthest))
+
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256 of everything a system is told: the inputs without provenance, title and limits."""
+        inputs = {
+            "line": _numbers(self.line.model_dump(mode="json")),
+            "pantographs": [_numbers(pantograph.model_dump(mode="json")) for pantograph in self.pantographs],
+            "case": _numbers(self.file.model_dump(mode="json", exclude={"limit", "line", "requires"})),
+        }
+        text = json.dumps(inputs, sort_keys=True, separators=(",", ":"), allow_nan=False)
+        return "sha256:" + hashlib.sha256(text.encode()).hexdigest()
+
+    @property
+    def groups(self) -> dict[str, Sourced]:
+        """Every group of inputs that names its source, by dotted name: of the case, the line, and the pantographs."""
+        tables: dict[str, object] = {"case": self.file}
+        tables |= {f"line.{name}": getattr(self.line, name) for name in type(self.line).model_fields}
+        for i, (use, model) in enumerate(zip(self.file.pantograph, self.pantographs, strict=True), 1):
+            tables |= {f"pantograph {i}": use}
+            tables |= {f"pantograph {i}.{name}": getattr(model, name) for name in type(model).model_fields}
+        return {name: table for name, table in tables.items() if isinstance(table, Sourced)}
+
+    @property
+    def inputs(self) -> tuple[Input, ...]:
+        """Where every group of inputs comes from; keys that are less certain than their group follow it."""
+        found = []
+        for name, table in self.groups.items():
+            source = (table.source,) if isinstance(table.source, str) else tuple(table.source)
+            found.append(Input(name, table.trust, source))
+            found += [
+                Input(f"{name}.{key}", "provisional", ("not traced to a printed source",)) for key in table.provisional
+            ]
+        return tuple(found)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the files want a reader to know: on the whole, then group by group."""
+        notes = [self.line.note, *(model.note for model in self.pantographs)]
+        notes += [f"{name}: {table.note}" for name, table in self.groups.items() if table.note]
+        return tuple(dict.fromkeys(note.strip() for note in notes if note))
+
+    def with_limits(self, limits: tuple[Limit, ...]) -> "Case":
+        """The same case under other limits: one replaces that of the same quantity, the rest are added."""
+        merged = {limit.target: limit for limit in (*self.limits, *limits)}
+        return replace(self, limits=tuple(merged.values()))
+
+
+_SAID_OF_NUMBERS = frozenset({"trust", "source", "provisional", "note", "title", "id", "model"})
+
+
+def _numbers(tree: object) -> object:
+    """A file without what is said about its numbers, so that a corrected source leaves the digest as it is."""
+    if isinstance(tree, dict):
+        return {key: _numbers(value) for key, value in tree.items() if key not in _SAID_OF_NUMBERS}
+    if isinstance(tree, list):
+        return [_numbers(value) for value in tree]
+    return tree

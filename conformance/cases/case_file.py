@@ -1,0 +1,149 @@
+"""Case files: which line, which pantographs, what is evaluated, and the limits."""
+
+from typing import Annotated, Literal
+
+from pantocheck.conformance.cases.base import PositiveList, Sourced, Table, problem
+from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.quantities.filters import LowPass
+from pydantic import Field, model_validator
+
+FileName = Annotated[str, Field(min_length=1, max_length=500)]
+
+
+class PantographUse(Sourced):
+    """One pantograph of a run."""
+
+    model: Annotated[FileName, Field(description="pantograph file, relative to the case file")]
+    uplift_force_N: Annotated[
+        float | None,
+        Field(gt=0, le=2000, description="constant uplift force; the start value if a mean is aimed at [N]"),
+    ] = None
+    target_mean_force_N: Annotated[
+        float | None, Field(gt=0, le=2000, description="mean contact force to which the uplift force is tuned [N]")
+    ] = None
+
+    @model_validator(mode="after")
+    def _has_a_force(self) -> "PantographUse":
+        if self.uplift_force_N is None and self.target_mean_force_N is None:
+            raise problem(
+                "uplift_force_N",
+                "the pantograph has no uplift force",
+                "Give uplift_force_N, or target_mean_force_N to have it tuned.",
+            )
+        return self
+
+
+class Filter(Table):
+    """Filter of the graded contact force."""
+
+    kind: Annotated[Literal["butterworth"], Field(description="family of the filter")] = "butterworth"
+    order: Annotated[int, Field(ge=1, le=12, description="total order, forward and backward run together")] = 6
+    cutoff_Hz: Annotated[float, Field(gt=0, le=1000, description="-3 dB of the whole filter [Hz]")] = 20.0
+    phase: Annotated[Literal["zero", "causal"], Field(description="zero: forwards and backwards")] = "zero"
+
+    @model_validator(mode="after")
+    def _exists(self) -> "Filter":
+        if self.phase == "zero" and self.order % 2:
+            raise problem(
+                "order",
+                f"{self.order} is odd",
+                "A zero-phase filter runs half its order forwards and half backwards: give an even order.",
+            )
+        return self
+
+    @property
+    def low_pass(self) -> LowPass:
+        """The filter itself."""
+        return LowPass(self.kind, self.order, self.cutoff_Hz, self.phase)
+
+
+class Discretisation(Table):
+    """Mesh and time step of the reference simulator; a refinement pair halves both."""
+
+    element_m: Annotated[float, Field(ge=0.02, le=5, description="largest length of an element [m]")] = 0.5
+    time_step_s: Annotated[float, Field(ge=1e-5, le=0.01, description="time step [s]")] = 0.001
+
+
+class CaseFile(Sourced):
+    """A case as it stands in its file. Without a speed it is a static check of the line."""
+
+    id: Annotated[
+        str, Field(pattern=r"^[A-Za-z0-9._-]+(/[A-Za-z0-9._-]+)*$", max_length=200, description="path-like name")
+    ]
+    title: Annotated[str, Field(max_length=200, description="what it is")]
+    line: Annotated[FileName, Field(description="line file, relative to the case file")]
+    requires: Annotated[
+        tuple[str, ...], Field(strict=False, max_length=100, description="ids of cases that must pass first")
+    ] = ()
+    speed_km_h: Annotated[float | None, Field(ge=1, le=600, description="speed of the train [km/h]")] = None
+    evaluated_spans: Annotated[
+        tuple[int, ...] | None,
+        Field(
+            strict=False,
+            min_length=1,
+            max_length=1000,
+            description="spans that are evaluated, numbered from 1: the first and the last, or all of them",
+        ),
+    ] = None
+    start_m: Annotated[
+        float | None,
+        Field(ge=0, description="where the last pantograph starts [m]; left out: at the end of the first span"),
+    ] = None
+    run_out_m: Annotated[
+        float | None,
+        Field(
+            ge=0, description="how far the last pantograph runs past the evaluated spans [m]; left out: up to a span"
+        ),
+    ] = None
+    spacing_m: Annotated[
+        PositiveList | None, Field(description="distances between the pantographs, from the front [m]")
+    ] = None
+    pantograph: Annotated[tuple[PantographUse, ...], Field(strict=False, max_length=20)] = ()
+    filter: Filter = Filter()
+    discretisation: Discretisation = Discretisation()
+    limit: Annotated[tuple[Limit, ...], Field(strict=False, max_length=10_000)] = ()
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "CaseFile":
+        if self.speed_km_h is None:
+            if self.pantograph:
+                raise problem("speed_km_h", "missing", "Give the speed of the train in km/h, e.g. speed_km_h = 250.0 .")
+        elif not self.pantograph:
+            raise problem("pantograph", "missing", "A run needs at least one [[pantograph]] table.")
+        elif self.evaluated_spans is None:
+            raise problem(
+                "evaluated_spans", "missing", "Say which spans are evaluated, e.g. evaluated_spans = [5, 6] ."
+            )
+        if self.pantograph and len(self.spacing_m or ()) != len(self.pantograph) - 1:
+            raise problem(
+                "spacing_m",
+                f"{len(self.spacing_m or ())} distances for {len(self.pantograph)} pantographs",
+                "Give one distance between each two neighbours, from the front.",
+            )
+        spans = self.evaluated_spans or (1,)
+        ranged = len(spans) == 2 and spans[0] < spans[1]
+        if spans[0] < 1 or not (ranged or list(spans) == list(range(spans[0], spans[0] + len(spans)))):
+            raise problem(
+                "evaluated_spans",
+                f"{list(spans)} is not a stretch of neighbouring spans",
+                "Give the first and the last span, numbered from 1, e.g. [5, 6].",
+            )
+        self._check_limits()
+        return self
+
+    def _check_limits(self) -> None:
+        seen = set()
+        for i, limit in enumerate(self.limit, 1):
+            if limit.of > len(self.pantograph):
+                raise problem(
+                    f"limit[{i}].pantograph",
+                    f"there is no pantograph {limit.of}",
+                    f"The case has {len(self.pantograph)}, numbered from 1 at the front.",
+                )
+            if limit.target in seen:
+                raise problem(
+                    f"limit[{i}].quantity",
+                    f"a second limit for {limit.quantity}",
+                    "Give lower and upper of a quantity in one [[limit]] table.",
+                )
+            seen.add(limit.target)

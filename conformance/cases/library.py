@@ -1,0 +1,185 @@
+"""The library of reference cases, and a user's own case files: finding them by id, glob or path."""
+
+import re
+from collections.abc import Sequence
+from fnmatch import fnmatchcase
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.case_file import CaseFile
+from pantocheck.conformance.cases.limits import LimitOverride, LimitsFile
+from pantocheck.conformance.cases.line import Line
+from pantocheck.conformance.cases.pantograph import Pantograph
+from pantocheck.conformance.cases.toml_file import read_model, read_toml
+from pantocheck.conformance.errors import InputError
+from pantocheck.conformance.suggestions import nearest
+
+_ID = re.compile(r"^id\s*=", re.MULTILINE)
+
+
+def library_folder() -> Path:
+    """Folder of the reference cases that come with the suite."""
+    return Path(str(files("pantocheck.reference_cases")))
+
+
+@cache
+def library_ids(folder: Path) -> dict[str, Path]:
+    """Ids of all cases below a folder, from the folder structure, each with its file."""
+    found = {}
+    for path in sorted(folder.rglob("*.toml")):
+        # Lines, pantographs and the bibliography lie beside the cases, but only a case has an id.
+        if _ID.search(path.read_text(encoding="utf-8")):
+            found[path.relative_to(folder).with_suffix("").as_posix()] = path
+    return found
+
+
+def select(patterns: Sequence[str]) -> list[Case]:
+    """Cases for ids, globs and paths of case files, in the order asked, those they require put before them.
+
+    Without a pattern: every case of the library that has limits.
+
+    Raises
+    ------
+    InputError : a pattern matches nothing (the nearest ids are named), or a file is wrong
+    """
+    known = library_ids(library_folder())
+    chosen: dict[str, Case] = {}
+    for pattern in patterns or ["*"]:
+        for path in _matching(pattern, known):
+            _add(load(path), known, chosen, ())
+    if not patterns:
+        needed = {required for case in chosen.values() if case.limits for required in case.file.requires}
+        return [case for case in chosen.values() if case.limits or case.id in needed]
+    return list(chosen.values())
+
+
+def _matching(pattern: str, known: dict[str, Path]) -> list[Path]:
+    if pattern in known:
+        return [known[pattern]]
+    if pattern.endswith(".toml"):
+        return [Path(pattern)]
+    matches = [path for name, path in known.items() if fnmatchcase(name, pattern)]
+    if not matches:
+        raise InputError(
+            f"case '{pattern}'",
+            "there is no such case",
+            nearest(pattern, list(known)) + " `pantocheck cases` lists all.",
+        )
+    return matches
+
+
+def _add(case: Case, known: dict[str, Path], chosen: dict[str, Case], above: tuple[str, ...]) -> None:
+    if case.id in above:
+        raise InputError(
+            f"case '{case.id}', key requires",
+            f"requires itself ({' > '.join((*above, case.id))})",
+            "Take one of these out.",
+        )
+    for required in case.file.requires:
+        if required not in known:
+            raise InputError(
+                f"case '{case.id}', key requires", f"there is no case {required!r}", nearest(required, list(known))
+            )
+        _add(load(known[required]), known, chosen, (*above, case.id))
+    chosen.setdefault(case.id, case)
+
+
+def load(path: Path) -> Case:
+    """Read a case file with its line and pantographs, and check that they fit together.
+
+    Raises
+    ------
+    InputError : a file cannot be read, or is wrong
+    """
+    file = read_model(path, CaseFile, "case")
+    line = read_model(_beside(path, file.line, "line"), Line, "reference line")
+    pantographs = tuple(
+        read_model(_beside(path, use.model, f"pantograph[{i}].model"), Pantograph, "pantograph")
+        for i, use in enumerate(file.pantograph, 1)
+    )
+    case = Case(file, line, pantographs, file.limit)
+    _check_geometry(case, path)
+    return case
+
+
+def _beside(case_path: Path, name: str, key: str) -> Path:
+    """A file named by a case: relative to the case, or else to the library."""
+    for folder in (case_path.parent, library_folder()):
+        if (folder / name).is_file():
+            return folder / name
+    raise InputError(
+        f"case '{case_path.name}', key {key}",
+        f"there is no file {name!r}",
+        f"Name a file relative to {case_path.parent}, or one of the library, e.g. en50318-2002/line.toml .",
+    )
+
+
+def _check_geometry(case: Case, path: Path) -> None:
+    if case.is_static:
+        return
+    geometry, where = case.line.geometry, f"case '{path.name}'"
+    last = (case.file.evaluated_spans or (1,))[-1]
+    if last > geometry.spans:
+        raise InputError(
+            f"{where}, key evaluated_spans", f"span {last} does not exist", f"The line has {geometry.spans} spans."
+        )
+    if case.start >= case.evaluated[0]:
+        raise InputError(
+            f"{where}, key start_m",
+            f"the last pantograph starts at {case.start:g} m, not before the evaluated "
+            f"spans, which begin at {case.evaluated[0]:g} m",
+            "Start earlier, or evaluate later spans.",
+        )
+    length, front = geometry.span_m * geometry.spans, case.end + case.offsets[-1]
+    if front >= length:
+        raise InputError(
+            f"{where}, key run_out_m",
+            f"the first pantograph would run to {front:g} m on a line of {length:g} m",
+            "Add spans, evaluate earlier ones, or shorten run_out_m.",
+        )
+
+
+def read_limits(path: Path) -> tuple[LimitOverride, ...]:
+    """A user's own limits, to be laid over cases."""
+    return read_model(path, LimitsFile, "limits").limit
+
+
+def overlaid(cases: Sequence[Case], limits: Sequence[LimitOverride]) -> list[Case]:
+    """Cases with a user's limits laid over them.
+
+    Raises
+    ------
+    InputError : a limit is for none of the cases, or for a pantograph that its case has not
+    """
+    for i, limit in enumerate(limits, 1):
+        where, meant = f"limits, key limit[{i}]", [case for case in cases if fnmatchcase(case.id, limit.case)]
+        if not meant:
+            raise InputError(
+                f"{where}.case",
+                f"no case that is run matches {limit.case!r}",
+                nearest(limit.case, [case.id for case in cases]),
+            )
+        if limit.of > max(len(case.pantographs) for case in meant):
+            raise InputError(
+                f"{where}.pantograph", f"there is no pantograph {limit.of}", "They are numbered from 1 at the front."
+            )
+    return [
+        case.with_limits(
+            tuple(limit for limit in limits if fnmatchcase(case.id, limit.case) and limit.of <= len(case.pantographs))
+        )
+        for case in cases
+    ]
+
+
+@cache
+def bibliography() -> dict[str, str]:
+    """Source keys and the publications they stand for."""
+    return {str(key): str(text) for key, text in read_toml(library_folder() / "sources.toml", "bibliography").items()}
+
+
+def source_text(source: str | Sequence[str]) -> str:
+    """Sources as a reader wants them: each key replaced by its publication, free text kept."""
+    keys = (source,) if isinstance(source, str) else source
+    return "; ".join(bibliography().get(key, key) for key in keys)

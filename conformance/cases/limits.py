@@ -1,0 +1,70 @@
+"""Limits: a quantity, its bounds, and who says so."""
+
+from typing import Annotated
+
+from pantocheck.conformance.cases.base import Table, problem
+from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.suggestions import nearest
+from pantocheck.conformance.trust import Trust
+from pydantic import Field, field_validator, model_validator
+
+
+class Limit(Table):
+    """Bounds of one quantity; a quantity of the line or of a static check belongs to no pantograph."""
+
+    quantity: Annotated[str, Field(description="name of a quantity", json_schema_extra={"enum": list(QUANTITIES)})]
+    pantograph: Annotated[
+        int | None,
+        Field(ge=1, le=20, description="number in running order; left out: the first, or none for a line quantity"),
+    ] = None
+    item: Annotated[
+        int | None, Field(ge=1, description="which one of a list-valued quantity (dropper, mode), from 1")
+    ] = None
+    lower: Annotated[float | None, Field(description="smallest value that passes, in the unit of the quantity")] = None
+    upper: Annotated[float | None, Field(description="largest value that passes, in the unit of the quantity")] = None
+    trust: Annotated[Trust, Field(description="how far the limit can be trusted")]
+    source: Annotated[str | list[str], Field(description="where it was read: keys of sources.toml, or free text")]
+    note: Annotated[str | None, Field(description="what a reader should know about it", max_length=4000)] = None
+
+    @field_validator("quantity")
+    @classmethod
+    def _known(cls, name: str) -> str:
+        if name not in QUANTITIES:
+            raise problem("", f"there is no quantity {name!r}", nearest(name, list(QUANTITIES)))
+        return name
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Limit":
+        if self.lower is None and self.upper is None:
+            raise problem("", "a limit without a lower and an upper bound", "Give lower, upper or both.")
+        if self.lower is not None and self.upper is not None and self.lower > self.upper:
+            raise problem("lower", f"{self.lower:g} is above upper = {self.upper:g}", "Exchange them.")
+        if QUANTITIES[self.quantity].scope != "pantograph" and self.pantograph is not None:
+            raise problem(
+                "pantograph", f"{self.quantity} belongs to the line, not to a pantograph", "Leave pantograph out."
+            )
+        return self
+
+    @property
+    def of(self) -> int:
+        """Pantograph the limit is for, from 1; 0 for the line."""
+        if QUANTITIES[self.quantity].scope != "pantograph":
+            return 0
+        return self.pantograph or 1
+
+    @property
+    def target(self) -> tuple[str, int, int | None]:
+        """What is limited; a limit for the same target replaces another."""
+        return self.quantity, self.of, self.item
+
+
+class LimitOverride(Limit):
+    """A limit that a user lays over cases."""
+
+    case: Annotated[str, Field(description="id or glob of the cases it is for", max_length=200)] = "*"
+
+
+class LimitsFile(Table):
+    """A file of a user's own limits, for `--limits`."""
+
+    limit: Annotated[tuple[LimitOverride, ...], Field(strict=False, min_length=1, max_length=10_000)]

@@ -1,0 +1,184 @@
+"""From the outcome of a case to its result: quantities, criteria, warnings, traces."""
+
+import math
+from collections.abc import Callable
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.library import source_text
+from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.criteria import Verdict, margin, verdict_of, worst
+from pantocheck.conformance.evaluation import LINE, Evaluation, Value, evaluate
+from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.results import CaseResult, Criterion, FilterFacts, InputGroup, Number, RunFacts
+from pantocheck.conformance.systems import Outcome
+from pantocheck.conformance.traces import pantograph_traces, uplift_traces
+from pantocheck.conformance.trust import Trust, counts
+
+
+def graded(case: Case, outcome: Outcome, lowest_trust: Trust) -> CaseResult:
+    """Grade what a system delivered for a case.
+
+    Parameters
+    ----------
+    case : what was asked, and its limits
+    outcome : what was delivered
+    lowest_trust : lowest trust of the limits that carry a verdict
+    """
+    if outcome.errored is not None:
+        return ungraded(case, "error", outcome.errored, outcome)
+    if outcome.skipped is not None:
+        return ungraded(case, "skip", outcome.skipped, outcome)
+    evaluation = _evaluated(case, outcome)
+    refined = _evaluated(case, outcome.refined) if outcome.refined is not None else None
+    criteria = [_criterion(limit, evaluation, refined, lowest_trust) for limit in case.limits]
+    record = outcome.record
+    span, spans = case.line.geometry.span_m, case.line.geometry.spans
+    supports = [i * span for i in range(spans + 1)]
+    return _result(
+        case,
+        outcome,
+        verdict=worst(criterion.verdict for criterion in criteria),
+        reason=None,
+        warnings=[*outcome.warnings, *_close_calls(criteria), *_edge_warnings(case, outcome)],
+        criteria=criteria,
+        quantities={str(of): _plain(evaluation.values[of]) for of in evaluation.values if evaluation.values[of]},
+        skipped={str(of): evaluation.skipped[of] for of in evaluation.skipped if evaluation.skipped[of]},
+        traces=pantograph_traces(record, case.file.filter.low_pass, supports) if record is not None else {},
+        uplift=uplift_traces(record) if record is not None else [],
+    )
+
+
+def ungraded(case: Case, verdict: Verdict, reason: str, outcome: Outcome | None = None) -> CaseResult:
+    """Result of a case that did not get as far as its limits."""
+    line = " ".join(reason.split())
+    return _result(
+        case,
+        outcome or Outcome(),
+        verdict=verdict,
+        reason=line,
+        warnings=[],
+        criteria=[],
+        quantities={},
+        skipped={},
+        traces={},
+        uplift=[],
+    )
+
+
+def _result(case: Case, outcome: Outcome, **parts: object) -> CaseResult:
+    file, record = case.file, outcome.record
+    return CaseResult.model_validate(
+        {
+            "id": case.id,
+            "title": file.title,
+            "notes": [*case.notes, *outcome.notes],
+            "inputs": [InputGroup(group=i.group, trust=i.trust, source=source_text(i.source)) for i in case.inputs],
+            "input_digest": case.digest,
+            "run": RunFacts(
+                simulated_s=outcome.simulated_s,
+                wall_s=outcome.wall_s,
+                dt_s=outcome.dt_s,
+                element_m=outcome.element_m,
+                speed_km_h=file.speed_km_h,
+                rate_Hz=None if record is None else float(f"{record.rate:.9g}"),
+                filter=FilterFacts(**file.filter.model_dump()),
+                evaluated_m=None if case.is_static else case.evaluated,
+            ),
+            **parts,
+        }
+    )
+
+
+def _evaluated(case: Case, outcome: Outcome) -> Evaluation:
+    if outcome.record is None:
+        evaluation = Evaluation({LINE: {}}, {LINE: {}})
+    else:
+        evaluation = evaluate(outcome.record, case.file.filter.low_pass)
+    ordered = {name: outcome.static[name] for name in QUANTITIES if name in outcome.static}
+    return Evaluation({**evaluation.values, LINE: {**evaluation.values[LINE], **ordered}}, evaluation.skipped)
+
+
+def _criterion(limit: Limit, evaluation: Evaluation, refined: Evaluation | None, lowest_trust: Trust) -> Criterion:
+    value = _value(limit, evaluation)
+    fine = _value(limit, refined) if refined is not None else None
+    verdict: Verdict = "skip"
+    reason: str | None = None
+    if value is None:
+        reason = evaluation.skipped.get(limit.of, {}).get(limit.quantity, "the system delivers no such quantity")
+    else:
+        verdict = verdict_of(value, limit.lower, limit.upper)
+        if verdict == "fail":
+            reason = _outside(value, limit)
+    if not counts(limit.trust, lowest_trust):
+        would = {"pass": "would pass", "fail": f"would fail: {reason}", "skip": f"not graded: {reason}"}[verdict]
+        verdict, reason = "info", f"{would}; the limit is {limit.trust} and does not count"
+    return Criterion(
+        quantity=limit.quantity,
+        pantograph=limit.of,
+        item=limit.item,
+        value=value,
+        unit=QUANTITIES[limit.quantity].unit,
+        lower=limit.lower,
+        upper=limit.upper,
+        verdict=verdict,
+        trust=limit.trust,
+        source=source_text(limit.source),
+        margin=None if value is None else margin(value, limit.lower, limit.upper),
+        discretisation_error=None if value is None or fine is None else abs(value - fine),
+        reason=reason,
+    )
+
+
+def _value(limit: Limit, evaluation: Evaluation) -> float | None:
+    value = evaluation.values.get(limit.of, {}).get(limit.quantity)
+    if isinstance(value, tuple):
+        at = (limit.item or 1) - 1
+        value = value[at] if at < len(value) else None
+    return value if value is not None and math.isfinite(value) else None
+
+
+def _outside(value: float, limit: Limit) -> str:
+    unit = QUANTITIES[limit.quantity].unit
+    if limit.lower is not None and value < limit.lower:
+        return f"{limit.lower - value:.3g} {unit} below the lower limit".replace("  ", " ")
+    return f"{value - (limit.upper or 0.0):.3g} {unit} above the upper limit".replace("  ", " ")
+
+
+def _close_calls(criteria: list[Criterion]) -> list[str]:
+    """A verdict that a finer mesh could turn is named."""
+    close = []
+    for item in criteria:
+        if item.value is None or item.discretisation_error is None or item.lower == item.upper:
+            continue
+        distance = min(abs(item.value - bound) for bound in (item.lower, item.upper) if bound is not None)
+        if distance < item.discretisation_error:
+            close.append(
+                f"{item.quantity} of pantograph {item.pantograph} lies {distance:.2g} {item.unit} from a limit, "
+                f"less than its discretisation error of {item.discretisation_error:.2g} {item.unit}"
+            )
+    return close
+
+
+def _edge_warnings(case: Case, outcome: Outcome) -> list[str]:
+    """The filter's transients reach two periods of the cut-off into the record from its ends."""
+    record = outcome.record
+    if record is None:
+        return []
+    settle = 2 / case.file.filter.cutoff_Hz * record.speed
+    start, end = record.evaluated
+    return [
+        f"the record of pantograph {i} has less than {settle:.1f} m of run-in or run-out around the evaluated stretch: "
+        "transients of the filter reach into it"
+        for i, position in enumerate(record.position, 1)
+        if position[0] > start - settle or position[-1] < end + settle
+    ]
+
+
+def _plain(values: dict[str, Value]) -> dict[str, Number]:
+    finite: Callable[[float], bool] = math.isfinite
+    plain: dict[str, Number] = {}
+    for name, value in values.items():
+        numbers = list(value) if isinstance(value, tuple) else value
+        if all(map(finite, numbers if isinstance(numbers, list) else [numbers])):
+            plain[name] = numbers
+    return plain

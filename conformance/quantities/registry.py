@@ -1,0 +1,159 @@
+"""Every quantity by name: unit, definition, and what it needs. A criterion is one of these names with limits."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from pantocheck.conformance.quantities.bands import band_rms
+from pantocheck.conformance.quantities.signals import LineSignals, PantographSignals
+from pantocheck.conformance.quantities.statistics import coefficient_of_variation, contact_loss, statistical_extremes
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number that can be graded.
+
+    Parameters
+    ----------
+    name : as it stands in case files and results, the unit at its end
+    unit : as printed; empty for a ratio
+    definition : one sentence
+    needs : what a record, or a static check, must deliver for it
+    scope : `pantograph` (one value each), `line` (one value a run), `static` (of the line at rest), `mass_drop`
+    """
+
+    name: str
+    unit: str
+    definition: str
+    needs: str
+    scope: Literal["pantograph", "line", "static", "mass_drop"]
+
+
+@dataclass(frozen=True)
+class PantographQuantity(Quantity):
+    """A quantity computed from the signals of one pantograph."""
+
+    compute: Callable[[PantographSignals], float]
+
+
+@dataclass(frozen=True)
+class LineQuantity(Quantity):
+    """A quantity computed from the uplift at the supports."""
+
+    compute: Callable[[LineSignals], float]
+
+
+def _of_pantograph(
+    name: str, unit: str, definition: str, needs: str, compute: Callable[[PantographSignals], float]
+) -> PantographQuantity:
+    return PantographQuantity(name, unit, definition, needs, "pantograph", compute)
+
+
+def _band(low: float, high: float) -> Callable[[PantographSignals], float]:
+    return lambda signals: band_rms(signals.delivered, signals.rate, low, high, signals.filter_applied_Hz)
+
+
+def _mean(signals: PantographSignals) -> float:
+    return float(signals.delivered.mean())
+
+
+def _std(signals: PantographSignals) -> float:
+    return float(signals.graded.std())
+
+
+def _std_50(signals: PantographSignals) -> float:
+    return float(signals.extended.std())
+
+
+_FORCE, _RAW = "contact force", "contact force not filtered below 50 Hz"
+
+PANTOGRAPH_QUANTITIES: tuple[PantographQuantity, ...] = (
+    _of_pantograph("mean_force_N", "N", "mean contact force over the evaluated stretch", _FORCE, _mean),
+    _of_pantograph("std_force_N", "N", "standard deviation of the contact force, 0-20 Hz", _FORCE, _std),
+    _of_pantograph("std_force_50_N", "N", "standard deviation of the contact force, 0-50 Hz", _RAW, _std_50),
+    _of_pantograph(
+        "cov_20",
+        "",
+        "coefficient of variation: std_force_N over mean_force_N",
+        _FORCE,
+        lambda signals: coefficient_of_variation(_mean(signals), _std(signals)),
+    ),
+    _of_pantograph(
+        "cov_50",
+        "",
+        "coefficient of variation: std_force_50_N over mean_force_N",
+        _RAW,
+        lambda signals: coefficient_of_variation(_mean(signals), _std_50(signals)),
+    ),
+    _of_pantograph("rms_0_5_N", "N", "rms of the contact force in the band ]0, 5] Hz", _FORCE, _band(0, 5)),
+    _of_pantograph("rms_5_20_N", "N", "rms of the contact force in the band ]5, 20] Hz", _FORCE, _band(5, 20)),
+    _of_pantograph("rms_20_50_N", "N", "rms of the contact force in the band ]20, 50] Hz", _RAW, _band(20, 50)),
+    _of_pantograph(
+        "statistical_max_N",
+        "N",
+        "mean_force_N plus three times std_force_N",
+        _FORCE,
+        lambda signals: statistical_extremes(_mean(signals), _std(signals))[1],
+    ),
+    _of_pantograph(
+        "statistical_min_N",
+        "N",
+        "mean_force_N minus three times std_force_N",
+        _FORCE,
+        lambda signals: statistical_extremes(_mean(signals), _std(signals))[0],
+    ),
+    _of_pantograph(
+        "max_force_N", "N", "largest contact force, 0-20 Hz", _FORCE, lambda signals: float(signals.graded.max())
+    ),
+    _of_pantograph(
+        "min_force_N", "N", "smallest contact force, 0-20 Hz", _FORCE, lambda signals: float(signals.graded.min())
+    ),
+    _of_pantograph(
+        "contact_loss_pct",
+        "%",
+        "share of the samples of the unfiltered force without contact",
+        "contact force not filtered at all",
+        lambda signals: contact_loss(signals.delivered, signals.filter_applied_Hz),
+    ),
+    _of_pantograph(
+        "contact_height_range_mm",
+        "mm",
+        "highest minus lowest contact point over the evaluated stretch",
+        "contact height",
+        lambda signals: float(1e3 * np.ptp(signals.height)),
+    ),
+)
+
+LINE_QUANTITIES: tuple[LineQuantity, ...] = (
+    LineQuantity(
+        "max_uplift_at_support_mm",
+        "mm",
+        "largest unfiltered uplift of the contact wire at any support of the evaluated spans, over the whole record",
+        "uplift at supports",
+        "line",
+        lambda signals: float(1e3 * signals.uplift.max()),
+    ),
+)
+
+GIVEN_QUANTITIES: tuple[Quantity, ...] = (
+    Quantity("presag_mm", "mm", "sag of the contact wire at the droppers, one value each", "initial state", "static"),
+    Quantity("dropper_length_m", "m", "length of the droppers of a span, one value each", "initial state", "static"),
+    Quantity("elasticity_mm_N", "mm/N", "largest uplift per force along a span", "static check", "static"),
+    Quantity(
+        "elasticity_non_uniformity_pct",
+        "%",
+        "(largest - smallest) / (largest + smallest) elasticity along a span",
+        "static check",
+        "static",
+    ),
+    Quantity("wave_speed_m_s", "m/s", "speed of transverse waves on the contact wire", "static check", "static"),
+    Quantity("mode_frequency_Hz", "Hz", "frequency of a mode, or of a group of modes", "mass-drop record", "mass_drop"),
+    Quantity("damping_ratio", "", "damping ratio of a mode, or of a group of modes", "mass-drop record", "mass_drop"),
+)
+"""Quantities that a static check or an identification delivers as numbers; nothing is computed from a record."""
+
+QUANTITIES: dict[str, Quantity] = {
+    quantity.name: quantity for quantity in (*PANTOGRAPH_QUANTITIES, *LINE_QUANTITIES, *GIVEN_QUANTITIES)
+}
+"""All of them, in the order they are reported."""

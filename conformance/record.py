@@ -1,0 +1,123 @@
+"""Record: what a run or a measurement delivers, on one time axis, in SI units."""
+
+from dataclasses import dataclass, field, fields
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+MAX_SAMPLES = 20_000_000
+"""Numbers in one array of a record; more is a mistake in units or rate, and would exhaust the memory."""
+
+
+class RecordInvalid(ValueError):
+    """An array of a record is impossible: graded, it would give a number that means nothing.
+
+    Parameters
+    ----------
+    channel : name of the array at fault
+    found : what is wrong with it
+    """
+
+    def __init__(self, channel: str, found: str) -> None:
+        super().__init__(f"{channel}: {found}")
+        self.channel = channel
+        self.found = found
+
+
+@dataclass(frozen=True)
+class Record:
+    """Contact force and motion of p pantographs and s supports, n samples; pantographs in running order.
+
+    Parameters
+    ----------
+    time : (n,) uniform time axis [s]
+    speed : of the train [m/s]
+    position : (p, n) contact point along the track [m]
+    force : (p, n) contact force as delivered [N]
+    evaluated : start and end of the evaluated stretch of track [m]
+    filter_applied_Hz : cut-off of the low-pass the force has already gone through [Hz]; None: unfiltered
+    contact_height : (p, n) height of the contact point above its static height or above rail [m], or None
+    support_position : (s,) positions of the supports [m], or None
+    support_uplift : (s, n) uplift of the contact wire at the supports [m], or None
+
+    Raises
+    ------
+    RecordInvalid : shapes disagree, a value is not finite, or time is not uniform
+    """
+
+    time: Array
+    speed: float
+    position: Array
+    force: Array
+    evaluated: tuple[float, float]
+    filter_applied_Hz: float | None = None
+    contact_height: Array | None = None
+    support_position: Array | None = None
+    support_uplift: Array | None = None
+    rate: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        for item in fields(self):
+            if item.name in _ARRAYS and (value := getattr(self, item.name)) is not None:
+                object.__setattr__(self, item.name, _checked(item.name, value))
+        object.__setattr__(self, "rate", _rate(self.time))
+        self._check_shapes()
+        if not (np.isfinite(self.speed) and self.speed > 0):
+            raise RecordInvalid("speed", f"{self.speed:g} m/s is not a positive speed")
+        start, end = self.evaluated
+        if not (np.isfinite([start, end]).all() and start < end):
+            raise RecordInvalid("evaluated", f"the stretch from {start:g} m to {end:g} m is empty")
+        if self.filter_applied_Hz is not None and not (
+            np.isfinite(self.filter_applied_Hz) and self.filter_applied_Hz > 0
+        ):
+            raise RecordInvalid("filter_applied_Hz", f"{self.filter_applied_Hz:g} Hz is not a cut-off frequency")
+
+    def _check_shapes(self) -> None:
+        n = self.time.size
+        if self.force.ndim != 2 or self.force.shape[1] != n:
+            raise RecordInvalid("force", f"its shape is {self.force.shape}, expected (pantographs, {n})")
+        for name in ("position", "contact_height"):
+            value = getattr(self, name)
+            if value is not None and value.shape != self.force.shape:
+                raise RecordInvalid(name, f"its shape is {value.shape}, expected {self.force.shape} as the force has")
+        if (self.support_position is None) != (self.support_uplift is None):
+            raise RecordInvalid("support_uplift", "uplift and positions of the supports are only useful together")
+        if self.support_position is not None and self.support_uplift is not None:
+            expected = (self.support_position.size, n)
+            if self.support_position.ndim != 1 or self.support_uplift.shape != expected:
+                raise RecordInvalid("support_uplift", f"its shape is {self.support_uplift.shape}, expected {expected}")
+        if np.any(np.diff(self.position, axis=1) <= 0):
+            raise RecordInvalid("position", "a pantograph does not move forwards at every sample")
+
+    @property
+    def pantographs(self) -> int:
+        """Number of pantographs."""
+        return int(self.force.shape[0])
+
+
+_ARRAYS = frozenset({"time", "position", "force", "contact_height", "support_position", "support_uplift"})
+
+
+def _checked(name: str, value: ArrayLike) -> Array:
+    array = np.array(value, dtype=np.float64)
+    if array.size > MAX_SAMPLES:
+        raise RecordInvalid(name, f"{array.size} numbers, more than {MAX_SAMPLES}")
+    bad = np.flatnonzero(~np.isfinite(array))
+    if bad.size:
+        raise RecordInvalid(
+            name, f"{bad.size} values are not finite, the first at sample {bad[0] % array.shape[-1] + 1}"
+        )
+    array.setflags(write=False)
+    return array
+
+
+def _rate(time: Array) -> float:
+    if time.ndim != 1 or time.size < 2:
+        raise RecordInvalid("time", "fewer than two samples")
+    step = (time[-1] - time[0]) / (time.size - 1)
+    # Files print time with few digits: a hundredth of a step is rounding, more is a gap or a changing rate.
+    if step <= 0 or np.abs(time - np.linspace(time[0], time[-1], time.size)).max() > 0.01 * step:
+        raise RecordInvalid("time", "samples are not evenly spaced in time")
+    return float(1 / step)

@@ -1,0 +1,105 @@
+"""From results.json to a page: choosing, ordering and wording; nothing is computed here that is not in the results."""
+
+from typing import Any
+
+from pantocheck.conformance.reports import facts, figures, reasons, tables
+from pantocheck.conformance.reports.criteria_rows import criterion
+from pantocheck.conformance.reports.page import Case, Figure, Input, Page
+from pantocheck.conformance.reports.text import cleaned, number, plain
+from pantocheck.conformance.reports.words import words
+
+TITLE = "Conformance report"
+
+
+def page(results: dict[str, Any]) -> Page:
+    """Everything a certificate says.
+
+    Parameters
+    ----------
+    results : results.json as a dictionary
+    """
+    results = cleaned(results)
+    trust = results.get("trust") or ""
+    meaning = words()["trust"].get(trust, {}).get("meaning")
+    return Page(
+        title=TITLE,
+        statement=results.get("statement") or "",
+        verdict=results["verdict"],
+        headline=reasons.headline(results),
+        trust=trust,
+        trust_sentence=f"Lowest trust of the limits that count: {trust} ({meaning})." if meaning else "",
+        system=facts.system(results),
+        suite=facts.suite(results),
+        reasons=reasons.reasons(results),
+        cases=tuple(_case(case, at) for at, case in enumerate(results["cases"], start=1)),
+        facts=facts.of_suite(results),
+    )
+
+
+def _case(case: dict[str, Any], at: int) -> Case:
+    sources: list[str] = []
+    rows = tuple(criterion(row, sources) for row in case["criteria"])
+    return Case(
+        anchor=f"case-{at}",
+        id=case["id"],
+        title=case.get("title") or case["id"],
+        verdict=case["verdict"],
+        sentence=reasons.of_case(case),
+        criteria=rows,
+        sources=tuple(sources),
+        bands=tables.bands(case),
+        quantities=tables.quantities(case),
+        skipped=tables.skipped(case),
+        figures=_figures(case),
+        inputs=tuple(Input(one["group"], one["trust"], one.get("source") or "") for one in case.get("inputs") or []),
+        notes=tuple(case.get("notes") or []),
+        warnings=tuple(case.get("warnings") or []),
+        facts=facts.of_case(case),
+    )
+
+
+def _figures(case: dict[str, Any]) -> tuple[Figure, ...]:
+    drawn: list[Figure] = []
+    for key, trace in sorted((case.get("traces") or {}).items(), key=lambda item: (len(item[0]), item[0])):
+        rows = [row for row in case["criteria"] if str(row.get("pantograph")) == key]
+        if trace.get("position_m"):
+            drawn.append(_force(key, trace, rows))
+        if (trace.get("spectrum") or {}).get("frequency_Hz"):
+            drawn.append(_spectrum(key, trace, case["quantities"].get(key, {})))
+        if (trace.get("histogram") or {}).get("share_pct"):
+            drawn.append(_histogram(key, trace))
+    supports = [support for support in case.get("uplift") or [] if support["time_s"]]
+    if supports:
+        peaks = ", ".join(f"{number(max(s['uplift_mm']), 3)} mm at {plain(s['support_m'])} m" for s in supports)
+        caption = f"Uplift at the supports. Largest: {peaks}."
+        drawn.append(Figure(figures.uplift(supports, case["criteria"]), caption, caption, wide=True))
+    return tuple(drawn)
+
+
+def _force(key: str, trace: dict[str, Any], rows: list[dict[str, Any]]) -> Figure:
+    start, end = trace["position_m"][0], trace["position_m"][-1]
+    mean, std = trace.get("mean_N"), trace.get("std_N")
+    text = f"Pantograph {key}: contact force from {number(start)} m to {number(end)} m"
+    if mean is not None and std is not None:
+        low, high = number(mean - 3 * std), number(mean + 3 * std)
+        text += f"; mean {number(mean)} N, mean ± 3 σ from {low} N to {high} N"
+    limited = " On the right: the limits of the force's statistics, and where the values lie." if rows else ""
+    return Figure(figures.force(trace, rows), f"{text}.", f"{text}.{limited}", wide=True)
+
+
+def _spectrum(key: str, trace: dict[str, Any], quantities: dict[str, Any]) -> Figure:
+    bands = [
+        f"{low} to {high} Hz: {number(quantities[name])} N"
+        for low, high, name in figures.BANDS_Hz
+        if quantities.get(name) is not None
+    ]
+    caption = f"Pantograph {key}: amplitude spectrum of the force, with the RMS of its bands."
+    alternative = f"{caption} {'; '.join(bands)}." if bands else caption
+    return Figure(figures.spectrum(trace, quantities), alternative, caption, wide=False)
+
+
+def _histogram(key: str, trace: dict[str, Any]) -> Figure:
+    edges = trace["histogram"]["edges_N"]
+    caption = f"Pantograph {key}: histogram of the 20 Hz force."
+    alternative = f"{caption} From {number(edges[0])} N to {number(edges[-1])} N."
+    return Figure(figures.histogram(trace), alternative, caption, wide=False)

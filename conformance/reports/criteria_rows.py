@@ -1,0 +1,55 @@
+"""Rows of the table of criteria."""
+
+from typing import Any
+
+from pantocheck.conformance.reports.margin_bar import margin_bar
+from pantocheck.conformance.reports.page import Criterion
+from pantocheck.conformance.reports.text import beside_limits, limits, number
+from pantocheck.conformance.reports.words import label, pantograph, words
+
+
+def criterion(row: dict[str, Any], sources: list[str]) -> Criterion:
+    """One criterion of results.json as a row; its source is added to `sources` unless it is there."""
+    value, lower, upper, error = row["value"], row["lower"], row["upper"], row.get("discretisation_error")
+    shown = beside_limits(value, lower, upper)
+    source = row.get("source") or None
+    if source is not None and source not in sources:
+        sources.append(source)
+    limited = lower is not None or upper is not None
+    drawn = value is not None and limited
+    return Criterion(
+        quantity=row["quantity"],
+        label=label(row["quantity"]),
+        pantograph=pantograph(row.get("pantograph")),
+        value=shown,
+        error="–" if error is None else f"± {number(error, 2)}",
+        unit="" if value is None else row.get("unit") or "",
+        limits=limits(lower, upper),
+        margin="–" if row.get("margin") is None else signed(row["margin"]),
+        bar=margin_bar(value, lower, upper, error, row["verdict"]) if drawn else "",
+        bar_text=f"{words()['verdict'][row['verdict']]['meaning']}: {shown}, limits {limits(lower, upper)}",
+        verdict=row["verdict"],
+        trust=row["trust"] if limited else "",
+        source=None if source is None else sources.index(source) + 1,
+        remarks=tuple(filter(None, (row.get("reason"), unresolved(row)))),
+    )
+
+
+def signed(margin: float) -> str:
+    """A margin with its sign and two decimals, three or more where two would show no distance to the limit."""
+    for decimals in range(2, 13):
+        text = f"{margin:+.{decimals}f}"
+        if margin == 0 or float(text) != 0:
+            return "0.00" if margin == 0 else text.replace("-", "−")
+    return f"{margin:+.1e}".replace("-", "−")
+
+
+def unresolved(row: dict[str, Any]) -> str | None:
+    """A remark if a value lies closer to a limit than its own discretisation error: refinement could turn the verdict."""
+    value, error = row["value"], row.get("discretisation_error")
+    if value is None or not error or row["verdict"] not in ("pass", "fail"):
+        return None
+    distances = [abs(value - limit) for limit in (row["lower"], row["upper"]) if limit is not None]
+    if distances and min(distances) < error:
+        return "closer to its limit than its discretisation error"
+    return None

@@ -1,0 +1,22 @@
+"""The results as they are embedded in a certificate: everything but the times."""
+
+import json
+from typing import Any
+
+NAME = "results.json"
+
+
+def timeless(results: dict[str, Any]) -> dict[str, Any]:
+    """Results whose times are null, so that two runs of the same input give the same certificate."""
+    return results | {
+        "started": None,
+        "cases": [
+            case | {"run": case["run"] | {"wall_s": None}} if "wall_s" in (case.get("run") or {}) else case
+            for case in results["cases"]
+        ],
+    }
+
+
+def encoded(results: dict[str, Any]) -> bytes:
+    """JSON text in ASCII with sorted keys: one dictionary, one byte string."""
+    return (json.dumps(results, indent=1, sort_keys=True, allow_nan=False) + "\n").encode("ascii")

@@ -1,0 +1,51 @@
+"""The certificate as one HTML file: no script, nothing fetched, every text escaped by the template engine."""
+
+import base64
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FunctionLoader, StrictUndefined
+from markupsafe import Markup
+
+from pantocheck.conformance.files import write_in_place
+from pantocheck.conformance.reports.composition import page
+from pantocheck.conformance.reports.words import TEMPLATES, words
+
+
+def write(results: dict[str, Any], path: Path) -> None:
+    """Write `certificate.html`.
+
+    Parameters
+    ----------
+    results : results.json as a dictionary
+    path : the file to write
+
+    Raises
+    ------
+    InputError : the file cannot be written
+    """
+    write_in_place(path, render(results).encode("utf-8"))
+
+
+def render(results: dict[str, Any]) -> str:
+    """The certificate's HTML text."""
+    environment = Environment(
+        loader=FunctionLoader(lambda name: (TEMPLATES / name).read_text("utf-8")),
+        autoescape=True,
+        undefined=StrictUndefined,
+        keep_trailing_newline=True,
+    )
+    environment.filters["data_uri"] = data_uri
+    # The bars are made here from numbers alone, so they may enter the page as markup; nothing else may.
+    environment.filters["inline_svg"] = Markup
+    return environment.get_template("certificate.html").render(
+        page=page(results),
+        verdicts=words()["verdict"],
+        trusts=words()["trust"],
+        stylesheet=Markup((TEMPLATES / "certificate.css").read_text("utf-8")),
+    )
+
+
+def data_uri(svg: str) -> str:
+    """A picture as an address that holds it."""
+    return "data:image/svg+xml;base64," + base64.b64encode(svg.encode("utf-8")).decode("ascii")

@@ -1,0 +1,76 @@
+"""A margin drawn as a bar: where a value lies between its limits.
+
+      outside   |      inside      |   outside
+    ------------|========+---O-----|------------
+              lower    middle    upper
+
+Inside is a filled disc, outside a cross, a limit that does not count an open ring: told apart without colour. A value
+beyond the drawing is an arrow at its edge. The whisker is the discretisation error.
+"""
+
+WIDTH, HEIGHT = 150.0, 18.0
+MIDDLE = HEIGHT / 2
+# The band between two limits takes this share of half the width; a single limit stands this far from the middle.
+REACH = 0.56
+# Closer to an edge than this, a value is drawn as an arrow.
+EDGE = 6.0
+
+
+def margin_bar(value: float, lower: float | None, upper: float | None, error: float | None, verdict: str) -> str:
+    """An SVG picture without text, size `WIDTH` by `HEIGHT`.
+
+    Parameters
+    ----------
+    value, lower, upper, error : in the unit of the quantity; no limit, no band on that side
+    verdict : chooses the marker
+    """
+    centre, half = _scale(lower, upper)
+
+    def across(x: float) -> float:
+        return WIDTH / 2 * (1 + REACH * (x - centre) / half)
+
+    left = 0.0 if lower is None else across(lower)
+    right = WIDTH if upper is None else across(upper)
+    parts = [
+        f'<line x1="0" y1="{MIDDLE:g}" x2="{WIDTH:g}" y2="{MIDDLE:g}" stroke="#8a929b" stroke-width="1"/>',
+        f'<rect x="{left:.2f}" y="4" width="{max(right - left, 0):.2f}" height="{HEIGHT - 8:g}" fill="#d5dbe1"/>',
+    ]
+    parts += [
+        f'<line x1="{x:.2f}" y1="1" x2="{x:.2f}" y2="{HEIGHT - 1:g}" stroke="#1a1d21" stroke-width="1.6"/>'
+        for limit, x in ((lower, left), (upper, right))
+        if limit is not None
+    ]
+    x = across(value)
+    if error and EDGE <= x <= WIDTH - EDGE:
+        low, high = max(across(value - error), 0), min(across(value + error), WIDTH)
+        whisker = f"M{low:.2f} {MIDDLE:g}H{high:.2f}M{low:.2f} 6V12M{high:.2f} 6V12"
+        parts.append(f'<path d="{whisker}" stroke="#1a1d21" stroke-width="1"/>')
+    parts.append(_marker(x, verdict))
+    size = f'viewBox="0 0 {WIDTH:g} {HEIGHT:g}" width="{WIDTH:g}" height="{HEIGHT:g}"'
+    return f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{"".join(parts)}</svg>'
+
+
+def _scale(lower: float | None, upper: float | None) -> tuple[float, float]:
+    """Middle of the drawing and the distance that fills `REACH` of its half, in the unit of the quantity."""
+    if lower is not None and upper is not None:
+        return (lower + upper) / 2, (upper - lower) / 2 or max(abs(lower), 1.0)
+    if upper is not None:
+        half = abs(upper) or 1.0
+        return upper - half, half
+    if lower is not None:
+        half = abs(lower) or 1.0
+        return lower + half, half
+    return 0.0, 1.0
+
+
+def _marker(x: float, verdict: str) -> str:
+    ink = {"pass": "#1b5e3a", "fail": "#8c1d18"}.get(verdict, "#1a1d21")
+    if x < EDGE:
+        return f'<path d="M1 {MIDDLE:g}l9 -6v12z" fill="{ink}"/>'
+    if x > WIDTH - EDGE:
+        return f'<path d="M{WIDTH - 1:g} {MIDDLE:g}l-9 -6v12z" fill="{ink}"/>'
+    if verdict == "fail":
+        cross = f"M{x - 4.5:.2f} {MIDDLE - 4.5:g}l9 9m0 -9l-9 9"
+        return f'<path d="{cross}" stroke="{ink}" stroke-width="2.6" fill="none"/>'
+    fill, edge = (ink, "#ffffff") if verdict == "pass" else ("#ffffff", ink)
+    return f'<circle cx="{x:.2f}" cy="{MIDDLE:g}" r="4.5" fill="{fill}" stroke="{edge}" stroke-width="1.4"/>'

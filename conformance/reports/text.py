@@ -1,0 +1,76 @@
+"""Text and numbers as a page shows them."""
+
+import re
+import unicodedata
+from typing import Any
+
+LONGEST = 2000
+# Noncharacters, private use and lone surrogates have no meaning to a reader; bidirectional controls can make one text
+# look like another ("gpj.exe" for "exe.jpg").
+UNSHOWABLE = re.compile("[\ud800-\udfff\ue000-\uf8ff\ufdd0-\ufdef\ufffe\uffff\U000f0000-\U0010ffff]")
+BIDIRECTIONAL = re.compile("[\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]")
+
+
+def clean(text: str) -> str:
+    """Text on one line that any page can carry: no control characters, at most `LONGEST` characters.
+
+    Escaping is left to each format; this only takes out what no format can hold.
+    """
+    text = UNSHOWABLE.sub("\N{REPLACEMENT CHARACTER}", BIDIRECTIONAL.sub("", text))
+    text = " ".join("".join(" " if unicodedata.category(c) == "Cc" else c for c in text).split())
+    return text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
+
+
+def cleaned(value: Any) -> Any:
+    """The same nest of dictionaries and lists with every text, keys included, made `clean`."""
+    if isinstance(value, str):
+        return clean(value)
+    if isinstance(value, dict):
+        return {clean(str(key)): cleaned(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [cleaned(item) for item in value]
+    return value
+
+
+def number(value: float | None, digits: int = 4) -> str:
+    """A measured number with a fixed count of significant digits, as `119.7`; an en dash if there is none."""
+    if value is None:
+        return "–"
+    if value == 0:
+        return "0"
+    text = f"{value:#.{digits}g}"
+    return minus((f"{value:.{digits - 1}e}" if "e" in text else text).rstrip("."))
+
+
+def plain(value: float | None) -> str:
+    """A given number, as short as it can be written: `20`, `0.001`."""
+    return "–" if value is None else minus(f"{value:.12g}")
+
+
+def minus(text: str) -> str:
+    """ASCII hyphens before digits as true minus signs."""
+    return text.replace("-", "−")
+
+
+def beside_limits(value: float | None, lower: float | None, upper: float | None) -> str:
+    """`number` with as many digits as it takes to show on which side of its limits the value lies."""
+    if value is None:
+        return number(value)
+    for digits in range(4, 16):
+        text = number(value, digits)
+        shown = float(text.replace("−", "-"))
+        if all(limit is None or (shown > limit) - (shown < limit) == (value > limit) - (value < limit)
+               for limit in (lower, upper)):  # fmt: skip
+            return text
+    return repr(value)
+
+
+def limits(lower: float | None, upper: float | None) -> str:
+    """Limits in words and signs: `26 to 31`, `≤ 225`, `≥ 30`, `= 0`."""
+    if lower is None and upper is None:
+        return "none"
+    if lower is None:
+        return f"≤ {plain(upper)}"
+    if upper is None:
+        return f"≥ {plain(lower)}"
+    return f"= {plain(lower)}" if lower == upper else f"{plain(lower)} to {plain(upper)}"

@@ -1,0 +1,177 @@
+"""results.json: every number of a run in one file, from which all pages are made.
+
+The models are the format: what is written is checked by them, and their JSON Schema is exported.
+"""
+
+import json
+from typing import Annotated, Any, Literal
+
+from pantocheck.conformance.criteria import Verdict
+from pantocheck.conformance.trust import Trust
+from pydantic import BaseModel, ConfigDict, Field
+
+SCHEMA = "pantocheck.results/1"
+STATEMENT = "self-declared conformance report, in the style of EN 50318"
+
+Number = float | list[float]
+
+
+class Part(BaseModel):
+    """A part of results.json; numbers are finite, unknown keys refused."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+class Suite(Part):
+    """The suite that graded."""
+
+    version: str
+    commit: str | None
+
+
+class SystemIdentity(Part):
+    """The system that was graded."""
+
+    name: str
+    version: str
+    kind: Literal["builtin", "record", "command"]
+
+
+class Platform(Part):
+    """What the run was computed on."""
+
+    python: str
+    numpy: str
+    scipy: str
+    numba: str
+    machine: str
+    system: str
+
+
+class InputGroup(Part):
+    """Where a group of inputs comes from."""
+
+    group: str
+    trust: Trust
+    source: str
+
+
+class Criterion(Part):
+    """A value against its limits. `pantograph` is 0 for the line; `item` counts droppers or modes from 1."""
+
+    quantity: str
+    pantograph: int
+    item: int | None = None
+    value: float | None
+    unit: str
+    lower: float | None
+    upper: float | None
+    verdict: Verdict
+    trust: Trust
+    source: str
+    margin: float | None
+    discretisation_error: float | None
+    reason: str | None
+
+
+class FilterFacts(Part):
+    """Filter of the graded force."""
+
+    kind: str
+    order: int
+    cutoff_Hz: float
+    phase: str
+
+
+class RunFacts(Part):
+    """How a case was computed; what a system does not say is null."""
+
+    simulated_s: float | None
+    wall_s: float | None
+    dt_s: float | None
+    element_m: float | None
+    speed_km_h: float | None
+    rate_Hz: float | None
+    filter: FilterFacts
+    evaluated_m: tuple[float, float] | None
+
+
+class Spectrum(Part):
+    """Single-sided amplitude spectrum of the delivered force about its mean, over the evaluated stretch."""
+
+    frequency_Hz: list[float]
+    amplitude_N: list[float]
+
+
+class Histogram(Part):
+    """Share of the samples of the 20 Hz force in each class."""
+
+    edges_N: list[float]
+    share_pct: list[float]
+
+
+class Traces(Part):
+    """What is drawn of one pantograph."""
+
+    position_m: list[float]
+    force_N: list[float]
+    force_20_N: list[float] | None
+    mean_N: float
+    std_N: float | None
+    supports_m: list[float]
+    spectrum: Spectrum
+    histogram: Histogram | None
+
+
+class UpliftTrace(Part):
+    """Uplift of the contact wire at one support."""
+
+    support_m: float
+    time_s: list[float]
+    uplift_mm: list[float]
+
+
+class CaseResult(Part):
+    """All of one case. In `quantities`, `skipped` and `traces`, the key is the pantograph, `0` the line."""
+
+    id: str
+    title: str
+    verdict: Verdict
+    reason: str | None
+    notes: list[str]
+    warnings: list[str]
+    inputs: list[InputGroup]
+    input_digest: str
+    criteria: list[Criterion]
+    quantities: dict[str, dict[str, Number]]
+    skipped: dict[str, dict[str, str]]
+    run: RunFacts
+    traces: dict[str, Traces]
+    uplift: list[UpliftTrace]
+
+
+class Results(Part):
+    """All of a run of the suite."""
+
+    schema_: Annotated[Literal["pantocheck.results/1"], Field(alias="schema")] = "pantocheck.results/1"
+    suite: Suite
+    system: SystemIdentity
+    statement: str = STATEMENT
+    verdict: Verdict
+    trust: Trust
+    started: str | None
+    platform: Platform
+    cases: list[CaseResult]
+
+    def to_dict(self) -> dict[str, Any]:
+        """The results as pages take them: plain lists, dictionaries, text and numbers, in the order of the format."""
+        return self.model_dump(mode="json", by_alias=True)
+
+    def to_json(self) -> bytes:
+        """Content of results.json: the same results give the same bytes."""
+        return (json.dumps(self.to_dict(), indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
+
+
+def results_schema() -> dict[str, Any]:
+    """JSON Schema of results.json."""
+    return Results.model_json_schema(by_alias=True, mode="serialization")

@@ -1,0 +1,183 @@
+"""Running cases on a system: side by side, in the order their requirements allow, one failure at a time."""
+
+import multiprocessing
+import platform as host
+import signal
+from collections.abc import Callable, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from datetime import UTC, datetime
+from importlib.metadata import version
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.criteria import worst
+from pantocheck.conformance.grading import graded, ungraded
+from pantocheck.conformance.results import CaseResult, Platform, Results, Suite, SystemIdentity
+from pantocheck.conformance.suite_identity import suite_commit
+from pantocheck.conformance.systems import System
+from pantocheck.conformance.trust import Trust
+
+Progress = Callable[[CaseResult], None]
+
+
+class RunInterrupted(Exception):
+    """The user stopped a run: what was finished is kept, or the minutes spent on it would be lost.
+
+    Parameters
+    ----------
+    results : of all cases; those that were not finished are skipped with this reason
+    """
+
+    def __init__(self, results: Results) -> None:
+        super().__init__("interrupted")
+        self.results = results
+
+
+def run(
+    cases: Sequence[Case], system: System, trust: Trust = "secondary", jobs: int = 1, progress: Progress | None = None
+) -> Results:
+    """Run cases on a system and grade them.
+
+    Parameters
+    ----------
+    cases : with unique ids
+    system : under test
+    trust : lowest trust of the limits that carry a verdict
+    jobs : processes at work side by side; with 1, all is done in this process
+    progress : called with each result as it is finished
+
+    Returns
+    -------
+    results in the order of `cases`, whatever was finished first
+
+    Raises
+    ------
+    RunInterrupted : on KeyboardInterrupt, with what was finished
+    """
+    started = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+    finished: dict[str, CaseResult] = {}
+
+    def keep(result: CaseResult) -> None:
+        finished[result.id] = result
+        if progress is not None:
+            progress(result)
+
+    try:
+        if jobs == 1:
+            for case in _ordered(cases):
+                keep(_after_requirements(case, finished) or run_case(case, system, trust))
+        else:
+            _run_side_by_side(cases, system, trust, jobs, finished, keep)
+    except KeyboardInterrupt:
+        for case in cases:
+            if case.id not in finished:
+                finished[case.id] = ungraded(case, "skip", "the run was interrupted before this case was finished")
+        raise RunInterrupted(_results(cases, system, trust, started, finished)) from None
+    return _results(cases, system, trust, started, finished)
+
+
+def run_case(case: Case, system: System, trust: Trust) -> CaseResult:
+    """Run one case and grade it; what its system raises ends as `error` with one line, so that the others go on."""
+    try:
+        return graded(case, system.run(case), trust)
+    except Exception as error:
+        text = " ".join(str(error).split())[:300]
+        return ungraded(case, "error", f"{type(error).__name__}: {text}" if text else type(error).__name__)
+
+
+def _ordered(cases: Sequence[Case]) -> list[Case]:
+    """Cases with those they require before them; the order asked otherwise."""
+    by_id = {case.id: case for case in cases}
+    ordered: dict[str, Case] = {}
+
+    def add(case: Case, above: frozenset[str]) -> None:
+        for required in case.file.requires:
+            if required in by_id and required not in above:
+                add(by_id[required], above | {case.id})
+        ordered.setdefault(case.id, case)
+
+    for case in cases:
+        add(case, frozenset({case.id}))
+    return list(ordered.values())
+
+
+def _after_requirements(case: Case, finished: dict[str, CaseResult]) -> CaseResult | None:
+    """The result of a case whose requirements are not met; None if it can run."""
+    for required in case.file.requires:
+        if required not in finished:
+            return ungraded(case, "skip", f"requires {required}, which was not run")
+        if finished[required].verdict not in {"pass", "info"}:
+            return ungraded(case, "skip", f"requires {required}, which ended in {finished[required].verdict}")
+    return None
+
+
+def _run_side_by_side(
+    cases: Sequence[Case], system: System, trust: Trust, jobs: int, finished: dict[str, CaseResult], keep: Progress
+) -> None:
+    waiting = _ordered(cases)
+    running: dict[Future[CaseResult], Case] = {}
+    pool = _pool(jobs)
+    try:
+        while waiting or running:
+            unfinished = {case.id for case in (*waiting, *running.values())}
+            ready = [case for case in waiting if not unfinished & set(case.file.requires)]
+            if not (ready or running):
+                ready = waiting[:1]  # cases that require each other: none of them can run
+            # No more cases than processes are handed over, so that a dying process takes only its neighbours along.
+            for case in ready[: jobs - len(running)]:
+                waiting.remove(case)
+                if (blocked := _after_requirements(case, finished)) is not None:
+                    keep(blocked)
+                else:
+                    running[pool.submit(run_case, case, system, trust)] = case
+            if running:
+                done, _ = wait(running, return_when=FIRST_COMPLETED)
+                broken = [case for future in done for case in [running.pop(future)] if not _kept(future, keep)]
+                if broken:
+                    for case in (*broken, *running.values()):
+                        keep(ungraded(case, "error", "the process of this case, or one beside it, died"))
+                    running.clear()
+                    pool.shutdown(wait=False)
+                    pool = _pool(jobs)
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _kept(future: Future[CaseResult], keep: Progress) -> bool:
+    """Keep the result of a process; False if the process died."""
+    try:
+        keep(future.result())
+    except BrokenProcessPool:
+        return False
+    return True
+
+
+def _pool(jobs: int) -> Executor:
+    # A fresh interpreter each: threads of a compiled kernel do not survive a fork.
+    return ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn"), _die_quietly)
+
+
+def _die_quietly() -> None:
+    """In a worker: Ctrl-C reaches all processes at once, and only the first of them has something to say."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+def _results(
+    cases: Sequence[Case], system: System, trust: Trust, started: str, finished: dict[str, CaseResult]
+) -> Results:
+    return Results(
+        suite=Suite(version=version("pantocheck"), commit=suite_commit()),
+        system=SystemIdentity(name=system.name, version=system.version, kind=system.kind),
+        verdict=worst(result.verdict for result in finished.values()),
+        trust=trust,
+        started=started,
+        platform=Platform(
+            python=host.python_version(),
+            numpy=version("numpy"),
+            scipy=version("scipy"),
+            numba=version("numba"),
+            machine=host.machine(),
+            system=host.system(),
+        ),
+        cases=[finished[case.id] for case in cases],
+    )

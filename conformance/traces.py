@@ -1,0 +1,87 @@
+"""What is drawn of a run: short, rounded series, so that a page stays small and the bytes stay the same."""
+
+import numpy as np
+from numpy.typing import NDArray
+from pantocheck.conformance.evaluation import line_signals, pantograph_signals
+from pantocheck.conformance.quantities.bands import amplitude_spectrum
+from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE, LowPass
+from pantocheck.conformance.quantities.signals import EXTENDED_CUTOFF_HZ
+from pantocheck.conformance.quantities.statistics import histogram
+from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
+from pantocheck.conformance.record import Record
+from pantocheck.conformance.results import Histogram, Spectrum, Traces, UpliftTrace
+
+MOST_POINTS = 1500
+
+
+def pantograph_traces(record: Record, low_pass: LowPass, supports: list[float]) -> dict[str, Traces]:
+    """Force, spectrum and histogram of every pantograph over the evaluated stretch; none where it is not covered.
+
+    Parameters
+    ----------
+    record : of a run or a measurement
+    low_pass : filter of the graded force
+    supports : positions of the supports of the line [m]
+    """
+    traces = {}
+    start, end = record.evaluated
+    for pantograph in range(1, record.pantographs + 1):
+        signals = pantograph_signals(record, pantograph, low_pass)
+        try:
+            inside = signals.inside
+        except QuantityUnavailable:
+            continue
+        try:
+            graded = signals.graded
+        except QuantityUnavailable:
+            graded = None
+        highest = min(EXTENDED_CUTOFF_HZ, HIGHEST_SHARE_OF_RATE * record.rate, record.filter_applied_Hz or np.inf)
+        frequency, amplitude = _peaks(*amplitude_spectrum(signals.delivered, record.rate, highest))
+        traces[str(pantograph)] = Traces(
+            position_m=thinned(signals.position[inside]),
+            force_N=thinned(signals.delivered),
+            force_20_N=None if graded is None else thinned(graded),
+            mean_N=float(signals.delivered.mean()),
+            std_N=None if graded is None else float(graded.std()),
+            supports_m=[x for x in supports if start - 1e-6 <= x <= end + 1e-6],
+            spectrum=Spectrum(frequency_Hz=thinned(frequency), amplitude_N=thinned(amplitude)),
+            histogram=None if graded is None else _histogram(graded),
+        )
+    return traces
+
+
+def uplift_traces(record: Record) -> list[UpliftTrace]:
+    """Uplift at every support of the evaluated spans, over the whole record."""
+    if record.support_position is None:
+        return []
+    start, end = record.evaluated
+    positions = [float(x) for x in record.support_position if start - 1e-6 <= x <= end + 1e-6]
+    try:
+        uplift = line_signals(record).uplift
+    except QuantityUnavailable:
+        return []
+    return [
+        UpliftTrace(support_m=x, time_s=thinned(record.time), uplift_mm=thinned(1e3 * trace))
+        for x, trace in zip(positions, uplift, strict=True)
+    ]
+
+
+def thinned(series: NDArray[np.float64]) -> list[float]:
+    """Every k-th value, at most about 1500, rounded to six significant digits."""
+    step = -(-series.size // MOST_POINTS)
+    return [float(f"{value:.6g}") for value in series[::step]]
+
+
+def _peaks(
+    frequency: NDArray[np.float64], amplitude: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The highest line of every k neighbours: thinning a spectrum must not lose a peak."""
+    step = max(1, -(-frequency.size // MOST_POINTS))
+    firsts = range(0, frequency.size, step)
+    at = np.array([first + int(np.argmax(amplitude[first : first + step])) for first in firsts], dtype=int)
+    return frequency[at], amplitude[at]
+
+
+def _histogram(force: NDArray[np.float64]) -> Histogram:
+    edges, share = histogram(force)
+    return Histogram(edges_N=thinned(edges), share_pct=thinned(share))

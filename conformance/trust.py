@@ -1,0 +1,14 @@
+"""How far a number can be trusted: where it was read decides whether it may carry a verdict."""
+
+from typing import Literal, get_args
+
+Trust = Literal["primary", "secondary", "provisional"]
+"""`primary`: read in the document that defines it; `secondary`: printed in another public source;
+`provisional`: not traced to any printed source, so informative only unless the user asks for more."""
+
+LEVELS: tuple[Trust, ...] = get_args(Trust)
+
+
+def counts(trust: Trust, lowest: Trust) -> bool:
+    """Whether a limit of this trust carries a verdict when `lowest` is the lowest level that counts."""
+    return LEVELS.index(trust) <= LEVELS.index(lowest)
