@@ -107,13 +107,13 @@ def solve(poles: Complex, data: Block) -> Fit:
     return Fit(coefficients[:m] + 1j * coefficients[m : 2 * m], residual[:k] + 1j * residual[k:])
 
 
-def sum_of_squares(poles: Complex, data: Block) -> float:
-    """Squared residual of all channels of a block."""
-    q = scipy.linalg.qr(
-        np.hstack([_pole_columns(poles, data), data.residual_terms]), mode="economic", check_finite=False
-    )[0]
-    x = stacked(data.spectrum)
-    return float(np.sum((x - q @ (q.T @ x)) ** 2))
+def residue_spread(poles: Complex, data: Block) -> Real:
+    """Standard deviation of a residue's real or imaginary part for unit noise in the lines, poles known, (m,)."""
+    r = scipy.linalg.qr(np.hstack([_pole_columns(poles, data), data.residual_terms]), mode="r", check_finite=False)[0]
+    inverse = np.linalg.pinv(r[: r.shape[1]])
+    variance = np.sum(inverse**2, axis=1)
+    m = poles.size
+    return np.asarray(np.sqrt((variance[:m] + variance[m : 2 * m]) / 2))
 
 
 @dataclass(frozen=True)

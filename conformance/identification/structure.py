@@ -6,6 +6,7 @@ milliseconds. A pole stays when it lowers the squared error by more than noise w
 """
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 import scipy.linalg
@@ -21,6 +22,7 @@ Complex = NDArray[np.complex128]
 
 FALSE_ALARM = 1e-3  # chance that noise alone adds one pole to a record
 OUTSIDE = 0.5  # how far beyond the band a pole may settle [Hz]
+SECTION = 0.7  # width of what is refined together [Hz]
 DAMPING_TRIALS = (0.3, 1.0, 3.0)  # of the neighbours' median decay rate
 
 
@@ -50,8 +52,7 @@ def settle(poles: Complex, blocks: list[Block], rounds: int = 8) -> Structure:
     noise = _noise(poles, blocks)
     settled: Complex | None = None
     for _ in range(rounds):
-        poles = refine(_in_band(poles, blocks), whitened(blocks, noise), iterations=8, tolerance=1.0).poles
-        poles = _in_band(poles, blocks)
+        poles = _in_band(_sweep(_in_band(poles, blocks), whitened(blocks, noise)), blocks)
         if settled is not None and _same(poles, settled):
             break
         settled = poles
@@ -134,6 +135,23 @@ def _remove(poles: Complex, blocks: list[Block]) -> Complex:
     return np.asarray(poles[np.argsort(poles.imag)])
 
 
+def _sweep(poles: Complex, blocks: list[Block]) -> Complex:
+    """Refine section by section, each with its neighbours: near the optimum in a tenth of the time of all poles at once."""
+    for _ in range(2):
+        fits = [solve(poles, data) for data in blocks]
+        moved = []
+        edges = 2 * np.pi * np.arange(0, poles.imag.max(initial=0.0) / (2 * np.pi) + SECTION, SECTION)
+        for low, high in pairwise(edges):
+            if not np.any((poles.imag >= low) & (poles.imag < high)):
+                continue
+            local = _local(poles, blocks, fits, (low + high) / 2, 2 * np.pi * SECTION)
+            inner = (local.poles.imag >= low) & (local.poles.imag < high)
+            refined = refine(local.poles, local.blocks, iterations=8, tolerance=0.3).poles if local.blocks else local.poles
+            moved.append(refined[inner])
+        poles = np.concatenate([*moved, np.zeros(0, dtype=np.complex128)])
+    return np.asarray(poles[np.argsort(poles.imag)])
+
+
 def _same(a: Complex, b: Complex) -> bool:
     return a.size == b.size and bool(np.all(np.abs(a - b) < 0.01 * np.abs(b.real)))
 
@@ -147,9 +165,9 @@ class _Local:
     blocks: list[Block]
 
 
-def _local(poles: Complex, blocks: list[Block], fits: list[Fit], centre: float) -> _Local:
+def _local(poles: Complex, blocks: list[Block], fits: list[Fit], centre: float, least_half: float = 0.0) -> _Local:
     resolution = 2 * np.pi / min(data.duration for data in blocks)
-    half = max(12 * resolution, 2 * np.pi * 0.15)
+    half = max(12 * resolution, 2 * np.pi * 0.15, least_half)
     near = np.abs(poles.imag - centre) < half
     narrowed = []
     for data, fit in zip(blocks, fits, strict=True):
@@ -161,7 +179,7 @@ def _local(poles: Complex, blocks: list[Block], fits: list[Fit], centre: float) 
         share = kernel(poles[near], omega, data.dt, data.n) @ residues
         share += kernel(poles[near].conj(), omega, data.dt, data.n) @ residues.conj()
         spectrum = fit.residual[window] + share
-        narrowed.append(Block(data.lines[window], spectrum, data.dt, data.n, far_pole_columns(omega, 1)))
+        narrowed.append(Block(data.lines[window], spectrum, data.dt, data.n, far_pole_columns(omega, 2)))
     return _Local(poles[near], near, narrowed)
 
 
