@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-from pantocheck.model.effective import Factor, solve_row
+from pantocheck.model.effective import Factor, solve
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -20,6 +20,8 @@ FORCE_TOLERANCE = 1e-9
 """A step has converged when no force changed by more than this in a turn [N]; forces are of the order of 100 N."""
 NEGLIGIBLE_FORCE = 1e-13
 """Changes of a force below this are rounding, and are not passed on [N]."""
+PIECE = 256
+"""Elements of a row that are worked on together."""
 MOST_TURNS = 200
 """After so many turns a step is given up."""
 
@@ -38,14 +40,14 @@ class Line(NamedTuple):
     mass_coefficient, stiffness_coefficient : (B,) damping of the wires [1/s, s]
     lumped_stiffness, lumped_damping : (B, S) [N/m, N s/m]
     factor : of the effective matrix
-    columns : (L, 2, 2H+1) its inverse around the ends of the connectors
+    columns : (L, 2, 2H) its inverse around the ends of the connectors
     station : (N,) of the connectors
     end_row, end_column : (N, E) row of each end, and its column in `columns`
     end_coefficient : (N, E) in the elongation; zero for an end that is not there
     stiffness, damping, preload : (N,) [N/m, N s/m, N]
     unilateral : (N,) whether the tension cannot be negative
     contact_row : (W,) rows that a pantograph touches
-    contact_columns : (W, S, 2, 2, 2H+1) the inverse around every station, for a force and for a moment
+    contact_columns : (W, S, 2, 2, 2H) the inverse around every station, for a force and for a moment
     modal_damping : (J,) of the modes whose damping is set one by one [1/s]
     modal_weight : (J, B, S, 2) M phi of these modes [kg^1/2]
     modal_response : (J, B, S, 2) the inverse applied to it [kg^-1/2]
@@ -136,28 +138,22 @@ class Workspace(NamedTuple):
 
     Parameters
     ----------
-    w, r : (2, B, S) predicted displacement and velocity
-    seen_w, seen_r : (B, S) predicted displacement plus stiffness coefficient times predicted velocity
-    shear : (S-1,) of the elements of one row [N]
+    seen : (2, PIECE + 1) deflection and slope that the stiffness of a piece of wire sees
+    shear : (PIECE,) of its elements [N]
     elongation : (2, N) predicted, and its rate [m, m/s]
     shape : (P, W, 4) Hermite functions at the contacts
     element : (P,) element over each pantograph
     closing : (P, W) predicted overlap of head and wire [m]
     compliance : (P, W) relative acceleration that a newton of contact force causes [1/kg]
-    z : (2, P, n) predicted displacement and velocity of the pantographs
     """
 
-    w: Array
-    r: Array
-    seen_w: Array
-    seen_r: Array
+    seen: Array
     shear: Array
     elongation: Array
     shape: Array
     element: Indices
     closing: Array
     compliance: Array
-    z: Array
 
 
 @njit(cache=True)
@@ -171,45 +167,56 @@ def moving_part(line: Line, train: Train) -> tuple[int, int]:
 
 
 @njit(cache=True)
-def predict_wires(line: Line, motion: Motion, work: Workspace, first: int, last: int) -> None:
-    """Newmark predictors of the rows, and the displacement that their stiffness sees."""
-    dt = line.time_step
-    for now, predicted, seen in ((motion.w, work.w, work.seen_w), (motion.r, work.r, work.seen_r)):
+def predict_wires(dt: float, motion: Motion, first: int, last: int) -> None:
+    """Turn displacement and velocity between two stations into Newmark's predictors, in place."""
+    for now in (motion.w, motion.r):
         for b in range(now.shape[1]):
-            c = line.stiffness_coefficient[b]
             q, v, a = now[0, b, first : last + 1], now[1, b, first : last + 1], now[2, b, first : last + 1]
-            to_q, to_v = predicted[0, b, first : last + 1], predicted[1, b, first : last + 1]
-            _predict(dt, c, q, v, a, to_q, to_v, seen[b, first : last + 1])
+            for s in range(q.size):
+                q[s] += dt * v[s] + dt * dt / 4 * a[s]
+            for s in range(q.size):
+                v[s] += dt / 2 * a[s]
 
 
 @njit(cache=True)
-def _predict(dt: float, c: float, q: Array, v: Array, a: Array, to_q: Array, to_v: Array, seen: Array) -> None:
-    for s in range(q.size):
-        to_q[s] = q[s] + dt * v[s] + dt * dt / 4 * a[s]
-    for s in range(q.size):
-        to_v[s] = v[s] + dt / 2 * a[s]
-    for s in range(q.size):
-        seen[s] = to_q[s] + c * to_v[s]
+def correct_wires(dt: float, motion: Motion, first: int, last: int) -> None:
+    """Turn the predictors back into displacement and velocity, with the accelerations that were found."""
+    for now in (motion.w, motion.r):
+        for b in range(now.shape[1]):
+            q, v, a = now[0, b, first : last + 1], now[1, b, first : last + 1], now[2, b, first : last + 1]
+            for s in range(q.size):
+                q[s] += dt * dt / 4 * a[s]
+            for s in range(q.size):
+                v[s] += dt / 2 * a[s]
 
 
 @njit(cache=True)
-def wire_forces(line: Line, work: Workspace, w: Array, r: Array, first: int, last: int) -> None:
-    """Forces and moments that wires and lumped parts exert on the stations in the predicted state, into w and r.
+def wire_forces(line: Line, motion: Motion, work: Workspace, first: int, last: int) -> None:
+    """Forces and moments that wires and lumped parts exert on the stations, in place of their accelerations.
 
-    The loops are cut so that each fills one array from a few others, in which form they compile to vector instructions.
+    The loops are cut so that each fills one array from a few others, in which form they compile to vector instructions,
+    and the line into pieces that stay in the fastest cache from loop to loop.
     """
-    h, shear = line.length[first:last], work.shear[first:last]
-    for b in range(w.shape[0]):
-        f, m = w[b, first : last + 1], r[b, first : last + 1]
-        f[:] = 0.0
-        m[:] = 0.0
-        k = line.stiffness_entries[b]
-        p, t = work.seen_w[b, first : last + 1], work.seen_r[b, first : last + 1]
-        k11, k12, k22, k24 = k[0, first:last], k[1, first:last], k[2, first:last], k[3, first:last]
-        _add_stiffness_forces(k11, k12, k22, k24, p, t, shear, f, m)
-        q, v, u = work.w[0, b, first : last + 1], work.w[1, b, first : last + 1], work.r[1, b, first : last + 1]
-        if line.mass_coefficient[b] != 0.0:
-            _add_mass_damping(line.mass_coefficient[b], line.mass_scale[b, first:last], h, v, u, f, m)
+    for b in range(motion.w.shape[1]):
+        for now in (motion.w, motion.r):
+            now[2, b, first : last + 1] = 0.0
+        for start in range(first, last, PIECE):
+            end = min(start + PIECE, last)
+            k = line.stiffness_entries[b]
+            q, v, f = motion.w[0, b, start : end + 1], motion.w[1, b, start : end + 1], motion.w[2, b, start : end + 1]
+            t, u, m = motion.r[0, b, start : end + 1], motion.r[1, b, start : end + 1], motion.r[2, b, start : end + 1]
+            c, seen_q, seen_t = line.stiffness_coefficient[b], work.seen[0, : q.size], work.seen[1, : q.size]
+            for s in range(q.size):
+                seen_q[s] = q[s] + c * v[s]
+            for s in range(q.size):
+                seen_t[s] = t[s] + c * u[s]
+            shear = work.shear[: end - start]
+            k11, k12, k22, k24 = k[0, start:end], k[1, start:end], k[2, start:end], k[3, start:end]
+            _add_stiffness_forces(k11, k12, k22, k24, seen_q, seen_t, shear, f, m)
+            c = line.mass_coefficient[b]
+            if c != 0.0:
+                _add_mass_damping(c, line.mass_scale[b, start:end], line.length[start:end], v, u, f, m)
+        q, v, f = motion.w[0, b, first : last + 1], motion.w[1, b, first : last + 1], motion.w[2, b, first : last + 1]
         spring, damper = line.lumped_stiffness[b, first : last + 1], line.lumped_damping[b, first : last + 1]
         for s in range(f.size):
             f[s] -= spring[s] * q[s] + damper[s] * v[s]
@@ -250,7 +257,7 @@ def _add_mass_damping(c: float, scale: Array, length: Array, v: Array, u: Array,
 
 
 @njit(cache=True)
-def predict_connectors(line: Line, motion: Motion, work: Workspace, w: Array, first: int, last: int) -> None:
+def predict_connectors(line: Line, motion: Motion, work: Workspace, first: int, last: int) -> None:
     """Predicted elongations; the connectors pull with their tensions of the last step to begin with."""
     for n in range(line.station.size):
         s = line.station[n]
@@ -260,66 +267,73 @@ def predict_connectors(line: Line, motion: Motion, work: Workspace, w: Array, fi
         d, rate = 0.0, 0.0
         for e in range(line.end_row.shape[1]):
             row, c = line.end_row[n, e], line.end_coefficient[n, e]
-            d += c * work.w[0, row, s]
-            rate += c * work.w[1, row, s]
-            w[row, s] -= c * change
+            d += c * motion.w[0, row, s]
+            rate += c * motion.w[1, row, s]
+            motion.w[2, row, s] -= c * change
         work.elongation[0, n], work.elongation[1, n] = d, rate
 
 
 @njit(cache=True)
-def predict_train(line: Line, train: Train, work: Workspace, w: Array, r: Array) -> None:
+def predict_train(line: Line, motion: Motion, train: Train, work: Workspace) -> None:
     """Move the pantographs on, predict them, and press with the contact forces of the last step to begin with."""
     dt = line.time_step
-    half = line.columns.shape[2] // 2
+    unknowns = train.z.shape[2]
     for p in range(train.position.size):
         train.position[p] += dt * train.speed[0]
-        x = train.position[p]
-        e = min(max(np.searchsorted(line.position, x) - 1, 0), line.position.size - 2)
-        h = line.position[e + 1] - line.position[e]
-        s = (x - line.position[e]) / h
-        work.element[p] = e
-        for i in range(train.z.shape[2]):
-            work.z[0, p, i] = train.z[0, p, i] + dt * train.z[1, p, i] + dt * dt / 4 * train.z[2, p, i]
-            work.z[1, p, i] = train.z[1, p, i] + dt / 2 * train.z[2, p, i]
+        for i in range(unknowns):
+            train.z[0, p, i] += dt * train.z[1, p, i] + dt * dt / 4 * train.z[2, p, i]
+            train.z[1, p, i] += dt / 2 * train.z[2, p, i]
         pressing = 0.0
         for k in range(train.contact.shape[1]):
             pressing += train.contact[p, k]
-        head, head_compliance = 0.0, 0.0
-        for i in range(train.z.shape[2]):
+        head, compliance = 0.0, 0.0
+        for i in range(unknowns):
             a = 0.0
-            for j in range(train.z.shape[2]):
+            for j in range(unknowns):
                 f = train.force[p, j] - train.head[p, j] * pressing
-                for m in range(train.z.shape[2]):
-                    f -= train.damping[p, j, m] * work.z[1, p, m] + train.stiffness[p, j, m] * work.z[0, p, m]
+                for m in range(unknowns):
+                    f -= train.damping[p, j, m] * train.z[1, p, m] + train.stiffness[p, j, m] * train.z[0, p, m]
                 a += train.inverse[p, i, j] * f
-                head_compliance += train.head[p, i] * train.inverse[p, i, j] * train.head[p, j]
+                compliance += train.head[p, i] * train.inverse[p, i, j] * train.head[p, j]
             train.z[2, p, i] = a
-            head += train.head[p, i] * work.z[0, p, i]
+            head += train.head[p, i] * train.z[0, p, i]
         for k in range(train.contact.shape[1]):
-            row = line.contact_row[k]
-            n = work.shape[p, k]
-            n[0], n[1] = (1 + 2 * s) * (1 - s) ** 2, h * s * (1 - s) ** 2
-            n[2], n[3] = s * s * (3 - 2 * s), h * s * s * (s - 1)
-            wire, compliance = 0.0, head_compliance
-            for i in range(2):
-                wire += n[2 * i] * (line.rest[k, e + i, 0] + work.w[0, row, e + i])
-                wire += n[2 * i + 1] * (line.rest[k, e + i, 1] + work.r[0, row, e + i])
-                w[row, e + i] += n[2 * i] * train.contact[p, k]
-                r[row, e + i] += n[2 * i + 1] * train.contact[p, k]
-                for j in range(2):
-                    for m in range(2):
-                        column = line.contact_columns[k, e + j, m]
-                        at = half + i - j
-                        compliance += n[2 * j + m] * (n[2 * i] * column[0, at] + n[2 * i + 1] * column[1, at])
-            work.closing[p, k] = head - wire
-            work.compliance[p, k] = compliance
+            _predict_contact(line, motion, train, work, p, k, head, compliance)
+
+
+@njit(cache=True)
+def _predict_contact(
+    line: Line, motion: Motion, train: Train, work: Workspace, p: int, k: int, head: float, head_compliance: float
+) -> None:
+    """Where a head touches a wire, how far it has closed on it, and what a newton between them would do."""
+    half = line.columns.shape[2] // 2
+    x, row, n = train.position[p], line.contact_row[k], work.shape[p, k]
+    e = min(max(np.searchsorted(line.position, x) - 1, 0), line.position.size - 2)
+    h = line.position[e + 1] - line.position[e]
+    s = (x - line.position[e]) / h
+    n[0], n[1] = (1 + 2 * s) * (1 - s) ** 2, h * s * (1 - s) ** 2
+    n[2], n[3] = s * s * (3 - 2 * s), h * s * s * (s - 1)
+    wire, compliance = 0.0, head_compliance
+    for i in range(2):
+        wire += n[2 * i] * (line.rest[k, e + i, 0] + motion.w[0, row, e + i])
+        wire += n[2 * i + 1] * (line.rest[k, e + i, 1] + motion.r[0, row, e + i])
+        motion.w[2, row, e + i] += n[2 * i] * train.contact[p, k]
+        motion.r[2, row, e + i] += n[2 * i + 1] * train.contact[p, k]
+        for j in range(2):
+            for m in range(2):
+                column = line.contact_columns[k, e + j, m]
+                at = half + i - j
+                compliance += n[2 * j + m] * (n[2 * i] * column[0, at] + n[2 * i + 1] * column[1, at])
+    work.element[p] = e
+    work.closing[p, k] = head - wire
+    work.compliance[p, k] = compliance
 
 
 @njit(cache=True)
 def add_column(w: Array, r: Array, column: Array, station: int, value: float, limits: tuple[int, int]) -> None:
     """Add `value` times a local column of the inverse to the accelerations of one row, between two stations."""
     half = column.shape[1] // 2
-    first, last = max(limits[0], station - half), min(limits[1], station + half) + 1
+    first, last = max(limits[0], station - half), min(limits[1] + 1, station + half)
     shift = half - station
     _add_scaled(w[first:last], column[0, first + shift : last + shift], value)
     _add_scaled(r[first:last], column[1, first + shift : last + shift], value)
@@ -408,7 +422,7 @@ def _add_mode(w: Array, r: Array, shape: Array, value: float) -> None:
 
 
 @njit(cache=True)
-def turn_modes(line: Line, motion: Motion, work: Workspace, w: Array, r: Array) -> float:
+def turn_modes(line: Line, motion: Motion, w: Array, r: Array) -> float:
     """Solve the damping force on every mode of its own damping once, the others held; returns the largest change."""
     dt = line.time_step
     largest = 0.0
@@ -416,8 +430,8 @@ def turn_modes(line: Line, motion: Motion, work: Workspace, w: Array, r: Array) 
         weight, velocity = line.modal_weight[j], 0.0
         for b in range(w.shape[0]):
             for s in range(w.shape[1]):
-                velocity += weight[b, s, 0] * (work.w[1, b, s] + dt / 2 * w[b, s])
-                velocity += weight[b, s, 1] * (work.r[1, b, s] + dt / 2 * r[b, s])
+                velocity += weight[b, s, 0] * (motion.w[1, b, s] + dt / 2 * w[b, s])
+                velocity += weight[b, s, 1] * (motion.r[1, b, s] + dt / 2 * r[b, s])
         compliance = dt / 2 * line.modal_compliance[j]
         velocity -= compliance * motion.modal[j]
         force = -line.modal_damping[j] * velocity / (1 + line.modal_damping[j] * compliance)
@@ -427,14 +441,6 @@ def turn_modes(line: Line, motion: Motion, work: Workspace, w: Array, r: Array) 
             _add_mode(w, r, line.modal_response[j], change)
         largest = larger(largest, abs(change))
     return largest
-
-
-@njit(cache=True)
-def _correct(dt: float, q: Array, v: Array, a: Array, from_q: Array, from_v: Array) -> None:
-    for s in range(q.size):
-        q[s] = from_q[s] + dt * dt / 4 * a[s]
-    for s in range(q.size):
-        v[s] = from_v[s] + dt / 2 * a[s]
 
 
 @njit(cache=True)
@@ -454,35 +460,29 @@ def step(line: Line, motion: Motion, train: Train, work: Workspace) -> int:
     """
     dt = line.time_step
     w, r = motion.w[2], motion.r[2]
-    rows = w.shape[0]
     first, last = moving_part(line, train)
+    predict_wires(dt, motion, first, last)
     # One station more on either side stands still and holds the moving part.
-    before, behind = max(first - 1, 0), min(last + 1, line.position.size - 1)
-    predict_wires(line, motion, work, before, behind)
-    wire_forces(line, work, w, r, before, behind)
-    predict_connectors(line, motion, work, w, first, last)
-    predict_train(line, train, work, w, r)
+    wire_forces(line, motion, work, max(first - 1, 0), min(last + 1, line.position.size - 1))
+    predict_connectors(line, motion, work, first, last)
+    predict_train(line, motion, train, work)
     w[line.load_row, line.load_station] += motion.load[0]
     for j in range(line.modal_damping.size):
         _add_mode(w, r, line.modal_weight[j], motion.modal[j])
-    for b in range(rows):
-        solve_row(line.factor, b, first, last, w[b, first : last + 1], r[b, first : last + 1])
+    solve(line.factor.inverse, line.factor.link, first, w[:, first : last + 1], r[:, first : last + 1])
     turns = 0
     while turns < MOST_TURNS:
         turns += 1
         largest = turn_contacts(line, train, work, w, r, first, last)
         largest = larger(largest, turn_connectors(line, motion, work, w, r, first, last))
-        largest = larger(largest, turn_modes(line, motion, work, w, r))
+        largest = larger(largest, turn_modes(line, motion, w, r))
         if largest < FORCE_TOLERANCE:
             break
-    for now, predicted in ((motion.w, work.w), (motion.r, work.r)):
-        for b in range(rows):
-            q, v, a = now[0, b, first : last + 1], now[1, b, first : last + 1], now[2, b, first : last + 1]
-            _correct(dt, q, v, a, predicted[0, b, first : last + 1], predicted[1, b, first : last + 1])
+    correct_wires(dt, motion, first, last)
     for p in range(train.position.size):
         for i in range(train.z.shape[2]):
-            train.z[0, p, i] = work.z[0, p, i] + dt * dt / 4 * train.z[2, p, i]
-            train.z[1, p, i] = work.z[1, p, i] + dt / 2 * train.z[2, p, i]
+            train.z[0, p, i] += dt * dt / 4 * train.z[2, p, i]
+            train.z[1, p, i] += dt / 2 * train.z[2, p, i]
     # A comparison that is also false for NaN.
     return turns if largest < FORCE_TOLERANCE else 0
 

@@ -10,7 +10,7 @@ from pantocheck.model import beam
 from pantocheck.model.assembly import point_load
 from pantocheck.model.equilibrium import Deflection, Statics
 from pantocheck.model.line import Discretised
-from pantocheck.model.newmark import Line, Motion, Train, Workspace, march
+from pantocheck.model.newmark import PIECE, Line, Motion, Train, Workspace, march
 from pantocheck.model.pantograph import Pantograph
 from pantocheck.model.stepping import time_stepping
 
@@ -113,7 +113,7 @@ def run(line: Discretised, passage: Passage, progress: Callable[[float], None] |
     rows, stations = watched_stations(line, passage.watched)
     force, height = np.zeros((steps, len(passage.pantographs))), np.zeros((steps, len(passage.pantographs)))
     motion_there, no_load, nothing = np.zeros((steps, rows.size, 3)), np.zeros(steps), np.zeros((steps, 0))
-    work = workspace(stepping, motion, train)
+    work = workspace(stepping, train)
     for first in range(0, max(steps, 1), BLOCK):
         part = slice(first, min(first + BLOCK, steps))
         outputs = (force[part], height[part], motion_there[part], nothing[part])
@@ -229,20 +229,15 @@ def _rest(pantograph: Pantograph, head_height: float) -> Array:
     return np.asarray(np.linalg.solve(system, np.append(pantograph.force, head_height))[:n])
 
 
-def workspace(line: Line, motion: Motion, train: Train) -> Workspace:
+def workspace(line: Line, train: Train) -> Workspace:
     """Arrays for the time step of one run."""
-    rows, stations = motion.w.shape[1:]
     pantographs, wires = train.contact.shape
     return Workspace(
-        w=np.zeros((2, rows, stations)),
-        r=np.zeros((2, rows, stations)),
-        seen_w=np.zeros((rows, stations)),
-        seen_r=np.zeros((rows, stations)),
-        shear=np.zeros(stations - 1),
+        seen=np.zeros((2, PIECE + 1)),
+        shear=np.zeros(PIECE),
         elongation=np.zeros((2, line.station.size)),
         shape=np.zeros((pantographs, wires, 4)),
         element=np.zeros(pantographs, dtype=np.int64),
         closing=np.zeros((pantographs, wires)),
         compliance=np.zeros((pantographs, wires)),
-        z=np.zeros((2, pantographs, train.z.shape[2])),
     )

@@ -32,7 +32,7 @@ def free_decay(line: Discretised, time_step: float, steps: int) -> tuple[Array, 
     motion = still(Statics(line).deflection(-600.0 * taken))
     _accelerate(line, motion, taken)
     stepping, train = time_stepping(line, time_step), no_train(1)
-    work = workspace(stepping, motion, train)
+    work = workspace(stepping, train)
     energy, tensions = [], np.zeros((steps, stiffness.size))
     for n in range(steps):
         if n % EVERY == 0:

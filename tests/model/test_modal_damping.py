@@ -70,7 +70,7 @@ def test_the_step_equals_one_with_the_full_matrix() -> None:
     )
     motion = Motion(w, r, tension, np.zeros(stepping.modal_damping.size), np.zeros(1))
     train = no_train(1)
-    work = workspace(stepping, motion, train)
+    work = workspace(stepping, train)
     effective = mass + dt / 2 * damping + dt**2 / 4 * stiffness
     for _ in range(300):
         assert step(stepping, motion, train, work) > 0
