@@ -10,14 +10,19 @@ from pantocheck.model import beam
 from pantocheck.model.assembly import point_load
 from pantocheck.model.equilibrium import Deflection, Statics
 from pantocheck.model.line import Discretised
-from pantocheck.model.newmark import PIECE, Line, Motion, Train, Workspace, march
+from pantocheck.model.newmark import march
 from pantocheck.model.pantograph import Pantograph
+from pantocheck.model.state import PIECE, Line, Motion, Train, Workspace
 from pantocheck.model.stepping import time_stepping
 
 Array = NDArray[np.float64]
 
 BLOCK = 500
 """Steps between two reports of progress."""
+
+
+class ImpossiblePassage(ValueError):
+    """There is no pantograph, or one would run off the line: beyond its ends there is nothing to press against."""
 
 
 class DidNotConverge(ArithmeticError):
@@ -105,8 +110,10 @@ def run(line: Discretised, passage: Passage, progress: Callable[[float], None] |
 
     Raises
     ------
+    ImpossiblePassage : there is no pantograph, or one would leave the line
     DidNotConverge : a time step has no solution
     """
+    _check(line, passage)
     stepping = time_stepping(line, passage.time_step, passage.reach)
     motion, train = start(line, stepping, passage)
     steps = round(passage.duration / passage.time_step)
@@ -125,6 +132,17 @@ def run(line: Discretised, passage: Passage, progress: Callable[[float], None] |
     time: Array = passage.time_step * np.arange(1, steps + 1)
     position: Array = np.array(passage.start)[:, None] + passage.speed * time
     return History(time, position, force.T.copy(), height.T.copy(), motion_there.transpose(1, 0, 2).copy())
+
+
+def _check(line: Discretised, passage: Passage) -> None:
+    if not passage.pantographs:
+        raise ImpossiblePassage("there is no pantograph to run")
+    first, last = line.mesh.position[0], line.mesh.position[-1]
+    rear, front = min(passage.start), max(passage.start) + passage.speed * passage.duration
+    if rear < first or front > last:
+        raise ImpossiblePassage(
+            f"pantographs would run from {rear:g} m to {front:g} m on a line that lies from {first:g} m to {last:g} m"
+        )
 
 
 def start(line: Discretised, stepping: Line, passage: Passage) -> tuple[Motion, Train]:

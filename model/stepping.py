@@ -10,7 +10,7 @@ from pantocheck.model.beams import Beams
 from pantocheck.model.effective import factorise, half_width, inverse_columns, solve_rows
 from pantocheck.model.line import Discretised
 from pantocheck.model.modal_damping import modal_terms
-from pantocheck.model.newmark import Line
+from pantocheck.model.state import Line
 
 Array = NDArray[np.float64]
 

@@ -6,8 +6,9 @@ import numpy as np
 from pantocheck.model import Passage, chain
 from pantocheck.model.assembly import assemble, order
 from pantocheck.model.line import discretise
-from pantocheck.model.newmark import Motion, step
+from pantocheck.model.newmark import step
 from pantocheck.model.simulation import no_train, start, workspace
+from pantocheck.model.state import Motion
 from pantocheck.model.stepping import time_stepping
 from scipy.linalg import eigh
 

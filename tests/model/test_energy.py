@@ -8,8 +8,9 @@ from pantocheck.model.assembly import assemble, connector_directions, order, poi
 from pantocheck.model.catenary import Kind, Rayleigh
 from pantocheck.model.equilibrium import Statics
 from pantocheck.model.line import Discretised, discretise
-from pantocheck.model.newmark import Motion, step
+from pantocheck.model.newmark import step
 from pantocheck.model.simulation import no_train, still, workspace
+from pantocheck.model.state import Motion
 from pantocheck.model.stepping import time_stepping
 from scipy.sparse import csc_array
 

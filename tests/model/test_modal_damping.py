@@ -7,8 +7,9 @@ from pantocheck.model import Discretised, Kind, ModalBand, Rayleigh, discretise
 from pantocheck.model.assembly import assemble, order
 from pantocheck.model.modal_damping import modal_terms
 from pantocheck.model.modes import damping_ratios, modes
-from pantocheck.model.newmark import Motion, step
+from pantocheck.model.newmark import step
 from pantocheck.model.simulation import no_train, workspace
+from pantocheck.model.state import Motion
 from pantocheck.model.stepping import time_stepping
 from scipy.linalg import eig
 

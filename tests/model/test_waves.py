@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from pantocheck.model import beam
 from pantocheck.model.line import Discretised, discretise
-from pantocheck.model.newmark import Motion, step
+from pantocheck.model.newmark import step
 from pantocheck.model.pantograph import Pantograph
 from pantocheck.model.simulation import Passage, no_train, start, workspace
+from pantocheck.model.state import Motion
 from pantocheck.model.stepping import time_stepping
 
 from .lines import Array, bare_wire
