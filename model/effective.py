@@ -122,44 +122,84 @@ def _eliminate(diagonal: Array, below: Array, free: NDArray[np.bool_], inverse: 
 def solve(inverse: Array, link: Array, first: int, w: Array, r: Array) -> None:
     """Solve A x = f for a stretch of some rows, in place; f is zero and x negligible outside it.
 
-    All rows go along together, and each from both ends: chains of operations that do not wait for each other.
-
     Parameters
     ----------
     inverse, link : (B, S, 3), (B, S, 4) of the factor
     first : station where the stretch begins
     w, r : (B, n) on entry forces and moments, on return accelerations of deflection and slope
     """
-    rows, n = w.shape
-    last = first + n - 1
-    middle = min(max(inverse.shape[1] // 2, first), last)
-    left, right = middle - first, last - middle
-    for i in range(max(left, right)):
-        for b in range(rows):
-            if i < left:
-                g, x, y = link[b, first + i], w[b, i], r[b, i]
-                w[b, i + 1] -= g[0] * x + g[1] * y
-                r[b, i + 1] -= g[2] * x + g[3] * y
-            if i < right:
-                s = n - 1 - i
-                g, x, y = link[b, last - i], w[b, s], r[b, s]
-                w[b, s - 1] -= g[0] * x + g[1] * y
-                r[b, s - 1] -= g[2] * x + g[3] * y
-    for b in range(rows):
-        d, f, m = inverse[b, middle], w[b, left], r[b, left]
-        w[b, left], r[b, left] = d[0] * f + d[1] * m, d[1] * f + d[2] * m
-    for i in range(1, max(left, right) + 1):
-        for b in range(rows):
-            if i <= left:
-                s = left - i
-                d, g, f, m, x, y = inverse[b, first + s], link[b, first + s], w[b, s], r[b, s], w[b, s + 1], r[b, s + 1]
-                w[b, s] = d[0] * f + d[1] * m - g[0] * x - g[2] * y
-                r[b, s] = d[1] * f + d[2] * m - g[1] * x - g[3] * y
-            if i <= right:
-                s = left + i
-                d, g, f, m, x, y = inverse[b, first + s], link[b, first + s], w[b, s], r[b, s], w[b, s - 1], r[b, s - 1]
-                w[b, s] = d[0] * f + d[1] * m - g[0] * x - g[2] * y
-                r[b, s] = d[1] * f + d[2] * m - g[1] * x - g[3] * y
+    n = w.shape[1]
+    middle = min(max(inverse.shape[1] // 2 - first, 0), n - 1)
+    for b in range(w.shape[0]):
+        _solve_row(inverse[b, first : first + n], link[b, first : first + n], middle, w[b], r[b])
+
+
+@njit(cache=True)
+def _solve_row(inverse: Array, link: Array, middle: int, w: Array, r: Array) -> None:
+    """Eliminate from both ends to the middle, and go back; two chains that do not wait for each other, in registers."""
+    last = w.size - 1
+    left, right = middle, last - middle
+    together = max(min(left, right) - 1, 0)
+    f, m = _inwards(link, 0, max(left - 1 - together, 0), 1, w, r)
+    g, k = _inwards(link, last, max(right - 1 - together, 0), -1, w, r)
+    s, t = max(left - 1 - together, 0), last - max(right - 1 - together, 0)
+    for _ in range(together):
+        p, q = _passed_on(link, s, f, m)
+        u, v = _passed_on(link, t, g, k)
+        s, t = s + 1, t - 1
+        f, m = w[s] - p, r[s] - q
+        g, k = w[t] - u, r[t] - v
+        w[s], r[s] = f, m
+        w[t], r[t] = g, k
+    p, q, u, v = 0.0, 0.0, 0.0, 0.0
+    if left > 0:
+        p, q = _passed_on(link, s, f, m)
+    if right > 0:
+        u, v = _passed_on(link, t, g, k)
+    x, y = _times(inverse, middle, w[middle] - p - u, r[middle] - q - v)
+    w[middle], r[middle] = x, y
+    u, v = x, y
+    both = min(left, right)
+    for i in range(1, both + 1):
+        x, y = _back(inverse, link, middle - i, w, r, x, y)
+        u, v = _back(inverse, link, middle + i, w, r, u, v)
+    for i in range(both + 1, left + 1):
+        x, y = _back(inverse, link, middle - i, w, r, x, y)
+    for i in range(both + 1, right + 1):
+        u, v = _back(inverse, link, middle + i, w, r, u, v)
+
+
+@njit(cache=True)
+def _inwards(link: Array, start: int, count: int, step: int, w: Array, r: Array) -> tuple[float, float]:
+    """Eliminate `count` stations in a row; returns force and moment at the station that is reached."""
+    f, m = w[start], r[start]
+    s = start
+    for _ in range(count):
+        p, q = _passed_on(link, s, f, m)
+        s += step
+        f, m = w[s] - p, r[s] - q
+        w[s], r[s] = f, m
+    return f, m
+
+
+@njit(cache=True)
+def _passed_on(link: Array, s: int, f: float, m: float) -> tuple[float, float]:
+    return link[s, 0] * f + link[s, 1] * m, link[s, 2] * f + link[s, 3] * m
+
+
+@njit(cache=True)
+def _times(inverse: Array, s: int, f: float, m: float) -> tuple[float, float]:
+    return inverse[s, 0] * f + inverse[s, 1] * m, inverse[s, 1] * f + inverse[s, 2] * m
+
+
+@njit(cache=True)
+def _back(inverse: Array, link: Array, s: int, w: Array, r: Array, x: float, y: float) -> tuple[float, float]:
+    """Solution at a station from the one at its inward neighbour."""
+    p, q = _times(inverse, s, w[s], r[s])
+    p -= link[s, 0] * x + link[s, 2] * y
+    q -= link[s, 1] * x + link[s, 3] * y
+    w[s], r[s] = p, q
+    return p, q
 
 
 @njit(cache=True)
