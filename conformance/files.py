@@ -49,3 +49,20 @@ def produce_in_place(path: Path, produce: Callable[[Path], object]) -> None:
         ) from None
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def check_writable(folder: Path) -> None:
+    """Make a folder and a file in it, before anything is computed that could not be kept.
+
+    Raises
+    ------
+    InputError : the folder cannot be made or written
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise InputError(
+            str(folder), f"cannot be written ({error.strerror})", "Name a folder that you may write to, with --out."
+        ) from None

@@ -28,6 +28,8 @@ def graded(case: Case, outcome: Outcome, lowest_trust: Trust) -> CaseResult:
         return ungraded(case, "error", outcome.errored, outcome)
     if outcome.skipped is not None:
         return ungraded(case, "skip", outcome.skipped, outcome)
+    if (mismatch := _mismatch(case, outcome)) is not None:
+        return ungraded(case, "error", mismatch, outcome)
     evaluation = _evaluated(case, outcome)
     refined = _evaluated(case, outcome.refined) if outcome.refined is not None else None
     criteria = [_criterion(limit, evaluation, refined, lowest_trust) for limit in case.limits]
@@ -46,6 +48,24 @@ def graded(case: Case, outcome: Outcome, lowest_trust: Trust) -> CaseResult:
         traces=pantograph_traces(record, case.file.filter.low_pass, supports) if record is not None else {},
         uplift=uplift_traces(record) if record is not None else [],
     )
+
+
+def _mismatch(case: Case, outcome: Outcome) -> str | None:
+    """Why a record is not one of this case: graded all the same, its numbers would be believed."""
+    record = outcome.record
+    if case.is_static:
+        return None
+    if record is None:
+        return "the system delivered no record"
+    if record.pantographs != len(case.pantographs):
+        return f"the record has {record.pantographs} pantographs, the case has {len(case.pantographs)}"
+    if abs(record.speed / case.speed - 1) > 0.005:
+        return f"the record was made at {3.6 * record.speed:.4g} km/h, the case runs at {3.6 * case.speed:.4g} km/h"
+    if any(abs(a - b) > 0.01 for a, b in zip(record.evaluated, case.evaluated, strict=True)):
+        (start, end), (first, last) = record.evaluated, case.evaluated
+        return f"the record evaluates {start:g} m to {end:g} m, the case {first:g} m to {last:g} m"
+    unknown = sorted(set(outcome.static) - set(QUANTITIES))
+    return f"the system delivered an unknown quantity {unknown[0]!r}" if unknown else None
 
 
 def ungraded(case: Case, verdict: Verdict, reason: str, outcome: Outcome | None = None) -> CaseResult:

@@ -9,7 +9,11 @@ def nearest(name: str, known: Sequence[str]) -> str:
     # An id is often given by its last part alone.
     tails = {item.rsplit("/", 1)[-1]: item for item in known}
     lowered = {item.lower(): item for item in known}
-    close = [lowered[match] for match in get_close_matches(name.lower(), list(lowered), n=3, cutoff=0.5)]
+    # A slip of the finger is one name; only a poorer match leaves a choice.
+    close = get_close_matches(name.lower(), list(lowered), n=1, cutoff=0.9) or get_close_matches(
+        name.lower(), list(lowered), n=3, cutoff=0.5
+    )
+    close = [lowered[match] for match in close]
     if not close and name in tails:
         close = [tails[name]]
     if close:

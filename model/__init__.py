@@ -1,1 +1,37 @@
 """The reference simulator: mechanics only; knows no standard, no file format, no report."""
+
+from pantocheck.model.catenary import (
+    Catenary,
+    Clamp,
+    Dropper,
+    Kind,
+    MessengerSupport,
+    ModalBand,
+    Rayleigh,
+    SteadyArm,
+    TensionChange,
+    Wire,
+)
+from pantocheck.model.line import Discretised, discretise
+from pantocheck.model.pantograph import Pantograph, chain
+from pantocheck.model.simulation import History, Passage, run
+
+__all__ = [
+    "Catenary",
+    "Clamp",
+    "Discretised",
+    "Dropper",
+    "History",
+    "Kind",
+    "MessengerSupport",
+    "ModalBand",
+    "Pantograph",
+    "Passage",
+    "Rayleigh",
+    "SteadyArm",
+    "TensionChange",
+    "Wire",
+    "chain",
+    "discretise",
+    "run",
+]

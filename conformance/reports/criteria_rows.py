@@ -5,7 +5,7 @@ from typing import Any
 from pantocheck.conformance.reports.margin_bar import margin_bar
 from pantocheck.conformance.reports.page import Criterion
 from pantocheck.conformance.reports.text import beside_limits, limits, number
-from pantocheck.conformance.reports.words import label, pantograph, words
+from pantocheck.conformance.reports.words import label, owner, words
 
 
 def criterion(row: dict[str, Any], sources: list[str]) -> Criterion:
@@ -20,7 +20,7 @@ def criterion(row: dict[str, Any], sources: list[str]) -> Criterion:
     return Criterion(
         quantity=row["quantity"],
         label=label(row["quantity"]),
-        pantograph=pantograph(row.get("pantograph")),
+        pantograph=owner(row).removeprefix("pantograph "),
         value=shown,
         error="–" if error is None else f"± {number(error, 2)}",
         unit="" if value is None else row.get("unit") or "",
@@ -45,9 +45,9 @@ def signed(margin: float) -> str:
 
 
 def unresolved(row: dict[str, Any]) -> str | None:
-    """A remark if a value lies closer to a limit than its own discretisation error: refinement could turn the verdict."""
+    """A remark if a value is closer to a limit than its discretisation error: refinement could turn the verdict."""
     value, error = row["value"], row.get("discretisation_error")
-    if value is None or not error or row["verdict"] not in ("pass", "fail"):
+    if value is None or not error or row["verdict"] not in ("pass", "fail") or row["lower"] == row["upper"]:
         return None
     distances = [abs(value - limit) for limit in (row["lower"], row["upper"]) if limit is not None]
     if distances and min(distances) < error:

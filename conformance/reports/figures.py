@@ -10,7 +10,6 @@ import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
-
 from pantocheck.conformance.reports.text import number
 from pantocheck.conformance.reports.words import TEMPLATES
 
@@ -31,7 +30,7 @@ P = ParamSpec("P")
 
 
 @cache
-def _style() -> dict[str, Any]:
+def _style() -> Any:
     with as_file(TEMPLATES / "figure.mplstyle") as path:
         settings = dict(matplotlib.rc_params_from_file(path, use_default_template=True))
     # The backend belongs to whoever imported matplotlib; a canvas is named here directly.
@@ -47,7 +46,8 @@ def drawn(paint: Callable[P, Figure]) -> Callable[P, str]:
             buffer = io.StringIO()
             # No metadata: it would hold the date and matplotlib's version.
             nothing = dict.fromkeys(("Date", "Creator", "Format", "Type"))
-            FigureCanvasSVG(paint(*args, **kwargs)).print_svg(buffer, metadata=nothing)
+            canvas: Any = FigureCanvasSVG(paint(*args, **kwargs))
+            canvas.print_svg(buffer, metadata=nothing)
         text = buffer.getvalue()
         return text[text.index("<svg") :]
 
@@ -77,7 +77,7 @@ def force(trace: dict[str, Any], criteria: list[dict[str, Any]]) -> Figure:
         left.plot(position, trace["force_20_N"], color=INK, linewidth=1.2, label="0–20 Hz")
     mean, std = trace.get("mean_N"), trace.get("std_N")
     if mean is not None and std is not None:
-        left.axhline(mean, color=INK, linewidth=0.9, label="mean")
+        left.axhline(mean, color=INK, linewidth=0.9, linestyle="-.", label="mean")
         for level, label in ((mean + 3 * std, "mean ± 3 σ"), (mean - 3 * std, None)):
             left.axhline(level, color=INK, linewidth=0.9, linestyle="--", label=label)
     for at, support in enumerate(trace.get("supports_m") or []):
@@ -127,7 +127,9 @@ def spectrum(trace: dict[str, Any], quantities: dict[str, Any]) -> Figure:
         axes.axvline(high, color=GREY, linewidth=0.8, linestyle="--")
         rms = quantities.get(name)
         text = f"{low}–{high}" + (f"\n{number(rms, 3)}" if rms is not None else "")
-        axes.text((low + high) / 2, 1.02, text, ha="center", va="bottom", fontsize=7, transform=axes.get_xaxis_transform())
+        axes.text(
+            (low + high) / 2, 1.02, text, ha="center", va="bottom", fontsize=7, transform=axes.get_xaxis_transform()
+        )
     axes.text(-0.02, 1.02, "Hz\nrms [N]", ha="right", va="bottom", fontsize=7, transform=axes.transAxes)
     axes.set_xlim(0, 50)
     axes.set_ylim(bottom=0)
@@ -147,7 +149,7 @@ def histogram(trace: dict[str, Any]) -> Figure:
     axes.stairs(share, edges, fill=True, facecolor="#c3cad2", edgecolor=INK, linewidth=0.6)
     mean, std = trace.get("mean_N"), trace.get("std_N")
     if mean is not None and std is not None:
-        axes.axvline(mean, color=INK, linewidth=0.9, label="mean")
+        axes.axvline(mean, color=INK, linewidth=0.9, linestyle="-.", label="mean")
         axes.axvline(mean - 3 * std, color=INK, linewidth=0.9, linestyle="--", label="mean ± 3 σ")
         axes.axvline(mean + 3 * std, color=INK, linewidth=0.9, linestyle="--")
         axes.margins(x=0.04)

@@ -6,7 +6,6 @@ from typing import Any
 
 from jinja2 import Environment, FunctionLoader, StrictUndefined
 from markupsafe import Markup
-
 from pantocheck.conformance.files import write_in_place
 from pantocheck.conformance.reports.composition import page
 from pantocheck.conformance.reports.words import TEMPLATES, words

@@ -8,7 +8,7 @@ Inside is a filled disc, outside a cross, a limit that does not count an open ri
 beyond the drawing is an arrow at its edge. The whisker is the discretisation error.
 """
 
-WIDTH, HEIGHT = 150.0, 18.0
+WIDTH, HEIGHT = 100.0, 18.0
 MIDDLE = HEIGHT / 2
 # The band between two limits takes this share of half the width; a single limit stands this far from the middle.
 REACH = 0.56

@@ -11,14 +11,13 @@ from typing import Any
 import matplotlib
 import typst
 from matplotlib.ft2font import FT2Font
-
 from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.files import write_in_place
 from pantocheck.conformance.reports.composition import page
 from pantocheck.conformance.reports.embedding import NAME, encoded, timeless
 from pantocheck.conformance.reports.words import TEMPLATES, words
 
-# Typst brings Libertinus Serif and DejaVu Sans Mono; the sans serif comes with matplotlib. No font of the machine is used.
+# Typst brings Libertinus Serif and DejaVu Sans Mono, matplotlib DejaVu Sans. No font of the machine is used.
 FONTS = Path(matplotlib.get_data_path(), "fonts", "ttf")
 
 
@@ -49,7 +48,8 @@ def render(results: dict[str, Any], seconds: int) -> bytes:
         "verdicts": words()["verdict"],
         "trusts": words()["trust"],
     }
-    sources = {
+    # typst takes a dictionary of files, which its type hints do not know.
+    sources: Any = {
         "main.typ": (TEMPLATES / "certificate.typ").read_bytes(),
         "page.json": json.dumps(showable(data)).encode("ascii"),
         NAME: encoded(results),
@@ -66,7 +66,9 @@ def moment(results: dict[str, Any]) -> int:
     if given is not None:
         # Up to the end of the year 9999, beyond which no date can be written.
         if not (given.isascii() and given.isdigit() and int(given[:15]) <= 253402300799):
-            raise InputError("SOURCE_DATE_EPOCH", f"'{given}' is not a date", "Give whole seconds since 1970-01-01 UTC.")
+            raise InputError(
+                "SOURCE_DATE_EPOCH", f"'{given}' is not a date", "Give whole seconds since 1970-01-01 UTC."
+            )
         return int(given)
     started = results.get("started")
     return int(datetime.fromisoformat(started).timestamp()) if started else 0

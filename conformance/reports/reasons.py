@@ -6,7 +6,7 @@ from typing import Any
 from pantocheck.conformance.reports.criteria_rows import signed, unresolved
 from pantocheck.conformance.reports.page import Reasons
 from pantocheck.conformance.reports.text import beside_limits, limits
-from pantocheck.conformance.reports.words import label, pantograph, words
+from pantocheck.conformance.reports.words import label, owner, words
 
 CLOSEST = 3
 
@@ -41,14 +41,16 @@ def reasons(results: dict[str, Any]) -> tuple[Reasons, ...]:
         return sorted(chosen, key=lambda pair: 0.0 if pair[1].get("margin") is None else pair[1]["margin"])
 
     def whole(verdict: str) -> list[str]:
-        return [f"{case['id']}: {case['reason']}" for case in cases if case["verdict"] == verdict and case.get("reason")]
+        return [
+            f"{case['id']}: {case['reason']}" for case in cases if case["verdict"] == verdict and case.get("reason")
+        ]
 
     unsure = [(case, row) for case, row in rows if unresolved(row)]
     groups = (
         ("What could not be run", [*whole("error"), *(_why(case, row) for case, row in of("error"))]),
         ("What failed", [*whole("fail"), *(_where(case, row) for case, row in of("fail"))]),
         ("What could not be evaluated", [*whole("skip"), *(_why(case, row) for case, row in of("skip"))]),
-        ("Not decided by the discretisation", [_where(case, row) for case, row in unsure]),
+        ("Closer to a limit than the discretisation error", [_where(case, row) for case, row in unsure]),
         ("Closest margins", [_where(case, row) for case, row in of("pass") if _has_width(row)][:CLOSEST]),
     )
     return tuple(Reasons(name, tuple(sentences)) for name, sentences in groups if sentences)
@@ -70,8 +72,7 @@ def of_case(case: dict[str, Any]) -> str:
 
 def who(row: dict[str, Any]) -> str:
     """The owner of a value and the quantity's name in words."""
-    owner = pantograph(row.get("pantograph"))
-    return f"{'line' if owner == 'line' else f'pantograph {owner}'}, {label(row['quantity'])}"
+    return f"{owner(row)}, {label(row['quantity'])}"
 
 
 def _has_width(row: dict[str, Any]) -> bool:

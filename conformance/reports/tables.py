@@ -4,7 +4,7 @@ from typing import Any
 
 from pantocheck.conformance.reports.page import Table
 from pantocheck.conformance.reports.text import number
-from pantocheck.conformance.reports.words import label, pantograph, unit, words
+from pantocheck.conformance.reports.words import holder, label, unit, words
 
 
 def columns(case: dict[str, Any]) -> list[str]:
@@ -15,14 +15,16 @@ def columns(case: dict[str, Any]) -> list[str]:
 
 def heading(key: str) -> str:
     """Name of a column."""
-    return "Line" if pantograph(key) == "line" else f"Pantograph {key}"
+    return holder(key).capitalize()
 
 
 def bands(case: dict[str, Any]) -> Table:
     """The extended band table: each cell with its verdict where graded, else marked informative."""
     pantographs = [key for key in columns(case) if key != "0"]
     graded = {
-        (row["quantity"], str(row.get("pantograph"))): row["verdict"] for row in case["criteria"] if row["verdict"] != "info"
+        (row["quantity"], str(row.get("pantograph"))): row["verdict"]
+        for row in case["criteria"]
+        if row["verdict"] != "info"
     }
 
     def cell(name: str, key: str) -> str:
@@ -54,7 +56,7 @@ def quantities(case: dict[str, Any]) -> Table:
         value = case["quantities"].get(key, {}).get(name)
         if value is None:
             return "skipped" if name in case["skipped"].get(key, {}) else ""
-        return number(value, 5)
+        return ", ".join(number(one, 5) for one in (value if isinstance(value, list) else [value]))
 
     return Table(
         tuple(heading(key) for key in keys),

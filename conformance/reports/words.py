@@ -5,6 +5,8 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
+from pantocheck.conformance.quantities.registry import QUANTITIES
+
 TEMPLATES = files("pantocheck.templates")
 
 
@@ -16,14 +18,19 @@ def words() -> dict[str, Any]:
 
 def label(quantity: str) -> str:
     """What a quantity is called; its own name if it has no other."""
-    return str(words()["quantity"].get(quantity, {}).get("label", quantity))
+    return str(words()["quantity"].get(quantity, quantity))
 
 
 def unit(quantity: str) -> str:
     """Unit of a quantity, empty if it has none or is not known."""
-    return str(words()["quantity"].get(quantity, {}).get("unit", ""))
+    return QUANTITIES[quantity].unit if quantity in QUANTITIES else ""
 
 
-def pantograph(number: int | str | None) -> str:
-    """Who a value belongs to: the number of a pantograph, or the line."""
-    return "line" if number in (None, 0, "0") else str(number)
+def holder(key: str | int | None) -> str:
+    """Whose a value is: `pantograph 1`, or `line`."""
+    return "line" if key in (None, 0, "0") else f"pantograph {key}"
+
+
+def owner(row: dict[str, Any]) -> str:
+    """Whose value a criterion grades, with its number among several: `pantograph 1`, `line, no. 3`."""
+    return holder(row.get("pantograph")) + (f", no. {row['item']}" if row.get("item") else "")

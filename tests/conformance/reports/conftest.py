@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from pantocheck.conformance.reports import html, pdf
 
 SOURCE = "Wang et al., An extended Habedank's equation-based EMTP model, IEEE Trans. Power Delivery, Table III"
 SPEED = 250 / 3.6
@@ -64,13 +65,16 @@ def statistics(raw: Signal, filtered: Signal) -> dict[str, float]:
     }
 
 
-def criterion(values: dict[str, float], pantograph: int, quantity: str, unit: str, *limits: float | None) -> dict[str, Any]:
+def criterion(
+    values: dict[str, float], pantograph: int, quantity: str, unit: str, *limits: float | None
+) -> dict[str, Any]:
     lower, upper = limits
     value = values[quantity]
     nearness = margin(value, lower, upper)
     return {
         "quantity": quantity,
         "pantograph": pantograph,
+        "item": None,
         "value": value,
         "unit": unit,
         "lower": lower,
@@ -171,7 +175,13 @@ def failing_case() -> dict[str, Any]:
     provisional |= {"verdict": "info", "trust": "provisional", "source": "not traced to a printed source"}
     provisional["reason"] = "a provisional limit does not count; it would be fail"
     skipped = criterion(q, 1, "std_force_N", "N", 10, 20)
-    skipped |= {"quantity": "rms_20_50_N", "value": None, "verdict": "skip", "margin": None, "discretisation_error": None}
+    skipped |= {
+        "quantity": "rms_20_50_N",
+        "value": None,
+        "verdict": "skip",
+        "margin": None,
+        "discretisation_error": None,
+    }
     skipped["reason"] = "the record is already filtered at 20 Hz; it says nothing about 20-50 Hz"
     return {
         "id": "en50318-2002/300",
@@ -207,11 +217,11 @@ def skipped_case() -> dict[str, Any]:
         "notes": [],
         "warnings": [],
         "inputs": [],
-        "input_digest": None,
+        "input_digest": "sha256:fcde2b2edba56bf408601fb721fe9b5c338d10ee429ea04fae5511b68fbf8fb9",
         "criteria": [],
         "quantities": {},
         "skipped": {},
-        "run": {},
+        "run": run_facts(320) | dict.fromkeys(("simulated_s", "wall_s", "dt_s", "element_m", "rate_Hz", "evaluated_m")),
         "traces": {},
         "uplift": [],
     }
@@ -271,6 +281,8 @@ def with_hostile_text() -> dict[str, Any]:
         case["title"] = HOSTILE[number]
         case["notes"] = list(HOSTILE)
         case["warnings"] = list(HOSTILE)
+        for row in case["criteria"][-1:]:
+            row["quantity"] = "a|b<i>"
         case["inputs"] = [{"group": text, "trust": "secondary", "source": text} for text in HOSTILE]
         for at, row in enumerate(case["criteria"]):
             row["source"] = HOSTILE[at % len(HOSTILE)]
@@ -281,3 +293,21 @@ def with_hostile_text() -> dict[str, Any]:
 @pytest.fixture
 def hostile() -> dict[str, Any]:
     return with_hostile_text()
+
+
+@pytest.fixture(scope="session")
+def page_text() -> str:
+    """The example as HTML."""
+    return html.render(example())
+
+
+@pytest.fixture(scope="session")
+def hostile_text() -> str:
+    """The example with hostile text as HTML."""
+    return html.render(with_hostile_text())
+
+
+@pytest.fixture(scope="session")
+def certificate() -> bytes:
+    """The example as PDF."""
+    return pdf.render(example(), 1_700_000_000)

@@ -1,0 +1,35 @@
+"""Terminal output: where it goes and how verdicts look."""
+
+from pantocheck.conformance.command_line.guard import printable
+from pantocheck.conformance.criteria import Verdict
+from rich.console import Console
+from rich.text import Text
+
+_STYLES: dict[Verdict, str] = {
+    "pass": "bold green",
+    "fail": "bold red",
+    "error": "bold red",
+    "skip": "yellow",
+    "info": "cyan",
+}
+
+
+def console() -> Console:
+    """Standard output; wide enough for a table of criteria when it is not a terminal."""
+    output = Console(highlight=False, soft_wrap=False)
+    return output if output.is_terminal else Console(highlight=False, width=140)
+
+
+def verdict_text(verdict: Verdict) -> Text:
+    """A verdict as it is printed."""
+    return Text(verdict.upper(), _STYLES[verdict])
+
+
+def plain(text: str) -> Text:
+    """Text of a file, with neither markup nor control characters obeyed."""
+    return Text(printable(text))
+
+
+def number(value: float | None) -> str:
+    """A value as it is printed: four significant digits, a dash for none."""
+    return "-" if value is None else f"{value:.4g}"

@@ -1,0 +1,106 @@
+"""`pantocheck run`: cases on a system, graded, with a certificate."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from pantocheck.conformance.plan import Plan
+    from pantocheck.conformance.results import Results
+
+EXIT_CODES = {"pass": 0, "info": 0, "fail": 1, "skip": 1, "error": 2}
+"""A limit that was not graded is a limit that was not met: `skip` must not open a gate."""
+
+
+def run(
+    case: Annotated[
+        list[str] | None, typer.Argument(help="Ids, globs or paths of cases; none: every case that has limits.")
+    ] = None,
+    plan: Annotated[
+        Path | None, typer.Option(help="TOML file with the options of a run; see `pantocheck schema plan`.")
+    ] = None,
+    system: Annotated[
+        str | None, typer.Option(help="System under test: builtin or record:DIR.", show_default="builtin")
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for the results.", show_default="report")] = None,
+    formats: Annotated[
+        str | None, typer.Option(help="What is written, e.g. html,json.", show_default="html,pdf,json,junit,md")
+    ] = None,
+    trust: Annotated[
+        str | None,
+        typer.Option(
+            help="Lowest trust of limits that count: primary, secondary or provisional.", show_default="secondary"
+        ),
+    ] = None,
+    limits: Annotated[Path | None, typer.Option(help="TOML file of your own limits, laid over the cases.")] = None,
+    jobs: Annotated[int | None, typer.Option(help="Cases run side by side.", show_default="1")] = None,
+) -> None:
+    """Run cases on a system, grade them, and write the results and the certificate.
+
+    Examples:
+
+    pantocheck run 'en50318-2002/*' --out report
+
+    pantocheck run my-case.toml --system record:records --formats html,json
+    """
+    from pantocheck.conformance.cases.library import overlaid, read_limits, select
+    from pantocheck.conformance.command_line.guard import INTERRUPTED
+    from pantocheck.conformance.command_line.run_output import print_results, reported_progress
+    from pantocheck.conformance.files import check_writable
+    from pantocheck.conformance.reports.writers import checked_formats
+    from pantocheck.conformance.runner import RunInterrupted
+    from pantocheck.conformance.runner import run as run_cases
+    from pantocheck.conformance.systems.choice import system_named
+
+    options = _options(
+        plan,
+        cases=tuple(case) if case else None,
+        system=system,
+        out=None if out is None else str(out),
+        formats=None if formats is None else tuple(name.strip() for name in formats.split(",") if name.strip()),
+        trust=trust,
+        limits=None if limits is None else str(limits),
+        jobs=jobs,
+    )
+    chosen = select(options.cases)
+    if options.limits is not None:
+        chosen = overlaid(chosen, read_limits(Path(options.limits)))
+    written = checked_formats(options.formats)
+    tested, folder = system_named(options.system), Path(options.out)
+    check_writable(folder)
+    interrupted = False
+    try:
+        with reported_progress(len(chosen)) as progress:
+            results = run_cases(chosen, tested, options.trust, min(options.jobs, len(chosen)), progress)
+    except RunInterrupted as stopped:
+        results, interrupted = stopped.results, True
+        typer.echo("Interrupted: what was finished is kept.", err=True)
+    print_results(results, [str(path) for path in _write(results, folder, written)])
+    raise typer.Exit(INTERRUPTED if interrupted else EXIT_CODES[results.verdict])
+
+
+def _options(plan: Path | None, **given: object) -> "Plan":
+    """The plan with the options of the command line laid over it."""
+    from pantocheck.conformance.cases.messages import input_error
+    from pantocheck.conformance.plan import Plan, read_plan
+    from pydantic import ValidationError
+
+    base = read_plan(plan).model_dump() if plan is not None else {}
+    try:
+        return Plan.model_validate(base | {key: value for key, value in given.items() if value is not None})
+    except ValidationError as error:
+        raise input_error(error, Plan, "command line") from None
+
+
+def _write(results: "Results", folder: Path, formats: tuple[str, ...]) -> list[Path]:
+    from pantocheck.conformance.files import write_in_place
+    from pantocheck.conformance.reports.writers import FILES, writer
+
+    content = results.to_dict()
+    for name in formats:
+        if name == "json":
+            write_in_place(folder / FILES[name], results.to_json())
+        else:
+            writer(name)(content, folder / FILES[name])
+    return [folder / FILES[name] for name in formats]

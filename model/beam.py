@@ -1,0 +1,138 @@
+"""Tensioned Euler-Bernoulli beam: element matrices and closed forms.
+
+      w1, r1                          w2, r2
+        o-------------------------------o      w [m] deflection, r = dw/dx [-] slope
+        |<------------- h ------------->|
+
+The unknowns of an element are (w1, r1, w2, r2); cubic Hermite shape functions make w and dw/dx continuous.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def stiffness(h: float, tension: float, bending_stiffness: float) -> Array:
+    """Stiffness of one element, the integral of EI w''^2 + T w'^2.
+
+    Parameters
+    ----------
+    h : length of the element [m]
+    tension : axial tension T [N]
+    bending_stiffness : EI [N m2]
+
+    Returns
+    -------
+    (4, 4) symmetric matrix [N/m, N, N m]
+    """
+    bending = np.array(
+        [
+            [12, 6 * h, -12, 6 * h],
+            [6 * h, 4 * h**2, -6 * h, 2 * h**2],
+            [-12, -6 * h, 12, -6 * h],
+            [6 * h, 2 * h**2, -6 * h, 4 * h**2],
+        ]
+    )
+    string = np.array(
+        [
+            [36, 3 * h, -36, 3 * h],
+            [3 * h, 4 * h**2, -3 * h, -(h**2)],
+            [-36, -3 * h, 36, -3 * h],
+            [3 * h, -(h**2), -3 * h, 4 * h**2],
+        ]
+    )
+    return np.asarray(bending_stiffness / h**3 * bending + tension / (30 * h) * string)
+
+
+def mass(h: float, mass_per_length: float) -> Array:
+    """Consistent mass of one element.
+
+    Parameters
+    ----------
+    h : length of the element [m]
+    mass_per_length : [kg/m]
+
+    Returns
+    -------
+    (4, 4) symmetric matrix [kg, kg m, kg m2]
+    """
+    return np.asarray(
+        mass_per_length
+        * h
+        / 420
+        * np.array(
+            [
+                [156, 22 * h, 54, -13 * h],
+                [22 * h, 4 * h**2, 13 * h, -3 * h**2],
+                [54, 13 * h, 156, -22 * h],
+                [-13 * h, -3 * h**2, -22 * h, 4 * h**2],
+            ]
+        )
+    )
+
+
+def uniform_load(h: float, load_per_length: float) -> Array:
+    """Nodal forces of a uniform load, consistent with the shape functions.
+
+    Parameters
+    ----------
+    h : length of the element [m]
+    load_per_length : [N/m]
+
+    Returns
+    -------
+    (4,) [N, N m]
+    """
+    return load_per_length * h / 12 * np.array([6, h, 6, -h])
+
+
+def shape(s: float, h: float) -> Array:
+    """Hermite shape functions: the deflection at a point is their product with (w1, r1, w2, r2).
+
+    Parameters
+    ----------
+    s : place within the element as a share of its length, 0 to 1 [-]
+    h : length of the element [m]
+
+    Returns
+    -------
+    (4,) [-, m, -, m]
+    """
+    return np.array([(1 + 2 * s) * (1 - s) ** 2, h * s * (1 - s) ** 2, s**2 * (3 - 2 * s), h * s**2 * (s - 1)])
+
+
+def pinned_frequencies(
+    n: int, length: float, tension: float, bending_stiffness: float, mass_per_length: float
+) -> Array:
+    """Natural frequencies of a pinned tensioned beam, modes 1 to n (closed form).
+
+    Parameters
+    ----------
+    n : number of modes
+    length : [m]
+    tension : T [N]
+    bending_stiffness : EI [N m2]
+    mass_per_length : [kg/m]
+
+    Returns
+    -------
+    (n,) [Hz]
+    """
+    k = np.arange(1, n + 1) * np.pi / length
+    return np.asarray(np.sqrt((tension * k**2 + bending_stiffness * k**4) / mass_per_length) / (2 * np.pi))
+
+
+def wave_speed(tension: float, mass_per_length: float) -> float:
+    """Speed of transverse waves on the wire, bending left out: sqrt(T / m).
+
+    Parameters
+    ----------
+    tension : T [N]
+    mass_per_length : [kg/m]
+
+    Returns
+    -------
+    [m/s]
+    """
+    return float(np.sqrt(tension / mass_per_length))

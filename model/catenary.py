@@ -1,0 +1,226 @@
+"""What a line is made of: wires and the parts that connect them, as frozen values in SI units.
+
+z ^      o support                                  o support
+  |       \\____ messenger wire ___________________/
+  |          |      |      |      |      |     |       droppers
+  |  arm --o----------------------------------------o-- arm      contact wire
+  +--------------------------------------------------------> x
+"""
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Literal
+
+GRAVITY = 9.81
+"""Acceleration of gravity [m/s2]."""
+
+
+class Kind(StrEnum):
+    """Kinds of component; each has its own share of the damping."""
+
+    CONTACT_WIRE = "contact_wire"
+    MESSENGER_WIRE = "messenger_wire"
+    STITCH_WIRE = "stitch_wire"
+    DROPPER = "dropper"
+    STEADY_ARM = "steady_arm"
+    MESSENGER_SUPPORT = "messenger_support"
+
+
+@dataclass(frozen=True)
+class Rayleigh:
+    """Damping of one kind of component: C = mass_coefficient M + stiffness_coefficient K.
+
+    Parameters
+    ----------
+    mass_coefficient : multiplies the mass [1/s]
+    stiffness_coefficient : multiplies the stiffness [s]
+    """
+
+    mass_coefficient: float = 0.0
+    stiffness_coefficient: float = 0.0
+
+
+@dataclass(frozen=True)
+class TensionChange:
+    """A stretch of a wire whose tension differs, as the messenger's between the clamps of a stitch wire.
+
+    Parameters
+    ----------
+    start, end : the stretch [m]
+    change : added to the tension of the wire [N]
+    """
+
+    start: float
+    end: float
+    change: float
+
+
+@dataclass(frozen=True)
+class Wire:
+    """A tensioned wire from anchor to anchor.
+
+    Parameters
+    ----------
+    name : unique within the line
+    kind : contact, messenger or stitch wire
+    start, end : anchors, where the wire does not move [m]
+    tension : [N]
+    mass_per_length : [kg/m]
+    bending_stiffness : EI [N m2]
+    tension_changes : stretches of other tension
+    stagger : prescribed lateral places (x, y) at supports and steady arms [m, m]; None leaves the lateral field out
+    """
+
+    name: str
+    kind: Kind
+    start: float
+    end: float
+    tension: float
+    mass_per_length: float
+    bending_stiffness: float
+    tension_changes: tuple[TensionChange, ...] = ()
+    stagger: tuple[tuple[float, float], ...] | None = None
+
+
+@dataclass(frozen=True)
+class Dropper:
+    """A tension-only bar between two wires at one place along the track.
+
+    Parameters
+    ----------
+    position : [m]
+    upper, lower : names of the wires
+    stiffness : axial, while taut [N/m]; or None, and then axial_stiffness is given
+    axial_stiffness : EA [N]; the stiffness is EA over the length that statics give
+    mass : its own, halved to its ends [kg]
+    upper_clamp_mass, lower_clamp_mass : [kg]
+    contact_wire_height : prescribed height of the lower wire here, over the height at the supports [m];
+        None where the lower wire finds its own
+    """
+
+    position: float
+    upper: str
+    lower: str
+    stiffness: float | None = None
+    axial_stiffness: float | None = None
+    mass: float = 0.0
+    upper_clamp_mass: float = 0.0
+    lower_clamp_mass: float = 0.0
+    contact_wire_height: float | None = 0.0
+
+
+@dataclass(frozen=True)
+class SteadyArm:
+    """A hinged bar that holds the contact wire at its stagger; seen by the vertical plane as a soft spring.
+
+    Parameters
+    ----------
+    position : [m]
+    wire : name of the contact wire
+    vertical_stiffness : given [N/m]; None: with a lateral field the axial force over the length of the arm, else none
+    length : of the bar, hinge to claw [m]
+    mass : what the bar and its claw add to the wire at the claw [kg]
+    vertical_damper : a damper between claw and ground [N s/m]
+    carries_share : does the arm carry its share of the contact wire, so that the wire is level at the support?
+    acts : "pull" or "push": which way it holds the wire; an arm that pushes is a negative spring
+    """
+
+    position: float
+    wire: str
+    vertical_stiffness: float | None = None
+    length: float | None = None
+    mass: float = 0.0
+    vertical_damper: float = 0.0
+    carries_share: bool = False
+    acts: Literal["pull", "push"] = "pull"
+
+
+@dataclass(frozen=True)
+class MessengerSupport:
+    """Spring and damper under the messenger wire at a mast.
+
+    Parameters
+    ----------
+    position : [m]
+    wire : name of the messenger wire
+    height : of the messenger over the contact wire at the support, the encumbrance [m]
+    stiffness : vertical [N/m]
+    damping : vertical [N s/m]
+    """
+
+    position: float
+    wire: str
+    height: float
+    stiffness: float
+    damping: float = 0.0
+
+
+@dataclass(frozen=True)
+class Clamp:
+    """A rigid joint of two wires at one place, as where a stitch wire is clamped to the messenger.
+
+    Parameters
+    ----------
+    position : [m]
+    upper, lower : names of the wires
+    mass : [kg]
+    """
+
+    position: float
+    upper: str
+    lower: str
+    mass: float = 0.0
+
+
+@dataclass(frozen=True)
+class ModalBand:
+    """A damping ratio for all modes of a frequency band, in place of what Rayleigh damping gives them.
+
+    Parameters
+    ----------
+    from_frequency, to_frequency : the band, its upper edge left out [Hz]
+    damping_ratio : [-]
+    """
+
+    from_frequency: float
+    to_frequency: float
+    damping_ratio: float
+
+
+@dataclass(frozen=True)
+class Catenary:
+    """A line: its wires, what connects them, and the damping of each kind of component.
+
+    Parameters
+    ----------
+    wires, droppers, steady_arms, messenger_supports, clamps : the parts
+    damping : by kind of component; a kind left out is undamped
+    modal_damping : bands whose modes have a damping ratio of their own
+    """
+
+    wires: tuple[Wire, ...]
+    droppers: tuple[Dropper, ...] = ()
+    steady_arms: tuple[SteadyArm, ...] = ()
+    messenger_supports: tuple[MessengerSupport, ...] = ()
+    clamps: tuple[Clamp, ...] = ()
+    damping: dict[Kind, Rayleigh] = field(default_factory=dict)
+    modal_damping: tuple[ModalBand, ...] = ()
+
+    @property
+    def contact_wires(self) -> tuple[Wire, ...]:
+        """The wires a pantograph touches."""
+        return tuple(wire for wire in self.wires if wire.kind is Kind.CONTACT_WIRE)
+
+    @property
+    def has_lateral_field(self) -> bool:
+        """Whether any wire prescribes a stagger, so that the lateral field is computed."""
+        return any(wire.stagger is not None for wire in self.wires)
+
+    def wire(self, name: str) -> Wire:
+        """The wire of that name.
+
+        Raises
+        ------
+        KeyError : there is none
+        """
+        return {wire.name: wire for wire in self.wires}[name]

@@ -1,0 +1,68 @@
+"""A made-up system whose every quantity is known by hand, for the tests of what grades it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+import pytest
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.library import library_folder, load
+from pantocheck.conformance.record import Record
+from pantocheck.conformance.systems import Outcome
+
+MEAN, SIGMA, UPLIFT_MM = 119.0, 28.0, 50.0
+
+
+@dataclass(frozen=True)
+class Wave:
+    """A force of one sine per span about a mean, sigma as given; a bump of uplift as each support is passed."""
+
+    mean: float = MEAN
+    sigma: float = SIGMA
+    rate: float = 1000.0
+    name: str = "wave"
+    version: str = "1"
+    kind: Literal["builtin"] = "builtin"
+
+    def run(self, case: Case) -> Outcome:
+        record = self.record(case)
+        refined = Outcome(Wave(self.mean, 1.01 * self.sigma, 2 * self.rate).record(case))
+        return Outcome(record, {}, record.time[-1], 0.1, 1 / self.rate, 0.5, refined=refined)
+
+    def record(self, case: Case) -> Record:
+        time = np.arange(int((case.end - case.start) / case.speed * self.rate)) / self.rate
+        last = case.start + case.speed * time
+        position = np.array([last + case.offsets[-1] - behind for behind in case.offsets])
+        span = case.line.geometry.span_m
+        force = self.mean + np.sqrt(2) * self.sigma * np.sin(2 * np.pi * position / span)
+        supports = np.arange(case.line.geometry.spans + 1) * span
+        uplift = 1e-3 * UPLIFT_MM * np.exp(-(((position[0] - supports[:, None]) / 5) ** 2))
+        return Record(time, case.speed, position, force, case.evaluated, None, 1e-4 * force, supports, uplift)
+
+
+@pytest.fixture
+def wave() -> type[Wave]:
+    return Wave
+
+
+@pytest.fixture
+def case_250() -> Case:
+    return load(library_folder() / "en50318-2002" / "250.toml")
+
+
+@pytest.fixture
+def own_case(tmp_path: Path) -> Callable[..., Path]:
+    """Copy of the 250 km/h case with one text replaced in one of its files; gives the path of the case."""
+
+    def copy(file: str, old: str, new: str) -> Path:
+        for name in ("250.toml", "line.toml", "pantograph.toml"):
+            text = (library_folder() / "en50318-2002" / name).read_text(encoding="utf-8")
+            if name == file:
+                assert old in text
+                text = text.replace(old, new, 1)
+            (tmp_path / name).write_text(text, encoding="utf-8")
+        return tmp_path / "250.toml"
+
+    return copy

@@ -1,0 +1,88 @@
+"""Bands share out the variance: Parseval holds, sines fall into their band, and what is unknown is refused."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+from pantocheck.conformance.quantities.bands import amplitude_spectrum, band_rms
+from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandNotObservable
+
+RATE = 500.0
+
+
+def noise(seed: int, n: int = 2000) -> np.ndarray:
+    return 120 + 30 * np.random.default_rng(seed).normal(size=n)
+
+
+@settings(max_examples=30, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1), n=st.integers(1000, 1999), edge=st.floats(2.0, 190.0))
+def test_two_bands_add_up_to_their_union(seed, n, edge):
+    force = noise(seed, n)
+    parts = [band_rms(force, RATE, low, high) for low, high in ((0, edge), (edge, 200))]
+    assert_allclose(np.hypot(*parts), band_rms(force, RATE, 0, 200), rtol=1e-12)
+
+
+@pytest.mark.parametrize("n", [2000, 2001])
+def test_all_bands_add_up_to_the_variance(n):
+    """Of a force without content above 0.4 of the rate, where bands end."""
+    spectrum = np.fft.rfft(noise(3, n))
+    spectrum[np.fft.rfftfreq(n, 1 / RATE) > 200] = 0
+    force = np.fft.irfft(spectrum, n)
+    bands = [band_rms(force, RATE, low, high) for low, high in ((0, 5), (5, 20), (20, 50), (50, 200))]
+    assert_allclose(np.sqrt(np.sum(np.square(bands))), force.std(), rtol=1e-12)
+
+
+@pytest.mark.parametrize(("frequency", "band"), [(1.0, 0), (5.0, 0), (5.5, 1), (20.0, 1), (20.5, 2), (50.0, 2)])
+def test_sine_falls_into_its_band_with_its_rms(frequency, band):
+    """Whole periods in 4 s: no leakage. An edge belongs to the band below it."""
+    time = np.arange(2000) / RATE
+    force = 120 + 10 * np.sin(2 * np.pi * frequency * time + 0.3)
+    values = [band_rms(force, RATE, low, high) for low, high in ((0, 5), (5, 20), (20, 50))]
+    expected = [0.0, 0.0, 0.0]
+    expected[band] = 10 / np.sqrt(2)
+    assert_allclose(values, expected, atol=1e-10)
+
+
+def test_bands_differ_from_the_filtered_deviation_by_its_roll_off_only():
+    """White noise through |H|^2 = 1/(1 + W^6)^2-like skirts: within 5 %, and equal without content near the cut-off."""
+    force = noise(5, 20_000)
+    brick = band_rms(force, RATE, 0, 20)
+    assert_allclose(LowPass()(force, RATE).std(), brick, rtol=0.05)
+    time = np.arange(20_000) / RATE
+    slow = 120 + 20 * np.sin(2 * np.pi * 1.0 * time) + 10 * np.sin(2 * np.pi * 7.0 * time)
+    # Gain at 7 Hz is 1 - 0.5 (7/20)^6 (sqrt(2) - 1) ~ 0.999.
+    assert_allclose(LowPass()(slow, RATE)[5000:15_000].std(), band_rms(slow, RATE, 0, 20), rtol=1e-3)
+
+
+@settings(max_examples=20, deadline=None)
+@given(seed=st.integers(0, 1000), scale=st.floats(0.01, 100), shift=st.floats(-1000, 1000))
+def test_band_scales_with_the_force_and_ignores_its_mean(seed, scale, shift):
+    force = noise(seed)
+    assert_allclose(band_rms(scale * force + shift, RATE, 5, 20), scale * band_rms(force, RATE, 5, 20), rtol=1e-6)
+
+
+def test_rate_too_low_for_the_band():
+    with pytest.raises(BandNotObservable, match="at least 125 samples per second; the record has 100"):
+        band_rms(noise(1), 100.0, 20, 50)
+
+
+def test_stretch_too_short_for_the_band():
+    with pytest.raises(BandNotObservable, match=r"needs at least 0\.8 s; the evaluated stretch lasts 0\.6 s"):
+        band_rms(noise(1, 300), RATE, 0, 5)
+
+
+def test_band_above_a_filter_is_gone():
+    with pytest.raises(AlreadyFiltered, match="20-50 Hz is gone"):
+        band_rms(noise(1), RATE, 20, 50, filter_applied_Hz=20.0)
+    assert band_rms(noise(1), RATE, 5, 20, filter_applied_Hz=20.0) > 0
+
+
+def test_spectrum_gives_the_amplitude_of_a_sine():
+    time = np.arange(2000) / RATE
+    frequency, amplitude = amplitude_spectrum(120 + 10 * np.sin(2 * np.pi * 12.5 * time), RATE, 50.0)
+    assert frequency[0] > 0
+    assert frequency[-1] <= 50.0
+    assert_allclose(amplitude[np.argmax(amplitude)], 10.0, rtol=1e-12)
+    assert frequency[np.argmax(amplitude)] == 12.5

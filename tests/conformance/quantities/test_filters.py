@@ -1,0 +1,96 @@
+"""The low-pass: its -3 dB point, slope, phase and stability are those of its definition."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from pantocheck.conformance.quantities.filters import LowPass, low_passed
+from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandNotObservable
+from scipy.signal import butter, freqz
+
+RATE = 1000.0
+
+
+def measured_gain(low_pass: LowPass, frequency: float, rate: float = RATE) -> float:
+    """Amplitude of a filtered sine, far from the ends; 10 s hold whole periods of the frequencies used."""
+    time = np.arange(int(10 * rate)) / rate
+    filtered = low_pass(np.sin(2 * np.pi * frequency * time), rate)
+    middle = slice(int(4 * rate), int(6 * rate))
+    return float(np.sqrt(2) * filtered[middle].std())
+
+
+@pytest.mark.parametrize("phase", ["zero", "causal"])
+@pytest.mark.parametrize("order", [2, 4, 6, 8])
+@pytest.mark.parametrize("cutoff", [20.0, 50.0])
+def test_whole_filter_has_half_power_at_its_cutoff(phase, order, cutoff):
+    low_pass = LowPass("butterworth", order, cutoff, phase)
+    # The bilinear transform is pre-warped at the cut-off, so only rounding is left.
+    assert_allclose(low_pass.gain(np.array([cutoff]), RATE), np.sqrt(0.5), rtol=1e-9)
+    # Measured on a sine: transients after 4 s are far below the tolerance.
+    assert_allclose(measured_gain(low_pass, cutoff), np.sqrt(0.5), rtol=1e-6)
+
+
+@pytest.mark.parametrize("phase", ["zero", "causal"])
+@pytest.mark.parametrize("order", [4, 6])
+def test_slope_is_the_total_order(phase, order):
+    """Six decibels per octave and order; at 10 kHz, 80 to 160 Hz is far from the bilinear transform's warping (1 %)."""
+    low, high = LowPass("butterworth", order, 20.0, phase).gain(np.array([80.0, 160.0]), 10_000.0)
+    assert_allclose(np.log2(low / high), order, rtol=0.01)
+
+
+def test_zero_phase_leaves_a_symmetric_pulse_where_it_is():
+    time = np.arange(4000) / RATE - 2.0
+    filtered = LowPass()(np.exp(-((time / 0.02) ** 2)), RATE)
+    # sosfiltfilt is symmetric up to the transients of the padded ends, 2 s away.
+    assert_allclose(filtered[1:], filtered[1:][::-1], atol=1e-9)
+    assert abs(time[np.argmax(filtered)]) < 1e-9
+
+
+def test_causal_filter_delays():
+    """Group delay of a Butterworth filter at low frequency: sum of 2 sin(..) / w_c = 3.8637 / w_c for order 6."""
+    time = np.arange(10_000) / RATE
+    filtered = LowPass(phase="causal")(np.sin(2 * np.pi * 0.5 * time), RATE)
+    lag = np.interp(0.0, filtered[3600:4400], time[3600:4400]) - 4.0
+    # Delay varies by (f / f_c)^2 at 0.5 Hz of 20 Hz: below 0.1 %.
+    assert_allclose(lag, 3.8637 / (2 * np.pi * 20.0), rtol=2e-3)
+
+
+def test_sections_stay_stable_where_a_polynomial_does_not():
+    """5 Hz at 10 kHz, order 12: the transfer function's gain at 0 Hz is nonsense, the sections' is 1."""
+    low_pass = LowPass("butterworth", 12, 5.0, "causal")
+    rate = 10_000.0
+    poles = np.concatenate([np.roots(section[3:]) for section in low_pass.sections(rate)])
+    assert np.abs(poles).max() < 1
+    settled = low_pass(np.r_[np.zeros(100), np.ones(50_000)], rate)[-1]
+    assert_allclose(settled, 1.0, rtol=1e-9)
+    _, response = freqz(*butter(12, 5.0, fs=rate), worN=[0.0])
+    assert abs(abs(response[0]) - 1) > 1e-3
+
+
+@pytest.mark.parametrize("phase", ["zero", "causal"])
+def test_constant_force_passes_unchanged_from_the_first_sample(phase):
+    filtered = LowPass(phase=phase)(np.full(500, 120.0), RATE)
+    assert_allclose(filtered, 120.0, rtol=1e-9)
+
+
+def test_record_that_begins_and_ends_on_a_slope_has_little_transient():
+    """A slope of 50 N/s continued at both ends: 2e-4 N are left of the transient (0.69 N without padding)."""
+    slope = 120 + 50 * np.arange(2000) / RATE
+    assert_allclose(LowPass()(slope, RATE), slope, atol=1e-3)
+
+
+def test_odd_order_has_no_zero_phase_filter():
+    with pytest.raises(ValueError, match="even order"):
+        LowPass(order=5)
+
+
+def test_rate_too_low_is_refused():
+    with pytest.raises(BandNotObservable, match="at least 50 samples"):
+        LowPass()(np.ones(100), 40.0)
+
+
+def test_force_filtered_at_the_same_cutoff_is_not_filtered_twice():
+    force = np.random.default_rng(1).normal(size=2000)
+    assert low_passed(force, RATE, LowPass(), 20.0) is force
+    with pytest.raises(AlreadyFiltered, match="filtered at 10 Hz"):
+        low_passed(force, RATE, LowPass(), 10.0)
+    assert_allclose(low_passed(force, RATE, LowPass(), 200.0), LowPass()(force, RATE))

@@ -1,0 +1,118 @@
+"""The HTML certificate: self-contained, escaped, accessible, the same every time."""
+
+import re
+from html.parser import HTMLParser
+from itertools import pairwise
+
+import pytest
+from pantocheck.conformance.reports import html
+from pantocheck.conformance.reports.words import TEMPLATES
+
+VOID = {"meta", "img", "line", "rect", "path", "circle", "link", "br"}
+
+
+class Outline(HTMLParser):
+    """Tags, attributes and text of a page, and whether every tag is closed."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.texts, self.open = [], [], []
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        if tag not in VOID:
+            assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.texts.append(data)
+
+    def values(self, attribute):
+        return [attrs[attribute] for _, attrs in self.tags if attribute in attrs]
+
+
+def test_same_results_give_the_same_bytes(results, page_text):
+    assert html.render(results) == page_text
+
+
+@pytest.mark.parametrize("name", ["page_text", "hostile_text"])
+def test_nothing_is_fetched_or_run(name, request):
+    text = request.getfixturevalue(name)
+    outline = Outline(text)
+    assert {tag for tag, _ in outline.tags} & {"script", "link", "iframe", "object", "embed", "base", "form"} == set()
+    assert all(address.startswith("data:image/svg+xml;base64,") for address in outline.values("src"))
+    assert all(address.startswith("#") for address in outline.values("href"))
+    assert not [attribute for _, attrs in outline.tags for attribute in attrs if attribute.startswith("on")]
+    style = text[text.index("<style>") : text.index("</style>")]
+    assert "url(" not in style
+    assert "@import" not in style
+    assert "default-src 'none'" in text
+
+
+@pytest.mark.parametrize("name", ["page_text", "hostile_text"])
+def test_structure_is_sound(name, request):
+    outline = Outline(request.getfixturevalue(name))
+    assert outline.open == []
+    identities = outline.values("id")
+    assert len(identities) == len(set(identities))
+    targets = {address.removeprefix("#") for address in outline.values("href")}
+    assert targets <= set(identities)
+    levels = [int(tag[1]) for tag, _ in outline.tags if re.fullmatch("h[1-6]", tag)]
+    assert levels[0] == 1
+    assert levels.count(1) == 1
+    assert all(after - before <= 1 for before, after in pairwise(levels))
+    assert all(attrs.get("alt") for tag, attrs in outline.tags if tag == "img")
+    assert dict(outline.tags)["html"]["lang"] == "en"
+    assert all(attrs.get("aria-label") for _, attrs in outline.tags if attrs.get("role") == "img")
+
+
+def test_verdict_comes_first(page_text):
+    seen = " ".join(Outline(page_text).texts)
+    seen = seen[seen.index("self-declared") :]  # after the style sheet
+    order = ["FAIL", "1 of 21 counted", "What failed", "Closest margins", "Criteria", "Extended band", "All quantities"]
+    places = [seen.index(text) for text in order]
+    assert places == sorted(places)
+
+
+def test_hostile_text_stays_text(hostile_text):
+    assert "<script" not in hostile_text
+    assert "&lt;script&gt;alert(1)&lt;/script&gt;" in hostile_text
+    assert "{{ 7*7 }} {% raw %}" in hostile_text
+    assert not set(hostile_text) & set("\x00\x1b\u202e\ufffe\ue000")
+    hostile_text.encode("utf-8")
+
+
+def test_every_criterion_is_there_with_its_trust(results, page_text):
+    rows = re.findall(r'<tr role="row">\n<th role="rowheader".*?</tr>', page_text, re.S)
+    criteria = [row for case in results["cases"] for row in case["criteria"]]
+    assert len(rows) == len(criteria)
+    for text, row in zip(rows, criteria, strict=True):
+        assert f"<code>{row['quantity']}</code>" in text
+        assert f'class="trust {row["trust"]}"' in text
+        assert f'class="verdict {row["verdict"]}"' in text
+        assert text.count("<svg") == (row["value"] is not None)
+
+
+def test_statement_and_no_claim_of_certification(page_text):
+    assert "self-declared conformance report, in the style of EN 50318" in page_text
+    assert "not a certification" in page_text
+
+
+def luminance(colour):
+    """Relative luminance [-], WCAG 2.1."""
+    channels = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in channels]
+    return sum(weight * channel for weight, channel in zip((0.2126, 0.7152, 0.0722), linear, strict=True))
+
+
+def test_inks_have_contrast_against_white():
+    """WCAG AA asks for 4.5 for small text; the warning's ground is nearly white, hence 5."""
+    style = (TEMPLATES / "certificate.css").read_text("utf-8")
+    inks = re.findall(r"--(?:accent|ink|soft): (#[0-9a-f]{6})", style) + re.findall(r"[ ;]color: (#[0-9a-f]{6})", style)
+    assert len(inks) >= 7
+    assert all(1.05 / (luminance(ink) + 0.05) > 5 for ink in inks)

@@ -1,0 +1,233 @@
+"""The runner: verdicts of cases and suite, what one failure does to the others, and the same bytes every time."""
+
+import json
+import re
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import jsonschema
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from pantocheck.conformance.cases.library import select, source_text
+from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.record_files import write_record
+from pantocheck.conformance.results import Results
+from pantocheck.conformance.runner import RunInterrupted, run
+from pantocheck.conformance.schemas import schema_of
+from pantocheck.conformance.systems import Outcome
+from pantocheck.conformance.systems.record_folder import record_folder
+
+
+@dataclass(frozen=True)
+class Scripted:
+    """Does for each case what it is told: deliver an outcome, or raise."""
+
+    script: dict[str, object]
+    name: str = "scripted"
+    version: str = "1"
+    kind: Literal["builtin"] = "builtin"
+
+    def run(self, case):
+        step = self.script[case.id]
+        if isinstance(step, BaseException):
+            raise step
+        return step
+
+
+@pytest.fixture
+def cases():
+    return select(["en50318-2002/*"])
+
+
+def limited(case, *bounds, trust="secondary"):
+    """The case with limits of its own only: (quantity, lower, upper) each."""
+    limits = tuple(
+        Limit(quantity=name, lower=lower, upper=upper, trust=trust, source="test") for name, lower, upper in bounds
+    )
+    return replace(case, limits=limits)
+
+
+def test_results_follow_their_schema_and_hold_the_numbers(cases, wave):
+    results = run(cases, wave())
+    content = json.loads(results.to_json())
+    jsonschema.validate(content, schema_of("results"))
+    assert content["schema"] == "pantocheck.results/1"
+    assert content["verdict"] == "fail"
+    first = content["cases"][0]
+    assert first["id"] == "en50318-2002/250"
+    by_name = {item["quantity"]: item for item in first["criteria"]}
+    assert len(by_name) == 8
+    deviation = by_name["std_force_N"]
+    # One period a span, 1.2 Hz, passes the filter unchanged to (1.2 / 20)^6.
+    assert_allclose(deviation["value"], 28.0, rtol=1e-6)
+    assert_allclose(deviation["margin"], 0.8, rtol=1e-5)
+    assert_allclose(deviation["discretisation_error"], 0.28, rtol=1e-4)
+    assert deviation["verdict"] == "pass"
+    assert deviation["source"].startswith("Wang, Liu")
+    assert by_name["max_force_N"]["verdict"] == "fail"
+    assert by_name["max_force_N"]["reason"] == "16.4 N below the lower limit"
+    assert by_name["max_uplift_at_support_mm"]["pantograph"] == 0
+    # The nearest sample to a support is within half a step of 69 mm at a bump of 5 m.
+    assert_allclose(first["quantities"]["0"]["max_uplift_at_support_mm"], 50.0, rtol=1e-4)
+    facts = first["run"]
+    assert (facts["dt_s"], facts["element_m"], facts["speed_km_h"], facts["rate_Hz"]) == (0.001, 0.5, 250.0, 1000.0)
+    assert facts["filter"] == {"kind": "butterworth", "order": 6, "cutoff_Hz": 20.0, "phase": "zero"}
+    assert facts["evaluated_m"] == [240.0, 360.0]
+    trace = first["traces"]["1"]
+    assert len(trace["position_m"]) == len(trace["force_N"]) == len(trace["force_20_N"]) <= 1500
+    assert trace["supports_m"] == [240.0, 300.0, 360.0]
+    assert max(trace["spectrum"]["frequency_Hz"]) <= 50
+    assert [item["support_m"] for item in first["uplift"]] == [240.0, 300.0, 360.0]
+    trust = {item["group"]: (item["trust"], item["source"]) for item in first["inputs"]}
+    assert trust["case.evaluated_spans"] == ("provisional", source_text("untraced"))
+    assert Results.model_validate(content).to_json() == results.to_json()
+
+
+def test_same_input_gives_the_same_bytes_but_for_times(cases, wave):
+    first, second = (re.sub(rb'"started": "[^"]*"', b"", run(cases, wave()).to_json()) for _ in "ab")
+    assert first == second
+
+
+def test_verdicts_of_cases(case_250, wave):
+    inside, outside = ("mean_force_N", 110.0, 120.0), ("std_force_N", 40.0, 50.0)
+    given = {
+        "pass": limited(case_250, inside),
+        "fail": limited(case_250, inside, outside),
+        "info": limited(case_250, outside, trust="provisional"),
+        "skip": limited(case_250, inside, ("elasticity_mm_N", None, 0.5)),
+    }
+    for verdict, case in given.items():
+        results = run([case], wave())
+        assert (results.cases[0].verdict, results.verdict) == (verdict, verdict)
+    assert run([limited(case_250)], wave()).verdict == "info"
+
+
+def test_provisional_limit_says_what_it_would_have_been_and_counts_when_asked(case_250, wave):
+    case = limited(case_250, ("std_force_N", 40.0, 50.0), trust="provisional")
+    (criterion,) = run([case], wave()).cases[0].criteria
+    assert criterion.verdict == "info"
+    assert criterion.reason == "would fail: 12 N below the lower limit; the limit is provisional and does not count"
+    assert run([case], wave(), trust="provisional").verdict == "fail"
+    assert run([limited(case_250, ("std_force_N", 40.0, 50.0))], wave(), trust="primary").verdict == "info"
+
+
+def test_one_broken_case_leaves_the_others(cases, wave):
+    good = Outcome(wave().record(cases[1]))
+    results = run(cases, Scripted({cases[0].id: ZeroDivisionError("no mass\n at all"), cases[1].id: good}))
+    assert [case.verdict for case in results.cases] == ["error", "fail"]
+    assert results.cases[0].reason == "ZeroDivisionError: no mass at all"
+    assert results.verdict == "error"
+    jsonschema.validate(json.loads(results.to_json()), schema_of("results"))
+
+
+def test_skipped_errored_and_foreign_outcomes(cases, wave):
+    case = cases[0]
+    for outcome, verdict, reason in (
+        (Outcome(skipped="no stitch wires"), "skip", "no stitch wires"),
+        (Outcome(errored="diverged at 1.2 s"), "error", "diverged at 1.2 s"),
+        (Outcome(), "error", "delivered no record"),
+        (Outcome(wave().record(cases[1])), "error", "made at 300 km/h, the case runs at 250 km/h"),
+        (Outcome(replace(wave().record(case), evaluated=(180.0, 300.0))), "error", "evaluates 180 m to 300 m"),
+        (Outcome(wave().record(case), {"beauty": 1.0}), "error", "unknown quantity 'beauty'"),
+    ):
+        (result,) = run([case], Scripted({case.id: outcome})).cases
+        assert result.verdict == verdict
+        assert reason in (result.reason or "")
+
+
+def test_truncated_record_never_passes(case_250, wave):
+    whole = wave().record(case_250)
+    n = int(250 / case_250.speed * 1000)
+    cut = replace(
+        whole, time=whole.time[:n], position=whole.position[:, :n], force=whole.force[:, :n],
+        contact_height=None, support_uplift=whole.support_uplift[:, :n],
+    )  # fmt: skip
+    (result,) = run([case_250], Scripted({case_250.id: Outcome(cut)})).cases
+    assert result.verdict == "skip"
+    assert result.quantities.keys() == {"0"}
+    assert "the evaluated stretch is 240 m to 360 m" in result.criteria[0].reason
+
+
+def test_short_run_out_is_warned_of(case_250, wave):
+    record = wave().record(case_250)
+    n = int(np.searchsorted(record.position[0], 362.0))
+    cut = replace(
+        record, time=record.time[:n], position=record.position[:, :n], force=record.force[:, :n],
+        contact_height=None, support_uplift=record.support_uplift[:, :n],
+    )  # fmt: skip
+    (result,) = run([case_250], Scripted({case_250.id: Outcome(cut)})).cases
+    assert any("run-out" in warning for warning in result.warnings)
+    assert run([case_250], wave()).cases[0].warnings == []
+
+
+def test_value_nearer_to_its_limit_than_its_discretisation_error_is_warned_of(case_250, wave):
+    """Sigma is 28 with an error of 0.28."""
+    for upper, warned in ((28.2, True), (28.4, False)):
+        (result,) = run([limited(case_250, ("std_force_N", None, upper))], wave()).cases
+        assert result.verdict == "pass"
+        assert bool(result.warnings) == warned
+
+
+def test_list_valued_static_quantity_is_graded_item_by_item(case_250, wave):
+    lengths = (1.017, 0.896, 0.81)
+    limits = tuple(
+        Limit(quantity="dropper_length_m", item=i, lower=x - 0.001, upper=x + 0.001, trust="secondary", source="test")
+        for i, x in enumerate((1.017, 0.9, 0.81, 0.7), 1)
+    )
+    outcome = Outcome(wave().record(case_250), {"dropper_length_m": lengths})
+    (result,) = run([replace(case_250, limits=limits)], Scripted({case_250.id: outcome})).cases
+    assert [item.verdict for item in result.criteria] == ["pass", "fail", "pass", "skip"]
+    assert result.quantities["0"]["dropper_length_m"] == list(lengths)
+
+
+def test_failed_precondition_skips_what_builds_on_it(cases, wave):
+    first = limited(cases[0], ("mean_force_N", 0.0, 1.0))
+    second = replace(cases[1], file=cases[1].file.model_copy(update={"requires": (first.id,)}))
+    results = run([second, first], wave())
+    assert [case.verdict for case in results.cases] == ["skip", "fail"]
+    assert results.cases[0].reason == f"requires {first.id}, which ended in fail"
+    passing = run([second, limited(cases[0], ("mean_force_N", 110.0, 120.0))], wave())
+    assert passing.cases[0].criteria
+    assert run([second], wave()).cases[0].reason == f"requires {first.id}, which was not run"
+
+
+def test_interrupted_run_keeps_what_was_finished(cases, wave):
+    system = Scripted({cases[0].id: Outcome(wave().record(cases[0])), cases[1].id: KeyboardInterrupt()})
+    seen = []
+    with pytest.raises(RunInterrupted) as caught:
+        run(cases, system, progress=lambda result: seen.append(result.id))
+    results = caught.value.results
+    assert seen == [cases[0].id]
+    assert len(results.cases[0].criteria) == 8
+    assert (results.cases[1].verdict, results.cases[1].reason) == (
+        "skip",
+        "the run was interrupted before this case was finished",
+    )
+    jsonschema.validate(json.loads(results.to_json()), schema_of("results"))
+
+
+@pytest.fixture
+def recorded(cases, wave, tmp_path):
+    for case in cases:
+        path = tmp_path / f"{case.file.speed_km_h:g}.csv"
+        write_record(path, wave().record(case), case.id, {"name": "w", "version": "2"})
+    return record_folder(tmp_path)
+
+
+def test_side_by_side_gives_what_one_after_the_other_gives(cases, recorded):
+    after = replace(cases[0], file=cases[0].file.model_copy(update={"id": "after", "requires": (cases[1].id,)}))
+    given = [after, *cases]
+    alone, together = run(given, recorded), run(given, recorded, jobs=2)
+    assert together.model_copy(update={"started": None}) == alone.model_copy(update={"started": None})
+    assert alone.cases[0].reason == f"requires {cases[1].id}, which ended in fail"
+    assert alone.system.name == "w"
+
+
+def test_cases_that_require_each_other_end(cases, recorded):
+    loop = [
+        replace(case, file=case.file.model_copy(update={"requires": (other.id,)}))
+        for case, other in zip(cases, cases[::-1], strict=True)
+    ]
+    for jobs in (1, 2):
+        assert [case.verdict for case in run(loop, recorded, jobs=jobs).cases] == ["skip", "skip"]
