@@ -152,7 +152,7 @@ def fit_damping(
         values = _solve(columns[:, chosen], target, weight)
         used = _near_their_group(target - columns[:, chosen] @ values, std, measured.group)
     predicted = columns[:, chosen] @ values + known
-    low, high = _interval(columns[:, chosen], target, std, measured.group, used)
+    low, high = _interval(columns[:, chosen], target, std, measured.std, measured.group, used)
     relative = (measured.damping_ratio - predicted) / measured.damping_ratio
     return DampingFit(
         tuple(
@@ -192,7 +192,7 @@ def _near_their_group(left: Real, std: Real, group: NDArray[np.int64]) -> NDArra
 
 
 def _interval(
-    columns: Real, target: Real, std: Real, group: NDArray[np.int64], used: NDArray[np.bool_]
+    columns: Real, target: Real, std: Real, noise: Real, group: NDArray[np.int64], used: NDArray[np.bool_]
 ) -> tuple[Real, Real]:
     """2.5 and 97.5 percentiles over replicates in which every group's modes are drawn anew and disturbed by their noise."""
     random = np.random.default_rng(20150817)
@@ -201,7 +201,7 @@ def _interval(
     drawn = np.empty((REPLICATES, columns.shape[1]))
     for r in range(REPLICATES):
         rows = np.concatenate([random.choice(members, members.size) for members in numbers])
-        noisy = target[rows] + std[rows] * random.standard_normal(rows.size)
+        noisy = target[rows] + noise[rows] * random.standard_normal(rows.size)
         everything = np.ones(rows.size, dtype=np.bool_)
         drawn[r] = _solve(columns[rows], noisy, _weights(std[rows], group[rows], everything))
     return np.percentile(drawn, 2.5, axis=0), np.percentile(drawn, 97.5, axis=0)
