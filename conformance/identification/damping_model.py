@@ -17,7 +17,6 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.optimize
 from numpy.typing import NDArray
-
 from pantocheck.conformance.errors import InputError
 
 Real = NDArray[np.float64]
@@ -225,7 +224,10 @@ def modal_bands(measured: Measured, last_group: int = 3) -> tuple[ModalBand, ...
     last_group : groups 1..last_group
     """
     present = [number for number in range(1, last_group + 2) if np.any(measured.group == number)]
-    edges = {n: (measured.frequency[measured.group == n].min(), measured.frequency[measured.group == n].max()) for n in present}
+    edges = {
+        n: (measured.frequency[measured.group == n].min(), measured.frequency[measured.group == n].max())
+        for n in present
+    }
     bands = []
     for number in (n for n in present if n <= last_group):
         low, high = edges[number]

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-
 from pantocheck.conformance.identification.filters import gain_at
 from pantocheck.conformance.identification.identify import Identification
 from pantocheck.conformance.massdrop_records.units import STANDARD_GRAVITY

@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-
 from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.identification.filters import gain_at
 from pantocheck.conformance.identification.groups import group_numbers, outliers
@@ -160,9 +159,7 @@ def _reported(
     spreads = [residue_spread(poles, data) for data in blocks]
     misfit = _misfit(refined.cost, m, white)
     decay_std, omega_std = (np.sqrt(np.diag(refined.covariance)[part]) for part in (slice(0, m), slice(m, None)))
-    whole = Identification(
-        prepared, band, (), poles, tuple(blocks), fits, tuple(noise), block_of, columns, misfit, ()
-    )
+    whole = Identification(prepared, band, (), poles, tuple(blocks), fits, tuple(noise), block_of, columns, misfit, ())
     frequency = np.abs(poles) / (2 * np.pi)
     reported = np.flatnonzero((frequency >= band.low) & (frequency <= band.high))
     lateral = [_lateral_share(whole, r) for r in range(len(prepared))]

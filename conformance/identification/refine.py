@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
-
 from pantocheck.conformance.identification.projection import Block, normal_equations
 
 Real = NDArray[np.float64]

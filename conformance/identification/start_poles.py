@@ -13,7 +13,6 @@ References
 import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
-
 from pantocheck.conformance.identification.filters import complete_overlap, lowpass
 
 Real = NDArray[np.float64]

@@ -12,7 +12,6 @@ import numpy as np
 import scipy.linalg
 import scipy.stats
 from numpy.typing import NDArray
-
 from pantocheck.conformance.identification.kernel import far_pole_columns, kernel, real_columns, stacked
 from pantocheck.conformance.identification.projection import Block, Fit, solve
 from pantocheck.conformance.identification.refine import refine
@@ -147,7 +146,9 @@ def _sweep(poles: Complex, blocks: list[Block]) -> Complex:
                 continue
             local = _local(poles, blocks, fits, (low + high) / 2, 2 * np.pi * SECTION)
             inner = (local.poles.imag >= low) & (local.poles.imag < high)
-            refined = refine(local.poles, local.blocks, iterations=8, tolerance=0.3).poles if local.blocks else local.poles
+            refined = (
+                refine(local.poles, local.blocks, iterations=8, tolerance=0.3).poles if local.blocks else local.poles
+            )
             moved.append(refined[inner])
         poles = np.concatenate([*moved, np.zeros(0, dtype=np.complex128)])
     return np.asarray(poles[np.argsort(poles.imag)])

@@ -7,7 +7,6 @@ import h5py
 import numpy as np
 import pyuff
 import tomli_w
-
 from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.files import produce_in_place, write_in_place
 from pantocheck.conformance.massdrop_records.record import DropRecord
