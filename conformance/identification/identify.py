@@ -172,9 +172,9 @@ def _reported(
         )
     warnings = [text for one in prepared for text in one.warnings]
     if misfit > SHARED_POLES:
-        several = " or records that do not share their poles" if len(prepared) > 1 else ""
+        several = " or the records do not share their poles" if len(prepared) > 1 else ""
         warnings.append(
-            f"the fit leaves {misfit:.1f} times the noise: a line that is not linear{several}; uncertainties are widened"
+            f"the fit leaves {misfit:.1f} times the noise: the line is not linear{several}; uncertainties are widened"
         )
     lengths = [one.stretch.duration for one in prepared]
     if max(lengths) > (1 + SAME_LENGTH) * min(lengths):
@@ -186,7 +186,7 @@ def _reported(
 def _misfit(cost: float, m: int, blocks: list[Block]) -> float:
     rows = sum(2 * data.lines.size * data.spectrum.shape[1] for data in blocks)
     linear = sum((2 * m + data.residual_terms.shape[1]) * data.spectrum.shape[1] for data in blocks)
-    return cost / max(rows - linear - 2 * m, 1)
+    return float(cost / max(rows - linear - 2 * m, 1))
 
 
 def _inflation(white: list[Block], fits: tuple[Fit, ...], noise: list[Real], pole: complex) -> float:

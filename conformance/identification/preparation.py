@@ -75,9 +75,7 @@ def prepare(record: DropRecord, band: Band) -> Prepared:
     if len(columns) == 1:
         warnings.append(f"{name}: a single sensor; modes with a node there cannot be seen, and no shape can be told")
     stretch = find_stretch(record.signals[:, columns], record.rate, release, band, name, clipped_until)
-    return Prepared(
-        record, tuple(columns), release, stretch, _lateral(record, stretch), tuple([*warnings, *stretch.warnings])
-    )
+    return Prepared(record, tuple(columns), release, stretch, _lateral(record, stretch), (*warnings, *stretch.warnings))
 
 
 def _lateral(record: DropRecord, stretch: Stretch) -> Real:

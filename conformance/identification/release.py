@@ -68,7 +68,7 @@ def find_release(signals: Real, rate: float, nominal: float | None, name: str) -
 
 
 def _quiet_start(signals: Real, rate: float, name: str) -> int:
-    """Samples of rest at the beginning, by where the energy of half-second windows first leaps; no trigger time is known."""
+    """Samples of rest at the beginning, where no trigger time is known: until half-second windows first leap."""
     width = max(int(0.5 * rate), 4)
     windows = signals[: signals.shape[0] // width * width].reshape(-1, width, signals.shape[1])
     spread = windows.std(axis=1)

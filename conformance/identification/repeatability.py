@@ -86,7 +86,7 @@ def aligned(one: Prepared) -> tuple[Real, Real]:
     taps = lowpass(rate, HIGHEST, HIGHEST * 1.5, 50.0)
     samples = complete_overlap(one.record.signals[:, list(one.columns)], taps)
     time = (np.arange(samples.shape[0]) + (taps.size - 1) / 2) / rate - one.release.time
-    return time, samples
+    return np.asarray(time, dtype=np.float64), samples
 
 
 def _compared(first: Prepared, second: Prepared) -> list[Comparison]:

@@ -79,7 +79,7 @@ class Stretch:
     @property
     def duration(self) -> float:
         """[s]"""
-        return self.samples.shape[0] * self.dt
+        return float(self.samples.shape[0] * self.dt)
 
 
 def find_stretch(

@@ -121,7 +121,7 @@ def _described(table: Table, sidecar: Sidecar | None, source: str) -> tuple[Chan
             raise InputError(
                 source,
                 "does not say what its columns are and has no sidecar",
-                "Put a TOML file of the same name beside it, with [record] sampling_rate_hz and one [[channel]] per column.",
+                "Put NAME.toml beside it, with [record] sampling_rate_hz and one [[channel]] per column.",
             )
         return tuple(channel for channel in own if channel is not None)
     declared = sidecar.record.n_channels

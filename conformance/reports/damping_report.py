@@ -20,8 +20,8 @@ def damping_document(results: dict[str, Any], block: str) -> Document:
     seen = [row for row in results["observability"] if row["observable"]]
     kinds = dict.fromkeys(row["kind"].replace("_", " ") for row in seen)
     headline = (
-        f"Rayleigh damping fitted to {len(results['pairs'])} modes leaves {100 * results['residual']:.2g} % of their damping "
-        f"ratios. Observable: {', '.join(kinds) or 'nothing'}."
+        f"Rayleigh damping fitted to {len(results['pairs'])} modes leaves {100 * results['residual']:.2g} % "
+        f"of their damping ratios. Observable: {', '.join(kinds) or 'nothing'}."
     )
     warnings = tuple(f"no counterpart in the line's model: mode at {f:.4g} Hz" for f in results["unpaired"])
     return Document(
@@ -42,8 +42,8 @@ RESULT = (
 )
 COMPARISON = "Line as it is: with the damping its file has now."
 OBSERVABILITY = (
-    "A coefficient is observable if its plausible value would make up at least 5 % of some mode's damping and is at least "
-    "three times the standard deviation with which the modes determine it, the wires' coefficients being unknown too."
+    "A coefficient is observable if its plausible value would make up at least 5 % of some mode's damping and is at "
+    "least three times the standard deviation with which the modes determine it, the wires' coefficients being unknown too."
 )
 
 

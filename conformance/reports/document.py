@@ -1,4 +1,4 @@
-"""A report of headings, texts, tables and figures, as one HTML file and as PDF; the reports on mass drops are of this kind."""
+"""A report of headings, texts, tables and figures, as one HTML file and as PDF: that of a mass drop."""
 
 import json
 from dataclasses import asdict, dataclass

@@ -42,8 +42,9 @@ def _sections(line: dict[str, Any], suffix: str) -> list[Section]:
 
 
 MODES_TEXT = (
-    "Uncertainties are one standard deviation: Cramér-Rao with the noise estimated from the residual, widened where the "
-    "residual around a mode is more than noise. Error: what the fit leaves in the mode's band over what is measured there."
+    "Uncertainties are one standard deviation: Cramér-Rao with the noise estimated from the residual, widened where "
+    "the residual around a mode is more than noise. Error: what the fit leaves in the mode's band over what is "
+    "measured there."
 )
 
 
@@ -61,7 +62,7 @@ def _damping_pictures(line: dict[str, Any]) -> tuple[Picture, ...]:
         Picture(
             figures.boxes(line["modes"]),
             "Box plots of the damping ratio of each group of span modes; the numbers are in the table of groups.",
-            "Damping ratio per group of span modes: quartiles, median, modes and outliers. Uncertain modes do not enter.",
+            "Damping ratio per group of span modes: quartiles, median, modes, outliers; without uncertain modes.",
         ),
         Picture(
             figures.damping(line["modes"]),
@@ -164,7 +165,8 @@ def _records(line: dict[str, Any]) -> Grid:
             record["name"],
             f"{number(record['mass_kg'], 3)} kg, {record['drop_wire'] or '?'} at {number(record['drop_position_m'])} m",
             f"{number(record['length_s'])} s at {record['sampling_rate_Hz']:g} Hz",
-            f"{number(record['used_from_s'] - record['release_s'], 3)}–{number(record['used_to_s'] - record['release_s'])} s",
+            f"{number(record['used_from_s'] - record['release_s'], 3)}–"
+            f"{number(record['used_to_s'] - record['release_s'])} s",
             ", ".join(record["channels"]),
         )
         for record in line["records"]
