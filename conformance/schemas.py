@@ -8,6 +8,7 @@ from pantocheck.conformance.cases.line import Line
 from pantocheck.conformance.cases.pantograph import Pantograph
 from pantocheck.conformance.plan import Plan
 from pantocheck.conformance.record_files.sidecar import Sidecar
+from pantocheck.conformance.record_files.summary import Summary
 from pantocheck.conformance.results import results_schema
 from pydantic import BaseModel
 
@@ -18,6 +19,7 @@ _MODELS: dict[str, type[BaseModel]] = {
     "limits": LimitsFile,
     "plan": Plan,
     "record": Sidecar,
+    "summary": Summary,
 }
 
 NAMES = (*_MODELS, "results")
