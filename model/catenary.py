@@ -9,6 +9,7 @@ z ^      o support                                  o support
 
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import Literal
 
 GRAVITY = 9.81
 """Acceleration of gravity [m/s2]."""
@@ -116,11 +117,12 @@ class SteadyArm:
     ----------
     position : [m]
     wire : name of the contact wire
-    vertical_stiffness : given [N/m]; None: the lateral force of the stagger over the length of the arm
+    vertical_stiffness : given [N/m]; None: with a lateral field the axial force over the length of the arm, else none
     length : of the bar, hinge to claw [m]
     mass : what the bar and its claw add to the wire at the claw [kg]
     vertical_damper : a damper between claw and ground [N s/m]
     carries_share : does the arm carry its share of the contact wire, so that the wire is level at the support?
+    acts : "pull" or "push": which way it holds the wire; an arm that pushes is a negative spring
     """
 
     position: float
@@ -130,6 +132,7 @@ class SteadyArm:
     mass: float = 0.0
     vertical_damper: float = 0.0
     carries_share: bool = False
+    acts: Literal["pull", "push"] = "pull"
 
 
 @dataclass(frozen=True)

@@ -67,6 +67,28 @@ class History:
     uplift: Array
 
 
+def causal_reach(line: Discretised, speed: float, duration: float) -> float:
+    """How far from the pantographs the line can stand still without them ever feeling it.
+
+    A wave of speed c needs R / (c - v) to get R ahead of a pantograph of speed v, and R / (c + v) to come back from
+    there; behind it the other way round. It cannot be back before the end of the run if R > duration (c^2 - v^2) / 2c.
+
+    Parameters
+    ----------
+    line : the discretised line
+    speed : of the pantographs [m/s]
+    duration : of the run [s]
+
+    Returns
+    -------
+    the distance; infinite for a train faster than the waves [m]
+    """
+    fastest = max(wire.tension / wire.mass_per_length for wire in line.catenary.wires) ** 0.5
+    # Bending makes short waves faster: 10 % holds up to about 60 Hz on a contact wire.
+    c = 1.1 * fastest
+    return duration * (c * c - speed * speed) / (2 * c) if speed < c else math.inf
+
+
 def run(line: Discretised, passage: Passage, progress: Callable[[float], None] | None = None) -> History:
     """Drive pantographs along a line from rest.
 

@@ -21,20 +21,20 @@ def run(
         Path | None, typer.Option(help="TOML file with the options of a run; see `pantocheck schema plan`.")
     ] = None,
     system: Annotated[
-        str | None, typer.Option(help="System under test: builtin or record:DIR.  [default: builtin]")
+        str | None, typer.Option(help="System under test: builtin or record:DIR.", show_default="builtin")
     ] = None,
-    out: Annotated[Path | None, typer.Option(help="Folder for the results.  [default: report]")] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for the results.", show_default="report")] = None,
     formats: Annotated[
-        str | None, typer.Option(help="What is written, e.g. html,json.  [default: html,pdf,json,junit,md]")
+        str | None, typer.Option(help="What is written, e.g. html,json.", show_default="html,pdf,json,junit,md")
     ] = None,
     trust: Annotated[
         str | None,
         typer.Option(
-            help="Lowest trust of limits that count: primary, secondary or provisional.  [default: secondary]"
+            help="Lowest trust of limits that count: primary, secondary or provisional.", show_default="secondary"
         ),
     ] = None,
     limits: Annotated[Path | None, typer.Option(help="TOML file of your own limits, laid over the cases.")] = None,
-    jobs: Annotated[int | None, typer.Option(help="Cases run side by side.  [default: 1]")] = None,
+    jobs: Annotated[int | None, typer.Option(help="Cases run side by side.", show_default="1")] = None,
 ) -> None:
     """Run cases on a system, grade them, and write the results and the certificate.
 

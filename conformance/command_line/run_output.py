@@ -32,7 +32,7 @@ def print_results(results: Results, files: Sequence[str]) -> None:
     output.print(
         verdict_text(results.verdict),
         plain(
-            f" {passed} of {len(counted)} graded criteria within limits, {len(results.cases)} cases, system {system}"
+            f" {passed} of {len(counted)} graded criteria within limits, {len(results.cases)} case(s), system {system}"
         ),
     )
     output.print(plain(f"{results.statement}; limits count from trust '{results.trust}' up"))

@@ -1,5 +1,7 @@
 """From results.json to a page: choosing, ordering and wording; nothing is computed here that is not in the results."""
 
+import json
+from functools import lru_cache
 from typing import Any
 
 from pantocheck.conformance.reports import facts, figures, reasons, tables
@@ -59,6 +61,13 @@ def _case(case: dict[str, Any], at: int) -> Case:
 
 
 def _figures(case: dict[str, Any]) -> tuple[Figure, ...]:
+    return _drawn(json.dumps({key: case.get(key) for key in ("traces", "uplift", "criteria", "quantities")}))
+
+
+@lru_cache(maxsize=32)
+def _drawn(content: str) -> tuple[Figure, ...]:
+    """Figures of the parts of a case that are drawn. Drawing takes most of a page's time, so HTML and PDF share it."""
+    case = json.loads(content)
     drawn: list[Figure] = []
     for key, trace in sorted((case.get("traces") or {}).items(), key=lambda item: (len(item[0]), item[0])):
         rows = [row for row in case["criteria"] if str(row.get("pantograph")) == key]

@@ -11,6 +11,7 @@ from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.reports import attachment, pdf
 from pantocheck.conformance.reports.recomputation import discrepancies
 from pantocheck.conformance.reports.verify import verify
+from pantocheck.conformance.runner import run
 from pypdf import PdfWriter
 from typer.testing import CliRunner
 
@@ -26,6 +27,13 @@ def test_consistent(certificate_file):
     found = verify(certificate_file)
     assert found.consistent
     assert (found.verdict, found.cases, found.criteria) == ("fail", 3, 22)
+
+
+def test_what_the_runner_grades_is_consistent(wave, case_250):
+    """Results of the suite's own grading, spectrum and thinned traces included, contradict themselves nowhere."""
+    results = run([case_250], wave(), "secondary").to_dict()
+    assert len(results["cases"][0]["criteria"]) == 8
+    assert discrepancies(results) == []
 
 
 def row(results, case=0, at=0):
