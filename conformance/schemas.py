@@ -7,6 +7,7 @@ from pantocheck.conformance.cases.limits import LimitsFile
 from pantocheck.conformance.cases.line import Line
 from pantocheck.conformance.cases.pantograph import Pantograph
 from pantocheck.conformance.plan import Plan
+from pantocheck.conformance.profiles import Profile
 from pantocheck.conformance.record_files.sidecar import Sidecar
 from pantocheck.conformance.record_files.summary import Summary
 from pantocheck.conformance.results import results_schema
@@ -20,6 +21,7 @@ _MODELS: dict[str, type[BaseModel]] = {
     "plan": Plan,
     "record": Sidecar,
     "summary": Summary,
+    "profile": Profile,
 }
 
 NAMES = (*_MODELS, "results")

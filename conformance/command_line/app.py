@@ -3,6 +3,7 @@
 from typing import Annotated
 
 import typer
+from pantocheck.conformance.command_line.assess import assess
 from pantocheck.conformance.command_line.cases import cases
 from pantocheck.conformance.command_line.guard import guarded
 from pantocheck.conformance.command_line.run import run
@@ -20,7 +21,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
-for command in (run, cases, show, simulate, verify, schema):
+for command in (run, assess, cases, show, simulate, verify, schema):
     app.command()(guarded(command))
 
 

@@ -15,8 +15,8 @@ CSV column                    HDF5 dataset                meaning
 
 The unit stands at the end of the name: ``force_1_kN``, ``uplift_1_mm``, ``speed_km_h`` are converted. A CSV file begins
 with one line of column names; columns are separated by commas, decimals by points, ``nan`` is a missing value. The
-sidecar's keys are those of `Sidecar`; it must say whether the force was filtered before (``filter_applied_Hz``: a number
-or "none").
+sidecar's keys are those of `Sidecar`; it must say whether the force was filtered before (``filter_applied_Hz``: a
+number or "none").
 """
 
 from pantocheck.conformance.record_files.reading import read_record

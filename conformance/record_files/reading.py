@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from pantocheck.conformance.cases.toml_file import read_model
 from pantocheck.conformance.errors import InputError
-from pantocheck.conformance.record import Array, Record, RecordInvalid
+from pantocheck.conformance.record import LARGEST_NUMBER, Array, Record, RecordInvalid
 from pantocheck.conformance.record_files.channels import CHANNELS, column_name
 from pantocheck.conformance.record_files.samples import Samples, record_of
 from pantocheck.conformance.record_files.sidecar import Sidecar
@@ -91,11 +91,12 @@ def _samples(rows: Rows, sidecar: Sidecar, where: str) -> Samples:
                 "All channels have the same samples.",
             )
         for number, values in rows[name].items():
-            if np.isinf(values).any():
-                at = int(np.argmax(np.isinf(values))) + 1
+            impossible = np.abs(values) > LARGEST_NUMBER  # infinity too; a missing value is not
+            if impossible.any():
+                at = int(np.argmax(impossible))
                 raise InputError(
                     f"{where}, {column_name(CHANNELS[name].key, number)}",
-                    f"infinite at sample {at}",
+                    f"{values[at]:.3g} at sample {at + 1} is impossible",
                     "Write nan where a value is missing.",
                 )
     supports = sorted(rows.get("uplift", {}))

@@ -14,7 +14,7 @@ from pydantic import Field, model_validator
 
 SCHEMA = "pantocheck.summary/1"
 
-Values = Annotated[dict[str, float], Field(max_length=100)]
+Values = Annotated[dict[str, Annotated[float, Field(ge=-1e9, le=1e9)]], Field(max_length=100)]
 
 NEVER_NEGATIVE = frozenset(
     {
@@ -104,7 +104,7 @@ def _followed(given: dict[str, float]) -> list[tuple[str, float, float]]:
     low, high = statistical_extremes(mean, std)
     # Each number is printed to 0.1 N at best: 0.05 N on the mean and the extreme, three times that on sigma.
     found = [("statistical_min_N", low, 0.3), ("statistical_max_N", high, 0.3)]
-    return [*found, ("cov_20", coefficient_of_variation(mean, std), 0.006)] if mean else found
+    return [*found, ("cov_20", coefficient_of_variation(mean, std), 0.006)] if mean > 0 else found
 
 
 def _check(values: dict[str, float], table: str, known: list[str]) -> None:

@@ -60,7 +60,8 @@ def _grade(row: dict[str, Any], trust: Any) -> Iterator[str]:
     """Verdict and margin follow from value, limits and trust."""
     value, lower, upper = row["value"], row["lower"], row["upper"]
     if lower is None and upper is None:
-        if row["verdict"] != "skip" or value is not None:
+        # A rule that has no bound for this record is skipped; nothing else may be without a limit.
+        if row["verdict"] != ("skip" if counts(row["trust"], trust) else "info"):
             yield "no limit"
         return
     if lower is not None and upper is not None and lower > upper:
@@ -82,7 +83,7 @@ def _statistics(quantities: dict[str, Any]) -> Iterator[str]:
     expected: dict[str, float] = {}
     if mean is not None and std is not None:
         expected["statistical_min_N"], expected["statistical_max_N"] = statistical_extremes(mean, std)
-    if mean:
+    if mean is not None and mean > 0:
         ratios = {"cov_20": std, "cov_50": std_50}
         expected |= {k: coefficient_of_variation(mean, v) for k, v in ratios.items() if v is not None}
     for name, value in expected.items():
