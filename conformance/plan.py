@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Annotated
 
 from pantocheck.conformance.cases.base import Table
+from pantocheck.conformance.cases.library import library_folder
 from pantocheck.conformance.cases.toml_file import read_model
 from pantocheck.conformance.trust import Trust
 from pydantic import Field
@@ -45,9 +46,15 @@ def read_plan(path: Path) -> Plan:
     return plan.model_copy(
         update={
             "cases": tuple(str(folder / name) if name.endswith(".toml") else name for name in plan.cases),
-            "system": f"record:{folder / rest}" if kind == "record" else plan.system,
+            "system": f"record:{_beside(folder, rest)}" if kind == "record" else plan.system,
             "out": str(folder / plan.out),
             "baseline": None if plan.baseline is None else str(folder / plan.baseline),
             "limits": None if plan.limits is None else str(folder / plan.limits),
         }
     )
+
+
+def _beside(folder: Path, records: str) -> Path:
+    """A folder of records beside the plan, or else of the library."""
+    beside = folder / records
+    return Path(records) if not beside.is_dir() and (library_folder() / records).is_dir() else beside

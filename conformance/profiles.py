@@ -12,7 +12,7 @@ from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.suggestions import nearest
 from pantocheck.conformance.trust import Trust
-from pydantic import Field, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
 SCHEMA = "pantocheck.profile/1"
 
@@ -38,7 +38,21 @@ class GivenBound(Table):
     factor: Annotated[float, Field(gt=0, le=100, description="what it is multiplied by")] = 1.0
 
 
-Bound = Annotated[float, Field(ge=-1e9, le=1e9)] | SpeedFormula | GivenBound
+def _kind_of_bound(bound: object) -> str:
+    """Which bound a file means: only that one is then checked, and complained of."""
+    if isinstance(bound, SpeedFormula | GivenBound):
+        return type(bound).__name__
+    if isinstance(bound, dict):
+        return "GivenBound" if "given" in bound else "SpeedFormula"
+    return "number"
+
+
+Bound = Annotated[
+    Annotated[float, Field(ge=-1e9, le=1e9), Tag("number")]
+    | Annotated[SpeedFormula, Tag("SpeedFormula")]
+    | Annotated[GivenBound, Tag("GivenBound")],
+    Discriminator(_kind_of_bound),
+]
 Tolerance = Annotated[float, Field(gt=0, le=1e9)]
 
 
