@@ -12,6 +12,7 @@ from pantocheck.model import (
     Dropper,
     Kind,
     MessengerSupport,
+    ModalBand,
     Rayleigh,
     SteadyArm,
     TensionChange,
@@ -47,6 +48,7 @@ def catenary(line: Line) -> Catenary:
             Kind.DROPPER: _rayleigh(line.damping.droppers),
             Kind.STEADY_ARM: _rayleigh(line.damping.steady_arms),
         },
+        modal_damping=tuple(ModalBand(band.from_Hz, band.to_Hz, band.damping_ratio) for band in line.damping.modal),
     )
     if not line.droppers.mass_kg_m:
         return built
