@@ -18,6 +18,9 @@ _BOUNDS = {
     "less_than_equal": ("must be at most", "le"),
 }
 
+LONGEST_KEY = 80
+"""Characters of a key that a message shows; no key of a schema has as many."""
+
 _KINDS = {
     "float_type": "a number",
     "int_type": "a whole number",
@@ -99,7 +102,8 @@ def _walk(model: type[BaseModel], location: tuple[int | str, ...]) -> tuple[type
             inner = member or inner
             continue  # the name of a member of a union, not a key
         table, field = holder, holder.model_fields.get(part)
-        key += f".{part}" if key else part
+        name = part if len(part) <= LONGEST_KEY else part[:LONGEST_KEY] + "..."
+        key += f".{name}" if key else name
         inner = field.annotation if field is not None else None
     return table, field, key
 

@@ -107,7 +107,8 @@ def read_hdf5(path: Path, sidecar: Sidecar, where: str) -> Rows:
                 if not isinstance(dataset, h5py.Dataset) or dataset.dtype.kind not in "fiu":
                     raise InputError(at, "not an array of numbers", FORMAT)
                 shape = _shape(dataset.shape, dataset.size, column.channel, sidecar, at)
-                values = column.factor * np.asarray(dataset[()], dtype=np.float64)
+                with np.errstate(invalid="ignore", over="ignore"):  # what is not finite is said of, with its place
+                    values = column.factor * np.asarray(dataset[()], dtype=np.float64)
                 rows[column.channel.name] = dict(enumerate(values.reshape(shape), 1))
     except InputError:
         raise

@@ -13,7 +13,18 @@ from pypdf.errors import PyPdfError
 LARGEST_FILE = 64 * 2**20  # bytes of a PDF; a certificate of two cases has half a million
 
 # A damaged file can break any assumption of the parser, and it has no single exception for that.
-DAMAGED = (PyPdfError, OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError, NotImplementedError)
+DAMAGED = (
+    PyPdfError,
+    OSError,
+    ValueError,
+    LookupError,
+    TypeError,
+    AttributeError,
+    RecursionError,
+    NotImplementedError,
+    ArithmeticError,
+    AssertionError,
+)
 
 
 def opened(path: Path) -> PdfReader:
