@@ -106,13 +106,13 @@ def _eliminate(diagonal: Array, below: Array, free: NDArray[np.bool_], inverse: 
         if s != middle:
             inwards = s + 1 if s < middle else s - 1
             a = below[s + 1] if s < middle else below[s].T  # couples the inward neighbour to this station
-            g = link[s].reshape(2, 2)
+            g = link[s]
             for p in range(2):
-                g[p, 0] = a[p, 0] * ww + a[p, 1] * wr
-                g[p, 1] = a[p, 0] * wr + a[p, 1] * rr
+                g[2 * p] = a[p, 0] * ww + a[p, 1] * wr
+                g[2 * p + 1] = a[p, 0] * wr + a[p, 1] * rr
             for p in range(2):
                 for q in range(2):
-                    diagonal[inwards, p, q] -= g[p, 0] * a[q, 0] + g[p, 1] * a[q, 1]
+                    diagonal[inwards, p, q] -= g[2 * p] * a[q, 0] + g[2 * p + 1] * a[q, 1]
         inverse[s, 0] = ww if free[s, 0] else 0.0
         inverse[s, 1] = wr if free[s, 0] and free[s, 1] else 0.0
         inverse[s, 2] = rr if free[s, 1] else 0.0
@@ -223,8 +223,8 @@ def inverse_column(factor: Factor, row: int, station: int, slope: int, half_widt
         r[half_width] = 1.0
     first, last = max(0, station - half_width), min(stations, station + half_width)
     there = slice(first + half_width - station, last + half_width - station)
-    inverse, link = factor.inverse[row : row + 1], factor.link[row : row + 1]
-    solve(inverse, link, first, w[there].reshape(1, -1), r[there].reshape(1, -1))
+    middle = min(max(stations // 2 - first, 0), last - first - 1)
+    _solve_row(factor.inverse[row, first:last], factor.link[row, first:last], middle, w[there], r[there])
     size = np.abs(w) + np.abs(r)
     tail = 0.0
     if first == station - half_width:
