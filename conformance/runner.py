@@ -8,6 +8,7 @@ from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExe
 from concurrent.futures.process import BrokenProcessPool
 from datetime import UTC, datetime
 from importlib.metadata import version
+from types import FrameType
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.criteria import worst
@@ -159,7 +160,12 @@ def _pool(jobs: int) -> Executor:
 
 def _die_quietly() -> None:
     """In a worker: Ctrl-C reaches all processes at once, and only the first of them has something to say."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    signal.signal(signal.SIGINT, _leave)
+
+
+def _leave(number: int, frame: FrameType | None) -> None:
+    # An exception, so that a system can end what it started before this process ends.
+    raise SystemExit(128 + number)
 
 
 def _results(

@@ -21,7 +21,7 @@ def run(
         Path | None, typer.Option(help="TOML file with the options of a run; see `pantocheck schema plan`.")
     ] = None,
     system: Annotated[
-        str | None, typer.Option(help="System under test: builtin or record:DIR.  [default: builtin]")
+        str | None, typer.Option(help="System under test: builtin, record:DIR or command:PROGRAM.  [default: builtin]")
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Folder for the results.  [default: report]")] = None,
     formats: Annotated[
@@ -35,6 +35,9 @@ def run(
     ] = None,
     limits: Annotated[Path | None, typer.Option(help="TOML file of your own limits, laid over the cases.")] = None,
     jobs: Annotated[int | None, typer.Option(help="Cases run side by side.  [default: 1]")] = None,
+    timeout: Annotated[
+        float | None, typer.Option(help="Seconds that a program may take for a case.  [default: 600]")
+    ] = None,
 ) -> None:
     """Run cases on a system, grade them, and write the results and the certificate.
 
@@ -43,6 +46,8 @@ def run(
     pantocheck run 'en50318-2002/*' --out report
 
     pantocheck run my-case.toml --system record:records --formats html,json
+
+    pantocheck run 'en50318-2002/*' --system 'command:python3 my_adapter.py' --timeout 300
     """
     from pantocheck.conformance.cases.library import overlaid, read_limits, select
     from pantocheck.conformance.command_line.guard import INTERRUPTED
@@ -62,12 +67,13 @@ def run(
         trust=trust,
         limits=None if limits is None else str(limits),
         jobs=jobs,
+        timeout_s=timeout,
     )
     chosen = select(options.cases)
     if options.limits is not None:
         chosen = overlaid(chosen, read_limits(Path(options.limits)))
     written = checked_formats(options.formats)
-    tested, folder = system_named(options.system), Path(options.out)
+    tested, folder = system_named(options.system, options.timeout_s), Path(options.out)
     check_writable(folder)
     interrupted = False
     try:
