@@ -1,7 +1,7 @@
 """From the description of a line to the arrays that the time step works on."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,6 +63,12 @@ def discretise(catenary: Catenary, element_length: float) -> Discretised:
     state = initial_state(catenary, mesh, beams)
     lump(catenary, mesh, beams)
     return Discretised(catenary, mesh, beams, build_connectors(catenary, mesh, state), state)
+
+
+def never_slack(line: Discretised) -> Discretised:
+    """The same line with droppers that push as well as they pull: wrong, and a measure of what slackening does."""
+    connectors = line.connectors._replace(unilateral=np.zeros_like(line.connectors.unilateral))
+    return replace(line, connectors=connectors)
 
 
 def time_stepping(line: Discretised, time_step: float, reach: float = math.inf) -> Line:

@@ -7,6 +7,7 @@ from pantocheck.conformance.command_line.cases import cases
 from pantocheck.conformance.command_line.guard import guarded
 from pantocheck.conformance.command_line.run import run
 from pantocheck.conformance.command_line.schema import schema
+from pantocheck.conformance.command_line.self_test import self_test
 from pantocheck.conformance.command_line.show import show
 from pantocheck.conformance.command_line.simulate import simulate
 from pantocheck.conformance.command_line.verify import verify
@@ -20,7 +21,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
-for command in (run, cases, show, simulate, verify, schema):
+for command in (run, cases, show, simulate, verify, schema, self_test):
     app.command()(guarded(command))
 
 
