@@ -146,7 +146,7 @@ def _diagnosis(number: int, fit: Fit, step: float, filter_applied_Hz: float | No
         share = 100 * max(0.0, 1 - fit.unexplained)
         return Finding("dynamics", "contradiction", f"{said}: the force explains {share:.0f} % of the motion")
     side = "later" if late > 0 else "earlier"
-    text = f"{said}: the force is about {abs(late):.2g} s {side} than the height that follows from it"
+    text = f"{said}: the force is about {abs(late):.1g} s {side} than the height that follows from it"
     if filter_applied_Hz is not None and 0 < late < CAUSAL_DELAY_PERIODS / filter_applied_Hz:
         return Finding("dynamics", "doubt", f"{text}, as after a filter that runs forwards only")
     return Finding("dynamics", "contradiction", text)

@@ -55,6 +55,6 @@ def test_missed_mutant_is_a_failed_self_test(monkeypatch, tmp_path):
     monkeypatch.setattr(bench, "MILD", ())
     done = CliRunner().invoke(app, ["self-test", "en50318-2002/250", "--markdown", str(tmp_path / "page.md")])
     assert done.exit_code == 1
-    assert done.output.startswith("FAIL 0 of 1 mutants caught")
+    assert done.output.startswith("FAIL  0 of 1 mutants caught")
     assert "MISSED, expected limits" in done.output
     assert "| harmless |" in (tmp_path / "page.md").read_text()
