@@ -56,6 +56,7 @@ def run(
     RunInterrupted : on KeyboardInterrupt, with what was finished
     """
     started = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+    identity = SystemIdentity(name=system.name, version=system.version, kind=system.kind)
     finished: dict[str, CaseResult] = {}
 
     def keep(result: CaseResult) -> None:
@@ -66,15 +67,15 @@ def run(
     try:
         if jobs == 1:
             for case in _ordered(cases):
-                keep(_after_requirements(case, finished) or run_case(case, system, trust))
+                keep(run_when_ready(case, system, trust, finished))
         else:
             _run_side_by_side(cases, system, trust, jobs, finished, keep)
     except KeyboardInterrupt:
         for case in cases:
             if case.id not in finished:
                 finished[case.id] = ungraded(case, "skip", "the run was interrupted before this case was finished")
-        raise RunInterrupted(_results(cases, system, trust, started, finished)) from None
-    return _results(cases, system, trust, started, finished)
+        raise RunInterrupted(assembled(cases, identity, trust, started, finished)) from None
+    return assembled(cases, identity, trust, started, finished)
 
 
 def run_case(case: Case, system: System, trust: Trust) -> CaseResult:
@@ -84,6 +85,11 @@ def run_case(case: Case, system: System, trust: Trust) -> CaseResult:
     except Exception as error:
         text = " ".join(str(error).split())[:300]
         return ungraded(case, "error", f"{type(error).__name__}: {text}" if text else type(error).__name__)
+
+
+def run_when_ready(case: Case, system: System, trust: Trust, finished: dict[str, CaseResult]) -> CaseResult:
+    """Run a case if those it requires have passed; else it is skipped."""
+    return _after_requirements(case, finished) or run_case(case, system, trust)
 
 
 def _ordered(cases: Sequence[Case]) -> list[Case]:
@@ -168,12 +174,13 @@ def _leave(number: int, frame: FrameType | None) -> None:
     raise SystemExit(128 + number)
 
 
-def _results(
-    cases: Sequence[Case], system: System, trust: Trust, started: str, finished: dict[str, CaseResult]
+def assembled(
+    cases: Sequence[Case], system: SystemIdentity, trust: Trust, started: str, finished: dict[str, CaseResult]
 ) -> Results:
+    """Results of all cases as one document, in the order of `cases`; `started` is a time in ISO 8601."""
     return Results(
         suite=Suite(version=version("pantocheck"), commit=suite_commit()),
-        system=SystemIdentity(name=system.name, version=system.version, kind=system.kind),
+        system=system,
         verdict=worst(result.verdict for result in finished.values()),
         trust=trust,
         started=started,

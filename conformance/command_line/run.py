@@ -7,7 +7,6 @@ import typer
 
 if TYPE_CHECKING:
     from pantocheck.conformance.plan import Plan
-    from pantocheck.conformance.results import Results
 
 EXIT_CODES = {"pass": 0, "info": 0, "fail": 1, "skip": 1, "error": 2}
 """A limit that was not graded is a limit that was not met: `skip` must not open a gate."""
@@ -53,7 +52,7 @@ def run(
     from pantocheck.conformance.command_line.guard import INTERRUPTED
     from pantocheck.conformance.command_line.run_output import print_results, reported_progress
     from pantocheck.conformance.files import check_writable
-    from pantocheck.conformance.reports.writers import checked_formats
+    from pantocheck.conformance.reports.writers import checked_formats, write_all
     from pantocheck.conformance.runner import RunInterrupted
     from pantocheck.conformance.runner import run as run_cases
     from pantocheck.conformance.systems.choice import system_named
@@ -82,7 +81,7 @@ def run(
     except RunInterrupted as stopped:
         results, interrupted = stopped.results, True
         typer.echo("Interrupted: what was finished is kept.", err=True)
-    print_results(results, [str(path) for path in _write(results, folder, written)])
+    print_results(results, [str(path) for path in write_all(results, folder, written)])
     raise typer.Exit(INTERRUPTED if interrupted else EXIT_CODES[results.verdict])
 
 
@@ -97,16 +96,3 @@ def _options(plan: Path | None, **given: object) -> "Plan":
         return Plan.model_validate(base | {key: value for key, value in given.items() if value is not None})
     except ValidationError as error:
         raise input_error(error, Plan, "command line") from None
-
-
-def _write(results: "Results", folder: Path, formats: tuple[str, ...]) -> list[Path]:
-    from pantocheck.conformance.files import write_in_place
-    from pantocheck.conformance.reports.writers import FILES, writer
-
-    content = results.to_dict()
-    for name in formats:
-        if name == "json":
-            write_in_place(folder / FILES[name], results.to_json())
-        else:
-            writer(name)(content, folder / FILES[name])
-    return [folder / FILES[name] for name in formats]
