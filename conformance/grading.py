@@ -52,7 +52,7 @@ def graded(case: Case, outcome: Outcome, lowest_trust: Trust) -> CaseResult:
         ],
         notes=[f"not checked, {finding.text}" for finding in found if finding.kind == "unchecked"],
         criteria=criteria,
-        quantities={str(of): _plain(evaluation.values[of]) for of in evaluation.values if evaluation.values[of]},
+        quantities={str(of): plain(evaluation.values[of]) for of in evaluation.values if evaluation.values[of]},
         skipped={str(of): evaluation.skipped[of] for of in evaluation.skipped if evaluation.skipped[of]},
         traces=pantograph_traces(record, case.file.filter.low_pass, supports) if record is not None else {},
         uplift=uplift_traces(record) if record is not None else [],
@@ -63,7 +63,7 @@ def criteria_of(case: Case, outcome: Outcome, lowest_trust: Trust) -> list[Crite
     """Every limit of a case against what was delivered; parameters as in `graded`."""
     evaluation = _evaluated(case, outcome)
     refined = _evaluated(case, outcome.refined) if outcome.refined is not None else None
-    return [_criterion(limit, evaluation, refined, lowest_trust) for limit in case.limits]
+    return [criterion(limit, evaluation, lowest_trust, refined) for limit in case.limits]
 
 
 def _mismatch(case: Case, outcome: Outcome) -> str | None:
@@ -72,7 +72,7 @@ def _mismatch(case: Case, outcome: Outcome) -> str | None:
     if case.is_static:
         return None
     if record is None:
-        return "the system delivered no record"
+        return None if outcome.summary is not None else "the system delivered no record"
     if record.pantographs != len(case.pantographs):
         return f"the record has {record.pantographs} pantographs, the case has {len(case.pantographs)}"
     if abs(record.speed / case.speed - 1) > 0.005:
@@ -128,14 +128,25 @@ def _result(case: Case, outcome: Outcome, notes: Sequence[str], **parts: object)
 
 def _evaluated(case: Case, outcome: Outcome) -> Evaluation:
     if outcome.record is None:
-        evaluation = Evaluation({LINE: {}}, {LINE: {}})
+        evaluation = outcome.summary or Evaluation({LINE: {}}, {LINE: {}})
     else:
         evaluation = evaluate(outcome.record, case.file.filter.low_pass)
     ordered = {name: outcome.static[name] for name in QUANTITIES if name in outcome.static}
     return Evaluation({**evaluation.values, LINE: {**evaluation.values[LINE], **ordered}}, evaluation.skipped)
 
 
-def _criterion(limit: Limit, evaluation: Evaluation, refined: Evaluation | None, lowest_trust: Trust) -> Criterion:
+def criterion(
+    limit: Limit, evaluation: Evaluation, lowest_trust: Trust, refined: Evaluation | None = None
+) -> Criterion:
+    """A value against its limit.
+
+    Parameters
+    ----------
+    limit : of one quantity
+    evaluation : that holds the value, or the reason why there is none
+    lowest_trust : lowest trust of the limits that carry a verdict
+    refined : the same with element and time step halved, for the discretisation error
+    """
     value = _value(limit, evaluation)
     fine = _value(limit, refined) if refined is not None else None
     verdict: Verdict = "skip"
@@ -211,11 +222,12 @@ def _edge_warnings(case: Case, outcome: Outcome) -> list[str]:
     ]
 
 
-def _plain(values: dict[str, Value]) -> dict[str, Number]:
+def plain(values: dict[str, Value]) -> dict[str, Number]:
+    """Values as results hold them: lists and finite numbers."""
     finite: Callable[[float], bool] = math.isfinite
-    plain: dict[str, Number] = {}
+    kept: dict[str, Number] = {}
     for name, value in values.items():
         numbers = list(value) if isinstance(value, tuple) else value
         if all(map(finite, numbers if isinstance(numbers, list) else [numbers])):
-            plain[name] = numbers
-    return plain
+            kept[name] = numbers
+    return kept

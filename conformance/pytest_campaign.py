@@ -4,10 +4,11 @@ import hashlib
 import json
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from datetime import UTC, datetime
 from pathlib import Path
 
 from filelock import FileLock
+from pantocheck.conformance.assembly import assembled, now
+from pantocheck.conformance.baseline import against_baseline
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import overlaid, read_limits, select
 from pantocheck.conformance.files import check_writable, write_in_place
@@ -15,7 +16,8 @@ from pantocheck.conformance.grading import ungraded
 from pantocheck.conformance.plan import Plan, read_plan
 from pantocheck.conformance.reports.writers import checked_formats
 from pantocheck.conformance.results import CaseResult, Results, SystemIdentity
-from pantocheck.conformance.runner import assembled, run_when_ready
+from pantocheck.conformance.results_file import read_results
+from pantocheck.conformance.runner import run_when_ready
 from pantocheck.conformance.systems import System
 from pantocheck.conformance.systems.choice import system_named
 from pantocheck.conformance.trust import Trust
@@ -89,12 +91,15 @@ class Campaign:
         if not session.is_file():
             return None
         said = json.loads(session.read_text(encoding="utf-8"))
-        finished = {
-            case.id: self._read(case) or ungraded(case, "skip", "not run in this session of pytest")
-            for case in self.cases
-        }
+        finished = [
+            self._read(case) or ungraded(case, "skip", "not run in this session of pytest") for case in self.cases
+        ]
         identity = SystemIdentity.model_validate(said["system"])
-        return assembled(self.cases, identity, self.plan.trust, said["started"], finished)
+        results = assembled(finished, identity, self.plan.trust, said["started"])
+        if self.plan.baseline is None:
+            return results
+        path = Path(self.plan.baseline)
+        return against_baseline(results, read_results(path), self.plan.drift_pct, path.name)
 
     def _started(self) -> System:
         """The system under test, started once in this process."""
@@ -102,7 +107,7 @@ class Campaign:
             self._system = system_named(self.plan.system, self.plan.timeout_s)
             session = {
                 "plan": str(self.path.resolve()),
-                "started": datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
+                "started": now(),
                 "system": {name: getattr(self._system, name) for name in ("name", "version", "kind")},
             }
             with FileLock(self.folder / "session.lock"):

@@ -1,20 +1,16 @@
 """Running cases on a system: side by side, in the order their requirements allow, one failure at a time."""
 
 import multiprocessing
-import platform as host
 import signal
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from datetime import UTC, datetime
-from importlib.metadata import version
 from types import FrameType
 
+from pantocheck.conformance.assembly import assembled, now
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.criteria import worst
 from pantocheck.conformance.grading import graded, ungraded
-from pantocheck.conformance.results import CaseResult, Platform, Results, Suite, SystemIdentity
-from pantocheck.conformance.suite_identity import suite_commit
+from pantocheck.conformance.results import CaseResult, Results, SystemIdentity
 from pantocheck.conformance.systems import System
 from pantocheck.conformance.trust import Trust
 
@@ -55,8 +51,7 @@ def run(
     ------
     RunInterrupted : on KeyboardInterrupt, with what was finished
     """
-    started = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
-    identity = SystemIdentity(name=system.name, version=system.version, kind=system.kind)
+    started = now()
     finished: dict[str, CaseResult] = {}
 
     def keep(result: CaseResult) -> None:
@@ -74,8 +69,8 @@ def run(
         for case in cases:
             if case.id not in finished:
                 finished[case.id] = ungraded(case, "skip", "the run was interrupted before this case was finished")
-        raise RunInterrupted(assembled(cases, identity, trust, started, finished)) from None
-    return assembled(cases, identity, trust, started, finished)
+        raise RunInterrupted(_results(cases, system, trust, started, finished)) from None
+    return _results(cases, system, trust, started, finished)
 
 
 def run_case(case: Case, system: System, trust: Trust) -> CaseResult:
@@ -174,23 +169,8 @@ def _leave(number: int, frame: FrameType | None) -> None:
     raise SystemExit(128 + number)
 
 
-def assembled(
-    cases: Sequence[Case], system: SystemIdentity, trust: Trust, started: str, finished: dict[str, CaseResult]
+def _results(
+    cases: Sequence[Case], system: System, trust: Trust, started: str, finished: dict[str, CaseResult]
 ) -> Results:
-    """Results of all cases as one document, in the order of `cases`; `started` is a time in ISO 8601."""
-    return Results(
-        suite=Suite(version=version("pantocheck"), commit=suite_commit()),
-        system=system,
-        verdict=worst(result.verdict for result in finished.values()),
-        trust=trust,
-        started=started,
-        platform=Platform(
-            python=host.python_version(),
-            numpy=version("numpy"),
-            scipy=version("scipy"),
-            numba=version("numba"),
-            machine=host.machine(),
-            system=host.system(),
-        ),
-        cases=[finished[case.id] for case in cases],
-    )
+    identity = SystemIdentity(name=system.name, version=system.version, kind=system.kind)
+    return assembled([finished[case.id] for case in cases], identity, trust, started)

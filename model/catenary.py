@@ -9,6 +9,7 @@ z ^      o support                                  o support
 
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import Literal
 
 GRAVITY = 9.81
 """Acceleration of gravity [m/s2]."""
@@ -116,11 +117,12 @@ class SteadyArm:
     ----------
     position : [m]
     wire : name of the contact wire
-    vertical_stiffness : given [N/m]; None: the lateral force of the stagger over the length of the arm
+    vertical_stiffness : given [N/m]; None: with a lateral field the axial force over the length of the arm, else none
     length : of the bar, hinge to claw [m]
     mass : what the bar and its claw add to the wire at the claw [kg]
     vertical_damper : a damper between claw and ground [N s/m]
     carries_share : does the arm carry its share of the contact wire, so that the wire is level at the support?
+    acts : "pull" or "push": which way it holds the wire; an arm that pushes is a negative spring
     """
 
     position: float
@@ -130,6 +132,7 @@ class SteadyArm:
     mass: float = 0.0
     vertical_damper: float = 0.0
     carries_share: bool = False
+    acts: Literal["pull", "push"] = "pull"
 
 
 @dataclass(frozen=True)
@@ -170,6 +173,21 @@ class Clamp:
 
 
 @dataclass(frozen=True)
+class ModalBand:
+    """A damping ratio for all modes of a frequency band, in place of what Rayleigh damping gives them.
+
+    Parameters
+    ----------
+    from_frequency, to_frequency : the band, its upper edge left out [Hz]
+    damping_ratio : [-]
+    """
+
+    from_frequency: float
+    to_frequency: float
+    damping_ratio: float
+
+
+@dataclass(frozen=True)
 class Catenary:
     """A line: its wires, what connects them, and the damping of each kind of component.
 
@@ -177,6 +195,7 @@ class Catenary:
     ----------
     wires, droppers, steady_arms, messenger_supports, clamps : the parts
     damping : by kind of component; a kind left out is undamped
+    modal_damping : bands whose modes have a damping ratio of their own
     """
 
     wires: tuple[Wire, ...]
@@ -185,6 +204,7 @@ class Catenary:
     messenger_supports: tuple[MessengerSupport, ...] = ()
     clamps: tuple[Clamp, ...] = ()
     damping: dict[Kind, Rayleigh] = field(default_factory=dict)
+    modal_damping: tuple[ModalBand, ...] = ()
 
     @property
     def contact_wires(self) -> tuple[Wire, ...]:

@@ -1,24 +1,38 @@
 """Connectors: what couples the rows of beams, each a bar with one elongation at one station.
 
-A dropper is unilateral: its tension is max(0, N0 + k d + c d'), with the elongation d counted from the initial state. A
-clamp is a stiff bilateral bar. The tension pulls every row by its coefficient: d = sum over rows of coefficient times
-deflection, and the row feels minus the coefficient times the tension.
+A dropper is unilateral: its tension is max(0, N0 + k d + c d'), with the elongation d counted from the initial state.
+All others act both ways: clamps, steady arms along their length, and the sideways stiffness, force over length, of any
+loaded bar. The tension pulls every row by its coefficient: d = sum over rows of coefficient times deflection, and the
+row feels minus the coefficient times the tension.
 """
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from pantocheck.model.beams import Beams
-from pantocheck.model.catenary import Catenary, Kind, Rayleigh
+from pantocheck.model.catenary import Catenary, Kind, Rayleigh, SteadyArm
 from pantocheck.model.initial_state import InitialState
 from pantocheck.model.mesh import Mesh
 
 Array = NDArray[np.float64]
 
 # Stiff against the wires (about 1e5 N/m at a point) and yet far from the limits of double precision.
-CLAMP_STIFFNESS = 1e8
-"""Stiffness of a clamp between two wires [N/m]."""
+RIGID = 1e8
+"""Stiffness of a clamp between two wires, and of a steady arm along its length [N/m]."""
+
+
+@dataclass(frozen=True)
+class Bar:
+    """One connector: see `Connectors`."""
+
+    station: int
+    coefficient: dict[int, float]
+    stiffness: float
+    damping: float = 0.0
+    preload: float = 0.0
+    unilateral: bool = False
 
 
 class Connectors(NamedTuple):
@@ -42,48 +56,124 @@ class Connectors(NamedTuple):
 
 
 def build_connectors(catenary: Catenary, mesh: Mesh, state: InitialState) -> Connectors:
-    """Droppers and clamps of a line.
+    """Droppers, clamps and, with a lateral field, steady arms of a line.
 
     Parameters
     ----------
     catenary : the line
     mesh : its stations and rows
-    state : its initial state, which gives dropper tensions and lengths
+    state : its initial state, which gives forces, lengths and directions
 
     Returns
     -------
     the connectors
     """
-    droppers, clamps = catenary.droppers, catenary.clamps
-    count = len(droppers) + len(clamps)
-    coefficient = np.zeros((count, mesh.rows))
-    joints = [(d.position, d.upper, d.lower) for d in droppers] + [(c.position, c.upper, c.lower) for c in clamps]
-    for n, (_, upper, lower) in enumerate(joints):
-        coefficient[n, mesh.row_of[upper, "z"]] = 1.0
-        coefficient[n, mesh.row_of[lower, "z"]] = -1.0
-    stiffness = np.full(count, CLAMP_STIFFNESS)
-    stiffness[: len(droppers)] = dropper_stiffness(catenary, state)
-    damping = np.zeros(count)
-    rayleigh = catenary.damping.get(Kind.DROPPER, Rayleigh())
-    damping[: len(droppers)] = rayleigh.stiffness_coefficient * stiffness[: len(droppers)]
+    bars = _droppers(catenary, mesh, state) + _clamps(catenary, mesh, state)
+    if catenary.has_lateral_field:
+        bars += _leaning_droppers(catenary, mesh, state) + _steady_arms(catenary, mesh, state)
+    coefficient = np.zeros((len(bars), mesh.rows))
+    for n, bar in enumerate(bars):
+        coefficient[n, list(bar.coefficient)] = list(bar.coefficient.values())
     return Connectors(
-        station=np.array([mesh.station(position) for position, _, _ in joints], dtype=np.int64),
+        station=np.array([bar.station for bar in bars], dtype=np.int64),
         coefficient=coefficient,
-        stiffness=stiffness,
-        damping=damping,
-        preload=np.concatenate([state.dropper_tension, state.clamp_tension]),
-        unilateral=np.arange(count) < len(droppers),
+        stiffness=np.array([bar.stiffness for bar in bars]),
+        damping=np.array([bar.damping for bar in bars]),
+        preload=np.array([bar.preload for bar in bars]),
+        unilateral=np.array([bar.unilateral for bar in bars], dtype=np.bool_),
     )
 
 
-def dropper_stiffness(catenary: Catenary, state: InitialState) -> Array:
-    """Axial stiffness of each dropper while taut: as given, or EA over its length [N/m]."""
-    return np.array(
-        [
-            dropper.stiffness if dropper.stiffness is not None else (dropper.axial_stiffness or 0.0) / length
-            for dropper, length in zip(catenary.droppers, state.dropper_length, strict=True)
-        ]
-    )
+def _between(mesh: Mesh, upper: str, lower: str, direction: tuple[float, float]) -> dict[int, float]:
+    """Elongation, along a direction (y, z), of what joins a lower to an upper wire."""
+    y, z = direction
+    ends = {mesh.row_of[upper, "z"]: z, mesh.row_of[lower, "z"]: -z}
+    if (upper, "y") in mesh.row_of:
+        ends |= {mesh.row_of[upper, "y"]: y, mesh.row_of[lower, "y"]: -y}
+    return ends
+
+
+def _droppers(catenary: Catenary, mesh: Mesh, state: InitialState) -> list[Bar]:
+    rayleigh = catenary.damping.get(Kind.DROPPER, Rayleigh())
+    bars = []
+    for n, dropper in enumerate(catenary.droppers):
+        stiffness = dropper.stiffness
+        if stiffness is None:
+            stiffness = (dropper.axial_stiffness or 0.0) / float(state.dropper_length[n])
+        y, z = map(float, state.dropper_direction[n])
+        bars.append(
+            Bar(
+                mesh.station(dropper.position),
+                _between(mesh, dropper.upper, dropper.lower, (y, z)),
+                stiffness,
+                rayleigh.stiffness_coefficient * stiffness,
+                float(state.dropper_tension[n]),
+                unilateral=True,
+            )
+        )
+    return bars
+
+
+def _clamps(catenary: Catenary, mesh: Mesh, state: InitialState) -> list[Bar]:
+    directions = [(0.0, 1.0)] if not catenary.has_lateral_field else [(0.0, 1.0), (1.0, 0.0)]
+    return [
+        Bar(
+            mesh.station(clamp.position),
+            _between(mesh, clamp.upper, clamp.lower, (y, z)),
+            RIGID,
+            preload=float(state.clamp_force[n] @ (y, z)),
+        )
+        for n, clamp in enumerate(catenary.clamps)
+        for y, z in directions
+    ]
+
+
+def _leaning_droppers(catenary: Catenary, mesh: Mesh, state: InitialState) -> list[Bar]:
+    """Sideways stiffness of the droppers at their static tension."""
+    across = zip(catenary.droppers, state.dropper_direction, state.dropper_tension / state.dropper_length, strict=True)
+    return [
+        Bar(mesh.station(d.position), _between(mesh, d.upper, d.lower, (float(z), -float(y))), float(stiffness))
+        for d, (y, z), stiffness in across
+    ]
+
+
+def _steady_arms(catenary: Catenary, mesh: Mesh, state: InitialState) -> list[Bar]:
+    """Hinged bars: rigid along their length, and sideways as stiff as their axial force over their length."""
+    rayleigh = catenary.damping.get(Kind.STEADY_ARM, Rayleigh())
+    bars = []
+    for arm, force in zip(catenary.steady_arms, state.arm_force, strict=True):
+        station, rows = mesh.station(arm.position), [mesh.row_of[arm.wire, field] for field in "yz"]
+        y, z, tension = arm_direction(arm, force)
+        along = dict(zip(rows, (-y, -z), strict=True))
+        bars.append(Bar(station, along, RIGID, preload=tension))
+        if arm.vertical_stiffness is None and arm.length is not None and tension != 0.0:
+            stiffness = tension / arm.length
+            across = dict(zip(rows, (z, -y), strict=True))
+            bars.append(Bar(station, across, stiffness, rayleigh.stiffness_coefficient * abs(stiffness)))
+    return bars
+
+
+def arm_direction(arm: SteadyArm, force: Array) -> tuple[float, float, float]:
+    """Direction of a steady arm from claw to hinge, and its axial tension.
+
+    A hinged bar lies along the force it carries; its own weight is left to its hinge. An arm that pulls has its hinge
+    on the side to which it pulls, one that pushes on the other.
+
+    Parameters
+    ----------
+    arm : the steady arm
+    force : (2,) its static force on the contact wire, y and z [N]
+
+    Returns
+    -------
+    direction y, z [-], and tension, negative for an arm that pushes [N]
+    """
+    size = float(np.hypot(*force))
+    if force[0] == 0.0:
+        # Nothing pulls sideways: the bar lies level and carries nothing, whatever holds up the wire.
+        return 1.0, 0.0, 0.0
+    sign = 1.0 if arm.acts == "pull" else -1.0
+    return sign * float(force[0]) / size, sign * float(force[1]) / size, sign * size
 
 
 def lump(catenary: Catenary, mesh: Mesh, beams: Beams) -> None:
@@ -97,21 +187,27 @@ def lump(catenary: Catenary, mesh: Mesh, beams: Beams) -> None:
     """
     undamped = Rayleigh()
 
-    def add(kind: Kind, wire: str, position: float, mass: float, stiffness: float, damping: float) -> None:
-        row, at, rayleigh = mesh.row_of[wire, "z"], mesh.station(position), catenary.damping.get(kind, undamped)
+    def add(kind: Kind, row: int, position: float, mass: float, stiffness: float = 0.0, damping: float = 0.0) -> None:
+        at, rayleigh = mesh.station(position), catenary.damping.get(kind, undamped)
         beams.lumped_mass[row, at] += mass
         beams.lumped_stiffness[row, at] += stiffness
         beams.lumped_damping[row, at] += (
             damping + rayleigh.mass_coefficient * mass + rayleigh.stiffness_coefficient * stiffness
         )
 
-    for dropper in catenary.droppers:
-        half = dropper.mass / 2
-        add(Kind.DROPPER, dropper.upper, dropper.position, half + dropper.upper_clamp_mass, 0.0, 0.0)
-        add(Kind.DROPPER, dropper.lower, dropper.position, half + dropper.lower_clamp_mass, 0.0, 0.0)
-    for clamp in catenary.clamps:
-        add(Kind.DROPPER, clamp.upper, clamp.position, clamp.mass, 0.0, 0.0)
+    for field in dict.fromkeys(mesh.row_field):
+        for dropper in catenary.droppers:
+            half = dropper.mass / 2
+            upper, lower = mesh.row_of[dropper.upper, field], mesh.row_of[dropper.lower, field]
+            add(Kind.DROPPER, upper, dropper.position, half + dropper.upper_clamp_mass)
+            add(Kind.DROPPER, lower, dropper.position, half + dropper.lower_clamp_mass)
+        for clamp in catenary.clamps:
+            add(Kind.DROPPER, mesh.row_of[clamp.upper, field], clamp.position, clamp.mass)
+        for arm in catenary.steady_arms:
+            add(Kind.STEADY_ARM, mesh.row_of[arm.wire, field], arm.position, arm.mass)
+        for support in catenary.messenger_supports:
+            row = mesh.row_of[support.wire, field]
+            add(Kind.MESSENGER_SUPPORT, row, support.position, 0.0, support.stiffness, support.damping)
     for arm in catenary.steady_arms:
-        add(Kind.STEADY_ARM, arm.wire, arm.position, arm.mass, arm.vertical_stiffness or 0.0, arm.vertical_damper)
-    for support in catenary.messenger_supports:
-        add(Kind.MESSENGER_SUPPORT, support.wire, support.position, 0.0, support.stiffness, support.damping)
+        row = mesh.row_of[arm.wire, "z"]
+        add(Kind.STEADY_ARM, row, arm.position, 0.0, arm.vertical_stiffness or 0.0, arm.vertical_damper)

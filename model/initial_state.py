@@ -12,8 +12,9 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from pantocheck.model.beams import Beams, weight, wire_matrices
 from pantocheck.model.catenary import GRAVITY, Catenary, Kind
+from pantocheck.model.held import solve_held
+from pantocheck.model.lateral_state import lateral_state
 from pantocheck.model.mesh import Mesh
-from scipy.sparse.linalg import splu
 
 Array = NDArray[np.float64]
 
@@ -28,17 +29,20 @@ class InitialState:
 
     Parameters
     ----------
-    deflection : (rows, stations, 2) height over the contact wire at the supports, and slope [m, -]
-    dropper_tension : (droppers,) at mid-length [N]
+    deflection : (rows, stations, 2) vertical rows: height over the contact wire at the supports; lateral rows: distance
+        from the track's centre line; and slope [m, -]
+    dropper_tension : (droppers,) axial, at mid-length [N]
     dropper_length : (droppers,) between the wires' axes [m]
-    clamp_tension : (clamps,) force between the clamped wires [N]
-    arm_force : (steady arms,) static vertical force of each steady arm on the contact wire [N]
+    dropper_direction : (droppers, 2) from the lower to the upper wire, y and z [-]
+    clamp_force : (clamps, 2) force of the upper on the lower wire, y and z [N]
+    arm_force : (steady arms, 2) static force of each steady arm on the contact wire, y and z [N]
     """
 
     deflection: Array
     dropper_tension: Array
     dropper_length: Array
-    clamp_tension: Array
+    dropper_direction: Array
+    clamp_force: Array
     arm_force: Array
 
 
@@ -74,26 +78,36 @@ def initial_state(catenary: Catenary, mesh: Mesh, beams: Beams) -> InitialState:
         ]
     )
     _refuse_pushing(catenary, tension)
-    clamp_tension = np.zeros(len(catenary.clamps))
+    clamp_force = np.zeros((len(catenary.clamps), 2))
     if upper:
-        deflection[upper], clamp_tension = _hang_upper_wires(catenary, mesh, beams, upper, tension)
-    length = np.array(
+        deflection[upper], clamp_force[:, 1] = _hang_upper_wires(catenary, mesh, beams, upper, tension)
+    rise = _difference(catenary, mesh, deflection, "z")
+    if rise.size and rise.min() <= 0:
+        place = catenary.droppers[int(np.argmin(rise))].position
+        raise NoInitialState(f"the wires cross at the dropper at x = {place:g} m; the encumbrance is too small")
+    arm_force = np.zeros((len(catenary.steady_arms), 2))
+    for n, arm in enumerate(catenary.steady_arms):
+        if arm.carries_share:
+            arm_force[n, 1] = reaction[mesh.row_of[arm.wire, "z"], mesh.station(arm.position)]
+    run = np.zeros_like(rise)
+    if catenary.has_lateral_field:
+        lateral = lateral_state(catenary, mesh, beams, tension / rise)
+        deflection[lateral.rows], clamp_force[:, 0], arm_force[:, 0] = lateral.shape, lateral.clamps, lateral.arms
+        run = _difference(catenary, mesh, deflection, "y")
+    length = np.hypot(rise, run)
+    direction = np.stack([run / length, rise / length], axis=1)
+    return InitialState(deflection, tension * length / rise, length, direction, clamp_force, arm_force)
+
+
+def _difference(catenary: Catenary, mesh: Mesh, deflection: Array, field: str) -> Array:
+    """Upper minus lower end of every dropper in one field."""
+    return np.array(
         [
-            deflection[mesh.row_of[d.upper, "z"], mesh.station(d.position), 0]
-            - deflection[mesh.row_of[d.lower, "z"], mesh.station(d.position), 0]
+            deflection[mesh.row_of[d.upper, field], mesh.station(d.position), 0]
+            - deflection[mesh.row_of[d.lower, field], mesh.station(d.position), 0]
             for d in catenary.droppers
         ]
     )
-    if length.size and length.min() <= 0:
-        place = catenary.droppers[int(np.argmin(length))].position
-        raise NoInitialState(f"the wires cross at the dropper at x = {place:g} m; the encumbrance is too small")
-    arm_force = np.array(
-        [
-            reaction[mesh.row_of[arm.wire, "z"], mesh.station(arm.position)] if arm.carries_share else 0.0
-            for arm in catenary.steady_arms
-        ]
-    )
-    return InitialState(deflection, tension, length, clamp_tension, arm_force)
 
 
 def _hold_contact_wire(catenary: Catenary, mesh: Mesh, beams: Beams, row: int) -> tuple[Array, Array]:
@@ -112,7 +126,7 @@ def _hold_contact_wire(catenary: Catenary, mesh: Mesh, beams: Beams, row: int) -
     for at, height in held.items():
         free[at, 0] = False
         shape[at, 0] = height
-    solved = _solve_held(stiffness, load, free.ravel(), shape.ravel())
+    solved = solve_held(stiffness, load, free.ravel(), shape.ravel())
     return solved.reshape(-1, 2), (stiffness @ solved - load)[::2]
 
 
@@ -143,7 +157,7 @@ def _hang_upper_wires(
     join = sp.csr_array((np.ones(free.size), (np.arange(free.size), merge)), shape=(free.size, free.size))
     flat = free.ravel().copy()
     flat[merge != np.arange(free.size)] = False
-    solved = join @ _solve_held(join.T @ stiffness @ join, join.T @ load, flat, shape.ravel())
+    solved = join @ solve_held(join.T @ stiffness @ join, join.T @ load, flat, shape.ravel())
     residual = load - stiffness @ solved
     clamp_tension = np.array([-residual[deflection_index(c.lower, c.position)] for c in catenary.clamps])
     return np.reshape(solved, (len(rows), stations, 2)), clamp_tension
@@ -156,15 +170,6 @@ def _hold_messenger(catenary: Catenary, mesh: Mesh, name: str, row: int, free: N
     for position, height in [*ends, *((s.position, s.height) for s in supports)]:
         free[row, mesh.station(position), 0] = False
         shape[row, mesh.station(position), 0] = height
-
-
-def _solve_held(stiffness: sp.csr_array, load: Array, free: NDArray[np.bool_], held: Array) -> Array:
-    """Solve for the free unknowns with the others held at given values; rows without stiffness stay as they are."""
-    active = np.flatnonzero(free & (stiffness.diagonal() != 0))
-    solution = np.where(free, 0.0, held)
-    inner = sp.csc_array(stiffness[active][:, active])
-    solution[active] = splu(inner).solve((load - stiffness @ solution)[active])
-    return solution
 
 
 def _refuse_pushing(catenary: Catenary, tension: Array) -> None:

@@ -83,7 +83,8 @@ def _add(case: Case, known: dict[str, Path], chosen: dict[str, Case], above: tup
                 f"case '{case.id}', key requires", f"there is no case {required!r}", nearest(required, list(known))
             )
         _add(load(known[required]), known, chosen, (*above, case.id))
-    chosen.setdefault(case.id, case)
+    if chosen.setdefault(case.id, case) != case:
+        raise InputError(f"case '{case.id}'", "two different files have this id", "Give each case an id of its own.")
 
 
 def load(path: Path) -> Case:

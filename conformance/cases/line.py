@@ -122,6 +122,12 @@ class SteadyArm(Sourced):
     length_m: Annotated[float | None, Field(gt=0, le=5, description="length of the arm [m]")] = None
     mass_kg_m: Annotated[float, Field(ge=0, le=20, description="mass per length of the arm [kg/m]")] = 0.0
     clamp_kg: ClampMass = 0.0
+    vertical_damper_N_s_m: Annotated[
+        NonNegative, Field(le=1e6, description="vertical damper between claw and ground [N s/m]")
+    ] = 0.0
+    acts: Annotated[
+        Literal["pull", "push"], Field(description="which way the arm holds the wire against its stagger")
+    ] = "pull"
 
     @model_validator(mode="after")
     def _stiffness_can_be_had(self) -> "SteadyArm":

@@ -110,7 +110,7 @@ def _fit(motion: Array, response: Array) -> Fit:
 
 def _responses(file: PantographFile, force: Array, step: float) -> tuple[Array, Array]:
     """Head's response to the force from rest, and its (n, 2 m + 1) free motions and the constant."""
-    from pantocheck.conformance.systems.translation import pantograph
+    from pantocheck.conformance.systems.passage import pantograph
 
     model = pantograph(file, 0.0, 0.0)
     m = model.head.size

@@ -60,9 +60,10 @@ def amplitude_spectrum(force: Array, rate: float, highest: float) -> tuple[Array
 
 
 def _power(force: Array, rate: float) -> tuple[Array, Array]:
-    """Frequencies [Hz] and the share of the variance at each [N2]; the shares add up to the variance."""
-    n = force.size
-    power = 2 * np.abs(np.fft.rfft(force - force.mean()) / n) ** 2
-    if n % 2 == 0:
-        power[-1] /= 2  # the line at half the rate has no mirror image
-    return np.asarray(np.fft.rfftfreq(n, 1 / rate), dtype=np.float64), np.asarray(power, dtype=np.float64)
+    """Frequencies [Hz] and the share of the variance at each [N2].
+
+    Each line stands for itself and its mirror image. The one at half the rate has none, but lies above every band.
+    """
+    power = 2 * np.abs(np.fft.rfft(force - force.mean()) / force.size) ** 2
+    frequency = np.fft.rfftfreq(force.size, 1 / rate)
+    return np.asarray(frequency, dtype=np.float64), np.asarray(power, dtype=np.float64)

@@ -1,5 +1,7 @@
 """From results.json to a page: choosing, ordering and wording; nothing is computed here that is not in the results."""
 
+import json
+from functools import lru_cache
 from typing import Any
 
 from pantocheck.conformance.reports import facts, figures, reasons, tables
@@ -46,6 +48,7 @@ def _case(case: dict[str, Any], at: int) -> Case:
         verdict=case["verdict"],
         sentence=reasons.of_case(case),
         criteria=rows,
+        error_name=error_name(case),
         sources=tuple(sources),
         bands=tables.bands(case),
         quantities=tables.quantities(case),
@@ -58,7 +61,20 @@ def _case(case: dict[str, Any], at: int) -> Case:
     )
 
 
+def error_name(case: dict[str, Any]) -> str:
+    """What stands beside the values of a case: their uncertainty, or their discretisation error."""
+    uncertain = any(row.get("uncertainty") is not None for row in case["criteria"])
+    return "Uncertainty (95 %)" if uncertain else "Discretisation error"
+
+
 def _figures(case: dict[str, Any]) -> tuple[Figure, ...]:
+    return _drawn(json.dumps({key: case.get(key) for key in ("traces", "uplift", "criteria", "quantities")}))
+
+
+@lru_cache(maxsize=32)
+def _drawn(content: str) -> tuple[Figure, ...]:
+    """Figures of the parts of a case that are drawn. Drawing takes most of a page's time, so HTML and PDF share it."""
+    case = json.loads(content)
     drawn: list[Figure] = []
     for key, trace in sorted((case.get("traces") or {}).items(), key=lambda item: (len(item[0]), item[0])):
         rows = [row for row in case["criteria"] if str(row.get("pantograph")) == key]

@@ -12,8 +12,8 @@ from pantocheck.conformance.record import Record
 from pantocheck.conformance.record_files import write_record
 from pantocheck.conformance.systems import Outcome
 from pantocheck.conformance.systems.builtin import ReferenceSimulator, run_line
+from pantocheck.conformance.systems.line_model import catenary
 from pantocheck.conformance.systems.record_folder import record_folder
-from pantocheck.conformance.systems.translation import catenary
 from pantocheck.model import discretise, never_slack
 
 Make = Callable[[Case, Record], Outcome]

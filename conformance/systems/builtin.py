@@ -10,9 +10,11 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.evaluation import Value
 from pantocheck.conformance.record import Record
 from pantocheck.conformance.systems import Outcome
-from pantocheck.conformance.systems.translation import catenary, pantograph, starts, watched_supports
+from pantocheck.conformance.systems.line_model import catenary
+from pantocheck.conformance.systems.passage import pantograph, starts, watched_supports
 from pantocheck.model import Discretised, History, Passage, discretise, run
 from pantocheck.model.beam import wave_speed
+from pantocheck.model.simulation import causal_reach
 from pantocheck.model.statics import non_uniformity, static_uplift
 
 SAMPLES_PER_SPAN = 24
@@ -85,14 +87,15 @@ def _passage(case: Case, line: Discretised, step: float, uplift_forces: tuple[fl
     for file, force in zip(case.pantographs, uplift_forces, strict=True):
         height = float(static_uplift(line, _along_span(case), force).mean()) + force / file.contact.stiffness_N_m
         models.append(pantograph(file, force, height))
-    distance = case.end - case.start
+    duration = (case.end - case.start) / case.speed
     return Passage(
         pantographs=tuple(models),
         start=starts(case),
         speed=case.speed,
-        duration=distance / case.speed,
+        duration=duration,
         time_step=step,
         watched=watched_supports(case, line),
+        reach=causal_reach(line, case.speed, duration),
     )
 
 
@@ -129,8 +132,8 @@ def _record(case: Case, passage: Passage, history: History) -> Record:
         force=history.force,
         evaluated=case.evaluated,
         contact_height=history.height,
-        support_position=np.array(passage.watched),
-        support_uplift=history.uplift,
+        support_position=np.array([position for _, position in passage.watched]),
+        support_uplift=history.motion[:, :, 0],
     )
 
 

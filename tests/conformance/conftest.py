@@ -12,7 +12,7 @@ from pantocheck.conformance.cases.library import library_folder, load
 from pantocheck.conformance.cases.pantograph import Pantograph
 from pantocheck.conformance.record import Record
 from pantocheck.conformance.systems import Outcome
-from pantocheck.conformance.systems.translation import pantograph
+from pantocheck.conformance.systems.passage import pantograph
 
 MEAN, SIGMA, UPLIFT_MM = 119.0, 28.0, 50.0
 

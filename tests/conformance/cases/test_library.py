@@ -65,9 +65,7 @@ def test_every_case_loads_under_the_id_of_its_path_and_its_sources_are_in_the_bi
     for name, path in library_ids(library_folder()).items():
         case = load(path)
         assert case.id == name
-        sources = {
-            key for item in case.inputs if item.source != ("not traced to a printed source",) for key in item.source
-        }
+        sources = {key for item in case.inputs for key in item.source}
         sources |= {
             key for limit in case.limits for key in ([limit.source] if isinstance(limit.source, str) else limit.source)
         }
@@ -93,6 +91,13 @@ def test_own_case_by_path_with_files_of_its_own_and_of_the_library(own_case):
     assert own.line.geometry.spans == 12
     path = own_case("250.toml", 'line = "line.toml"', 'line = "en50318-2002/line.toml"')
     assert load(path).line.geometry.spans == 10
+
+
+def test_two_files_with_one_id_are_refused(own_case):
+    changed = str(own_case("250.toml", "order = 6", "order = 4"))
+    assert len(select([changed, changed])) == 1
+    with pytest.raises(InputError, match="two different files have this id"):
+        select([changed, "en50318-2002/250"])
 
 
 def test_required_cases_come_first(own_case, monkeypatch):

@@ -26,7 +26,7 @@ def test_two_bands_add_up_to_their_union(seed, n, edge):
 
 @pytest.mark.parametrize("n", [2000, 2001])
 def test_all_bands_add_up_to_the_variance(n):
-    """Of a force without content above 0.4 of the rate; the line at half the rate counts once (even n)."""
+    """Of a force without content above 0.4 of the rate, where bands end."""
     spectrum = np.fft.rfft(noise(3, n))
     spectrum[np.fft.rfftfreq(n, 1 / RATE) > 200] = 0
     force = np.fft.irfft(spectrum, n)

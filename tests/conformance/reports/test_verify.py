@@ -6,11 +6,13 @@ import json
 import random
 
 import pytest
+from pantocheck.conformance import results_file
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.reports import attachment, pdf
 from pantocheck.conformance.reports.recomputation import discrepancies
 from pantocheck.conformance.reports.verify import verify
+from pantocheck.conformance.runner import run
 from pypdf import PdfWriter
 from typer.testing import CliRunner
 
@@ -26,6 +28,13 @@ def test_consistent(certificate_file):
     found = verify(certificate_file)
     assert found.consistent
     assert (found.verdict, found.cases, found.criteria) == ("fail", 3, 22)
+
+
+def test_what_the_runner_grades_is_consistent(wave, case_250):
+    """Results of the suite's own grading, spectrum and thinned traces included, contradict themselves nowhere."""
+    results = run([case_250], wave(), "secondary").to_dict()
+    assert len(results["cases"][0]["criteria"]) == 8
+    assert discrepancies(results) == []
 
 
 def row(results, case=0, at=0):
@@ -149,7 +158,7 @@ def test_no_file_and_too_large_a_file(certificate_file, tmp_path, monkeypatch):
         verify(tmp_path / "none.pdf")
     with pytest.raises(InputError, match="cannot be read"):
         verify(tmp_path)
-    monkeypatch.setattr(attachment, "LARGEST_RESULTS", 1000)
+    monkeypatch.setattr(results_file, "LARGEST", 1000)
     with pytest.raises(InputError, match=r"attachment results\.json: .* bytes"):
         verify(certificate_file)
     monkeypatch.setattr(attachment, "LARGEST_FILE", 1000)

@@ -1,0 +1,29 @@
+"""Linear statics with some unknowns held at given values."""
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+from scipy.sparse.linalg import splu
+
+Array = NDArray[np.float64]
+
+
+def solve_held(stiffness: sp.csr_array, load: Array, free: NDArray[np.bool_], held: Array) -> Array:
+    """Solve K q = f for the free unknowns, the others held.
+
+    Parameters
+    ----------
+    stiffness : (n, n); an unknown without stiffness stays at zero
+    load : (n,)
+    free : (n,) which unknowns can move
+    held : (n,) values of the others
+
+    Returns
+    -------
+    (n,) all unknowns
+    """
+    active = np.flatnonzero(free & (stiffness.diagonal() != 0))
+    solution: Array = np.where(free, 0.0, held)
+    inner = sp.csc_array(stiffness[active][:, active])
+    solution[active] = splu(inner).solve((load - stiffness @ solution)[active])
+    return solution
