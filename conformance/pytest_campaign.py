@@ -85,8 +85,11 @@ class Campaign:
             self._finished[case.id] = known
         return self._finished[case.id]
 
-    def results(self) -> Results | None:
-        """All cases of the plan; those that were deselected are skipped. None if none was run."""
+    def results(self) -> tuple[Results, int] | None:
+        """All cases of the plan, those that were deselected skipped, and how many values drifted from its baseline.
+
+        None if no case was run.
+        """
         session = self.folder / "session.json"
         if not session.is_file():
             return None
@@ -97,9 +100,10 @@ class Campaign:
         identity = SystemIdentity.model_validate(said["system"])
         results = assembled(finished, identity, self.plan.trust, said["started"])
         if self.plan.baseline is None:
-            return results
+            return results, 0
         path = Path(self.plan.baseline)
-        return against_baseline(results, read_results(path), self.plan.drift_pct, path.name)
+        compared = against_baseline(results, read_results(path), self.plan.drift_pct, path.name)
+        return compared, _criteria(compared) - _criteria(results)
 
     def _started(self) -> System:
         """The system under test, started once in this process."""
@@ -127,6 +131,10 @@ def registered(shared: Path) -> Iterator[Path]:
     """Plans of which a case was run in a session, by name."""
     plans = [json.loads(path.read_text(encoding="utf-8"))["plan"] for path in shared.glob("*/session.json")]
     return map(Path, sorted(plans))
+
+
+def _criteria(results: Results) -> int:
+    return sum(len(case.criteria) for case in results.cases)
 
 
 def _key(text: str) -> str:

@@ -132,18 +132,20 @@ class CriterionItem(OneLine):
             pytest.skip(item.reason or item.verdict)
 
 
-def certificates(config: pytest.Config, folder: Path) -> list[str]:
-    """Write the certificates of all plans of a session; a line for each.
+def certificates(config: pytest.Config, folder: Path) -> tuple[list[str], bool]:
+    """Write the certificates of all plans of a session; a line for each, and whether a value drifted from a baseline.
 
     Raises
     ------
     InputError : a file cannot be written
     """
-    lines = []
+    lines, drifted_anywhere = [], False
     for path in registered(folder):
         finished = campaign(config, path, folder)
-        if (results := finished.results()) is None:
+        if (found := finished.results()) is None:
             continue
+        results, drifted = found
+        drifted_anywhere |= drifted > 0
         write_all(results, finished.out, finished.formats)
         counted = [c for case in results.cases for c in case.criteria if c.verdict != "info"]
         passed = sum(c.verdict == "pass" for c in counted)
@@ -152,4 +154,6 @@ def certificates(config: pytest.Config, folder: Path) -> list[str]:
             f"{path.name}: {results.verdict.upper()}, {passed} of {len(counted)} graded criteria within limits, "
             f"{finished.out / shown}"
         )
-    return lines
+        if drifted:
+            lines.append(f"{path.name}: {drifted} values drifted from the baseline {finished.plan.baseline}")
+    return lines, drifted_anywhere

@@ -30,7 +30,7 @@ def roll_off(case: Case, record: Record) -> list[Finding]:
         return [Finding("roll-off", "unchecked", text)]
     if (BAND[1] - BAND[0]) * cutoff * (record.time[-1] - record.time[0]) < FEWEST_LINES:
         return [Finding("roll-off", "unchecked", "the filter said to be applied: the record is too short")]
-    frequency = np.fft.rfftfreq(record.time.size, 1 / record.rate)
+    frequency = np.asarray(np.fft.rfftfreq(record.time.size, 1 / record.rate), dtype=np.float64)
     below = (frequency > 0) & (frequency <= cutoff)
     above = (frequency > BAND[0] * cutoff) & (frequency <= BAND[1] * cutoff)
     gain = low_pass.gain(frequency[above], record.rate)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Final
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.consistency import findings
@@ -13,7 +14,7 @@ from pantocheck.conformance.self_test.mutants import MILD, MUTANTS, Mutant
 from pantocheck.conformance.systems import Outcome
 from pantocheck.conformance.systems.builtin import ReferenceSimulator
 
-TRUST = "secondary"
+TRUST: Final = "secondary"
 
 
 class NothingToMutate(RuntimeError):
@@ -94,9 +95,8 @@ def self_test(cases: Sequence[Case], progress: Callable[[str], None] | None = No
                 if progress:
                     progress(mutant.name)
                 found.append(_row(mutant, case, outcome))
-    for mutants, found in rows.items():
-        found.sort(key=lambda row, order=mutants: order.index(row.mutant))
-    return SelfTest(right, tuple(rows[MUTANTS]), tuple(rows[MILD]))
+    in_order = {mutants: tuple(row for m in mutants for row in rows[mutants] if row.mutant == m) for mutants in rows}
+    return SelfTest(right, in_order[MUTANTS], in_order[MILD])
 
 
 def _row(mutant: Mutant, case: Case, right: Outcome) -> Row:

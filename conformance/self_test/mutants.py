@@ -4,7 +4,7 @@ import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from pantocheck.conformance.cases.case import Case
@@ -39,7 +39,7 @@ class Mutant:
     caught_by: Literal["coverage", "support passing", "roll-off", "dynamics", "limits", "record file"] | None
 
 
-def _changed(**change: Callable[[Case, Record], object]) -> Make:
+def _changed(**change: Callable[[Case, Record], Any]) -> Make:
     """The right record with some of its fields replaced."""
     return lambda case, record: Outcome(replace(record, **{name: of(case, record) for name, of in change.items()}))
 

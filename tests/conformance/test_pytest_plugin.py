@@ -114,6 +114,21 @@ def test_error_of_a_case_fails_its_criteria_with_the_reason(pytester, plan):
     done.stdout.fnmatch_lines(["error: *ended with exit code 3 before it answered"])
 
 
+def test_drift_from_a_baseline_fails_the_session(pytester, plan):
+    session(pytester, "conformance.toml", "--pantocheck-out", "before")
+    (pytester.path / "before" / "results.json").rename(pytester.path / "baseline.json")
+    plan.write_text(plan.read_text() + 'baseline = "baseline.json"\n')
+    chosen = ("conformance.toml", "-k", "mean_force")
+    assert session(pytester, *chosen).ret == 0
+    content = json.loads((pytester.path / "baseline.json").read_text())
+    content["cases"][0]["quantities"]["1"]["rms_0_5_N"] *= 1.05
+    (pytester.path / "baseline.json").write_text(json.dumps(content))
+    done = session(pytester, *chosen)
+    done.assert_outcomes(passed=2, deselected=14)
+    assert done.ret == 1
+    done.stdout.fnmatch_lines(["conformance.toml: 1 values drifted from the baseline *baseline.json"])
+
+
 def test_wrong_plans_say_what_to_do(pytester, plan):
     for text, said in (
         ('cases = ["en50318-2002/25"]', "*there is no such case*"),
