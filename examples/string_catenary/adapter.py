@@ -25,10 +25,12 @@ def reason_to_skip(case):
         return "the base spring is unstretched at the working height here"
     if line["stitch_wire"] or line["contact_wire"]["number"] > 1 or line["damping"]["modal"]:
         return "stitch wires, twin contact wires and modal damping are not supported"
+    if line["geometry"]["stagger_contact_wire_m"] or line["geometry"]["stagger_messenger_m"]:
+        return "only the vertical plane is simulated: no stagger"
     if line["droppers"]["stiffness_N_m"] is None or line["droppers"]["mass_kg_m"]:
         return "droppers need a stiffness of their own and no mass per length"
-    if line["steady_arm"]["vertical_stiffness_N_m"] is None:
-        return "steady arms need a vertical stiffness"
+    if line["steady_arm"]["vertical_stiffness_N_m"] is None or line["steady_arm"]["vertical_damper_N_s_m"]:
+        return "steady arms need a vertical stiffness, and have no damper"
     return None
 
 
