@@ -51,19 +51,35 @@ class ReferenceSimulator:
     def _run_once(
         self, case: Case, element: float, step: float, uplift_forces: tuple[float, ...] | None
     ) -> tuple[Outcome, tuple[float, ...]]:
-        line = discretise(catenary(case.line), element)
-        outcome = Outcome(static=_static_quantities(case, line), dt_s=step, element_m=element)
-        if case.is_static:
-            return outcome, ()
-        forces = uplift_forces or _tuned(case, line, step)
-        passage = _passage(case, line, step, forces)
-        run(line, replace(passage, duration=0.0))  # compiles the kernels, which is not part of the run
-        begin = time.perf_counter()
-        history = run(line, passage)
-        wall = time.perf_counter() - begin
-        return replace(
-            outcome, record=_record(case, passage, history), simulated_s=passage.duration, wall_s=wall
-        ), forces
+        return run_line(case, discretise(catenary(case.line), element), element, step, uplift_forces)
+
+
+def run_line(
+    case: Case, line: Discretised, element: float, step: float, uplift_forces: tuple[float, ...] | None = None
+) -> tuple[Outcome, tuple[float, ...]]:
+    """Run a case on a line that is discretised already.
+
+    Parameters
+    ----------
+    case : to run
+    line : its line
+    element, step : length of an element [m] and time step [s], as reported
+    uplift_forces : of the pantographs [N]; None: those of the case, tuned if it asks for a mean
+
+    Returns
+    -------
+    outcome, uplift forces
+    """
+    outcome = Outcome(static=_static_quantities(case, line), dt_s=step, element_m=element)
+    if case.is_static:
+        return outcome, ()
+    forces = uplift_forces or _tuned(case, line, step)
+    passage = _passage(case, line, step, forces)
+    run(line, replace(passage, duration=0.0))  # compiles the kernels, which is not part of the run
+    begin = time.perf_counter()
+    history = run(line, passage)
+    wall = time.perf_counter() - begin
+    return replace(outcome, record=_record(case, passage, history), simulated_s=passage.duration, wall_s=wall), forces
 
 
 def _passage(case: Case, line: Discretised, step: float, uplift_forces: tuple[float, ...]) -> Passage:
