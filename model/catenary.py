@@ -173,6 +173,21 @@ class Clamp:
 
 
 @dataclass(frozen=True)
+class ModalBand:
+    """A damping ratio for all modes of a frequency band, in place of what Rayleigh damping gives them.
+
+    Parameters
+    ----------
+    from_frequency, to_frequency : the band, its upper edge left out [Hz]
+    damping_ratio : [-]
+    """
+
+    from_frequency: float
+    to_frequency: float
+    damping_ratio: float
+
+
+@dataclass(frozen=True)
 class Catenary:
     """A line: its wires, what connects them, and the damping of each kind of component.
 
@@ -180,6 +195,7 @@ class Catenary:
     ----------
     wires, droppers, steady_arms, messenger_supports, clamps : the parts
     damping : by kind of component; a kind left out is undamped
+    modal_damping : bands whose modes have a damping ratio of their own
     """
 
     wires: tuple[Wire, ...]
@@ -188,6 +204,7 @@ class Catenary:
     messenger_supports: tuple[MessengerSupport, ...] = ()
     clamps: tuple[Clamp, ...] = ()
     damping: dict[Kind, Rayleigh] = field(default_factory=dict)
+    modal_damping: tuple[ModalBand, ...] = ()
 
     @property
     def contact_wires(self) -> tuple[Wire, ...]:

@@ -230,3 +230,26 @@ def inverse_columns(factor: Factor, rows: Indices, stations: Indices, slopes: In
     for n in range(rows.size):
         inverse_column(factor, rows[n], stations[n], slopes[n], half_width, columns[n, 0], columns[n, 1])
     return columns
+
+
+@njit(cache=True)
+def solve_rows(factor: Factor, force: Array) -> Array:
+    """Solve A x = f on all rows for several right-hand sides.
+
+    Parameters
+    ----------
+    factor : Factor
+    force : (n, B, S, 2) forces and moments
+
+    Returns
+    -------
+    (n, B, S, 2) accelerations
+    """
+    solved = np.empty_like(force)
+    count, rows, stations = force.shape[:3]
+    for n in range(count):
+        for row in range(rows):
+            w, r = force[n, row, :, 0].copy(), force[n, row, :, 1].copy()
+            solve_row(factor, row, 0, stations - 1, w, r)
+            solved[n, row, :, 0], solved[n, row, :, 1] = w, r
+    return solved

@@ -1,18 +1,15 @@
-"""From the description of a line to the arrays that the time step works on."""
+"""From the description of a line to finite elements at rest."""
 
-import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from pantocheck.model import beam
 from pantocheck.model.beams import Beams, build_beams
-from pantocheck.model.catenary import Catenary
+from pantocheck.model.catenary import Catenary, Kind, Rayleigh
 from pantocheck.model.connectors import Connectors, build_connectors, lump
-from pantocheck.model.effective import factorise, half_width, inverse_columns
 from pantocheck.model.initial_state import InitialState, initial_state
 from pantocheck.model.mesh import Mesh, build_mesh
-from pantocheck.model.newmark import Line
 
 Array = NDArray[np.float64]
 
@@ -42,13 +39,14 @@ class Discretised:
         return [self.mesh.row_of[wire.name, "z"] for wire in self.catenary.contact_wires]
 
 
-def discretise(catenary: Catenary, element_length: float) -> Discretised:
+def discretise(catenary: Catenary, element_length: float, places: tuple[float, ...] = ()) -> Discretised:
     """Finite elements and initial state of a line.
 
     Parameters
     ----------
     catenary : the line
     element_length : longest element [m]
+    places : where stations are wanted besides those the line itself needs, as for loads and sensors [m]
 
     Returns
     -------
@@ -58,78 +56,26 @@ def discretise(catenary: Catenary, element_length: float) -> Discretised:
     ------
     NoInitialState : the prescribed geometry has no equilibrium
     """
-    mesh = build_mesh(catenary, element_length)
+    mesh = build_mesh(catenary, element_length, places)
     beams = build_beams(catenary, mesh)
     state = initial_state(catenary, mesh, beams)
     lump(catenary, mesh, beams)
     return Discretised(catenary, mesh, beams, build_connectors(catenary, mesh, state), state)
 
 
-def time_stepping(line: Discretised, time_step: float, reach: float = math.inf) -> Line:
-    """Arrays of the time step: factors, local columns, connectors.
+def with_damping(line: Discretised, damping: Mapping[Kind, Rayleigh]) -> Discretised:
+    """The same line with other damping; its initial state does not depend on it.
 
     Parameters
     ----------
     line : the discretised line
-    time_step : [s]
-    reach : what lies farther than this from every pantograph is left standing still [m]
+    damping : by kind of component
 
     Returns
     -------
-    what `newmark.step` needs of the line
+    the line with that damping
     """
-    beams, connectors, stations = line.beams, line.connectors, line.mesh.position.size
-    factor = factorise(beams, time_step)
-    ends = [np.flatnonzero(coefficient) for coefficient in connectors.coefficient]
-    most = max((len(e) for e in ends), default=0)
-    end_row, end_column = (np.zeros((len(ends), most), dtype=np.int64) for _ in range(2))
-    end_coefficient = np.zeros((len(ends), most))
-    loads: list[tuple[int, int]] = []
-    for n, rows in enumerate(ends):
-        for e, row in enumerate(rows):
-            end_row[n, e], end_column[n, e], end_coefficient[n, e] = row, len(loads), connectors.coefficient[n, row]
-            loads.append((int(row), int(connectors.station[n])))
-    contact_row = np.array(line.contact_rows, dtype=np.int64)
-    contact_loads = [(int(row), s) for row in contact_row for s in range(stations)]
-    width = half_width(factor, loads + contact_loads[:: max(1, stations // 200)])
-    rows_, stations_ = (np.array([load[i] for load in loads], dtype=np.int64) for i in range(2))
-    columns = inverse_columns(factor, rows_, stations_, np.zeros_like(rows_), width)
-    contact = np.repeat(np.array(contact_loads, dtype=np.int64).reshape(-1, 2), 2, axis=0)
-    slopes = np.tile(np.arange(2), len(contact_loads))
-    contact_columns = inverse_columns(factor, contact[:, 0].copy(), contact[:, 1].copy(), slopes, width)
-    return Line(
-        time_step=time_step,
-        reach=reach,
-        position=line.mesh.position,
-        length=beams.length,
-        stiffness_entries=_stiffness_entries(beams),
-        mass_scale=beams.mass_per_length * beams.length / 420,
-        mass_coefficient=beams.mass_coefficient,
-        stiffness_coefficient=beams.stiffness_coefficient,
-        lumped_stiffness=beams.lumped_stiffness,
-        lumped_damping=beams.lumped_damping,
-        factor=factor,
-        columns=columns,
-        station=connectors.station,
-        end_row=end_row,
-        end_column=end_column,
-        end_coefficient=end_coefficient,
-        stiffness=connectors.stiffness,
-        damping=connectors.damping,
-        preload=connectors.preload,
-        unilateral=connectors.unilateral,
-        contact_row=contact_row,
-        contact_columns=contact_columns.reshape(contact_row.size, stations, 2, 2, 2 * width + 1),
-        rest=np.ascontiguousarray(line.state.deflection[line.contact_rows]),
-    )
-
-
-def _stiffness_entries(beams: Beams) -> Array:
-    """The four distinct entries 11, 12, 22, 24 of every element's stiffness."""
-    rows, elements = beams.mass_per_length.shape
-    entries = np.zeros((rows, 4, elements))
-    for row in range(rows):
-        for e in np.flatnonzero(beams.mass_per_length[row]):
-            k = beam.stiffness(beams.length[e], beams.tension[row, e], beams.bending_stiffness[row, e])
-            entries[row, :, e] = k[0, 0], k[0, 1], k[1, 1], k[1, 3]
-    return entries
+    catenary = replace(line.catenary, damping=dict(damping))
+    beams = build_beams(catenary, line.mesh)
+    lump(catenary, line.mesh, beams)
+    return replace(line, catenary=catenary, beams=beams, connectors=build_connectors(catenary, line.mesh, line.state))

@@ -45,13 +45,14 @@ class Mesh:
         return nearest
 
 
-def build_mesh(catenary: Catenary, element_length: float) -> Mesh:
+def build_mesh(catenary: Catenary, element_length: float, places: tuple[float, ...] = ()) -> Mesh:
     """Stations at every connector, with elements no longer than asked for in between.
 
     Parameters
     ----------
     catenary : the line
     element_length : longest element [m]
+    places : further places that are to be stations [m]
 
     Returns
     -------
@@ -73,15 +74,15 @@ def build_mesh(catenary: Catenary, element_length: float) -> Mesh:
         for wire in row
     }
     return Mesh(
-        position=_stations(_breakpoints(catenary), element_length),
+        position=_stations(_breakpoints(catenary, places), element_length),
         row_kind=tuple(row[0].kind for row in rows) * len(fields),
         row_field=tuple(name for name in fields for _ in rows),
         row_of=row_of,
     )
 
 
-def _breakpoints(catenary: Catenary) -> Array:
-    places = [place for wire in catenary.wires for place in (wire.start, wire.end)]
+def _breakpoints(catenary: Catenary, wanted: tuple[float, ...]) -> Array:
+    places = [*wanted, *(place for wire in catenary.wires for place in (wire.start, wire.end))]
     changes = [change for wire in catenary.wires for change in wire.tension_changes]
     places += [place for change in changes for place in (change.start, change.end)]
     places += [dropper.position for dropper in catenary.droppers] + [arm.position for arm in catenary.steady_arms]

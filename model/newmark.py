@@ -5,6 +5,7 @@ closed form (the local columns of the inverse), so each is solved exactly in tur
 force changes any more. Forces far apart do not feel each other within a step, so two or three turns do.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -45,6 +46,11 @@ class Line(NamedTuple):
     unilateral : (N,) whether the tension cannot be negative
     contact_row : (W,) rows that a pantograph touches
     contact_columns : (W, S, 2, 2, 2H+1) the inverse around every station, for a force and for a moment
+    modal_damping : (J,) of the modes whose damping is set one by one [1/s]
+    modal_weight : (J, B, S, 2) M phi of these modes [kg^1/2]
+    modal_response : (J, B, S, 2) the inverse applied to it [kg^-1/2]
+    modal_compliance : (J,) weight times response [-]
+    load_row, load_station : where the external load acts
     rest : (W, S, 2) height and slope of the contact wires at rest [m, -]
     """
 
@@ -70,6 +76,12 @@ class Line(NamedTuple):
     unilateral: NDArray[np.bool_]
     contact_row: Indices
     contact_columns: Array
+    modal_damping: Array
+    modal_weight: Array
+    modal_response: Array
+    modal_compliance: Array
+    load_row: int
+    load_station: int
     rest: Array
 
 
@@ -80,11 +92,15 @@ class Motion(NamedTuple):
     ----------
     w, r : (3, B, S) deflection and slope: displacement, velocity, acceleration [m, -; per s; per s2]
     tension : (N,) of the connectors, in total [N]
+    modal : (J,) damping forces on the modes whose damping is set one by one [N kg^-1/2]
+    load : (1,) external load, upwards [N]
     """
 
     w: Array
     r: Array
     tension: Array
+    modal: Array
+    load: Array
 
 
 class Train(NamedTuple):
@@ -316,6 +332,12 @@ def _add_scaled(target: Array, source: Array, value: float) -> None:
 
 
 @njit(cache=True)
+def larger(a: float, b: float) -> float:
+    """The larger of two numbers, or NaN where either is: `max` would drop it, and a lost run would look settled."""
+    return a if a >= b or math.isnan(a) else b
+
+
+@njit(cache=True)
 def turn_connectors(line: Line, motion: Motion, work: Workspace, w: Array, r: Array, first: int, last: int) -> float:
     """Solve every connector between two stations once, the others held; returns the largest change of a tension [N]."""
     dt = line.time_step
@@ -342,7 +364,7 @@ def turn_connectors(line: Line, motion: Motion, work: Workspace, w: Array, r: Ar
                 row, f = line.end_row[n, e], line.end_coefficient[n, e]
                 if f != 0.0:
                     add_column(w[row], r[row], line.columns[line.end_column[n, e]], s, -f * change, (first, last))
-        largest = max(largest, abs(change))
+        largest = larger(largest, abs(change))
     return largest
 
 
@@ -373,7 +395,37 @@ def turn_contacts(line: Line, train: Train, work: Workspace, w: Array, r: Array,
                 for i in range(train.z.shape[2]):
                     for j in range(train.z.shape[2]):
                         train.z[2, p, i] -= train.inverse[p, i, j] * train.head[p, j] * change
-            largest = max(largest, abs(change))
+            largest = larger(largest, abs(change))
+    return largest
+
+
+@njit(cache=True)
+def _add_mode(w: Array, r: Array, shape: Array, value: float) -> None:
+    for b in range(w.shape[0]):
+        for s in range(w.shape[1]):
+            w[b, s] += value * shape[b, s, 0]
+            r[b, s] += value * shape[b, s, 1]
+
+
+@njit(cache=True)
+def turn_modes(line: Line, motion: Motion, work: Workspace, w: Array, r: Array) -> float:
+    """Solve the damping force on every mode of its own damping once, the others held; returns the largest change."""
+    dt = line.time_step
+    largest = 0.0
+    for j in range(line.modal_damping.size):
+        weight, velocity = line.modal_weight[j], 0.0
+        for b in range(w.shape[0]):
+            for s in range(w.shape[1]):
+                velocity += weight[b, s, 0] * (work.w[1, b, s] + dt / 2 * w[b, s])
+                velocity += weight[b, s, 1] * (work.r[1, b, s] + dt / 2 * r[b, s])
+        compliance = dt / 2 * line.modal_compliance[j]
+        velocity -= compliance * motion.modal[j]
+        force = -line.modal_damping[j] * velocity / (1 + line.modal_damping[j] * compliance)
+        change = force - motion.modal[j]
+        if abs(change) > NEGLIGIBLE_FORCE:
+            motion.modal[j] = force
+            _add_mode(w, r, line.modal_response[j], change)
+        largest = larger(largest, abs(change))
     return largest
 
 
@@ -410,13 +462,17 @@ def step(line: Line, motion: Motion, train: Train, work: Workspace) -> int:
     wire_forces(line, work, w, r, before, behind)
     predict_connectors(line, motion, work, w, first, last)
     predict_train(line, train, work, w, r)
+    w[line.load_row, line.load_station] += motion.load[0]
+    for j in range(line.modal_damping.size):
+        _add_mode(w, r, line.modal_weight[j], motion.modal[j])
     for b in range(rows):
         solve_row(line.factor, b, first, last, w[b, first : last + 1], r[b, first : last + 1])
     turns = 0
     while turns < MOST_TURNS:
         turns += 1
         largest = turn_contacts(line, train, work, w, r, first, last)
-        largest = max(largest, turn_connectors(line, motion, work, w, r, first, last))
+        largest = larger(largest, turn_connectors(line, motion, work, w, r, first, last))
+        largest = larger(largest, turn_modes(line, motion, work, w, r))
         if largest < FORCE_TOLERANCE:
             break
     for now, predicted in ((motion.w, work.w), (motion.r, work.r)):
@@ -437,29 +493,32 @@ def march(
     motion: Motion,
     train: Train,
     work: Workspace,
+    load: Array,
     watch_row: Indices,
     watch_station: Indices,
     contact: Array,
     height: Array,
     watched: Array,
-    dropper: Array,
+    tension: Array,
 ) -> int:
     """Advance by as many steps as the outputs have room for.
 
     Parameters
     ----------
     line, motion, train, work : as for `step`
-    watch_row, watch_station : (U,) where displacements are recorded
+    load : (T,) external load [N]
+    watch_row, watch_station : (U,) where motion is recorded
     contact : (T, P) contact force in total, filled [N]
     height : (T, P) of the head, filled [m]
-    watched : (T, U) displacement at the watched stations, filled [m]
-    dropper : (T, N) tension of the connectors, filled; or (T, 0) [N]
+    watched : (T, U, 3) displacement, velocity, acceleration at the watched stations, filled [m, m/s, m/s2]
+    tension : (T, N) of the first connectors, as many as there is room for, filled [N]
 
     Returns
     -------
     steps completed
     """
-    for n in range(contact.shape[0]):
+    for n in range(load.size):
+        motion.load[0] = load[n]
         if step(line, motion, train, work) == 0:
             return n
         for p in range(train.position.size):
@@ -470,7 +529,8 @@ def march(
                 head += train.head[p, i] * train.z[0, p, i]
             contact[n, p], height[n, p] = total, head
         for u in range(watch_row.size):
-            watched[n, u] = motion.w[0, watch_row[u], watch_station[u]]
-        for d in range(dropper.shape[1]):
-            dropper[n, d] = motion.tension[d]
-    return int(contact.shape[0])
+            for i in range(3):
+                watched[n, u, i] = motion.w[i, watch_row[u], watch_station[u]]
+        for d in range(tension.shape[1]):
+            tension[n, d] = motion.tension[d]
+    return int(load.size)

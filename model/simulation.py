@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 from pantocheck.model import beam
 from pantocheck.model.assembly import point_load
 from pantocheck.model.equilibrium import Deflection, Statics
-from pantocheck.model.line import Discretised, time_stepping
+from pantocheck.model.line import Discretised
 from pantocheck.model.newmark import Line, Motion, Train, Workspace, march
 from pantocheck.model.pantograph import Pantograph
+from pantocheck.model.stepping import time_stepping
 
 Array = NDArray[np.float64]
 
@@ -34,7 +35,7 @@ class Passage:
     speed : [m/s]
     duration : [s]
     time_step : [s]
-    watched : places along the contact wire where the uplift is recorded [m]
+    watched : wire and place of the stations whose vertical motion is recorded [-, m]
     reach : what lies farther than this from every pantograph is left standing still [m]
     """
 
@@ -43,7 +44,7 @@ class Passage:
     speed: float
     duration: float
     time_step: float
-    watched: tuple[float, ...] = ()
+    watched: tuple[tuple[str, float], ...] = ()
     reach: float = math.inf
 
 
@@ -57,14 +58,14 @@ class History:
     position : (P, T) of the pantographs [m]
     force : (P, T) contact force, unfiltered [N]
     height : (P, T) of the head over the contact wire at the supports [m]
-    uplift : (U, T) of the contact wire at the watched places [m]
+    motion : (U, T, 3) vertical displacement, velocity and acceleration at the watched places [m, m/s, m/s2]
     """
 
     time: Array
     position: Array
     force: Array
     height: Array
-    uplift: Array
+    motion: Array
 
 
 def causal_reach(line: Discretised, speed: float, duration: float) -> float:
@@ -109,23 +110,21 @@ def run(line: Discretised, passage: Passage, progress: Callable[[float], None] |
     stepping = time_stepping(line, passage.time_step, passage.reach)
     motion, train = start(line, stepping, passage)
     steps = round(passage.duration / passage.time_step)
-    rows = np.full(len(passage.watched), line.contact_rows[0], dtype=np.int64)
-    stations = np.array([line.mesh.station(x) for x in passage.watched], dtype=np.int64)
+    rows, stations = watched_stations(line, passage.watched)
     force, height = np.zeros((steps, len(passage.pantographs))), np.zeros((steps, len(passage.pantographs)))
-    uplift, nothing = np.zeros((steps, len(passage.watched))), np.zeros((steps, 0))
+    motion_there, no_load, nothing = np.zeros((steps, rows.size, 3)), np.zeros(steps), np.zeros((steps, 0))
     work = workspace(stepping, motion, train)
     for first in range(0, max(steps, 1), BLOCK):
         part = slice(first, min(first + BLOCK, steps))
-        done = march(
-            stepping, motion, train, work, rows, stations, force[part], height[part], uplift[part], nothing[part]
-        )
+        outputs = (force[part], height[part], motion_there[part], nothing[part])
+        done = march(stepping, motion, train, work, no_load[part], rows, stations, *outputs)
         if done < part.stop - first:
             raise DidNotConverge(f"the forces of the step at {(first + done) * passage.time_step:.3f} s did not settle")
         if progress:
             progress(part.stop / max(steps, 1))
     time: Array = passage.time_step * np.arange(1, steps + 1)
     position: Array = np.array(passage.start)[:, None] + passage.speed * time
-    return History(time, position, force.T.copy(), height.T.copy(), uplift.T.copy())
+    return History(time, position, force.T.copy(), height.T.copy(), motion_there.transpose(1, 0, 2).copy())
 
 
 def start(line: Discretised, stepping: Line, passage: Passage) -> tuple[Motion, Train]:
@@ -147,16 +146,24 @@ def start(line: Discretised, stepping: Line, passage: Passage) -> tuple[Motion, 
         for row in line.contact_rows:
             load += share * pantograph.static_force * point_load(line, row, x)
     at_rest = Statics(line).deflection(load)
-    return still(at_rest), _train(line, stepping, passage, at_rest)
+    return still(at_rest, stepping.modal_damping.size), _train(line, stepping, passage, at_rest)
 
 
-def still(deflection: Deflection) -> Motion:
-    """A line held at rest in a static deflection."""
+def still(deflection: Deflection, modes: int = 0) -> Motion:
+    """A line held at rest in a static deflection; `modes` of its modes have a damping of their own."""
     w, r = (np.zeros((3, *deflection.displacement.shape[:2])) for _ in range(2))
     # Far from the loads the deflection fades into denormal numbers, which processors handle a hundred times slower.
     displacement = np.where(np.abs(deflection.displacement) < 1e-30, 0.0, deflection.displacement)
     w[0], r[0] = displacement[..., 0], displacement[..., 1]
-    return Motion(w, r, deflection.tension.copy())
+    return Motion(w, r, deflection.tension.copy(), np.zeros(modes), np.zeros(1))
+
+
+def watched_stations(
+    line: Discretised, watched: tuple[tuple[str, float], ...]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Rows and stations of the places whose motion is recorded."""
+    rows = np.array([line.mesh.row_of[wire, "z"] for wire, _ in watched], dtype=np.int64)
+    return rows, np.array([line.mesh.station(position) for _, position in watched], dtype=np.int64)
 
 
 def no_train(contact_wires: int) -> Train:

@@ -115,9 +115,7 @@ class Case:
         for name, table in self.groups.items():
             source = (table.source,) if isinstance(table.source, str) else tuple(table.source)
             found.append(Input(name, table.trust, source))
-            found += [
-                Input(f"{name}.{key}", "provisional", ("not traced to a printed source",)) for key in table.provisional
-            ]
+            found += [Input(f"{name}.{key}", "provisional", ("untraced",)) for key in table.provisional]
         return tuple(found)
 
     @property

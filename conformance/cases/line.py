@@ -120,7 +120,7 @@ class SteadyArm(Sourced):
         ),
     ]
     length_m: Annotated[float | None, Field(gt=0, le=5, description="length of the arm [m]")] = None
-    mass_kg: Annotated[float, Field(ge=0, le=20, description="mass of the arm without its clamp [kg]")] = 0.0
+    mass_kg_m: Annotated[float, Field(ge=0, le=20, description="mass per length of the arm [kg/m]")] = 0.0
     clamp_kg: ClampMass = 0.0
     vertical_damper_N_s_m: Annotated[
         NonNegative, Field(le=1e6, description="vertical damper between claw and ground [N s/m]")

@@ -116,8 +116,8 @@ def _record(case: Case, passage: Passage, history: History) -> Record:
         force=history.force,
         evaluated=case.evaluated,
         contact_height=history.height,
-        support_position=np.array(passage.watched),
-        support_uplift=history.uplift,
+        support_position=np.array([position for _, position in passage.watched]),
+        support_uplift=history.motion[:, :, 0],
     )
 
 

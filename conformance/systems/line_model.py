@@ -12,6 +12,7 @@ from pantocheck.model import (
     Dropper,
     Kind,
     MessengerSupport,
+    ModalBand,
     Rayleigh,
     SteadyArm,
     TensionChange,
@@ -47,6 +48,7 @@ def catenary(line: Line) -> Catenary:
             Kind.DROPPER: _rayleigh(line.damping.droppers),
             Kind.STEADY_ARM: _rayleigh(line.damping.steady_arms),
         },
+        modal_damping=tuple(ModalBand(band.from_Hz, band.to_Hz, band.damping_ratio) for band in line.damping.modal),
     )
     if not line.droppers.mass_kg_m:
         return built
@@ -168,7 +170,7 @@ def _upper_wire(line: Line, messenger: str, position: float) -> str:
 def _steady_arms(line: Line) -> Iterator[SteadyArm]:
     arm = line.steady_arm
     # A bar that turns about its hinge moves a third of its mass with the claw.
-    mass = arm.mass_kg / 3 + arm.clamp_kg
+    mass = arm.mass_kg_m * (arm.length_m or 0.0) / 3 + arm.clamp_kg
     for x in _supports(line):
         for contact in _names(line, "contact wire"):
             yield SteadyArm(

@@ -36,7 +36,12 @@ def starts(case: Case) -> tuple[float, ...]:
     return tuple(case.start + case.offsets[-1] - offset for offset in case.offsets)
 
 
-def watched_supports(case: Case, line: Discretised) -> tuple[float, ...]:
-    """Supports at and between the ends of the evaluated stretch [m]."""
+def watched_supports(case: Case, line: Discretised) -> tuple[tuple[str, float], ...]:
+    """The first contact wire at the supports within and at the ends of the evaluated stretch."""
     first, last = case.evaluated
-    return tuple(arm.position for arm in line.catenary.steady_arms if first - 1e-6 <= arm.position <= last + 1e-6)
+    wire = line.catenary.contact_wires[0].name
+    return tuple(
+        (wire, arm.position)
+        for arm in line.catenary.steady_arms
+        if arm.wire == wire and first - 1e-6 <= arm.position <= last + 1e-6
+    )

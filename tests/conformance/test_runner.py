@@ -9,7 +9,7 @@ import jsonschema
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from pantocheck.conformance.cases.library import select
+from pantocheck.conformance.cases.library import select, source_text
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.record_files import write_record
 from pantocheck.conformance.results import Results
@@ -80,7 +80,7 @@ def test_results_follow_their_schema_and_hold_the_numbers(cases, wave):
     assert max(trace["spectrum"]["frequency_Hz"]) <= 50
     assert [item["support_m"] for item in first["uplift"]] == [240.0, 300.0, 360.0]
     trust = {item["group"]: (item["trust"], item["source"]) for item in first["inputs"]}
-    assert trust["case.evaluated_spans"] == ("provisional", "not traced to a printed source")
+    assert trust["case.evaluated_spans"] == ("provisional", source_text("untraced"))
     assert Results.model_validate(content).to_json() == results.to_json()
 
 

@@ -29,7 +29,7 @@ AC_SIMPLE = {
         "clamp_on_contact_kg": 0.165,
         **PROVENANCE,
     },
-    "steady_arm": {"length_m": 1.22, "mass_kg": 1.22 * 0.73, "clamp_kg": 0.2, "static_share": "none", **PROVENANCE},
+    "steady_arm": {"length_m": 1.22, "mass_kg_m": 0.73, "clamp_kg": 0.2, "static_share": "none", **PROVENANCE},
     "messenger_support": {"stiffness_N_m": 500e3, "damping_N_s_m": 1000.0, **PROVENANCE},
     "damping": {"contact_wire": {"mass_coefficient_1_s": 0.0125, "stiffness_coefficient_s": 1e-4}, **PROVENANCE},
 }

@@ -1,0 +1,39 @@
+"""Filters that leave a sum of decays a sum of decays."""
+
+from typing import TypeVar
+
+import numpy as np
+import scipy.signal
+from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Samples = TypeVar("Samples", Real, Complex)
+
+
+def lowpass(rate: float, passes: float, stops: float, attenuation: float) -> Real:
+    """Taps of a linear-phase low-pass (Kaiser window).
+
+    Parameters
+    ----------
+    rate : samples per second [Hz]
+    passes, stops : edges of the transition [Hz]
+    attenuation : of the stop band [dB]
+    """
+    length, beta = scipy.signal.kaiserord(attenuation, (stops - passes) / (rate / 2))
+    taps = scipy.signal.firwin(length | 1, (passes + stops) / 2, window=("kaiser", beta), fs=rate)
+    return np.asarray(taps, dtype=np.float64)
+
+
+def complete_overlap(samples: Samples, taps: Real) -> Samples:
+    """Filtered samples of complete overlaps only, (n - taps + 1, c): each decay keeps its pole exactly."""
+    return np.asarray(scipy.signal.oaconvolve(samples, taps[:, None], mode="valid", axes=0))
+
+
+def gain_at(taps: Real, poles: Complex, rate: float) -> Complex:
+    """Factor by which the filter, its delay removed, multiplies the amplitude of a decay at each pole, (m,).
+
+    The first filtered sample is taken to belong to the time of the tap in the middle.
+    """
+    offsets = (np.arange(taps.size) - (taps.size - 1) / 2) / rate
+    return np.asarray(np.exp(-np.outer(poles, offsets)) @ taps)

@@ -1,0 +1,73 @@
+"""Groups of span modes: the n-th bending of every span, one mode per span.
+
+The spans of a section are nearly alike, so the modes come in groups around multiples of one frequency. The groups
+grow wider with their number and almost touch from the fifth on; what stays regular is the places between them: no mode
+lies near (k + 1/2) times the first group's mean. That mean, and a slight stretch of the series by bending stiffness, are
+searched so that the places between the groups are as free as can be and no group holds more modes than there are spans.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
+Numbers = NDArray[np.int64]
+
+LAST_GROUP = 8  # beyond, bending of the spans and bending between droppers mix
+CLEARANCE = 0.06  # how near a mode may come to a place between groups, over the first group's mean
+
+
+def group_numbers(certain: Real, all_modes: Real, spans: int | None, hint: float | None = None) -> Numbers:
+    """Number of the group of each mode, from 1; 0 beyond `LAST_GROUP`.
+
+    Parameters
+    ----------
+    certain : (n,) frequencies of well identified vertical modes, from which the pattern is found [Hz]
+    all_modes : (m,) frequencies to number [Hz]
+    spans : number of spans, None if not known
+    hint : rough mean frequency of the first group [Hz]; without it the lowest modes give it
+
+    Returns
+    -------
+    (m,) numbers
+    """
+    if certain.size < 3:
+        return np.zeros(all_modes.size, dtype=np.int64)
+    ordered = np.sort(certain)
+    guess = hint if hint is not None else float(np.mean(ordered[ordered < 1.45 * ordered[0]]))
+    used = ordered[ordered < (LAST_GROUP + 0.5) * guess]
+    trials = [(mean, stretch) for mean in guess * np.linspace(0.85, 1.15, 61) for stretch in np.linspace(0, 0.02, 11)]
+    mean, stretch = min(trials, key=lambda t: _misfit(used, t[0], t[1], spans) + ((t[0] / guess - 1) / 0.1) ** 2)
+    numbers = np.searchsorted(_between(mean, stretch), all_modes) + 1
+    numbers[numbers > LAST_GROUP] = 0
+    return np.asarray(numbers, dtype=np.int64)
+
+
+def string_frequency(spans: tuple[float, ...], tension: float, mass_per_length: float) -> float:
+    """First frequency of a string over the mean span [Hz]; tension [N] and mass [kg/m] of all wires together."""
+    return float(np.sqrt(tension / mass_per_length) / (2 * np.mean(spans)))
+
+
+def outliers(values: Real) -> NDArray[np.bool_]:
+    """Values beyond 1.5 quartile ranges outside the quartiles (Tukey's rule), (n,); none of fewer than four."""
+    if values.size < 4:
+        return np.zeros(values.size, dtype=np.bool_)
+    low, high = np.percentile(values, [25, 75])
+    reach = 1.5 * (high - low)
+    return np.asarray((values < low - reach) | (values > high + reach))
+
+
+def _between(mean: float, stretch: float) -> Real:
+    """Upper ends of groups 1..LAST_GROUP [Hz]."""
+    k = np.arange(1, LAST_GROUP + 1) + 0.5
+    return np.asarray(k * mean * (1 + stretch * (k - 1)))
+
+
+def _misfit(frequencies: Real, mean: float, stretch: float, spans: int | None) -> float:
+    between = _between(mean, stretch)
+    nearest = np.abs(frequencies[:, None] - between[None, between < frequencies[-1] + mean]).min(axis=0)
+    crowding = float(np.sum(np.exp(-((nearest / (CLEARANCE * mean)) ** 2))))
+    below = float(np.sum(frequencies < 0.5 * mean))
+    if spans is None:
+        return crowding + 3 * below
+    counts = np.bincount(np.searchsorted(between, frequencies), minlength=1)[:LAST_GROUP]
+    return crowding + 3 * below + 2 * float(np.maximum(counts - spans, 0).sum())

@@ -1,0 +1,93 @@
+"""Discrete Fourier transform of a truncated free decay, exactly.
+
+A decay x_n = A exp(lambda n dt) + conj., n = 0..N-1, has at the lines w_k = 2 pi k / (N dt) the transform
+
+    X_k = A (1 - exp(lambda N dt)) / (1 - q_k) + conj. part,    q_k = exp((lambda - i w_k) dt)
+
+because w_k N dt is a whole number of turns. Leakage is thus part of the model: nothing is windowed away, and white
+noise stays white from line to line.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+def kernel(poles: Complex, omega: Real, dt: float, n: int) -> Complex:
+    """Transform of exp(lambda n dt), n = 0..N-1, at lines of the record's own grid.
+
+    Parameters
+    ----------
+    poles : (m,) lambda [1/s]
+    omega : (k,) angular frequencies, multiples of 2 pi / (n dt) [rad/s]
+    dt : sampling interval [s]
+    n : number of samples N
+
+    Returns
+    -------
+    (k, m) the finite geometric sum, without unit
+    """
+    decayed = -np.expm1(poles * (n * dt))
+    return np.asarray(decayed / -_ratio(poles, omega, dt))
+
+
+def kernel_and_derivative(poles: Complex, omega: Real, dt: float, n: int) -> tuple[Complex, Complex]:
+    """The kernel and its derivative with respect to lambda [s], each (k, m); parameters as in `kernel`."""
+    grown = np.exp(poles * (n * dt))
+    one_minus_q = -_ratio(poles, omega, dt)
+    value = (1 - grown) / one_minus_q
+    slope = (-n * dt * grown + value * dt * (1 - one_minus_q)) / one_minus_q
+    return np.asarray(value), np.asarray(slope)
+
+
+def _ratio(poles: Complex, omega: Real, dt: float) -> Complex:
+    """q - 1, (k, m), by expm1: near a pole q is close to one."""
+    return np.asarray(np.expm1((poles[None, :] - 1j * omega[:, None]) * dt))
+
+
+def real_columns(towards_pole: Complex, towards_conjugate: Complex) -> Real:
+    """Real least-squares columns of A K(lambda) + conj(A) K(conj lambda).
+
+    Parameters
+    ----------
+    towards_pole, towards_conjugate : (k, m) K (or its derivative) at lambda and at conj lambda
+
+    Returns
+    -------
+    (2 k, 2 m): rows are real parts then imaginary parts; columns multiply Re A of every pole, then Im A of every pole
+    """
+    with_real = towards_pole + towards_conjugate
+    with_imaginary = 1j * (towards_pole - towards_conjugate)
+    return stacked(np.hstack([with_real, with_imaginary]))
+
+
+def stacked(spectrum: Complex) -> Real:
+    """(k, ...) complex lines as (2 k, ...) real rows."""
+    return np.concatenate([spectrum.real, spectrum.imag])
+
+
+def drift_columns(degree: int, n: int, lines: NDArray[np.int64]) -> Real:
+    """Transforms of the Legendre polynomials of degree 1..degree over the record: offset drift seen at the lines used.
+
+    The offset itself (degree 0) has no transform away from line 0.
+
+    Returns
+    -------
+    (2 k, degree), each column of unit length
+    """
+    t = np.linspace(-1.0, 1.0, n)
+    polynomials = np.polynomial.legendre.legvander(t, degree)[:, 1:]
+    columns = stacked(np.fft.rfft(polynomials, axis=0)[lines])
+    return np.asarray(columns / np.linalg.norm(columns, axis=0))
+
+
+def far_pole_columns(omega: Real, degree: int) -> Real:
+    """Smooth residual terms of everything outside the band: complex polynomials over the band, orthonormal, (2 k, 2 (degree + 1))."""
+    middle = (omega[0] + omega[-1]) / 2
+    half = max((omega[-1] - omega[0]) / 2, 1e-12)
+    polynomials = np.polynomial.legendre.legvander((omega - middle) / half, degree)
+    zero = np.zeros_like(polynomials)
+    columns = np.block([[polynomials, zero], [zero, polynomials]])
+    return np.asarray(columns / np.linalg.norm(columns, axis=0))

@@ -1,0 +1,101 @@
+"""Start poles from the record alone: subspace identification (ERA) on narrow, decimated bands.
+
+Each band is shifted to zero frequency, low-passed by a finite filter of which only complete overlaps are kept, and
+decimated. A sum of decays remains a sum of decays under that, with the same poles. In each band the order is the one
+with the least Bayesian information criterion of the fitted band signal; orders whose poles do not decay lose.
+
+References
+----------
+.. [1] J. N. Juang, R. S. Pappa, An eigensystem realization algorithm for modal parameter identification and model
+   reduction, J. Guidance 8 (1985) 620-627. doi:10.2514/3.20031
+"""
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from pantocheck.conformance.identification.filters import complete_overlap, lowpass
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+def start_poles(
+    records: list[Real], rate: float, low: float, high: float, band: float = 1.0, largest_order: int = 24
+) -> Complex:
+    """Poles of all bands between two frequencies.
+
+    Parameters
+    ----------
+    records : each (n, c) channels over a linear stretch, in units of their noise; all share the poles
+    rate : samples per second [Hz]
+    low, high : edges [Hz]
+    band : width of a band [Hz]
+    largest_order : most poles in a band with its flanks
+
+    Returns
+    -------
+    (m,) lambda [1/s], by frequency
+    """
+    count = max(1, round((high - low) / band))
+    edges = np.linspace(low, high, count + 1)
+    found = [_band_poles(records, rate, a, b, largest_order) for a, b in zip(edges[:-1], edges[1:], strict=True)]
+    poles = np.concatenate(found)
+    return np.asarray(poles[np.argsort(poles.imag)])
+
+
+def _band_poles(records: list[Real], rate: float, low: float, high: float, largest_order: int) -> Complex:
+    width = high - low
+    # The flank costs filter length, and so record length: never more than a tenth of the record.
+    flank = max(0.4 * width, 25.0 * rate / min(samples.shape[0] for samples in records))
+    middle = 2 * np.pi * (low + high) / 2
+    step = max(1, int(rate / (width + 2.5 * flank)))
+    taps = lowpass(rate, width / 2 + 0.1 * flank, width / 2 + flank, 60.0)
+    signals = []
+    for samples in records:
+        turned = samples * np.exp(-1j * middle * np.arange(samples.shape[0]) / rate)[:, None]
+        signals.append(complete_overlap(turned, taps)[::step])
+    dt = step / rate
+    best_score, best = np.inf, np.zeros(0, dtype=np.complex128)
+    basis = _signal_subspace(signals, largest_order)
+    for order in range(1, basis.shape[1] + 1):
+        poles = _poles_of(basis[:, :order], dt)
+        score = _information_criterion(signals, poles, dt)
+        if score < best_score:
+            best_score, best = score, poles
+    poles = best + 1j * middle
+    inside = (poles.imag >= 2 * np.pi * low) & (poles.imag < 2 * np.pi * high) & (poles.real < 0)
+    # Faster decays than this die within the filter: they are the flank of something else.
+    return np.asarray(poles[inside & (-poles.real < 0.1 * poles.imag)])
+
+
+def _signal_subspace(signals: list[Complex], most: int) -> Complex:
+    """Leading left singular vectors of the block Hankel matrix of all channels, (rows, at most `most`)."""
+    rows = min(signal.shape[0] for signal in signals) // 2
+    gram = np.zeros((rows, rows), dtype=np.complex128)
+    for signal in signals:
+        for channel in signal.T:
+            hankel = scipy.linalg.hankel(channel[:rows], channel[rows - 1 :])
+            gram += hankel @ hankel.conj().T
+    vectors = np.linalg.eigh(gram)[1]
+    return np.asarray(vectors[:, ::-1][:, : min(most, rows // 2)])
+
+
+def _poles_of(basis: Complex, dt: float) -> Complex:
+    transition = np.linalg.lstsq(basis[:-1], basis[1:], rcond=None)[0]
+    q = np.linalg.eigvals(transition)
+    return np.asarray(np.log(q[np.abs(q) > 0]) / dt)
+
+
+def _information_criterion(signals: list[Complex], poles: Complex, dt: float) -> float:
+    shortest = min(signal.shape[0] for signal in signals)
+    decays = poles[poles.real < 5.0 / (shortest * dt)]
+    score, values, channels = 0.0, 0, 0
+    for signal in signals:
+        n = signal.shape[0]
+        q = np.linalg.qr(np.exp(np.outer(np.arange(n) * dt, decays)))[0]
+        left = np.sum(np.abs(signal - q @ (q.conj().T @ signal)) ** 2, axis=0)
+        score += float(2 * n * np.sum(np.log(left / n)))
+        values += 2 * n * signal.shape[1]
+        channels += signal.shape[1]
+    return score + 2 * decays.size * (1 + channels) * float(np.log(values))

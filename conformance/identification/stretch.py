@@ -1,0 +1,237 @@
+"""The stretch of a record in which it is a free linear decay.
+
+It starts after the last slackening of a dropper and ends where something else moves the line; neither instant is known.
+Both are found from the residual of a fit: a first fit over a safe minute, then, window by window in both directions,
+whether what the fit leaves is still noise.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pantocheck.conformance.errors import InputError
+from pantocheck.conformance.identification.filters import complete_overlap, lowpass
+from pantocheck.conformance.identification.projection import block, solve
+from pantocheck.conformance.identification.release import Release
+from pantocheck.conformance.identification.start_poles import start_poles
+from pantocheck.conformance.identification.structure import settle
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+GUARD = 2.0  # droppers are taut again this long after the release, as a first guess [s]
+FIRST_FIT = 60.0  # length of the first fit [s]
+SHORTEST = 10.0  # below this no damping of a catenary can be had [s]
+LONG_WINDOW, SHORT_WINDOW = 4.0, 1.0  # for the end and the start [s]
+DISTURBED_FIT = 4.0  # a fit that leaves so much more than the noise at rest spans something that is not a decay
+
+
+@dataclass(frozen=True)
+class Band:
+    """What is identified, and what it takes.
+
+    Parameters
+    ----------
+    low, high : modes between these are reported [Hz]
+    fitted : the fit goes up to here, so that the edge disturbs no reported mode [Hz]
+    stop : nothing is left above this [Hz]
+    """
+
+    low: float = 0.3
+    high: float = 10.0
+    fitted: float = 11.0
+    stop: float = 14.0
+
+    @classmethod
+    def up_to(cls, high: float, rate: float, low: float = 0.3) -> "Band":
+        """Band for a wanted upper frequency [Hz], lowered if the sampling rate [Hz] demands it."""
+        stop = min(high + 4.0, 0.45 * rate)
+        fitted = min(high + 1.0, 0.78 * stop)
+        return cls(low, min(high, 0.92 * fitted), fitted, stop)
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Free decay of one record, low-passed and decimated; every decay in it keeps its pole.
+
+    Parameters
+    ----------
+    samples : (n, c)
+    dt : sampling interval [s]
+    taps : the low-pass at the original rate
+    rate : original samples per second [Hz]
+    start, end : of the samples used, in the record's time [s]
+    first : time to which the first sample belongs, in the record's time [s]
+    poles : what the search already found [1/s]
+    warnings : why the stretch is shorter than the record
+    """
+
+    samples: Real
+    dt: float
+    taps: Real
+    rate: float
+    start: float
+    end: float
+    first: float
+    poles: Complex = field(default_factory=lambda: np.zeros(0, dtype=np.complex128))
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def duration(self) -> float:
+        """[s]"""
+        return self.samples.shape[0] * self.dt
+
+
+def find_stretch(signals: Real, rate: float, release: Release, band: Band, name: str, clipped_until: float = 0.0) -> Stretch:
+    """The longest stretch after the release that a sum of decays explains down to the noise.
+
+    Parameters
+    ----------
+    signals : (n, c)
+    rate : samples per second [Hz]
+    release : when the mass was released
+    band : what is identified
+    name : of the record, for messages
+    clipped_until : last clipped sample [s]
+
+    Raises
+    ------
+    InputError : less than `SHORTEST` is left
+    """
+    begin = int(release.time * rate)
+    taps = lowpass(rate, band.fitted, band.stop, 80.0)
+    step = max(1, int(rate / (2.6 * band.stop)))
+    available = (signals.shape[0] - begin) / rate
+    if available - GUARD < SHORTEST:
+        raise InputError(
+            name,
+            f"only {max(available, 0):.1f} s after the release",
+            f"At least {SHORTEST + GUARD:g} s are needed, and minutes for a damping ratio: record 120 to 240 s.",
+        )
+    samples = complete_overlap(signals[begin:], taps)[::step]
+    dt = step / rate
+    total = samples.shape[0]
+    guard = max(int(GUARD / dt), int(np.ceil((clipped_until - release.time) / dt)) + 1)
+    if (total - guard) * dt < SHORTEST - taps.size / rate:
+        raise InputError(name, "is clipped or disturbed almost to its end", "Repeat the drop with a larger range.")
+    rest = _rest_level(signals, rate, release, taps, step, band, dt)
+    end, poles = _find_end(samples, guard, dt, band, rest)
+    start = _find_start(samples, guard, end, poles, dt, band)
+    if clipped_until > release.time:
+        start = max(start, guard)
+    warnings = []
+    if end < total:
+        warnings.append(
+            f"{name}: used up to {end * dt:.0f} s after the release; then something else than the decay moves the line"
+        )
+    if (end - start) * dt < SHORTEST - taps.size / rate:
+        raise InputError(
+            name,
+            f"is a free decay for only {(end - start) * dt:.1f} s",
+            "Repeat the drop in calm weather and away from traffic.",
+        )
+    if start > guard:
+        warnings.append(f"{name}: not a linear decay before {start * dt:.1f} s after the release")
+    half_filter = (taps.size - 1) / 2 / rate
+    return Stretch(
+        samples=samples[start:end],
+        dt=dt,
+        taps=taps,
+        rate=rate,
+        start=begin / rate + start * dt,
+        end=begin / rate + end * dt + 2 * half_filter,
+        first=begin / rate + start * dt + half_filter,
+        poles=poles,
+        warnings=tuple(warnings),
+    )
+
+
+def _find_end(samples: Real, guard: int, dt: float, band: Band, rest: Real | None) -> tuple[int, Complex]:
+    total, window = samples.shape[0], int(LONG_WINDOW / dt)
+    end = min(total, guard + int(FIRST_FIT / dt))
+    poles = np.zeros(0, dtype=np.complex128)
+    for _ in range(6):
+        poles = _poles(samples[guard:end], dt, band)
+        starts, level = levels(_left(samples, guard, end, poles, dt, band), window, dt, band)
+        floor = np.median(level[(starts >= guard) & (starts + window < end)], axis=0)
+        if rest is not None and np.median(floor / rest) > DISTURBED_FIT and (end - guard) * dt > 2 * SHORTEST:
+            end = guard + (end - guard) // 2
+            continue
+        later = np.flatnonzero(_disturbed(level / floor, LONG_WINDOW, band) & (starts >= guard))
+        # The first windows that hold a little of a disturbance still look like noise: a quarter of one is given up.
+        clean = max(int(starts[later[0]]) - window // 4, 0) if later.size else total
+        # Another fit pays only if it sees much more of the decay.
+        grown = clean >= end and clean - end < 0.1 * (end - guard)
+        end, before = clean, end
+        if grown or clean == before or end - guard < SHORTEST / dt:
+            break
+    return end, poles
+
+
+def _find_start(samples: Real, guard: int, end: int, poles: Complex, dt: float, band: Band) -> int:
+    window = int(SHORT_WINDOW / dt)
+    starts, level = levels(_left(samples, guard, end, poles, dt, band), window, dt, band)
+    floor = np.median(level[(starts >= guard) & (starts + window < end)], axis=0)
+    disturbed = _disturbed(level / floor, SHORT_WINDOW, band) & (starts < guard + 0.25 * (end - guard))
+    # Going back in time, what first disturbs a window is its first sample.
+    return min(int(starts[disturbed][-1]) + window // 4 + 1, end - 1) if disturbed.any() else 0
+
+
+def _poles(samples: Real, dt: float, band: Band) -> Complex:
+    spread = samples.std(axis=0)
+    poles = start_poles([samples / spread], 1 / dt, band.low, band.fitted + 0.5)
+    return settle(poles, [block(samples, dt, band.low, band.fitted)], rounds=3).poles
+
+
+def _left(samples: Real, start: int, end: int, poles: Complex, dt: float, band: Band) -> Real:
+    """What the decays fitted over [start, end) leave of all samples; drift and what lies outside the band stay in."""
+    residues = solve(poles, block(samples[start:end], dt, band.low, band.fitted)).residues
+    t = (np.arange(samples.shape[0]) - start) * dt
+    # Poles beyond the band stand for what leaks in from there; as decays they mean nothing.
+    real = poles.imag < 2 * np.pi * band.fitted
+    return np.asarray(samples - 2 * (np.exp(np.outer(t, poles[real])) @ residues[real]).real)
+
+
+def levels(residual: Real, window: int, dt: float, band: Band) -> tuple[NDArray[np.int64], Real]:
+    """Mean square below the band's upper end in overlapping windows, a trend in each taken off.
+
+    Parameters
+    ----------
+    residual : (n, c)
+    window : samples of a window
+    dt : sampling interval [s]
+    band : what is identified
+
+    Returns
+    -------
+    first sample of every window, (w,), and its levels, (w, c)
+    """
+    inner = complete_overlap(residual, _test_filter(dt, band))
+    starts = np.arange(0, inner.shape[0] - window + 1, max(window // 4, 1))
+    t = np.linspace(-1, 1, window)
+    line = np.column_stack([np.ones(window), t])
+    straight = line @ np.linalg.pinv(line)
+    views = np.lib.stride_tricks.sliding_window_view(inner, window, axis=0)[starts]
+    return starts, np.asarray(np.mean((views - views @ straight) ** 2, axis=2))
+
+
+def _disturbed(ratio: Real, width: float, band: Band) -> NDArray[np.bool_]:
+    """Windows that hold more than noise: any channel far above it, or all of them together somewhat."""
+    freedom = 2 * width * (band.high - band.low)
+    together = ratio.mean(axis=1) > 1 + 6 * np.sqrt(2 / (freedom * ratio.shape[1]))
+    alone = ratio.max(axis=1) > 1 + 9 * np.sqrt(2 / freedom)
+    return np.asarray(together | alone)
+
+
+def _rest_level(signals: Real, rate: float, release: Release, taps: Real, step: int, band: Band, dt: float) -> Real | None:
+    """Level of the noise at rest, (c,), None if the rest is too short to tell."""
+    rest = signals[: int(release.rest_end * rate)]
+    window = int(1.0 / dt)
+    left = (rest.shape[0] - taps.size) // step - _test_filter(dt, band).size
+    return levels(complete_overlap(rest, taps)[::step], window, dt, band)[1].mean(axis=0) if left > window else None
+
+
+def _test_filter(dt: float, band: Band) -> Real:
+    """What lies above the band is no part of the test of the residual."""
+    return lowpass(1 / dt, 0.85 * band.high, 1.05 * band.high, 70.0)

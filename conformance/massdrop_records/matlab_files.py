@@ -1,0 +1,71 @@
+"""MATLAB records, version 5 (scipy) and 7.3 (HDF5): a table of samples or one vector per channel, with a sidecar."""
+
+import struct
+import zlib
+from pathlib import Path
+
+import h5py
+import numpy as np
+import scipy.io
+from numpy.typing import NDArray
+
+from pantocheck.conformance.errors import InputError
+from pantocheck.conformance.massdrop_records.assembly import Column, Table
+from pantocheck.conformance.massdrop_records.sidecar import Sidecar
+
+TIME_NAMES = ("time", "time_s", "t")
+RATE_NAMES = ("sampling_rate_hz", "fs", "rate", "Fs")
+
+Real = NDArray[np.float64]
+
+
+def read(path: Path, sidecar: Sidecar | None) -> list[Table]:
+    """The one run of a MATLAB file; errors as in `read_records`."""
+    source = path.name
+    arrays = _version_7_3(path, source) if h5py.is_hdf5(path) else _version_5(path, source)
+    time = next((arrays[name].ravel() for name in TIME_NAMES if name in arrays and arrays[name].size > 1), None)
+    rate = next((float(arrays[name].ravel()[0]) for name in RATE_NAMES if name in arrays and arrays[name].size), None)
+    data = {name: array for name, array in arrays.items() if name not in TIME_NAMES + RATE_NAMES}
+    names = [channel.name for channel in sorted(sidecar.channel, key=lambda one: one.column)] if sidecar else []
+    if names and all(name in data for name in names):
+        vectors = [data[name].ravel() for name in names]
+        if len({vector.size for vector in vectors}) > 1:
+            raise InputError(source, "its channels differ in length", "The channels must be sampled together.")
+        return [Table(np.column_stack(vectors), tuple(Column(name) for name in names), time=time, rate=rate)]
+    tables = {name: array for name, array in data.items() if array.ndim == 2 and max(array.shape) > 1}
+    if not tables:
+        raise InputError(
+            source,
+            f"holds no table of samples ({', '.join(sorted(arrays)[:8]) or 'nothing'})",
+            "Store one matrix (samples by channels), or one vector per channel named as in the sidecar.",
+        )
+    largest = max(tables, key=lambda name: tables[name].size)
+    values = tables[largest] if tables[largest].shape[0] >= tables[largest].shape[1] else tables[largest].T
+    if time is not None and time.size != values.shape[0]:
+        raise InputError(source, f"{time.size} times for {values.shape[0]} samples", "Export the record again.")
+    return [Table(np.ascontiguousarray(values), (Column(),) * values.shape[1], time=time, rate=rate)]
+
+
+def _version_5(path: Path, source: str) -> dict[str, Real]:
+    try:
+        content = scipy.io.loadmat(path, struct_as_record=True)
+    except (ValueError, TypeError, KeyError, EOFError, struct.error, zlib.error, OSError, NotImplementedError) as error:
+        raise InputError(source, f"is damaged or not a MATLAB file ({str(error)[:100]})", "Export it again.") from None
+    return {
+        name: np.asarray(value, dtype=np.float64)
+        for name, value in content.items()
+        if not name.startswith("__") and isinstance(value, np.ndarray) and value.dtype.kind in "fiu"
+    }
+
+
+def _version_7_3(path: Path, source: str) -> dict[str, Real]:
+    try:
+        with h5py.File(path, "r") as file:
+            return {
+                # MATLAB stores by columns, so its matrices come out transposed.
+                name: np.asarray(item[()], dtype=np.float64).T
+                for name, item in file.items()
+                if isinstance(item, h5py.Dataset) and item.dtype.kind in "fiu"
+            }
+    except (OSError, KeyError, TypeError, ValueError) as error:
+        raise InputError(source, f"is damaged ({str(error)[:100]})", "Export it again.") from None

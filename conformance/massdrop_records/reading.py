@@ -1,0 +1,65 @@
+"""One door for all formats of mass-drop records."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from pantocheck.conformance.errors import InputError
+from pantocheck.conformance.massdrop_records.assembly import Table, assemble
+from pantocheck.conformance.massdrop_records.record import DropRecord
+from pantocheck.conformance.massdrop_records.sidecar import Sidecar, read_sidecar
+
+LARGEST_FILE = 2_000_000_000  # bytes
+
+
+def read_records(path: Path) -> tuple[DropRecord, ...]:
+    """All runs in a file of records.
+
+    Parameters
+    ----------
+    path : .csv, .txt, .uff, .unv, .uf, .mat, .h5, .hdf5, .tdms or .mf4; its sidecar, if any, has the same stem and .toml
+
+    Raises
+    ------
+    InputError : the file cannot be read, is damaged, or does not say what it holds
+    """
+    source = path.name
+    reader = _reader(path.suffix.lower(), source)
+    try:
+        size = path.stat().st_size
+    except OSError as error:
+        raise InputError(source, f"cannot be read ({error.strerror})", "Check the path.") from None
+    if not path.is_file():
+        raise InputError(source, "is not a file", "Name a record file.")
+    if size == 0:
+        raise InputError(source, "is empty", "Export the record again.")
+    if size > LARGEST_FILE:
+        raise InputError(source, f"has {size} bytes", f"A record has at most {LARGEST_FILE} bytes.")
+    sidecar = read_sidecar(path)
+    return tuple(assemble(table, sidecar, source) for table in reader(path, sidecar))
+
+
+Reader = Callable[[Path, Sidecar | None], list[Table]]
+
+
+def _reader(suffix: str, source: str) -> Reader:
+    # Each format's library is loaded only when a file of that format comes.
+    match suffix:
+        case ".csv" | ".txt":
+            from pantocheck.conformance.massdrop_records.csv_files import read
+        case ".uff" | ".unv" | ".uf" | ".uff58" | ".58":
+            from pantocheck.conformance.massdrop_records.uff_files import read
+        case ".mat":
+            from pantocheck.conformance.massdrop_records.matlab_files import read
+        case ".h5" | ".hdf5":
+            from pantocheck.conformance.massdrop_records.hdf5_files import read
+        case ".tdms":
+            from pantocheck.conformance.massdrop_records.tdms_files import read
+        case ".mf4" | ".mdf":
+            from pantocheck.conformance.massdrop_records.mdf_files import read
+        case ".toml":
+            raise InputError(source, "is a sidecar", "Name the record beside it: .csv, .uff, .mat, .h5, .tdms or .mf4.")
+        case _:
+            raise InputError(
+                source, f"format '{suffix}' is not known", "Known are .csv, .uff, .mat, .h5, .tdms and .mf4."
+            )
+    return read

@@ -1,0 +1,108 @@
+"""From a line in finite elements to the arrays that the time step works on."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from pantocheck.model import beam
+from pantocheck.model.beams import Beams
+from pantocheck.model.effective import factorise, half_width, inverse_columns, solve_rows
+from pantocheck.model.line import Discretised
+from pantocheck.model.modal_damping import modal_terms
+from pantocheck.model.newmark import Line
+
+Array = NDArray[np.float64]
+
+
+class Load(NamedTuple):
+    """Where an external vertical load acts.
+
+    Parameters
+    ----------
+    row, station : indices
+    """
+
+    row: int
+    station: int
+
+
+def time_stepping(line: Discretised, time_step: float, reach: float = math.inf, load: Load | None = None) -> Line:
+    """Arrays of the time step: factors, local columns, connectors.
+
+    Parameters
+    ----------
+    line : the discretised line
+    time_step : [s]
+    reach : what lies farther than this from every pantograph is left standing still [m]
+    load : where the external load acts, if there is one
+
+    Returns
+    -------
+    what `newmark.step` needs of the line
+    """
+    beams, connectors, stations = line.beams, line.connectors, line.mesh.position.size
+    factor = factorise(beams, time_step)
+    modal = modal_terms(line)
+    response = solve_rows(factor, modal.weight)
+    if modal.damping.size:
+        reach = math.inf  # a mode moves the whole line
+    ends = [np.flatnonzero(coefficient) for coefficient in connectors.coefficient]
+    most = max((len(e) for e in ends), default=0)
+    end_row, end_column = (np.zeros((len(ends), most), dtype=np.int64) for _ in range(2))
+    end_coefficient = np.zeros((len(ends), most))
+    loads: list[tuple[int, int]] = []
+    for n, rows in enumerate(ends):
+        for e, row in enumerate(rows):
+            end_row[n, e], end_column[n, e], end_coefficient[n, e] = row, len(loads), connectors.coefficient[n, row]
+            loads.append((int(row), int(connectors.station[n])))
+    contact_row = np.array(line.contact_rows, dtype=np.int64)
+    contact_loads = [(int(row), s) for row in contact_row for s in range(stations)]
+    width = half_width(factor, loads + contact_loads[:: max(1, stations // 200)])
+    rows_, stations_ = (np.array([load[i] for load in loads], dtype=np.int64) for i in range(2))
+    columns = inverse_columns(factor, rows_, stations_, np.zeros_like(rows_), width)
+    contact = np.repeat(np.array(contact_loads, dtype=np.int64).reshape(-1, 2), 2, axis=0)
+    slopes = np.tile(np.arange(2), len(contact_loads))
+    contact_columns = inverse_columns(factor, contact[:, 0].copy(), contact[:, 1].copy(), slopes, width)
+    return Line(
+        time_step=time_step,
+        reach=reach,
+        position=line.mesh.position,
+        length=beams.length,
+        stiffness_entries=_stiffness_entries(beams),
+        mass_scale=beams.mass_per_length * beams.length / 420,
+        mass_coefficient=beams.mass_coefficient,
+        stiffness_coefficient=beams.stiffness_coefficient,
+        lumped_stiffness=beams.lumped_stiffness,
+        lumped_damping=beams.lumped_damping,
+        factor=factor,
+        columns=columns,
+        station=connectors.station,
+        end_row=end_row,
+        end_column=end_column,
+        end_coefficient=end_coefficient,
+        stiffness=connectors.stiffness,
+        damping=connectors.damping,
+        preload=connectors.preload,
+        unilateral=connectors.unilateral,
+        contact_row=contact_row,
+        contact_columns=contact_columns.reshape(contact_row.size, stations, 2, 2, 2 * width + 1),
+        modal_damping=modal.damping,
+        modal_weight=modal.weight,
+        modal_response=response,
+        modal_compliance=np.einsum("jbsi,jbsi->j", modal.weight, response),
+        load_row=0 if load is None else load.row,
+        load_station=0 if load is None else load.station,
+        rest=np.ascontiguousarray(line.state.deflection[line.contact_rows]),
+    )
+
+
+def _stiffness_entries(beams: Beams) -> Array:
+    """The four distinct entries 11, 12, 22, 24 of every element's stiffness."""
+    rows, elements = beams.mass_per_length.shape
+    entries = np.zeros((rows, 4, elements))
+    for row in range(rows):
+        for e in np.flatnonzero(beams.mass_per_length[row]):
+            k = beam.stiffness(beams.length[e], beams.tension[row, e], beams.bending_stiffness[row, e])
+            entries[row, :, e] = k[0, 0], k[0, 1], k[1, 1], k[1, 3]
+    return entries

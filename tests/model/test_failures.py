@@ -1,0 +1,86 @@
+"""What cannot be computed is refused by name; nothing fails in silence."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from pantocheck.model import Dropper, MessengerSupport, Passage, SteadyArm, chain, run
+from pantocheck.model.initial_state import NoInitialState
+from pantocheck.model.line import discretise
+from pantocheck.model.newmark import step
+from pantocheck.model.simulation import DidNotConverge, start, workspace
+from pantocheck.model.stepping import time_stepping
+
+from .lines import simple_line
+
+PANTOGRAPH = chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.array([90.0, 10.0]), 120.0, 0, 50e3)
+PASSAGE = Passage((PANTOGRAPH,), (20.0,), 50.0, 0.05, 1e-3)
+
+
+def test_dropper_that_would_have_to_push_is_named() -> None:
+    """A dropper asked to hold the wire 10 cm below its neighbours."""
+    line = simple_line()
+    droppers = list(line.droppers)
+    droppers[4] = replace(droppers[4], contact_wire_height=-0.1)
+    with pytest.raises(NoInitialState, match=r"x = 30 m would have to push with \d+"):
+        discretise(replace(line, droppers=tuple(droppers)), 1.0)
+
+
+def test_wires_that_cross_are_refused() -> None:
+    """An encumbrance of 0.2 m is less than the messenger's sag."""
+    line = simple_line()
+    low = tuple(replace(support, height=0.2) for support in line.messenger_supports)
+    with pytest.raises(NoInitialState, match="wires cross"):
+        discretise(replace(line, messenger_supports=low), 1.0)
+
+
+@pytest.mark.parametrize(
+    "part",
+    [
+        {"droppers": (Dropper(10.0, "messenger", "nowhere", stiffness=1e5),)},
+        {"steady_arms": (SteadyArm(60.0, "nowhere", 300.0),)},
+        {"messenger_supports": (MessengerSupport(60.0, "nowhere", 1.2, 5e4),)},
+    ],
+    ids=["dropper", "steady arm", "messenger support"],
+)
+def test_unknown_wire_is_named(part: dict[str, tuple[object, ...]]) -> None:
+    """A connector on a wire that does not exist is not left out quietly."""
+    line = simple_line()
+    more = {name: getattr(line, name) + added for name, added in part.items()}
+    with pytest.raises(KeyError, match="nowhere"):
+        discretise(replace(line, **more), 1.0)
+
+
+@pytest.mark.parametrize("where", ["uplift", "mass", "contact"])
+def test_nan_in_a_pantograph_does_not_pass_in_silence(where: str) -> None:
+    """A run ends with DidNotConverge, or a matrix is refused before; never with a history of NaN."""
+    given = {"uplift": 120.0, "mass": 7.2, "contact": 50e3} | {where: np.nan}
+    pantograph = chain(
+        np.array([15.0, given["mass"]]),
+        np.array([50.0, 4200.0]),
+        np.array([90.0, 10.0]),
+        given["uplift"],
+        0,
+        given["contact"],
+    )
+    with pytest.raises((DidNotConverge, ValueError, np.linalg.LinAlgError)):
+        run(discretise(simple_line(), 1.0), replace(PASSAGE, pantographs=(pantograph,)))
+
+
+@pytest.mark.parametrize("where", ["w", "r", "tension", "z", "contact", "far away"])
+def test_step_reports_a_state_that_is_not_a_number(where: str) -> None:
+    """The kernel returns no turns, wherever the NaN stands."""
+    line = discretise(simple_line(), 1.0)
+    stepping = time_stepping(line, 1e-3)
+    motion, train = start(line, stepping, PASSAGE)
+    spot = {
+        "w": motion.w[0, 0, 20:21],
+        "r": motion.r[1, 1, 20:21],
+        "tension": motion.tension[3:4],
+        "z": train.z[0, 0, :1],
+        "contact": train.contact[0, :1],
+        "far away": motion.w[0, 0, -3:-2],
+    }
+    spot[where][:] = np.nan
+    work = workspace(stepping, motion, train)
+    assert step(stepping, motion, train, work) == 0
