@@ -57,7 +57,10 @@ class InputGroup(Part):
 
 
 class Criterion(Part):
-    """A value against its limits. `pantograph` is 0 for the line; `item` counts droppers or modes from 1."""
+    """A value against its limits. `pantograph` is 0 for the line; `item` counts droppers or modes from 1.
+
+    `spread` is the largest departure from the value when the evaluated stretch is shifted along the line.
+    """
 
     quantity: str
     pantograph: int
@@ -71,6 +74,7 @@ class Criterion(Part):
     source: str
     margin: float | None
     discretisation_error: float | None
+    spread: float | None = None
     reason: str | None
 
 
@@ -145,6 +149,10 @@ class CaseResult(Part):
     criteria: list[Criterion]
     quantities: dict[str, dict[str, Number]]
     skipped: dict[str, dict[str, str]]
+    spread: Annotated[
+        dict[str, dict[str, float]],
+        Field(default_factory=dict, description="departure when the stretch is shifted, as in `quantities`"),
+    ]
     run: RunFacts
     traces: dict[str, Traces]
     uplift: list[UpliftTrace]
