@@ -181,7 +181,10 @@ def _close_calls(criteria: list[Criterion]) -> list[str]:
         if item.value is None or item.lower == item.upper:
             continue
         distance = min(abs(item.value - bound) for bound in (item.lower, item.upper) if bound is not None)
-        for error, name in ((item.discretisation_error, "discretisation error"), (item.spread, "spread over stretches")):
+        for error, name in (
+            (item.discretisation_error, "discretisation error"),
+            (item.spread, "spread over stretches"),
+        ):
             if error is not None and distance < error:
                 close.append(
                     f"{item.quantity} of pantograph {item.pantograph} lies {distance:.2g} {item.unit} from a limit, "

@@ -48,9 +48,7 @@ class InitialState:
     arm_force: Array
 
 
-def initial_state(
-    catenary: Catenary, mesh: Mesh, beams: Beams, stiffness: Stiffness = wire_stiffness
-) -> InitialState:
+def initial_state(catenary: Catenary, mesh: Mesh, beams: Beams, stiffness: Stiffness = wire_stiffness) -> InitialState:
     """Equilibrium of the line under its weight.
 
     Parameters

@@ -104,8 +104,8 @@ class CaseFile(Sourced):
         tuple[int, int] | None,
         Field(
             strict=False,
-            description="first and last of the spans along which the evaluated stretch is shifted, span by span, to see "
-            "how much the figures depend on where it lies",
+            description="first and last of the spans along which the evaluated stretch is shifted, span by span, to "
+            "see how much the figures depend on where it lies",
         ),
     ] = None
     start_m: Annotated[

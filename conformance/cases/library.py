@@ -128,7 +128,9 @@ def _check_geometry(case: Case, path: Path) -> None:
     for key in ("evaluated_spans", "compared_spans"):
         last = (getattr(case.file, key) or (1,))[-1]
         if last > geometry.spans:
-            raise InputError(f"{where}, key {key}", f"span {last} does not exist", f"The line has {geometry.spans} spans.")
+            raise InputError(
+                f"{where}, key {key}", f"span {last} does not exist", f"The line has {geometry.spans} spans."
+            )
     if case.start >= case.compared[0]:
         raise InputError(
             f"{where}, key start_m",

@@ -75,12 +75,14 @@ Matrix = Annotated[tuple[NumberList, ...], Field(strict=False, min_length=1, max
 
 
 class Matrices(Sourced):
-    """A linear pantograph by its matrices, base fixed; its uplift force is the static contact force at working height."""
+    """A linear pantograph by its matrices, base fixed; its uplift force is its static contact force."""
 
     mass_kg: Annotated[Matrix, Field(description="mass matrix, row by row [kg]")]
     damping_N_s_m: Annotated[Matrix, Field(description="damping matrix, row by row [N s/m]")]
     stiffness_N_m: Annotated[Matrix, Field(description="stiffness matrix, row by row [N/m]")]
-    head: Annotated[NumberList, Field(max_length=50, description="displacement of the head per unknown, e.g. [0, 0, 1]")]
+    head: Annotated[
+        NumberList, Field(max_length=50, description="displacement of the head per unknown, e.g. [0, 0, 1]")
+    ]
 
     @model_validator(mode="after")
     def _possible(self) -> "Matrices":
@@ -140,6 +142,8 @@ class Pantograph(Table):
     def _said_once(self) -> "Pantograph":
         given = [name for name in ("chain", "matrices", "modes") if getattr(self, name) is not None]
         if len(given) != 1:
-            found = f"the pantograph is given by {' and '.join(given)}" if given else "there is no model of the pantograph"
+            found = (
+                f"the pantograph is given by {' and '.join(given)}" if given else "there is no model of the pantograph"
+            )
             raise problem(given[-1] if given else "chain", found, "Give one of the tables chain, matrices and modes.")
         return self

@@ -50,9 +50,21 @@ def print_results(results: Results, files: Sequence[str]) -> None:
 
 def _criteria_table(case: CaseResult) -> Table:
     table = Table(box=None, pad_edge=True, header_style="dim")
-    for heading in ("criterion", "value", "+- mesh", "+- stretch", "lower", "upper", "margin", "verdict", "trust", "reason"):
+    for heading in (
+        "criterion",
+        "value",
+        "+- mesh",
+        "+- stretch",
+        "lower",
+        "upper",
+        "margin",
+        "verdict",
+        "trust",
+        "reason",
+    ):
         table.add_column(
-            heading, justify="right" if heading in {"value", "+- mesh", "+- stretch", "lower", "upper", "margin"} else "left"
+            heading,
+            justify="right" if heading in {"value", "+- mesh", "+- stretch", "lower", "upper", "margin"} else "left",
         )
     for item in case.criteria:
         table.add_row(

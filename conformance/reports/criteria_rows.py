@@ -60,4 +60,7 @@ def shifted(row: dict[str, Any]) -> str | None:
     spread = row.get("spread")
     if spread is None or row["value"] is None:
         return None
-    return f"moves by up to {number(spread, 2)} {row.get('unit') or ''}".rstrip() + " when the evaluated stretch is shifted"
+    return (
+        f"moves by up to {number(spread, 2)} {row.get('unit') or ''}".rstrip()
+        + " when the evaluated stretch is shifted"
+    )

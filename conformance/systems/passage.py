@@ -42,9 +42,7 @@ def pantograph(file: PantographFile, uplift_force: float, working_height: float)
     omega, shape = 2 * np.pi * np.array(modes.frequency_Hz), np.array(modes.head_shape)
     preload = omega**2 * shape * working_height / (shape @ shape)
     force = uplift_force * shape + preload
-    return from_modes(
-        np.array(modes.frequency_Hz), np.array(modes.damping_ratio), shape, force, uplift_force, contact
-    )
+    return from_modes(np.array(modes.frequency_Hz), np.array(modes.damping_ratio), shape, force, uplift_force, contact)
 
 
 def starts(case: Case) -> tuple[float, ...]:
@@ -53,7 +51,7 @@ def starts(case: Case) -> tuple[float, ...]:
 
 
 def watched_supports(case: Case, line: Discretised) -> tuple[tuple[str, float], ...]:
-    """The first contact wire at the supports within and at the ends of the evaluated stretch, wherever it is shifted."""
+    """The first contact wire at the supports within and at the ends of the compared stretch."""
     first, last = case.compared
     wire = line.catenary.contact_wires[0].name
     return tuple(

@@ -40,7 +40,9 @@ def static_quantities(case: Case, line: Discretised) -> dict[str, Value]:
     found |= _waves(case, line.catenary)
     if case.is_static:
         if case.measured is not None and case.file.apparent_mass is not None:
-            response = apparent_mass(pantograph(case.measured, 0.0, 0.0), np.array(case.file.apparent_mass.frequency_Hz))
+            response = apparent_mass(
+                pantograph(case.measured, 0.0, 0.0), np.array(case.file.apparent_mass.frequency_Hz)
+            )
             found["apparent_mass_kg"] = tuple(map(float, np.abs(response)))
         found["natural_frequency_Hz"] = tuple(map(float, first_modes(case.line, _element(line)).frequency))
     return found
@@ -87,9 +89,7 @@ def _element(line: Discretised) -> float:
 
 def _presag(file: Line, line: Discretised) -> tuple[float, ...]:
     droppers = [line.catenary.droppers[i] for i in _droppers(file, line.catenary)]
-    height = [
-        line.state.deflection[line.mesh.row_of[d.lower, "z"], line.mesh.station(d.position), 0] for d in droppers
-    ]
+    height = [line.state.deflection[line.mesh.row_of[d.lower, "z"], line.mesh.station(d.position), 0] for d in droppers]
     return tuple(float(-1e3 * z) for z in height)
 
 
