@@ -44,26 +44,35 @@ def line_drawing(line: Discretised, title: str, span: float) -> Figure:
 
 
 def _view(axes: Axes, line: Discretised, field: str, shown: tuple[float, float]) -> None:
+    start, end = shown
+    middle = (start + end) / 2
     for wire in line.catenary.wires:
+        if wire.end < start or end < wire.start:
+            continue
         x, w = _shape(line, wire, field)
         axes.plot(x, w, color=INK, linewidth=WIDTHS[wire.kind])
     for n, dropper in enumerate(line.catenary.droppers):
+        if not start <= dropper.position <= end:
+            continue
         ends = [_at(line, name, field, dropper.position) for name in (dropper.lower, dropper.upper)]
         axes.plot([dropper.position] * 2, ends, color=GREY, linewidth=0.8)
-        middle = (shown[0] + shown[1]) / 2
-        if field == "z" and 0 <= dropper.position - middle < (shown[1] - shown[0]) / 3:
+        if field == "z" and 0 <= dropper.position - middle < (end - start) / (SPANS + 1):
             length = f"{line.state.dropper_length[n]:.3f}"
             axes.annotate(length, (dropper.position, sum(ends) / 2), fontsize=5, rotation=90, ha="right", va="center")
     for support in line.catenary.messenger_supports:
+        if not start <= support.position <= end:
+            continue
         axes.plot(support.position, _at(line, support.wire, field, support.position), "^", color=INK, markersize=4)
     for arm, force in zip(line.catenary.steady_arms, line.state.arm_force, strict=True):
+        if not start <= arm.position <= end:
+            continue
         claw = _at(line, arm.wire, field, arm.position)
         axes.plot(arm.position, claw, "o", color=INK, markersize=3, markerfacecolor="white")
         if field == "y" and force[0] != 0.0 and arm.length is not None:
             # The hinge lies where the arm pulls to; an arm that pushes has it on the other side.
             towards = np.sign(force[0]) * (1 if arm.acts == "pull" else -1)
             axes.plot([arm.position] * 2, [claw, claw + towards * arm.length], color=INK, linewidth=1.0)
-    axes.set_xlim(*shown)
+    axes.set_xlim(start, end)
     axes.set_aspect(EXAGGERATED, adjustable="datalim" if field == "y" else "box")
 
 

@@ -64,7 +64,7 @@ def first_modes(line: Line, element: float) -> Modes:
     few = line.geometry.model_copy(update={"spans": min(line.geometry.spans, SPANS_OF_MODES)})
     short = discretise(catenary(line.model_copy(update={"geometry": few})), element)
     lateral = [row for row in range(short.mesh.rows) if short.mesh.row_field[row] == "y"]
-    count = MODES
+    count = MODES * (2 if lateral else 1)
     while True:
         found = modes(short, count)
         size = (found.shape[..., 0] ** 2).sum(axis=2)
