@@ -45,7 +45,15 @@ def vertical(case: Case, state: InitialState) -> Catenary:
     return replace(built, wires=wires, steady_arms=arms)
 
 
-def passage(case: Case, line: Discretised, step: float, pantographs: int, until: float, reach: float) -> Passage:
+def passage(
+    case: Case,
+    line: Discretised,
+    step: float,
+    pantographs: int,
+    until: float,
+    reach: float,
+    uplift_force: float | None = None,
+) -> Passage:
     """Pantographs from the end of the first span on, until the last has come to a place.
 
     Parameters
@@ -56,9 +64,10 @@ def passage(case: Case, line: Discretised, step: float, pantographs: int, until:
     pantographs : 1 or 2
     until : where the last pantograph stops [m]
     reach : what lies farther than this from every pantograph stands still [m]
+    uplift_force : [N]
     """
     span = case.line.geometry.span_m
-    model = pantograph(case.pantographs[0], UPLIFT_FORCE, 0.0)
+    model = pantograph(case.pantographs[0], uplift_force or UPLIFT_FORCE, 0.06)
     starts = tuple(span + SPACING * (pantographs - 1 - i) for i in range(pantographs))
     return Passage(
         pantographs=(model,) * pantographs,

@@ -23,7 +23,7 @@ from pantocheck.model.simulation import causal_reach
 
 STEP, ELEMENT = 1e-3, 0.5
 SPANS = (10, 20, 30, 40, 60)
-RUN_SPANS = 8
+RUN_SPANS = 4
 """A run over so many spans, whatever the length of the line."""
 
 
