@@ -35,7 +35,7 @@ def graded(case: Case, outcome: Outcome, lowest_trust: Trust) -> CaseResult:
     refined = _evaluated(case, outcome.refined) if outcome.refined is not None else None
     record = outcome.record
     shifted = {} if record is None else spread(record, case.shifted, case.file.filter.low_pass, evaluation.values)
-    graded_limits = [_criterion(limit, evaluation, refined, lowest_trust) for limit in case.limits]
+    graded_limits = [criterion(limit, evaluation, lowest_trust, refined) for limit in case.limits]
     criteria = [_with_spread(item, shifted) for item in graded_limits]
     span, spans = case.line.geometry.span_m, case.line.geometry.spans
     supports = [i * span for i in range(spans + 1)]
@@ -46,7 +46,7 @@ def graded(case: Case, outcome: Outcome, lowest_trust: Trust) -> CaseResult:
         reason=None,
         warnings=[*outcome.warnings, *_close_calls(criteria), *_edge_warnings(case, outcome)],
         criteria=criteria,
-        quantities={str(of): _plain(evaluation.values[of]) for of in evaluation.values if evaluation.values[of]},
+        quantities={str(of): plain(evaluation.values[of]) for of in evaluation.values if evaluation.values[of]},
         skipped={str(of): evaluation.skipped[of] for of in evaluation.skipped if evaluation.skipped[of]},
         spread={str(of): values for of, values in shifted.items()},
         traces=pantograph_traces(record, case.file.filter.low_pass, supports) if record is not None else {},
@@ -60,7 +60,7 @@ def _mismatch(case: Case, outcome: Outcome) -> str | None:
     if case.is_static:
         return None
     if record is None:
-        return "the system delivered no record"
+        return None if outcome.summary is not None else "the system delivered no record"
     if record.pantographs != len(case.pantographs):
         return f"the record has {record.pantographs} pantographs, the case has {len(case.pantographs)}"
     if abs(record.speed / case.speed - 1) > 0.005:
@@ -116,14 +116,25 @@ def _result(case: Case, outcome: Outcome, **parts: object) -> CaseResult:
 
 def _evaluated(case: Case, outcome: Outcome) -> Evaluation:
     if outcome.record is None:
-        evaluation = Evaluation({LINE: {}}, {LINE: {}})
+        evaluation = outcome.summary or Evaluation({LINE: {}}, {LINE: {}})
     else:
         evaluation = evaluate(outcome.record, case.file.filter.low_pass)
     ordered = {name: outcome.static[name] for name in QUANTITIES if name in outcome.static}
     return Evaluation({**evaluation.values, LINE: {**evaluation.values[LINE], **ordered}}, evaluation.skipped)
 
 
-def _criterion(limit: Limit, evaluation: Evaluation, refined: Evaluation | None, lowest_trust: Trust) -> Criterion:
+def criterion(
+    limit: Limit, evaluation: Evaluation, lowest_trust: Trust, refined: Evaluation | None = None
+) -> Criterion:
+    """A value against its limit.
+
+    Parameters
+    ----------
+    limit : of one quantity
+    evaluation : that holds the value, or the reason why there is none
+    lowest_trust : lowest trust of the limits that carry a verdict
+    refined : the same with element and time step halved, for the discretisation error
+    """
     value = _value(limit, evaluation)
     fine = _value(limit, refined) if refined is not None else None
     verdict: Verdict = "skip"
@@ -208,11 +219,12 @@ def _edge_warnings(case: Case, outcome: Outcome) -> list[str]:
     ]
 
 
-def _plain(values: dict[str, Value]) -> dict[str, Number]:
+def plain(values: dict[str, Value]) -> dict[str, Number]:
+    """Values as results hold them: lists and finite numbers."""
     finite: Callable[[float], bool] = math.isfinite
-    plain: dict[str, Number] = {}
+    kept: dict[str, Number] = {}
     for name, value in values.items():
         numbers = list(value) if isinstance(value, tuple) else value
         if all(map(finite, numbers if isinstance(numbers, list) else [numbers])):
-            plain[name] = numbers
-    return plain
+            kept[name] = numbers
+    return kept

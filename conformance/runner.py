@@ -1,19 +1,15 @@
 """Running cases on a system: side by side, in the order their requirements allow, one failure at a time."""
 
 import multiprocessing
-import platform as host
 import signal
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from datetime import UTC, datetime
-from importlib.metadata import version
 
+from pantocheck.conformance.assembly import assembled, now
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.criteria import worst
 from pantocheck.conformance.grading import graded, ungraded
-from pantocheck.conformance.results import CaseResult, Platform, Results, Suite, SystemIdentity
-from pantocheck.conformance.suite_identity import suite_commit
+from pantocheck.conformance.results import CaseResult, Results, SystemIdentity
 from pantocheck.conformance.systems import System
 from pantocheck.conformance.trust import Trust
 
@@ -54,7 +50,7 @@ def run(
     ------
     RunInterrupted : on KeyboardInterrupt, with what was finished
     """
-    started = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+    started = now()
     finished: dict[str, CaseResult] = {}
 
     def keep(result: CaseResult) -> None:
@@ -177,19 +173,5 @@ def _die_quietly() -> None:
 def _results(
     cases: Sequence[Case], system: System, trust: Trust, started: str, finished: dict[str, CaseResult]
 ) -> Results:
-    return Results(
-        suite=Suite(version=version("pantocheck"), commit=suite_commit()),
-        system=SystemIdentity(name=system.name, version=system.version, kind=system.kind),
-        verdict=worst(result.verdict for result in finished.values()),
-        trust=trust,
-        started=started,
-        platform=Platform(
-            python=host.python_version(),
-            numpy=version("numpy"),
-            scipy=version("scipy"),
-            numba=version("numba"),
-            machine=host.machine(),
-            system=host.system(),
-        ),
-        cases=[finished[case.id] for case in cases],
-    )
+    identity = SystemIdentity(name=system.name, version=system.version, kind=system.kind)
+    return assembled([finished[case.id] for case in cases], identity, trust, started)

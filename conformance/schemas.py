@@ -7,7 +7,9 @@ from pantocheck.conformance.cases.limits import LimitsFile
 from pantocheck.conformance.cases.line import Line
 from pantocheck.conformance.cases.pantograph import Pantograph
 from pantocheck.conformance.plan import Plan
+from pantocheck.conformance.profiles import Profile
 from pantocheck.conformance.record_files.sidecar import Sidecar
+from pantocheck.conformance.record_files.summary import Summary
 from pantocheck.conformance.results import results_schema
 from pydantic import BaseModel
 
@@ -18,6 +20,8 @@ _MODELS: dict[str, type[BaseModel]] = {
     "limits": LimitsFile,
     "plan": Plan,
     "record": Sidecar,
+    "summary": Summary,
+    "profile": Profile,
 }
 
 NAMES = (*_MODELS, "results")

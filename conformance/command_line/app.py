@@ -3,8 +3,11 @@
 from typing import Annotated
 
 import typer
+from pantocheck.conformance.command_line.assess import assess
 from pantocheck.conformance.command_line.cases import cases
+from pantocheck.conformance.command_line.fit_damping import fit_damping
 from pantocheck.conformance.command_line.guard import guarded
+from pantocheck.conformance.command_line.identify import identify
 from pantocheck.conformance.command_line.run import run
 from pantocheck.conformance.command_line.schema import schema
 from pantocheck.conformance.command_line.show import show
@@ -20,7 +23,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
-for command in (run, cases, show, simulate, verify, schema):
+for command in (run, assess, cases, show, simulate, identify, fit_damping, verify, schema):
     app.command()(guarded(command))
 
 

@@ -2,14 +2,19 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 
 from pantocheck.conformance.command_line.console import console, number, plain, verdict_text
+from pantocheck.conformance.criteria import Verdict
 from pantocheck.conformance.results import CaseResult, Criterion, Results
 from pantocheck.conformance.runner import Progress as Report
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 from rich.text import Text
+
+EXIT_CODES: dict[Verdict, int] = {"pass": 0, "info": 0, "fail": 1, "skip": 1, "error": 2}
+"""A limit that was not graded is a limit that was not met: `skip` must not open a gate."""
 
 
 @contextmanager
@@ -50,27 +55,15 @@ def print_results(results: Results, files: Sequence[str]) -> None:
 
 def _criteria_table(case: CaseResult) -> Table:
     table = Table(box=None, pad_edge=True, header_style="dim")
-    for heading in (
-        "criterion",
-        "value",
-        "+- mesh",
-        "+- stretch",
-        "lower",
-        "upper",
-        "margin",
-        "verdict",
-        "trust",
-        "reason",
-    ):
-        table.add_column(
-            heading,
-            justify="right" if heading in {"value", "+- mesh", "+- stretch", "lower", "upper", "margin"} else "left",
-        )
+    numbers = ("value", "+-", "+- stretch", "lower", "upper", "margin")
+    for heading in ("criterion", *numbers, "verdict", "trust", "reason"):
+        table.add_column(heading, justify="right" if heading in numbers else "left")
     for item in case.criteria:
+        error = item.discretisation_error if item.uncertainty is None else item.uncertainty
         table.add_row(
             plain(_name(item)),
             number(item.value),
-            "-" if item.discretisation_error is None else f"{item.discretisation_error:.2g}",
+            "-" if error is None else f"{error:.2g}",
             "-" if item.spread is None else f"{item.spread:.2g}",
             number(item.lower),
             number(item.upper),
@@ -85,3 +78,17 @@ def _criteria_table(case: CaseResult) -> Table:
 def _name(item: Criterion) -> str:
     of = f", pantograph {item.pantograph}" if item.pantograph > 1 else ""
     return f"{item.quantity}{f'[{item.item}]' if item.item else ''}{of}"
+
+
+def write_results(results: Results, folder: Path, formats: Sequence[str]) -> list[str]:
+    """Write results in the formats asked, and give the paths of the files."""
+    from pantocheck.conformance.files import write_in_place
+    from pantocheck.conformance.reports.writers import FILES, writer
+
+    content = results.to_dict()
+    for name in formats:
+        if name == "json":
+            write_in_place(folder / FILES[name], results.to_json())
+        else:
+            writer(name)(content, folder / FILES[name])
+    return [str(folder / FILES[name]) for name in formats]

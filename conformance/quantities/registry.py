@@ -5,8 +5,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from pantocheck.conformance.quantities.bands import band_rms
-from pantocheck.conformance.quantities.signals import LineSignals, PantographSignals
+from pantocheck.conformance.quantities.signals import ForceSignals, LineSignals
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, contact_loss, statistical_extremes
 
 
@@ -34,7 +33,7 @@ class Quantity:
 class PantographQuantity(Quantity):
     """A quantity computed from the signals of one pantograph."""
 
-    compute: Callable[[PantographSignals], float]
+    compute: Callable[[ForceSignals], float]
 
 
 @dataclass(frozen=True)
@@ -45,24 +44,24 @@ class LineQuantity(Quantity):
 
 
 def _of_pantograph(
-    name: str, unit: str, definition: str, needs: str, compute: Callable[[PantographSignals], float]
+    name: str, unit: str, definition: str, needs: str, compute: Callable[[ForceSignals], float]
 ) -> PantographQuantity:
     return PantographQuantity(name, unit, definition, needs, "pantograph", compute)
 
 
-def _band(low: float, high: float) -> Callable[[PantographSignals], float]:
-    return lambda signals: band_rms(signals.delivered, signals.rate, low, high, signals.filter_applied_Hz)
+def _band(low: float, high: float) -> Callable[[ForceSignals], float]:
+    return lambda signals: signals.band(low, high)
 
 
-def _mean(signals: PantographSignals) -> float:
+def _mean(signals: ForceSignals) -> float:
     return float(signals.delivered.mean())
 
 
-def _std(signals: PantographSignals) -> float:
+def _std(signals: ForceSignals) -> float:
     return float(signals.graded.std())
 
 
-def _std_50(signals: PantographSignals) -> float:
+def _std_50(signals: ForceSignals) -> float:
     return float(signals.extended.std())
 
 
@@ -229,6 +228,13 @@ GIVEN_QUANTITIES: tuple[Quantity, ...] = (
         "kg",
         "size of the apparent mass of each pantograph's head, force over acceleration, at the case's frequencies",
         "pantograph model",
+        "static",
+    ),
+    Quantity(
+        "speed_over_wave_speed",
+        "",
+        "speed of the train over the speed of transverse waves on the contact wire",
+        "wave speed",
         "static",
     ),
     Quantity("mode_frequency_Hz", "Hz", "frequency of a mode, or of a group of modes", "mass-drop record", "mass_drop"),

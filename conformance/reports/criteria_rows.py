@@ -10,7 +10,8 @@ from pantocheck.conformance.reports.words import label, owner, words
 
 def criterion(row: dict[str, Any], sources: list[str]) -> Criterion:
     """One criterion of results.json as a row; its source is added to `sources` unless it is there."""
-    value, lower, upper, error = row["value"], row["lower"], row["upper"], row.get("discretisation_error")
+    value, lower, upper = row["value"], row["lower"], row["upper"]
+    error, _ = error_of(row)
     shown = beside_limits(value, lower, upper)
     source = row.get("source") or None
     if source is not None and source not in sources:
@@ -19,7 +20,7 @@ def criterion(row: dict[str, Any], sources: list[str]) -> Criterion:
     drawn = value is not None and limited
     return Criterion(
         quantity=row["quantity"],
-        label=label(row["quantity"]),
+        label=title(row),
         pantograph=owner(row).removeprefix("pantograph "),
         value=shown,
         error="–" if error is None else f"± {number(error, 2)}",
@@ -35,6 +36,19 @@ def criterion(row: dict[str, Any], sources: list[str]) -> Criterion:
     )
 
 
+def error_of(row: dict[str, Any]) -> tuple[float | None, str]:
+    """How uncertain a value is, and what by: the length of a record, or the mesh and time step of a simulation."""
+    if row.get("uncertainty") is not None:
+        return row["uncertainty"], "uncertainty"
+    return row.get("discretisation_error"), "discretisation error"
+
+
+def title(row: dict[str, Any]) -> str:
+    """What is graded: a quantity, or its drift from a baseline."""
+    drift = "" if row.get("baseline") is None else ", drift from the baseline"
+    return f"{label(row['quantity'])}{drift}"
+
+
 def signed(margin: float) -> str:
     """A margin with its sign and two decimals, three or more where two would show no distance to the limit."""
     for decimals in range(2, 13):
@@ -46,12 +60,12 @@ def signed(margin: float) -> str:
 
 def unresolved(row: dict[str, Any]) -> str | None:
     """A remark if a value is closer to a limit than its discretisation error: refinement could turn the verdict."""
-    value, error = row["value"], row.get("discretisation_error")
+    value, (error, name) = row["value"], error_of(row)
     if value is None or not error or row["verdict"] not in ("pass", "fail") or row["lower"] == row["upper"]:
         return None
     distances = [abs(value - limit) for limit in (row["lower"], row["upper"]) if limit is not None]
     if distances and min(distances) < error:
-        return "closer to its limit than its discretisation error"
+        return f"closer to its limit than its {name}"
     return None
 
 

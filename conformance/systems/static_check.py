@@ -127,6 +127,7 @@ def _waves(case: Case, built: Catenary) -> dict[str, Value]:
     if not case.is_static and case.speed < c:
         doppler = doppler_factor(case.speed, c)
         found |= {
+            "speed_over_wave_speed": case.speed / c,
             "doppler_factor": doppler,
             "amplification_coefficient": amplification_coefficient(reflection, doppler),
         }
