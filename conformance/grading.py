@@ -11,6 +11,7 @@ from pantocheck.conformance.criteria import Verdict, margin, verdict_of, worst
 from pantocheck.conformance.evaluation import LINE, Evaluation, Value, evaluate
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results import CaseResult, Criterion, FilterFacts, InputGroup, Number, RunFacts
+from pantocheck.conformance.spread import spread
 from pantocheck.conformance.systems import Outcome
 from pantocheck.conformance.traces import pantograph_traces, uplift_traces
 from pantocheck.conformance.trust import Trust, counts
@@ -33,10 +34,12 @@ def graded(case: Case, outcome: Outcome, lowest_trust: Trust) -> CaseResult:
         return ungraded(case, "error", mismatch, outcome)
     evaluation = _evaluated(case, outcome)
     record = outcome.record
+    shifted = {} if record is None else spread(record, case.shifted, case.file.filter.low_pass, evaluation.values)
     found = findings(case, record) if record is not None else []
     contradiction = next((finding for finding in found if finding.kind == "contradiction"), None)
     # Numbers of a record that contradicts itself are shown, but not held against limits: some would pass.
-    criteria = [] if contradiction is not None else criteria_of(case, outcome, lowest_trust)
+    graded_limits = [] if contradiction is not None else criteria_of(case, outcome, lowest_trust)
+    criteria = [_with_spread(item, shifted) for item in graded_limits]
     span, spans = case.line.geometry.span_m, case.line.geometry.spans
     supports = [i * span for i in range(spans + 1)]
     return _result(
@@ -54,6 +57,7 @@ def graded(case: Case, outcome: Outcome, lowest_trust: Trust) -> CaseResult:
         criteria=criteria,
         quantities={str(of): plain(evaluation.values[of]) for of in evaluation.values if evaluation.values[of]},
         skipped={str(of): evaluation.skipped[of] for of in evaluation.skipped if evaluation.skipped[of]},
+        spread={str(of): values for of, values in shifted.items()},
         traces=pantograph_traces(record, case.file.filter.low_pass, supports) if record is not None else {},
         uplift=uplift_traces(record) if record is not None else [],
     )
@@ -97,6 +101,7 @@ def ungraded(case: Case, verdict: Verdict, reason: str, outcome: Outcome | None 
         criteria=[],
         quantities={},
         skipped={},
+        spread={},
         traces={},
         uplift=[],
     )
@@ -177,6 +182,11 @@ def criterion(
     )
 
 
+def _with_spread(item: Criterion, shifted: dict[int, dict[str, float]]) -> Criterion:
+    found = shifted.get(item.pantograph, {}).get(item.quantity)
+    return item if found is None or item.value is None else item.model_copy(update={"spread": found})
+
+
 def _value(limit: Limit, evaluation: Evaluation) -> float | None:
     value = evaluation.values.get(limit.of, {}).get(limit.quantity)
     if isinstance(value, tuple):
@@ -193,17 +203,21 @@ def _outside(value: float, limit: Limit) -> str:
 
 
 def _close_calls(criteria: list[Criterion]) -> list[str]:
-    """A verdict that a finer mesh could turn is named."""
+    """A verdict that a finer mesh, or another stretch, could turn is named."""
     close = []
     for item in criteria:
-        if item.value is None or item.discretisation_error is None or item.lower == item.upper:
+        if item.value is None or item.lower == item.upper:
             continue
         distance = min(abs(item.value - bound) for bound in (item.lower, item.upper) if bound is not None)
-        if distance < item.discretisation_error:
-            close.append(
-                f"{item.quantity} of pantograph {item.pantograph} lies {distance:.2g} {item.unit} from a limit, "
-                f"less than its discretisation error of {item.discretisation_error:.2g} {item.unit}"
-            )
+        for error, name in (
+            (item.discretisation_error, "discretisation error"),
+            (item.spread, "spread over stretches"),
+        ):
+            if error is not None and distance < error:
+                close.append(
+                    f"{item.quantity} of pantograph {item.pantograph} lies {distance:.2g} {item.unit} from a limit, "
+                    f"less than its {name} of {error:.2g} {item.unit}"
+                )
     return close
 
 

@@ -80,7 +80,7 @@ class Campaign:
             self.folder.mkdir(parents=True, exist_ok=True)
             with FileLock(self.folder / f"{_key(case.id)}.lock"):
                 if (known := self._read(case)) is None:
-                    known = run_when_ready(case, self._started(), self.plan.trust, self._finished)
+                    known = run_when_ready(case, self._started(), self.plan.trust, self._finished, self.cases)
                     write_in_place(self._file(case), known.model_dump_json().encode())
             self._finished[case.id] = known
         return self._finished[case.id]

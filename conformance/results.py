@@ -61,6 +61,7 @@ class InputGroup(Part):
 class Criterion(Part):
     """A value against its limits. `pantograph` is 0 for the line; `item` counts droppers or modes from 1.
 
+    `spread` is the largest departure from the value when the evaluated stretch is shifted along the line.
     `uncertainty` is the half-width of the value's 95 % interval from the length of the record; `baseline` is the value
     of earlier results, if the limits are how far the value may have drifted from it.
     """
@@ -77,6 +78,7 @@ class Criterion(Part):
     source: str
     margin: float | None
     discretisation_error: float | None
+    spread: float | None = None
     reason: str | None
     uncertainty: float | None = None
     baseline: float | None = None
@@ -153,6 +155,10 @@ class CaseResult(Part):
     criteria: list[Criterion]
     quantities: dict[Owner, dict[str, Number]]
     skipped: dict[Owner, dict[str, str]]
+    spread: Annotated[
+        dict[Owner, dict[str, float]],
+        Field(default_factory=dict, description="departure when the stretch is shifted, as in `quantities`"),
+    ]
     uncertainty: Annotated[
         dict[Owner, dict[str, float]],
         Field(default_factory=dict, description="half-width of the 95 % interval, as in `quantities`"),

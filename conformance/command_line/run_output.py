@@ -55,14 +55,16 @@ def print_results(results: Results, files: Sequence[Path]) -> None:
 
 def _criteria_table(case: CaseResult) -> Table:
     table = Table(box=None, pad_edge=True, header_style="dim")
-    for heading in ("criterion", "value", "+-", "lower", "upper", "margin", "verdict", "trust", "reason"):
-        table.add_column(heading, justify="right" if heading in {"value", "+-", "lower", "upper", "margin"} else "left")
+    numbers = ("value", "+-", "+- stretch", "lower", "upper", "margin")
+    for heading in ("criterion", *numbers, "verdict", "trust", "reason"):
+        table.add_column(heading, justify="right" if heading in numbers else "left")
     for item in case.criteria:
         error = item.discretisation_error if item.uncertainty is None else item.uncertainty
         table.add_row(
             plain(_name(item)),
             number(item.value),
             "-" if error is None else f"{error:.2g}",
+            "-" if item.spread is None else f"{item.spread:.2g}",
             number(item.lower),
             number(item.upper),
             "-" if item.margin is None else f"{item.margin:+.2f}",

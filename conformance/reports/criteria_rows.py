@@ -32,7 +32,7 @@ def criterion(row: dict[str, Any], sources: list[str]) -> Criterion:
         verdict=row["verdict"],
         trust=row["trust"] if limited else "",
         source=None if source is None else sources.index(source) + 1,
-        remarks=tuple(filter(None, (row.get("reason"), unresolved(row)))),
+        remarks=tuple(filter(None, (row.get("reason"), unresolved(row), shifted(row)))),
     )
 
 
@@ -67,3 +67,14 @@ def unresolved(row: dict[str, Any]) -> str | None:
     if distances and min(distances) < error:
         return f"closer to its limit than its {name}"
     return None
+
+
+def shifted(row: dict[str, Any]) -> str | None:
+    """A remark on how far a value moves with the stretch that is evaluated, where the case asks for it."""
+    spread = row.get("spread")
+    if spread is None or row["value"] is None:
+        return None
+    return (
+        f"moves by up to {number(spread, 2)} {row.get('unit') or ''}".rstrip()
+        + " when the evaluated stretch is shifted"
+    )
