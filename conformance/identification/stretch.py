@@ -23,6 +23,8 @@ GUARD = 2.0  # droppers are taut again this long after the release, as a first g
 FIRST_FIT = 60.0  # length of the first fit [s]
 SHORTEST = 10.0  # below this no damping of a catenary can be had [s]
 LONG_WINDOW, SHORT_WINDOW = 4.0, 1.0  # for the end and the start [s]
+EARLIEST = 1.0  # after the release, whatever the residual says: its test sees little before its own length [s]
+TEST_TRANSITION = 2.5  # of the filter in front of that test [Hz]
 DISTURBED_FIT = 4.0  # a fit that leaves so much more than the noise at rest spans something that is not a decay
 
 
@@ -214,11 +216,12 @@ def _tested(
 def _first_sample(samples: Real, begin: int, end: int, poles: Complex, dt: float, band: Band) -> int:
     tested = _tested(samples, begin, end, poles, dt, band, SHORT_WINDOW)
     early = tested.disturbed & (tested.starts < begin + 0.25 * (end - begin))
+    earliest = int(EARLIEST / dt)
     if not early.any():
-        return 0
+        return earliest
     # Going back in time, what first disturbs a window is its first sample; the test's filter weighs its middle most.
     reach = tested.window // 4 + 1 + _test_filter(dt, band).size // 2
-    return min(int(tested.starts[early][-1]) + reach, end - 1)
+    return min(max(int(tested.starts[early][-1]) + reach, earliest), end - 1)
 
 
 def _poles(samples: Real, dt: float, band: Band) -> Complex:
@@ -279,5 +282,6 @@ def _rest_level(
 
 
 def _test_filter(dt: float, band: Band) -> Real:
-    """What lies above the band is no part of the test of the residual."""
-    return lowpass(1 / dt, 0.85 * band.high, 1.05 * band.high, 70.0)
+    """What lies above the band is no part of the test of the residual; short, so that it sees where a change is."""
+    passes = max(band.fitted - TEST_TRANSITION, 0.5 * band.fitted)
+    return lowpass(1 / dt, passes, band.fitted, 70.0)
