@@ -25,7 +25,9 @@ def record_of(made, name="made up", lateral=None):
 
 
 def complex_poles(modes):
-    return np.array([2 * np.pi * m.frequency * (-m.damping_ratio + 1j * np.sqrt(1 - m.damping_ratio**2)) for m in modes])
+    return np.array(
+        [2 * np.pi * m.frequency * (-m.damping_ratio + 1j * np.sqrt(1 - m.damping_ratio**2)) for m in modes]
+    )
 
 
 @pytest.mark.parametrize("seed", [5, 11])
@@ -157,7 +159,9 @@ def test_single_sensor_is_marked():
 def test_groups_hold_one_mode_per_span_even_where_they_touch():
     """Groups of the six-span line of the study's kind; from the fifth on they are nearer than their own modes."""
     first = np.array([0.836, 0.857, 0.897, 0.923, 0.966, 1.031])
-    frequencies = np.concatenate([k * np.mean(first) * (1 + (first / np.mean(first) - 1) * 1.1 / k**0.3) for k in range(1, 7)])
+    frequencies = np.concatenate(
+        [k * np.mean(first) * (1 + (first / np.mean(first) - 1) * 1.1 / k**0.3) for k in range(1, 7)]
+    )
     expected = np.repeat(np.arange(1, 7), 6)
     order = np.argsort(frequencies)
     found = group_numbers(frequencies[order], frequencies[order], 6)

@@ -35,7 +35,9 @@ def test_gradient_is_that_of_the_cost():
             moved = np.zeros(at.size, dtype=complex)
             moved[j] = step * direction
             difference = normal_equations(at + moved, data).cost - normal_equations(at - moved, data).cost
-            assert -difference / (4 * step) == pytest.approx(gradient[part], rel=1e-3, abs=1e-3 * np.abs(gradient).max())
+            assert -difference / (4 * step) == pytest.approx(
+                gradient[part], rel=1e-3, abs=1e-3 * np.abs(gradient).max()
+            )
 
 
 def test_start_poles_of_a_clean_decay_are_exact():

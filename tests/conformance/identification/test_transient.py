@@ -39,7 +39,9 @@ def test_response_is_that_of_the_oscillators():
     assert response is not None
     omega = 2 * np.pi * response.frequency
     omega_0 = 2 * np.pi * FREQUENCY
-    terms = -(omega[:, None] ** 2) / (MODAL_MASS * (omega_0**2 - omega[:, None] ** 2 + 2j * RATIO * omega_0 * omega[:, None]))
+    terms = -(omega[:, None] ** 2) / (
+        MODAL_MASS * (omega_0**2 - omega[:, None] ** 2 + 2j * RATIO * omega_0 * omega[:, None])
+    )
     exact = terms.sum(axis=1)
     for f in FREQUENCY:
         near = np.abs(response.frequency - f) < 0.02
