@@ -1,5 +1,7 @@
 """Damping models: coefficients put into a small finite-element line come out of its modes."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 import scipy.linalg
@@ -113,7 +115,7 @@ def test_modal_bands_give_the_first_groups_their_medians(line):
     measured = measured_of(line, 0.0, np.random.default_rng(4))
     bands = modal_bands(measured)
     assert len(bands) == 3
-    assert all(a.high <= b.low for a, b in zip(bands[:-1], bands[1:], strict=True))
+    assert all(a.high <= b.low for a, b in pairwise(bands))
     changed = with_modal(measured.frequency, measured.damping_ratio, bands)
     assert changed[:6] == pytest.approx(np.median(measured.damping_ratio[:6]))
     assert np.array_equal(changed[18:], measured.damping_ratio[18:])

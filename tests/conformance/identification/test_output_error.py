@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from pantocheck.conformance.identification.projection import block, normal_equations
+from pantocheck.conformance.identification.projection import block, normal_equations, solve
 from pantocheck.conformance.identification.refine import refine
 from pantocheck.conformance.identification.start_poles import start_poles
 from pantocheck.conformance.identification.structure import noise_of, settle, whitened
@@ -74,7 +74,7 @@ def test_noise_alone_is_not_taken_for_poles():
 
 
 def test_standard_deviations_are_those_of_repeated_noise():
-    """Standardised errors of 60 records x 3 modes x 2 parameters have unit variance within four standard errors (0.21)."""
+    """Standardised errors of 60 records, 3 modes, 2 parameters each: unit variance within four standard errors."""
     true = poles_of((0.9, 0.005), (0.92, 0.004), (1.7, 0.003))
     standardised = []
     for seed in range(60):
@@ -84,8 +84,6 @@ def test_standard_deviations_are_those_of_repeated_noise():
         n = int(100 / DT)
         clean = 2 * (np.exp(np.outer(np.arange(n) * DT, true)) @ residues).real
         data = [block(clean + 0.05 * random.standard_normal(clean.shape), DT, 0.3, 6.0)]
-        from pantocheck.conformance.identification.projection import solve
-
         noise = [noise_of(solve(true, data[0]), 3, data[0])]
         refined = refine(true, whitened(data, noise))
         error = np.concatenate([-(refined.poles - true).real, (refined.poles - true).imag])
