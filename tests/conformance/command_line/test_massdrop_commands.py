@@ -125,5 +125,6 @@ def test_bad_modes_are_refused(tmp_path, content, message):
 
 
 def test_missing_record_is_refused(tmp_path):
-    identified(folder, "out")
-    return folder
+    made = CliRunner().invoke(app, ["identify", str(tmp_path / "none.csv"), "--out", str(tmp_path)])
+    assert made.exit_code == 2
+    assert "cannot be read" in made.output
