@@ -1,11 +1,12 @@
 """From the outcome of a case to its result: quantities, criteria, warnings, traces."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.consistency import findings
 from pantocheck.conformance.criteria import Verdict, margin, verdict_of, worst
 from pantocheck.conformance.evaluation import LINE, Evaluation, Value, evaluate
 from pantocheck.conformance.quantities.registry import QUANTITIES
@@ -32,19 +33,27 @@ def graded(case: Case, outcome: Outcome, lowest_trust: Trust) -> CaseResult:
     if (mismatch := _mismatch(case, outcome)) is not None:
         return ungraded(case, "error", mismatch, outcome)
     evaluation = _evaluated(case, outcome)
-    refined = _evaluated(case, outcome.refined) if outcome.refined is not None else None
     record = outcome.record
     shifted = {} if record is None else spread(record, case.shifted, case.file.filter.low_pass, evaluation.values)
-    graded_limits = [criterion(limit, evaluation, lowest_trust, refined) for limit in case.limits]
+    found = findings(case, record) if record is not None else []
+    contradiction = next((finding for finding in found if finding.kind == "contradiction"), None)
+    # Numbers of a record that contradicts itself are shown, but not held against limits: some would pass.
+    graded_limits = [] if contradiction is not None else criteria_of(case, outcome, lowest_trust)
     criteria = [_with_spread(item, shifted) for item in graded_limits]
     span, spans = case.line.geometry.span_m, case.line.geometry.spans
     supports = [i * span for i in range(spans + 1)]
     return _result(
         case,
         outcome,
-        verdict=worst(criterion.verdict for criterion in criteria),
-        reason=None,
-        warnings=[*outcome.warnings, *_close_calls(criteria), *_edge_warnings(case, outcome)],
+        verdict=worst(criterion.verdict for criterion in criteria) if contradiction is None else "error",
+        reason=None if contradiction is None else contradiction.text,
+        warnings=[
+            *outcome.warnings,
+            *(finding.text for finding in found if finding.kind == "doubt"),
+            *_close_calls(criteria),
+            *_edge_warnings(case, outcome),
+        ],
+        notes=[f"not checked, {finding.text}" for finding in found if finding.kind == "unchecked"],
         criteria=criteria,
         quantities={str(of): plain(evaluation.values[of]) for of in evaluation.values if evaluation.values[of]},
         skipped={str(of): evaluation.skipped[of] for of in evaluation.skipped if evaluation.skipped[of]},
@@ -52,6 +61,13 @@ def graded(case: Case, outcome: Outcome, lowest_trust: Trust) -> CaseResult:
         traces=pantograph_traces(record, case.file.filter.low_pass, supports) if record is not None else {},
         uplift=uplift_traces(record) if record is not None else [],
     )
+
+
+def criteria_of(case: Case, outcome: Outcome, lowest_trust: Trust) -> list[Criterion]:
+    """Every limit of a case against what was delivered; parameters as in `graded`."""
+    evaluation = _evaluated(case, outcome)
+    refined = _evaluated(case, outcome.refined) if outcome.refined is not None else None
+    return [criterion(limit, evaluation, lowest_trust, refined) for limit in case.limits]
 
 
 def _mismatch(case: Case, outcome: Outcome) -> str | None:
@@ -81,6 +97,7 @@ def ungraded(case: Case, verdict: Verdict, reason: str, outcome: Outcome | None 
         verdict=verdict,
         reason=line,
         warnings=[],
+        notes=[],
         criteria=[],
         quantities={},
         skipped={},
@@ -90,13 +107,13 @@ def ungraded(case: Case, verdict: Verdict, reason: str, outcome: Outcome | None 
     )
 
 
-def _result(case: Case, outcome: Outcome, **parts: object) -> CaseResult:
+def _result(case: Case, outcome: Outcome, notes: Sequence[str], **parts: object) -> CaseResult:
     file, record = case.file, outcome.record
     return CaseResult.model_validate(
         {
             "id": case.id,
             "title": file.title,
-            "notes": [*case.notes, *outcome.notes],
+            "notes": [*case.notes, *outcome.notes, *notes],
             "inputs": [InputGroup(group=i.group, trust=i.trust, source=source_text(i.source)) for i in case.inputs],
             "input_digest": case.digest,
             "run": RunFacts(

@@ -5,6 +5,7 @@ import signal
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from types import FrameType
 
 from pantocheck.conformance.assembly import assembled, now
 from pantocheck.conformance.cases.case import Case
@@ -61,7 +62,7 @@ def run(
     try:
         if jobs == 1:
             for case in _ordered(cases):
-                keep(_after_requirements(case, finished, cases) or run_case(case, system, trust))
+                keep(run_when_ready(case, system, trust, finished, cases))
         else:
             _run_side_by_side(cases, system, trust, jobs, finished, keep)
     except KeyboardInterrupt:
@@ -79,6 +80,13 @@ def run_case(case: Case, system: System, trust: Trust) -> CaseResult:
     except Exception as error:
         text = " ".join(str(error).split())[:300]
         return ungraded(case, "error", f"{type(error).__name__}: {text}" if text else type(error).__name__)
+
+
+def run_when_ready(
+    case: Case, system: System, trust: Trust, finished: dict[str, CaseResult], cases: Sequence[Case]
+) -> CaseResult:
+    """Run one of several cases if those it requires have not failed; else it is skipped."""
+    return _after_requirements(case, finished, cases) or run_case(case, system, trust)
 
 
 def _ordered(cases: Sequence[Case]) -> list[Case]:
@@ -167,7 +175,12 @@ def _pool(jobs: int) -> Executor:
 
 def _die_quietly() -> None:
     """In a worker: Ctrl-C reaches all processes at once, and only the first of them has something to say."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    signal.signal(signal.SIGINT, _leave)
+
+
+def _leave(number: int, frame: FrameType | None) -> None:
+    # An exception, so that a system can end what it started before this process ends.
+    raise SystemExit(128 + number)
 
 
 def _results(

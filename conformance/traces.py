@@ -15,6 +15,9 @@ Array = NDArray[np.float64]
 
 MOST_POINTS = 1500
 
+LONG_STEP = 10
+"""Up to this many samples to one that is drawn, every k-th shows the force well enough."""
+
 
 def pantograph_traces(record: Record, low_pass: LowPass, supports: list[float]) -> dict[str, Traces]:
     """Force, spectrum and histogram of every pantograph over the evaluated stretch; none where it is not covered.
@@ -58,10 +61,11 @@ def signal_traces(
     except QuantityUnavailable:
         graded = None
     frequency, amplitude = _peaks(*spectrum)
+    at = _drawn(signals.delivered)
     return Traces(
-        position_m=thinned(position),
-        force_N=thinned(signals.delivered),
-        force_20_N=None if graded is None else thinned(graded),
+        position_m=thinned(position[at]),
+        force_N=thinned(signals.delivered[at]),
+        force_20_N=None if graded is None else thinned(graded[at]),
         mean_N=float(signals.delivered.mean()),
         std_N=None if graded is None else float(graded.std()),
         supports_m=supports,
@@ -90,6 +94,22 @@ def thinned(series: Array) -> list[float]:
     """Every k-th value, at most about 1500, rounded to six significant digits."""
     step = max(1, -(-series.size // MOST_POINTS))
     return [float(f"{value:.6g}") for value in series[::step]]
+
+
+def _drawn(force: Array) -> NDArray[np.intp]:
+    """Samples of a long record that are drawn, at most 1500: the lowest and the highest of every few neighbours.
+
+    A record of minutes thinned evenly would not show the one peak that its extremes are about.
+    """
+    if force.size <= LONG_STEP * MOST_POINTS:
+        return np.arange(force.size)
+    step = -(-force.size // (MOST_POINTS // 2))
+    found = {
+        first + int(extreme(force[first : first + step]))
+        for first in range(0, force.size, step)
+        for extreme in (np.argmin, np.argmax)
+    }
+    return np.array(sorted(found), dtype=np.intp)
 
 
 def _peaks(frequency: Array, amplitude: Array) -> tuple[Array, Array]:

@@ -5,7 +5,7 @@ import json
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from pantocheck.conformance.cases.base import Sourced
+from pantocheck.conformance.cases.base import PROVENANCE, Sourced
 from pantocheck.conformance.cases.case_file import CaseFile
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.line import Line
@@ -153,13 +153,18 @@ class Case:
         return replace(self, limits=tuple(merged.values()))
 
 
-_SAID_OF_NUMBERS = frozenset({"trust", "source", "provisional", "note", "title", "id", "model"})
+_SAID_OF_NUMBERS = frozenset({*PROVENANCE, "title", "id", "model"})
 
 
 def _numbers(tree: object) -> object:
     """A file without what is said about its numbers, so that a corrected source leaves the digest as it is."""
+    return without_keys(tree, _SAID_OF_NUMBERS)
+
+
+def without_keys(tree: object, keys: frozenset[str]) -> object:
+    """Nested tables and lists without some keys, wherever they stand."""
     if isinstance(tree, dict):
-        return {key: _numbers(value) for key, value in tree.items() if key not in _SAID_OF_NUMBERS}
+        return {key: without_keys(value, keys) for key, value in tree.items() if key not in keys}
     if isinstance(tree, list):
-        return [_numbers(value) for value in tree]
+        return [without_keys(value, keys) for value in tree]
     return tree

@@ -54,11 +54,11 @@ def assess(
     from pantocheck.conformance.assessment import assess as assessed
     from pantocheck.conformance.assessment import subject_of
     from pantocheck.conformance.baseline import against_baseline
-    from pantocheck.conformance.command_line.run_output import EXIT_CODES, print_results, write_results
+    from pantocheck.conformance.command_line.run_output import EXIT_CODES, print_results
     from pantocheck.conformance.files import check_writable
     from pantocheck.conformance.profiles import profile_named
     from pantocheck.conformance.record_files.sidecar import LineTable
-    from pantocheck.conformance.reports.writers import checked_formats
+    from pantocheck.conformance.reports.writers import checked_formats, write_all
     from pantocheck.conformance.results_file import read_results
 
     options = _options(
@@ -79,7 +79,7 @@ def assess(
     results = assessed(subject, rules, options.trust, other, own)
     if earlier is not None and baseline is not None:
         results = against_baseline(results, earlier, options.drift_pct, baseline.name)
-    print_results(results, write_results(results, out, written))
+    print_results(results, write_all(results, out, written))
     raise typer.Exit(EXIT_CODES[results.verdict])
 
 

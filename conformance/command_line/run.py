@@ -17,7 +17,8 @@ def run(
         Path | None, typer.Option(help="TOML file with the options of a run; see `pantocheck schema plan`.")
     ] = None,
     system: Annotated[
-        str | None, typer.Option(help="System under test: builtin or record:DIR.", show_default="builtin")
+        str | None,
+        typer.Option(help="System under test: builtin, record:DIR or command:PROGRAM.", show_default="builtin"),
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Folder for the results.", show_default="report")] = None,
     formats: Annotated[
@@ -37,6 +38,9 @@ def run(
         float | None, typer.Option(help="How far a value may drift from the baseline, in percent.  [default: 1]")
     ] = None,
     jobs: Annotated[int | None, typer.Option(help="Cases run side by side.", show_default="1")] = None,
+    timeout: Annotated[
+        float | None, typer.Option(help="Seconds that a program may take for a case.", show_default="600")
+    ] = None,
 ) -> None:
     """Run cases on a system, grade them, and write the results and the certificate.
 
@@ -45,6 +49,8 @@ def run(
     pantocheck run 'en50318-2002/*' --out report
 
     pantocheck run my-case.toml --system record:records --formats html,json
+
+    pantocheck run 'en50318-2002/*' --system 'command:python3 my_adapter.py' --timeout 300
 
     pantocheck run --plan conformance.toml --baseline baseline/results.json --drift 2
     """
@@ -55,10 +61,9 @@ def run(
         EXIT_CODES,
         print_results,
         reported_progress,
-        write_results,
     )
     from pantocheck.conformance.files import check_writable
-    from pantocheck.conformance.reports.writers import checked_formats
+    from pantocheck.conformance.reports.writers import checked_formats, write_all
     from pantocheck.conformance.results_file import read_results
     from pantocheck.conformance.runner import RunInterrupted
     from pantocheck.conformance.runner import run as run_cases
@@ -75,13 +80,14 @@ def run(
         baseline=None if baseline is None else str(baseline),
         drift_pct=drift,
         jobs=jobs,
+        timeout_s=timeout,
     )
     chosen = select(options.cases)
     if options.limits is not None:
         chosen = overlaid(chosen, read_limits(Path(options.limits)))
     written = checked_formats(options.formats)
     earlier = None if options.baseline is None else read_results(Path(options.baseline))
-    tested, folder = system_named(options.system), Path(options.out)
+    tested, folder = system_named(options.system, options.timeout_s), Path(options.out)
     check_writable(folder)
     interrupted = False
     try:
@@ -92,7 +98,7 @@ def run(
         typer.echo("Interrupted: what was finished is kept.", err=True)
     if earlier is not None and options.baseline is not None:
         results = against_baseline(results, earlier, options.drift_pct, Path(options.baseline).name)
-    print_results(results, write_results(results, folder, written))
+    print_results(results, write_all(results, folder, written))
     raise typer.Exit(INTERRUPTED if interrupted else EXIT_CODES[results.verdict])
 
 

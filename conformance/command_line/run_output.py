@@ -27,7 +27,7 @@ def reported_progress(cases: int) -> Iterator[Report]:
         yield lambda result: bar.advance(task)
 
 
-def print_results(results: Results, files: Sequence[str]) -> None:
+def print_results(results: Results, files: Sequence[Path]) -> None:
     """Verdict first, then a table of criteria for each case, then the files."""
     output = console()
     criteria = [criterion for case in results.cases for criterion in case.criteria]
@@ -50,7 +50,7 @@ def print_results(results: Results, files: Sequence[str]) -> None:
             output.print(_criteria_table(case))
     output.print()
     for name in files:
-        output.print(plain(name), soft_wrap=True)
+        output.print(plain(str(name)), soft_wrap=True)
 
 
 def _criteria_table(case: CaseResult) -> Table:
@@ -78,17 +78,3 @@ def _criteria_table(case: CaseResult) -> Table:
 def _name(item: Criterion) -> str:
     of = f", pantograph {item.pantograph}" if item.pantograph > 1 else ""
     return f"{item.quantity}{f'[{item.item}]' if item.item else ''}{of}"
-
-
-def write_results(results: Results, folder: Path, formats: Sequence[str]) -> list[str]:
-    """Write results in the formats asked, and give the paths of the files."""
-    from pantocheck.conformance.files import write_in_place
-    from pantocheck.conformance.reports.writers import FILES, writer
-
-    content = results.to_dict()
-    for name in formats:
-        if name == "json":
-            write_in_place(folder / FILES[name], results.to_json())
-        else:
-            writer(name)(content, folder / FILES[name])
-    return [str(folder / FILES[name]) for name in formats]

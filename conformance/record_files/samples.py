@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 from pantocheck.conformance.record import Array, Record, RecordInvalid
 from pantocheck.conformance.record_files.sidecar import Sidecar
 
@@ -30,8 +31,8 @@ class Samples:
     uplift: Array | None = None
     support_position: Array | None = None
 
-    def at(self, chosen: Array) -> "Samples":
-        """Some of the samples, as a mask or indices choose them."""
+    def at(self, chosen: NDArray[np.bool_]) -> "Samples":
+        """The samples that a mask chooses."""
         parts = {name: getattr(self, name) for name in _SAMPLED}
         return replace(self, **{name: value[..., chosen] for name, value in parts.items() if value is not None})
 

@@ -31,7 +31,7 @@ def read_csv(path: Path, sidecar: Sidecar, where: str) -> Rows:
             names = [name.strip() for name in file.readline(100_000).split(",")]
             columns = _columns(names, sidecar, where)
             with warnings.catch_warnings():
-                warnings.filterwarnings("ignore", "loadtxt: input contained no data")  # said below, as an error
+                warnings.simplefilter("ignore", UserWarning)  # no data is said below, an empty line is no sample
                 samples = np.loadtxt(
                     file, delimiter=",", ndmin=2, comments=None, max_rows=MAX_SAMPLES // len(names) + 1
                 )

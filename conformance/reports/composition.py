@@ -95,7 +95,7 @@ def _drawn(content: str) -> tuple[Figure, ...]:
 def _force(key: str, trace: dict[str, Any], rows: list[dict[str, Any]]) -> Figure:
     start, end = trace["position_m"][0], trace["position_m"][-1]
     mean, std = trace.get("mean_N"), trace.get("std_N")
-    text = f"Pantograph {key}: contact force from {number(start)} m to {number(end)} m"
+    text = f"Pantograph {key}: contact force from {plain(start)} m to {plain(end)} m"
     if mean is not None and std is not None:
         low, high = number(mean - 3 * std), number(mean + 3 * std)
         text += f"; mean {number(mean)} N, mean ± 3 σ from {low} N to {high} N"

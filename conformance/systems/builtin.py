@@ -58,8 +58,25 @@ class ReferenceSimulator:
 def _outcome(
     case: Case, element: float, step: float, uplift_forces: tuple[float, ...] | None = None
 ) -> tuple[Outcome, tuple[float, ...]]:
-    """A case at one discretisation, with given uplift forces or else tuned to its targets."""
-    line = discretise(catenary(case.line), element)
+    return run_line(case, discretise(catenary(case.line), element), element, step, uplift_forces)
+
+
+def run_line(
+    case: Case, line: Discretised, element: float, step: float, uplift_forces: tuple[float, ...] | None = None
+) -> tuple[Outcome, tuple[float, ...]]:
+    """Run a case on a line that is discretised already.
+
+    Parameters
+    ----------
+    case : to run
+    line : its line
+    element, step : length of an element [m] and time step [s], as reported
+    uplift_forces : of the pantographs [N]; None: those of the case, tuned if it asks for a mean
+
+    Returns
+    -------
+    outcome, uplift forces
+    """
     outcome = Outcome(static=static_quantities(case, line), dt_s=step, element_m=element)
     if case.is_static:
         return outcome, ()

@@ -189,6 +189,18 @@ def test_same_record_same_results(train):
     assert first.model_copy(update={"started": None}) == second.model_copy(update={"started": None})
 
 
+def test_peak_of_a_long_record_is_drawn(train):
+    """One sample of 60 000: thinned evenly, the figure would not show what the warning and the maximum are about."""
+    path = train(spans=200)
+    lines = path.with_suffix(".csv").read_text().splitlines()
+    lines[30_001] = re.sub(r",[-0-9.e]+,", ",700.0,", lines[30_001], count=1)
+    path.with_suffix(".csv").write_text("\n".join(lines))
+    trace = graded(path).cases[0].traces["1"]
+    assert max(trace.force_N) == 700.0
+    assert len(trace.force_N) == len(trace.position_m) == len(trace.force_20_N) <= 1500
+    assert np.all(np.diff(trace.position_m) > 0)
+
+
 def pantocheck(*arguments):
     return CliRunner().invoke(app, [str(argument) for argument in arguments])
 

@@ -166,6 +166,24 @@ def test_impossible_axes_are_refused(change, message):
         ready(change(by_time()))
 
 
+def test_odometer_that_moves_in_steps_is_smoothed():
+    """A counter of 0.5 m steps, sampled every 0.14 m: the position grows evenly in between, the statistics stay."""
+    samples = by_time()
+    stepped = np.floor(samples.position * 2) / 2
+    found = ready(Samples(samples.force, samples.time, position=stepped))
+    assert np.all(np.diff(found.pantographs[1].parts[0].position) > 0)
+    assert_allclose(values(found)["std_force_N"], values(ready(samples))["std_force_N"], rtol=1e-3)
+
+
+def test_record_that_covers_little_of_its_stretch_gives_no_number():
+    """A truncated record must not stand for the line: 30 s are 2083 m."""
+    for asked, share in ((3000.0, "69"), (2083.0, None), (10_000.0, "only 21")):
+        found = ready(by_time(), evaluated_m=[10.0, asked])
+        texts = [*found.warnings, *evaluated(found.pantographs, found.line).skipped[1].values()]
+        assert (len(found.pantographs[1].parts) == 1) == (asked < 5000)
+        assert any(f"{share} % of" in text or f"{share}" in text for text in texts) == (share is not None)
+
+
 def test_uplift_ignores_missing_values():
     samples = by_time()
     uplift = np.full((2, samples.time.size), np.nan)
@@ -174,3 +192,4 @@ def test_uplift_ignores_missing_values():
     lines = Samples(samples.force, samples.time, None, samples.position, None, uplift, np.array([300.0, 360.0]))
     found = ready(lines, support_position_m=[300.0, 360.0]).line
     assert (found.uplift.shape[0], found.uplift.max()) == (1, 0.05)
+    assert any("of the uplift is missing" in text for text in ready(lines, support_position_m=[300.0, 360.0]).warnings)

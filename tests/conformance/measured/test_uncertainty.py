@@ -76,3 +76,13 @@ def test_blocks_do_not_reach_across_a_gap():
     assert found["mean_force_N"] == pytest.approx(1.96 * 20 / np.sqrt(blocks), rel=0.1)
     # A block across the gap would bring other extremes than these two.
     assert found["max_force_N"] == pytest.approx(0, abs=1e-9)
+
+
+def test_bands_of_several_stretches_still_partition_the_variance():
+    """Two halves with means 100 and 140 N and 7 N rms at 10 Hz: 20 N belong to the lowest band, 7 N to the next."""
+    time = np.arange(10_000) / RATE
+    halves = [level + 7 * np.sqrt(2) * np.sin(2 * np.pi * 10 * time) for level in (100.0, 140.0)]
+    signals = PooledSignals(tuple(pooled(half, filter_applied_Hz=20.0).parts[0] for half in halves), "")
+    assert signals.band(0, 5) == pytest.approx(20, rel=1e-3)
+    assert signals.band(5, 20) == pytest.approx(7, rel=1e-3)
+    assert np.hypot(signals.band(0, 5), signals.band(5, 20)) == pytest.approx(signals.delivered.std(), rel=1e-3)
