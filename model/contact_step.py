@@ -9,7 +9,7 @@ from pantocheck.model.state import Line, Motion, Train, Workspace
 Array = NDArray[np.float64]
 
 
-@njit(cache=True, no_cpython_wrapper=True)
+@njit(cache=True)
 def predict_train(line: Line, motion: Motion, train: Train, work: Workspace) -> None:
     """Move the pantographs on, predict them, and press with the contact forces of the last step to begin with."""
     dt = line.time_step
@@ -37,7 +37,7 @@ def predict_train(line: Line, motion: Motion, train: Train, work: Workspace) -> 
             _predict_contact(line, motion, train, work, p, k, head, compliance)
 
 
-@njit(cache=True, no_cpython_wrapper=True)
+@njit(cache=True)
 def _predict_contact(
     line: Line, motion: Motion, train: Train, work: Workspace, p: int, k: int, head: float, head_compliance: float
 ) -> None:
@@ -65,7 +65,7 @@ def _predict_contact(
     work.compliance[p, k] = compliance
 
 
-@njit(cache=True, no_cpython_wrapper=True)
+@njit(cache=True)
 def turn_contacts(line: Line, train: Train, work: Workspace, w: Array, r: Array, first: int, last: int) -> float:
     """Solve every contact once, the other forces held; returns the largest change of a contact force [N]."""
     dt = line.time_step
@@ -96,7 +96,7 @@ def turn_contacts(line: Line, train: Train, work: Workspace, w: Array, r: Array,
     return largest
 
 
-@njit(cache=True, no_cpython_wrapper=True)
+@njit(cache=True)
 def correct_train(dt: float, train: Train) -> None:
     """Turn the predictors back into displacement and velocity, with the accelerations that were found."""
     for p in range(train.position.size):

@@ -129,7 +129,7 @@ def run(line: Discretised, passage: Passage, progress: Callable[[float], None] |
             raise DidNotConverge(f"the forces of the step at {(first + done) * passage.time_step:.3f} s did not settle")
         if progress:
             progress(part.stop / max(steps, 1))
-    time: Array = passage.time_step * np.arange(1, steps + 1)
+    time: Array = passage.time_step * np.arange(1, steps + 1).astype(np.float64)
     position: Array = np.array(passage.start)[:, None] + passage.speed * time
     return History(time, position, force.T.copy(), height.T.copy(), motion_there.transpose(1, 0, 2).copy())
 
