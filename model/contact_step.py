@@ -4,6 +4,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 from pantocheck.model.connector_step import NEGLIGIBLE_FORCE, add_column, larger
+from pantocheck.model.local_flexibility import local_flexibility
 from pantocheck.model.state import Line, Motion, Train, Workspace
 
 Array = NDArray[np.float64]
@@ -61,6 +62,7 @@ def _predict_contact(
                 at = half + i - j
                 compliance += n[2 * j + m] * (n[2 * i] * column[0, at] + n[2 * i + 1] * column[1, at])
     work.element[p] = e
+    work.stiffness[p, k] = 1 / (1 / train.contact_stiffness[p] + local_flexibility(line.bubble[k, e], s))
     work.closing[p, k] = head - wire
     work.compliance[p, k] = compliance
 
@@ -71,9 +73,9 @@ def turn_contacts(line: Line, train: Train, work: Workspace, w: Array, r: Array,
     dt = line.time_step
     largest = 0.0
     for p in range(train.position.size):
-        e, k = work.element[p], train.contact_stiffness[p]
+        e = work.element[p]
         for m in range(train.contact.shape[1]):
-            row, n = line.contact_row[m], work.shape[p, m]
+            row, n, k = line.contact_row[m], work.shape[p, m], work.stiffness[p, m]
             approach = 0.0
             for i in range(train.z.shape[2]):
                 approach += train.head[p, i] * train.z[2, p, i]

@@ -256,6 +256,7 @@ def workspace(line: Line, train: Train) -> Workspace:
         elongation=np.zeros((2, line.station.size)),
         shape=np.zeros((pantographs, wires, 4)),
         element=np.zeros(pantographs, dtype=np.int64),
+        stiffness=np.zeros((pantographs, wires)),
         closing=np.zeros((pantographs, wires)),
         compliance=np.zeros((pantographs, wires)),
     )
