@@ -1,6 +1,6 @@
 """Wall time per simulated time on AC simple at 320 km/h; prints the tables of docs/speed.md.
 
-python benchmarks/speed.py [--exudyn]
+python benchmarks/speed.py
 
 Process time on one core is measured, after compilation, so that other work on the machine does not count.
 """
@@ -57,8 +57,8 @@ def memory(spans: int) -> float:
     return resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
 
 
-def same_line(with_exudyn: bool) -> None:
-    """Our kernel, scipy refactorising, and a general engine on one short stretch in the vertical plane."""
+def same_line() -> None:
+    """Our kernel, and scipy refactorising, on one short stretch in the vertical plane."""
     from refactorised import run_refactorised
 
     case = ac_simple(20)
@@ -73,18 +73,11 @@ def same_line(with_exudyn: bool) -> None:
     print(
         f"| scipy, refactorised every iteration (0.1 s) | {spent / 0.1:.2f} | largest difference {difference:.1e} N |"
     )
-    if with_exudyn:
-        from general_engine import run_exudyn
-
-        spent, sigma, version = run_exudyn(case, line, way)
-        print(f"| Exudyn {version} | {spent / way.duration:.2f} | {sigma:.4f} |")
 
 
 def main() -> None:
     """Measure and print."""
-    options = argparse.ArgumentParser(description=__doc__)
-    options.add_argument("--exudyn", action="store_true", help="run Exudyn, too, where it is installed")
-    chosen = options.parse_args()
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
     print("| plane | pantographs | spans | process time / simulated time |\n| :-- | --: | --: | --: |")
     for plane in (True, False):
         for pantographs in (1, 2):
@@ -95,7 +88,7 @@ def main() -> None:
         ratios = [kernel(spans, 2, False, reach)[0] for reach in (math.inf, None, 660.0)]
         print(f"| {spans} | {' | '.join(f'{ratio:.3f}' for ratio in ratios)} |", flush=True)
     print(f"\nMemory of a process with stagger, 2 pantographs, 60 spans: {memory(60):.0f} MB.")
-    same_line(chosen.exudyn)
+    same_line()
 
 
 if __name__ == "__main__":

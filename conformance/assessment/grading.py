@@ -84,6 +84,7 @@ def assess(
         criteria=list(graded.criteria),
         quantities={str(of): plain(values) for of, values in subject.values.values.items() if values},
         skipped={str(of): reasons for of, reasons in subject.values.skipped.items() if reasons},
+        spread={},
         uncertainty={str(of): values for of, values in subject.uncertainty.items()},
         run=_run(subject, profile),
         traces=_traces(subject),

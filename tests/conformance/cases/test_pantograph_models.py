@@ -31,7 +31,8 @@ def rows(matrix):
 
 
 def by_matrices(folder, model, head=(0, 0, 1)):
-    text = f"mass_kg = {rows(model.mass)}\ndamping_N_s_m = {rows(model.damping)}\nstiffness_N_m = {rows(model.stiffness)}\n"
+    text = f"mass_kg = {rows(model.mass)}\ndamping_N_s_m = {rows(model.damping)}\n"
+    text += f"stiffness_N_m = {rows(model.stiffness)}\n"
     return written(folder, f"[matrices]\n{text}head = {[float(x) for x in head]}\n{SAID}")
 
 

@@ -1,6 +1,6 @@
 """`pantocheck show`: the line at rest, and its drawing."""
 
-import xml.etree.ElementTree as ElementTree
+from xml.etree import ElementTree
 
 from pantocheck.conformance.command_line.app import app
 from typer.testing import CliRunner
