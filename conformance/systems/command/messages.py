@@ -27,11 +27,11 @@ class Start(Table):
 
 
 class GivenPantograph(Table):
-    """One pantograph of a run, in running order: a chain, matrices or modes, whichever its file gives."""
+    """One pantograph of a run, in running order; one of chain, matrices and modes says what it is."""
 
-    chain: Chain | None = None
-    matrices: Matrices | None = None
-    modes: Modes | None = None
+    chain: Chain | None
+    matrices: Matrices | None
+    modes: Modes | None
     contact: Contact
     uplift_force_N: Annotated[float | None, Field(description="constant uplift force, or where tuning starts [N]")]
     target_mean_force_N: Annotated[
