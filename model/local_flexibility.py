@@ -3,7 +3,8 @@
 A wire bends sharply under a pantograph, a cubic polynomial per element cannot. The difference is static at all
 frequencies of interest, so it is put in series with the contact: the deflection under a unit force of the element held
 at both ends, by Ritz with three functions s^2 (1 - s)^2 (2 s - 1)^i. Without it the contact is too stiff, most of all
-in mid-element, and the force between 20 and 50 Hz converges slowly with the element length.
+in mid-element, and the force between 20 and 50 Hz converges slowly with the element length. The coupling of these
+functions with the cubic ones through the tension is left out: it vanishes with the square of the element length.
 """
 
 import numpy as np
