@@ -63,6 +63,7 @@ class Case:
     verdict: str
     sentence: str
     criteria: tuple[Criterion, ...]
+    error_name: str
     sources: tuple[str, ...]
     bands: Table
     quantities: Table

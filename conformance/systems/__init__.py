@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from typing import Literal, Protocol
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.evaluation import Value
+from pantocheck.conformance.evaluation import Evaluation, Value
 from pantocheck.conformance.record import Record
 
 
@@ -23,6 +23,7 @@ class Outcome:
     warnings : what should make him careful
     skipped : why the system does not run this case; None if it did
     errored : one line on what went wrong; None if nothing did
+    summary : quantities that were delivered as numbers, in place of a record
     refined : the same case with element and time step halved, from which the discretisation error is taken
     """
 
@@ -36,6 +37,7 @@ class Outcome:
     warnings: tuple[str, ...] = ()
     skipped: str | None = None
     errored: str | None = None
+    summary: Evaluation | None = None
     refined: "Outcome | None" = None
 
 
