@@ -64,12 +64,12 @@ def made_up(seed: int, peers: bool) -> None:
     record = DropRecord(
         name, name, made.rate, made.samples, channels, drop=Drop(20, "CW", 0.0, 5.0), line=Line((60.0,) * 6)
     )
-    poles = poles[poles.imag < 2 * np.pi * 9.9]
     (found,) = identify((record,))
+    # Modes in the fitted band that are not reported enter the bound, or their leakage would pass for excitation.
+    poles = poles[poles.imag < 2 * np.pi * found.band.fitted]
     bound = bounds(found, poles)
-    seen = bound < 0.005
-    truth = np.column_stack([made.frequency, made.damping_ratio, np.ones(made.poles.size)])
-    truth = truth[made.poles.imag < 2 * np.pi * 9.9][seen]
+    seen = (bound < 0.005) & (poles.imag < 2 * np.pi * 9.9)
+    truth = np.column_stack([made.frequency, made.damping_ratio, np.ones(made.poles.size)])[: poles.size][seen]
     score(name, (record,), truth, bound[seen], peers)
 
 

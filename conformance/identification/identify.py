@@ -14,7 +14,7 @@ from pantocheck.conformance.identification.projection import Block, Fit, block, 
 from pantocheck.conformance.identification.refine import refine
 from pantocheck.conformance.identification.start_poles import start_poles
 from pantocheck.conformance.identification.stretch import Band
-from pantocheck.conformance.identification.structure import noise_of, settle, whitened
+from pantocheck.conformance.identification.structure import complete, noise_of, settle, whitened
 from pantocheck.conformance.massdrop_records.record import DropRecord
 
 Real = NDArray[np.float64]
@@ -109,7 +109,7 @@ def _identify_line(
             noise = [noise_of(solve(given, data), given.size, data) for data in blocks]
         poles = given
     else:
-        structure = settle(_start(prepared, stretches, band), blocks)
+        structure = complete(settle(_start(prepared, stretches, band), blocks), blocks)
         poles, noise = structure.poles, structure.noise
     progress(f"{records[0].name}: uncertainty")
     return _reported(tuple(prepared), band, poles, blocks, noise, block_of, columns)

@@ -212,7 +212,10 @@ def _tested(
 
 def _first_sample(samples: Real, begin: int, end: int, poles: Complex, dt: float, band: Band) -> int:
     tested = _tested(samples, begin, end, poles, dt, band, SHORT_WINDOW)
+    # Up to the first second and more of calm: a single loud window later on is chance.
+    calm = np.convolve(~tested.disturbed, np.ones(5), mode="full")[4:] == 5
     early = tested.disturbed & (tested.starts < begin + 0.25 * (end - begin))
+    early &= np.cumsum(calm & (tested.starts >= int(EARLIEST / dt))) == 0
     earliest = int(EARLIEST / dt)
     if not early.any():
         return earliest
@@ -232,7 +235,8 @@ def _left(samples: Real, start: int, end: int, poles: Complex, dt: float, band: 
     residues = solve(poles, block(samples[start:end], dt, band.low, band.fitted)).residues
     t = (np.arange(samples.shape[0]) - start) * dt
     # Poles beyond the band stand for what leaks in from there; as decays they mean nothing.
-    real = poles.imag < 2 * np.pi * band.fitted
+    # Nor does a fast decay carried back over many of its own time constants.
+    real = (poles.imag < 2 * np.pi * band.fitted) & (-poles.real * start * dt < 5)
     return np.asarray(samples - 2 * (np.exp(np.outer(t, poles[real])) @ residues[real]).real)
 
 

@@ -63,6 +63,21 @@ def settle(poles: Complex, blocks: list[Block], rounds: int = 8) -> Structure:
     return Structure(poles, _noise(poles, blocks))
 
 
+def complete(found: Structure, blocks: list[Block]) -> Structure:
+    """Look for a second mode hidden under each pole, where the residual shows too little to be noticed, then settle.
+
+    Parameters
+    ----------
+    found : what `settle` found
+    blocks : data in physical units
+    """
+    white = whitened(blocks, found.noise)
+    extended = _add(found.poles, white, [float(omega) for omega in found.poles.imag])
+    if _same(extended, found.poles):
+        return found
+    return settle(extended, blocks, rounds=3)
+
+
 def _noise(poles: Complex, blocks: list[Block]) -> list[Real]:
     return [noise_of(solve(poles, data), poles.size, data) for data in blocks]
 
@@ -99,16 +114,17 @@ def threshold(blocks: list[Block]) -> float:
     return float(scipy.stats.chi2.isf(FALSE_ALARM / (4 * lines), 2 + 2 * channels))
 
 
-def _add(poles: Complex, blocks: list[Block]) -> Complex:
+def _add(poles: Complex, blocks: list[Block], centres: list[float] | None = None) -> Complex:
+    """Poles with those added that pay; tried at the centres [rad/s], or where the residual asks for it."""
     least = threshold(blocks)
     fits = [solve(poles, data) for data in blocks]
-    for centre in _suspicious(blocks, fits):
+    for centre in _suspicious(blocks, fits) if centres is None else centres:
         local = _local(poles, blocks, fits, centre)
-        trial = _best_candidate(local, centre)
+        trial = _best_candidate(local, centre) if local.blocks else None
         if trial is None or trial[1] < 0.3 * least:
             continue
         before = refine(local.poles, local.blocks, iterations=10, tolerance=0.1)
-        after = refine(np.append(local.poles, trial[0]), local.blocks, iterations=25, tolerance=0.1)
+        after = refine(np.append(local.poles, trial[0]), local.blocks, iterations=60, tolerance=0.1)
         if before.cost - after.cost > least:
             poles = np.concatenate([poles[~local.near], after.poles])
             fits = [solve(poles, data) for data in blocks]
