@@ -68,9 +68,5 @@ def local_flexibility(bubble: Array, s: float) -> float:
     f = s * s * (1 - s) * (1 - s)
     t = 2 * s - 1
     g, h = f * t, f * t * t
-    return (
-        bubble[0] * f * f
-        + bubble[3] * g * g
-        + bubble[5] * h * h
-        + 2 * (bubble[1] * f * g + bubble[2] * f * h + bubble[4] * g * h)
-    )
+    own = bubble[0] * f * f + bubble[3] * g * g + bubble[5] * h * h
+    return float(own + 2 * (bubble[1] * f * g + bubble[2] * f * h + bubble[4] * g * h))
