@@ -117,8 +117,6 @@ def _identify_line(
 
 
 def _start(prepared: list[Prepared], stretches: list[tuple[Real, float]], band: Band) -> Complex:
-    if len(prepared) == 1:
-        return prepared[0].stretch.poles
     (dt,) = {dt for _, dt in stretches} if len({dt for _, dt in stretches}) == 1 else (0.0,)
     if dt == 0.0:
         # Records of different rates: the longest alone gives the start.

@@ -22,6 +22,7 @@ Complex = NDArray[np.complex128]
 
 FALSE_ALARM = 1e-3  # chance that noise alone adds one pole to a record
 OUTSIDE = 0.5  # how far beyond the band a pole may settle [Hz]
+LEAST_LINES = 8  # fewer lines than this tell nothing of a pole
 SECTION = 0.7  # width of what is refined together [Hz]
 DAMPING_TRIALS = (0.3, 1.0, 3.0)  # of the neighbours' median decay rate
 
@@ -172,7 +173,7 @@ def _local(poles: Complex, blocks: list[Block], fits: list[Fit], centre: float, 
     narrowed = []
     for data, fit in zip(blocks, fits, strict=True):
         window = np.abs(data.omega - centre) < half + 6 * resolution
-        if not window.any():
+        if window.sum() < LEAST_LINES:
             continue
         omega = data.omega[window]
         residues = fit.residues[near]

@@ -1,0 +1,85 @@
+"""Frequency responses of the transient drop: the release is a step force m g, upward, where the mass hung.
+
+A step of height F at t = 0 has the transform F / (i w), so the accelerance of a sensor is
+
+    H(w) = i w A(w) / (m g)      [m/s2/N],        A(w) the transform of its acceleration from the release on.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pantocheck.conformance.identification.filters import gain_at
+from pantocheck.conformance.identification.identify import Identification
+from pantocheck.conformance.massdrop_records.units import STANDARD_GRAVITY
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+POWER_OF_OMEGA = {"acceleration": 0, "velocity": 1, "displacement": 2}
+
+
+@dataclass(frozen=True)
+class FrequencyResponse:
+    """Accelerance of the sensors of one record.
+
+    Parameters
+    ----------
+    record : name
+    channels : (c,) names
+    frequency : (k,) [Hz]
+    measured : (k, c) from the release to the end of the linear stretch [m/s2/N]
+    identified : (k, c) of the identified modes, carried back to the release [m/s2/N]
+    """
+
+    record: str
+    channels: tuple[str, ...]
+    frequency: Real
+    measured: Complex
+    identified: Complex
+
+
+def frequency_response(found: Identification, r: int) -> FrequencyResponse | None:
+    """Frequency responses of one record.
+
+    Parameters
+    ----------
+    found : the identification
+    r : which of its records
+
+    Returns
+    -------
+    None if the mass is not known
+    """
+    one = found.prepared[r]
+    record, stretch = one.record, one.stretch
+    if record.drop.mass is None:
+        return None
+    begin, end = (int(t * record.rate) for t in (one.release.time, stretch.end))
+    signals = record.signals[begin:end, list(one.columns)]
+    rest = record.signals[: max(int(one.release.rest_end * record.rate), 1), list(one.columns)]
+    n = signals.shape[0]
+    frequency = np.fft.rfftfreq(n, 1 / record.rate)
+    used = (frequency >= found.band.low) & (frequency <= found.band.high)
+    omega = 2 * np.pi * frequency[used]
+    to_accelerance = (1j * omega) ** (1 + POWER_OF_OMEGA[record.quantity]) / (record.drop.mass * STANDARD_GRAVITY)
+    offset = rest.mean(axis=0) if rest.shape[0] > 10 else signals.mean(axis=0)
+    measured = np.fft.rfft(signals - offset, axis=0)[used] / record.rate
+    b, columns = found.block_of[r], found.columns[r]
+    back = np.exp(-found.poles * (stretch.first - one.release.time)) / gain_at(stretch.taps, found.poles, stretch.rate)
+    inside = np.abs(found.poles) < 2 * np.pi * found.band.fitted
+    residues = (found.fits[b].residues[:, columns] * back[:, None])[inside]
+    poles, duration = found.poles[inside], n / record.rate
+    response = _transform(poles, omega, duration) @ residues
+    response += _transform(poles.conj(), omega, duration) @ residues.conj()
+    names = tuple(record.channels[c].name for c in one.columns)
+    return FrequencyResponse(
+        record.name, names, frequency[used], measured * to_accelerance[:, None], response * to_accelerance[:, None]
+    )
+
+
+def _transform(poles: Complex, omega: Real, duration: float) -> Complex:
+    """Transform of exp(lambda t) over the record, (k, m) [s]."""
+    difference = poles[None, :] - 1j * omega[:, None]
+    return np.asarray(np.expm1(difference * duration) / difference)

@@ -1,0 +1,112 @@
+"""A report of headings, texts, tables and figures, as one HTML file and as PDF; the reports on mass drops are of this kind."""
+
+import json
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import typst
+from jinja2 import Environment, FunctionLoader, StrictUndefined
+from markupsafe import Markup
+
+from pantocheck.conformance.files import write_in_place
+from pantocheck.conformance.reports.html import data_uri
+from pantocheck.conformance.reports.pdf import FONTS, moment, showable
+from pantocheck.conformance.reports.text import cleaned
+from pantocheck.conformance.reports.words import TEMPLATES
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A figure: its SVG, what a reader who cannot see it should know, and its caption."""
+
+    svg: str
+    alternative: str
+    caption: str
+
+
+@dataclass(frozen=True)
+class Grid:
+    """A table: heads of the columns, rows of texts."""
+
+    columns: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    caption: str
+
+
+@dataclass(frozen=True)
+class Section:
+    """A heading and what stands under it."""
+
+    heading: str
+    texts: tuple[str, ...] = ()
+    grids: tuple[Grid, ...] = ()
+    pictures: tuple[Picture, ...] = ()
+    code: str = ""
+
+
+@dataclass(frozen=True)
+class Document:
+    """A report.
+
+    Parameters
+    ----------
+    title : what it is on
+    headline : the result in a sentence
+    warnings : what should make a reader careful
+    sections : the rest
+    """
+
+    title: str
+    headline: str
+    warnings: tuple[str, ...]
+    sections: tuple[Section, ...]
+
+
+def write_html(document: Document, path: Path) -> None:
+    """Write a report as one HTML file: no script, nothing fetched, every text escaped.
+
+    Raises
+    ------
+    InputError : it cannot be written
+    """
+    environment = Environment(
+        loader=FunctionLoader(lambda name: (TEMPLATES / name).read_text("utf-8")),
+        autoescape=True,
+        undefined=StrictUndefined,
+        keep_trailing_newline=True,
+    )
+    environment.filters["data_uri"] = data_uri
+    text = environment.get_template("document.html").render(
+        document=_plain(document), stylesheet=Markup((TEMPLATES / "certificate.css").read_text("utf-8"))
+    )
+    write_in_place(path, text.encode("utf-8"))
+
+
+def write_pdf(document: Document, path: Path) -> None:
+    """Write a report as PDF; with `SOURCE_DATE_EPOCH` set, the same report gives the same bytes.
+
+    Raises
+    ------
+    InputError : it cannot be written
+    """
+    # typst takes a dictionary of files, which its type hints do not know.
+    sources: Any = {
+        "main.typ": (TEMPLATES / "document.typ").read_bytes(),
+        "document.json": json.dumps(showable(_plain(document))).encode("ascii"),
+    }
+    made = typst.compile(sources, ignore_system_fonts=True, font_paths=[str(FONTS)], timestamp=moment({}))
+    write_in_place(path, bytes(made))
+
+
+def _plain(document: Document) -> dict[str, Any]:
+    """The report as plain data, its texts cleaned; pictures and code are the project's own and stay as they are."""
+    data = asdict(document)
+    pictures = [[picture.pop("svg") for picture in section["pictures"]] for section in data["sections"]]
+    codes = [section.pop("code") for section in data["sections"]]
+    shown: dict[str, Any] = cleaned(data)
+    for section, svgs, code in zip(shown["sections"], pictures, codes, strict=True):
+        section["code"] = code
+        for picture, svg in zip(section["pictures"], svgs, strict=True):
+            picture["svg"] = svg
+    return shown
