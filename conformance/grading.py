@@ -8,6 +8,7 @@ from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.criteria import Verdict, margin, verdict_of, worst
 from pantocheck.conformance.evaluation import LINE, Evaluation, Value, evaluate
+from pantocheck.conformance.extended_band import extended_band_warnings
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results import CaseResult, Criterion, FilterFacts, InputGroup, Number, RunFacts
 from pantocheck.conformance.systems import Outcome
@@ -41,12 +42,19 @@ def graded(case: Case, outcome: Outcome, lowest_trust: Trust) -> CaseResult:
         outcome,
         verdict=worst(criterion.verdict for criterion in criteria),
         reason=None,
-        warnings=[*outcome.warnings, *_close_calls(criteria), *_edge_warnings(case, outcome)],
+        warnings=[
+            *outcome.warnings,
+            *_close_calls(criteria),
+            *_edge_warnings(case, outcome),
+            *extended_band_warnings(outcome, evaluation, refined),
+        ],
         criteria=criteria,
         quantities={str(of): _plain(evaluation.values[of]) for of in evaluation.values if evaluation.values[of]},
         skipped={str(of): evaluation.skipped[of] for of in evaluation.skipped if evaluation.skipped[of]},
         traces=pantograph_traces(record, case.file.filter.low_pass, supports) if record is not None else {},
         uplift=uplift_traces(record) if record is not None else [],
+        charts=list(outcome.charts),
+        tables=list(outcome.tables),
     )
 
 
@@ -115,7 +123,10 @@ def _evaluated(case: Case, outcome: Outcome) -> Evaluation:
     else:
         evaluation = evaluate(outcome.record, case.file.filter.low_pass)
     ordered = {name: outcome.static[name] for name in QUANTITIES if name in outcome.static}
-    return Evaluation({**evaluation.values, LINE: {**evaluation.values[LINE], **ordered}}, evaluation.skipped)
+    values = {**evaluation.values, LINE: {**evaluation.values[LINE], **ordered}}
+    for of, findings in outcome.findings.items():
+        values[of] = {**values.get(of, {}), **{name: findings[name] for name in QUANTITIES if name in findings}}
+    return Evaluation(values, evaluation.skipped)
 
 
 def _criterion(limit: Limit, evaluation: Evaluation, refined: Evaluation | None, lowest_trust: Trust) -> Criterion:

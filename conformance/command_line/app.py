@@ -4,6 +4,7 @@ from typing import Annotated
 
 import typer
 from pantocheck.conformance.command_line.cases import cases
+from pantocheck.conformance.command_line.drop import drop
 from pantocheck.conformance.command_line.guard import guarded
 from pantocheck.conformance.command_line.run import run
 from pantocheck.conformance.command_line.schema import schema
@@ -20,7 +21,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
-for command in (run, cases, show, simulate, verify, schema):
+for command in (run, cases, show, simulate, drop, verify, schema):
     app.command()(guarded(command))
 
 

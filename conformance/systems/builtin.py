@@ -56,17 +56,17 @@ class ReferenceSimulator:
         if case.is_static:
             return outcome, ()
         forces = uplift_forces or _tuned(case, line, step)
-        passage = _passage(case, line, step, forces)
+        passage = passage_of(case, line, step, forces)
         run(line, replace(passage, duration=0.0))  # compiles the kernels, which is not part of the run
         begin = time.perf_counter()
         history = run(line, passage)
         wall = time.perf_counter() - begin
         return replace(
-            outcome, record=_record(case, passage, history), simulated_s=passage.duration, wall_s=wall
+            outcome, record=record_of(case, passage, history), simulated_s=passage.duration, wall_s=wall
         ), forces
 
 
-def _passage(case: Case, line: Discretised, step: float, uplift_forces: tuple[float, ...]) -> Passage:
+def passage_of(case: Case, line: Discretised, step: float, uplift_forces: tuple[float, ...]) -> Passage:
     models = []
     for file, force in zip(case.pantographs, uplift_forces, strict=True):
         height = float(static_uplift(line, _along_span(case), force).mean()) + force / file.contact.stiffness_N_m
@@ -96,8 +96,8 @@ def _tuned(case: Case, line: Discretised, step: float) -> tuple[float, ...]:
     if not any(use.target_mean_force_N for use in uses):
         return tuple(map(float, forces))
     for _ in range(MOST_TUNING_RUNS):
-        passage = _passage(case, line, step, tuple(map(float, forces)))
-        record = _record(case, passage, run(line, passage))
+        passage = passage_of(case, line, step, tuple(map(float, forces)))
+        record = record_of(case, passage, run(line, passage))
         inside = (record.position >= record.evaluated[0]) & (record.position <= record.evaluated[1])
         means = [force[here].mean() for force, here in zip(record.force, inside, strict=True)]
         # The mean follows the uplift force nearly one to one: what is missing is added.
@@ -108,7 +108,7 @@ def _tuned(case: Case, line: Discretised, step: float) -> tuple[float, ...]:
     raise NotTuned(f"the mean contact force is still {np.abs(missing).max():.2f} N off its target")
 
 
-def _record(case: Case, passage: Passage, history: History) -> Record:
+def record_of(case: Case, passage: Passage, history: History) -> Record:
     return Record(
         time=history.time,
         speed=passage.speed,
