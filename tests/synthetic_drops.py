@@ -72,7 +72,9 @@ def drop(
     strength = 10 ** rng.uniform(-1.3, 0.2, m)
     strength[rng.random(m) < weak] *= 0.01
     residues = strength[:, None] * rng.standard_normal((m, sensors)) * 0.5
-    residues = residues * np.exp(1j * (rng.uniform(0, 2 * np.pi, m)[:, None] + 0.02 * rng.standard_normal((m, sensors))))
+    residues = residues * np.exp(
+        1j * (rng.uniform(0, 2 * np.pi, m)[:, None] + 0.02 * rng.standard_normal((m, sensors)))
+    )
     release = 5.0 + rng.uniform(-0.5, 0.5)
     n = int(duration * rate)
     t = np.arange(n) / rate - release

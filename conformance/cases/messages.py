@@ -96,6 +96,9 @@ def _walk(model: type[BaseModel], location: tuple[int | str, ...]) -> tuple[type
         holder = _model_in(inner)
         if holder is None:
             continue  # the name of a member of a union, not a key
+        if part not in holder.model_fields and (member := _tagged(inner, part)) is not None:
+            inner = member  # the tag of a member of a union: the keys that follow are its
+            continue
         table, field = holder, holder.model_fields.get(part)
         key += f".{part}" if key else part
         inner = field.annotation if field is not None else None
@@ -107,5 +110,16 @@ def _model_in(annotation: Any) -> type[BaseModel] | None:
         return annotation
     for argument in typing.get_args(annotation):
         if (found := _model_in(argument)) is not None:
+            return found
+    return None
+
+
+def _tagged(annotation: Any, tag: str) -> type[BaseModel] | None:
+    """The member of a union that a tag names."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        kind = annotation.model_fields.get("kind")
+        return annotation if kind is not None and tag in typing.get_args(kind.annotation) else None
+    for argument in typing.get_args(annotation):
+        if (found := _tagged(argument, tag)) is not None:
             return found
     return None

@@ -6,6 +6,8 @@ from pantocheck.conformance.cases.base import Positive, PositiveList, Sourced, T
 from pantocheck.conformance.cases.mass_drop import DampingModels, Place
 from pydantic import Field, model_validator
 
+Interval = Annotated[tuple[float, float], Field(strict=False, description="from and to")]
+
 
 class Printed(Table):
     """Values that a publication prints for one pantograph under one damping model, laid beside the computed ones."""
@@ -31,7 +33,7 @@ class ReleaseVelocity(Sourced):
     kind: Literal["release-velocity"]
     models: Annotated[DampingModels, Field(min_length=2)]
     windows_s: Annotated[
-        tuple[tuple[float, float], ...],
+        tuple[Interval, ...],
         Field(strict=False, min_length=1, max_length=6, description="from and to, after the release [s]"),
     ]
     sensor: Annotated[int, Field(ge=1, description="number of the sensor, from 1")] = 1
@@ -64,7 +66,7 @@ class SteadyArmDamper(Sourced):
     kind: Literal["steady-arm-damper"]
     damper_N_s_m: Annotated[Positive, Field(le=1e6, description="vertical damper between claw and ground [N s/m]")]
     bands_Hz: Annotated[
-        tuple[tuple[float, float], ...],
+        tuple[Interval, ...],
         Field(strict=False, min_length=1, max_length=40, description="from and to of each band [Hz]"),
     ]
 

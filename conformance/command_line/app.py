@@ -4,8 +4,9 @@ from typing import Annotated
 
 import typer
 from pantocheck.conformance.command_line.cases import cases
-from pantocheck.conformance.command_line.drop import drop
+for command in (run, cases, show, simulate, drop, identify, fit_damping, verify, schema):
 from pantocheck.conformance.command_line.guard import guarded
+from pantocheck.conformance.command_line.identify import identify
 from pantocheck.conformance.command_line.run import run
 from pantocheck.conformance.command_line.schema import schema
 from pantocheck.conformance.command_line.show import show
@@ -21,7 +22,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
-for command in (run, cases, show, simulate, drop, verify, schema):
+for command in (run, cases, show, simulate, drop, identify, fit_damping, verify, schema):
     app.command()(guarded(command))
 
 

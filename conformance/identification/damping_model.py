@@ -17,7 +17,6 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.optimize
 from numpy.typing import NDArray
-
 from pantocheck.conformance.errors import InputError
 
 Real = NDArray[np.float64]
@@ -118,8 +117,8 @@ def fit_damping(
 ) -> DampingFit:
     """Coefficients of the chosen kinds by non-negative least squares.
 
-    Every group of span modes weighs the same, whatever the number of its modes; a mode far from the median of its group
-    after division by the fit's trend is left out. Within a group modes weigh by their uncertainty and that of the model.
+    Every group of span modes weighs the same, whatever the number of its modes; a mode whose residual is far from the
+    median of its group is left out. Within a group modes weigh by their uncertainty and that of the model.
 
     Parameters
     ----------
@@ -194,7 +193,7 @@ def _near_their_group(left: Real, std: Real, group: NDArray[np.int64]) -> NDArra
 def _interval(
     columns: Real, target: Real, std: Real, noise: Real, group: NDArray[np.int64], used: NDArray[np.bool_]
 ) -> tuple[Real, Real]:
-    """2.5 and 97.5 percentiles over replicates in which every group's modes are drawn anew and disturbed by their noise."""
+    """2.5 and 97.5 percentiles over replicates: every group's modes drawn anew, and disturbed by their noise."""
     random = np.random.default_rng(20150817)
     numbers = [np.flatnonzero((group == number) & used) for number in np.unique(group)]
     numbers = [members for members in numbers if members.size]
@@ -225,7 +224,10 @@ def modal_bands(measured: Measured, last_group: int = 3) -> tuple[ModalBand, ...
     last_group : groups 1..last_group
     """
     present = [number for number in range(1, last_group + 2) if np.any(measured.group == number)]
-    edges = {n: (measured.frequency[measured.group == n].min(), measured.frequency[measured.group == n].max()) for n in present}
+    edges = {
+        n: (measured.frequency[measured.group == n].min(), measured.frequency[measured.group == n].max())
+        for n in present
+    }
     bands = []
     for number in (n for n in present if n <= last_group):
         low, high = edges[number]

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-
 from pantocheck.conformance.identification.filters import gain_at
 from pantocheck.conformance.identification.identify import Identification
 from pantocheck.conformance.massdrop_records.units import STANDARD_GRAVITY
@@ -60,9 +59,9 @@ def frequency_response(found: Identification, r: int) -> FrequencyResponse | Non
     signals = record.signals[begin:end, list(one.columns)]
     rest = record.signals[: max(int(one.release.rest_end * record.rate), 1), list(one.columns)]
     n = signals.shape[0]
-    frequency = np.fft.rfftfreq(n, 1 / record.rate)
+    frequency = np.asarray(np.fft.rfftfreq(n, 1 / record.rate), dtype=np.float64)
     used = (frequency >= found.band.low) & (frequency <= found.band.high)
-    omega = 2 * np.pi * frequency[used]
+    omega: Real = 2 * np.pi * frequency[used]
     to_accelerance = (1j * omega) ** (1 + POWER_OF_OMEGA[record.quantity]) / (record.drop.mass * STANDARD_GRAVITY)
     offset = rest.mean(axis=0) if rest.shape[0] > 10 else signals.mean(axis=0)
     measured = np.fft.rfft(signals - offset, axis=0)[used] / record.rate

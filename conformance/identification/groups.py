@@ -2,7 +2,7 @@
 
 The spans of a section are nearly alike, so the modes come in groups around multiples of one frequency. The groups
 grow wider with their number and almost touch from the fifth on; what stays regular is the places between them: no mode
-lies near (k + 1/2) times the first group's mean. That mean, and a slight stretch of the series by bending stiffness, are
+lies near (k + 1/2) times the first group's mean. That mean, and a slight stretch of the series by bending, are
 searched so that the places between the groups are as free as can be and no group holds more modes than there are spans.
 """
 

@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-
 from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.identification.filters import gain_at
 from pantocheck.conformance.identification.groups import group_numbers, outliers
@@ -160,9 +159,7 @@ def _reported(
     spreads = [residue_spread(poles, data) for data in blocks]
     misfit = _misfit(refined.cost, m, white)
     decay_std, omega_std = (np.sqrt(np.diag(refined.covariance)[part]) for part in (slice(0, m), slice(m, None)))
-    whole = Identification(
-        prepared, band, (), poles, tuple(blocks), fits, tuple(noise), block_of, columns, misfit, ()
-    )
+    whole = Identification(prepared, band, (), poles, tuple(blocks), fits, tuple(noise), block_of, columns, misfit, ())
     frequency = np.abs(poles) / (2 * np.pi)
     reported = np.flatnonzero((frequency >= band.low) & (frequency <= band.high))
     lateral = [_lateral_share(whole, r) for r in range(len(prepared))]
@@ -175,9 +172,9 @@ def _reported(
         )
     warnings = [text for one in prepared for text in one.warnings]
     if misfit > SHARED_POLES:
-        several = " or records that do not share their poles" if len(prepared) > 1 else ""
+        several = " or the records do not share their poles" if len(prepared) > 1 else ""
         warnings.append(
-            f"the fit leaves {misfit:.1f} times the noise: a line that is not linear{several}; uncertainties are widened"
+            f"the fit leaves {misfit:.1f} times the noise: the line is not linear{several}; uncertainties are widened"
         )
     lengths = [one.stretch.duration for one in prepared]
     if max(lengths) > (1 + SAME_LENGTH) * min(lengths):
@@ -189,7 +186,7 @@ def _reported(
 def _misfit(cost: float, m: int, blocks: list[Block]) -> float:
     rows = sum(2 * data.lines.size * data.spectrum.shape[1] for data in blocks)
     linear = sum((2 * m + data.residual_terms.shape[1]) * data.spectrum.shape[1] for data in blocks)
-    return cost / max(rows - linear - 2 * m, 1)
+    return float(cost / max(rows - linear - 2 * m, 1))
 
 
 def _inflation(white: list[Block], fits: tuple[Fit, ...], noise: list[Real], pole: complex) -> float:

@@ -84,7 +84,7 @@ def drift_columns(degree: int, n: int, lines: NDArray[np.int64]) -> Real:
 
 
 def far_pole_columns(omega: Real, degree: int) -> Real:
-    """Smooth residual terms of everything outside the band: complex polynomials over the band, orthonormal, (2 k, 2 (degree + 1))."""
+    """Smooth residual terms of what lies outside the band: complex polynomials over it, (2 k, 2 (degree + 1))."""
     middle = (omega[0] + omega[-1]) / 2
     half = max((omega[-1] - omega[0]) / 2, 1e-12)
     polynomials = np.polynomial.legendre.legvander((omega - middle) / half, degree)

@@ -119,9 +119,13 @@ def remarks(
         )
     relative = damping_ratio_std / damping_ratio
     if relative > UNCERTAIN:
-        found.append(f"weakly excited: the damping ratio is uncertain by {100 * relative:.0f} % (one standard deviation)")
+        found.append(
+            f"weakly excited: the damping ratio is uncertain by {100 * relative:.0f} % (one standard deviation)"
+        )
     if nearest < COINCIDENT * bandwidth or nearest * duration < 1.5:
         found.append(f"near-coincident: another mode is only {1000 * nearest:.1f} mHz away")
     if lateral_share is not None and lateral_share > LATERAL:
-        found.append("lateral: moves the sensors sideways; what the vertical channels show of it, their mounting explains")
+        found.append(
+            "lateral: moves the sensors sideways; what the vertical channels show of it, their mounting explains"
+        )
     return tuple(found)

@@ -4,9 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import nnls
-
 from pantocheck.conformance.identification.damping_model import MODEL_ERROR, DampingFit, Measured, ModalEnergies
+from scipy.optimize import nnls
 
 Real = NDArray[np.float64]
 
@@ -61,7 +60,11 @@ def observability(energies: ModalEnergies, measured: Measured, fit: DampingFit) 
             std, inflation = float("inf"), float("inf")
         else:
             std, inflation = 1 / float(np.sqrt(remaining)), length / remaining
-        growth = residual_without(energies, measured, fit, (kind, matrix)) / max(fit.residual, np.finfo(float).tiny) if (kind, matrix) in fitted else 1.0
+        growth = (
+            residual_without(energies, measured, fit, (kind, matrix)) / max(fit.residual, np.finfo(float).tiny)
+            if (kind, matrix) in fitted
+            else 1.0
+        )
         seen = share >= SHARE_NEEDED and plausible >= RATIO_NEEDED * std
         found.append(Observability(kind, matrix, share, inflation, std, float(growth), seen))
     return tuple(found)

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-
 from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.identification.filters import complete_overlap
 from pantocheck.conformance.identification.release import Release, find_release
@@ -63,7 +62,8 @@ def prepare(record: DropRecord, band: Band) -> Prepared:
         signal = record.signals[:, c]
         spread = float(np.ptp(signal))
         last = max(
-            (end for start, end in flat_tops(signal) if abs(signal[start] - np.median(signal)) > 0.2 * spread), default=0
+            (end for start, end in flat_tops(signal) if abs(signal[start] - np.median(signal)) > 0.2 * spread),
+            default=0,
         )
         if last / record.rate > release.time + CLIPPED_EARLY * (record.duration - release.time):
             warnings.append(f"{name}: channel '{record.channels[c].name}' is clipped far into the decay and left out")
@@ -75,9 +75,7 @@ def prepare(record: DropRecord, band: Band) -> Prepared:
     if len(columns) == 1:
         warnings.append(f"{name}: a single sensor; modes with a node there cannot be seen, and no shape can be told")
     stretch = find_stretch(record.signals[:, columns], record.rate, release, band, name, clipped_until)
-    return Prepared(
-        record, tuple(columns), release, stretch, _lateral(record, stretch), tuple([*warnings, *stretch.warnings])
-    )
+    return Prepared(record, tuple(columns), release, stretch, _lateral(record, stretch), (*warnings, *stretch.warnings))
 
 
 def _lateral(record: DropRecord, stretch: Stretch) -> Real:

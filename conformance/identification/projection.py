@@ -17,7 +17,6 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
-
 from pantocheck.conformance.identification.kernel import (
     drift_columns,
     far_pole_columns,
@@ -176,6 +175,4 @@ def _accumulate(matrix: Real, gradient: Real, gram: Real, correlation: Real, res
 
 
 def _pole_columns(poles: Complex, data: Block) -> Real:
-    return real_columns(
-        kernel(poles, data.omega, data.dt, data.n), kernel(poles.conj(), data.omega, data.dt, data.n)
-    )
+    return real_columns(kernel(poles, data.omega, data.dt, data.n), kernel(poles.conj(), data.omega, data.dt, data.n))

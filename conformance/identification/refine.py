@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
-
 from pantocheck.conformance.identification.projection import Block, normal_equations
 
 Real = NDArray[np.float64]
@@ -69,11 +68,11 @@ def _step(poles: Complex, matrix: Real, gradient: Real, damping: float) -> Compl
     change = np.linalg.lstsq(normalised, gradient / scale, rcond=1e-14)[0] / scale
     m = poles.size
     decay = -poles.real
-    # A decay rate may shrink or grow threefold in a step, a frequency move by a few bandwidths: the model is far from linear beyond.
+    # A decay rate may change threefold in a step, a frequency by a few bandwidths: beyond, the model is not linear.
     decay_new = np.clip(decay + change[:m], decay / 3, decay * 3)
     reach = 3 * np.maximum(decay, 0.02)
     omega = np.maximum(poles.imag + np.clip(change[m:], -reach, reach), 1e-3)
-    return -np.maximum(decay_new, SMALLEST_DAMPING_RATIO * omega) + 1j * omega
+    return np.asarray(-np.maximum(decay_new, SMALLEST_DAMPING_RATIO * omega) + 1j * omega)
 
 
 def _inverse(matrix: Real) -> Real:

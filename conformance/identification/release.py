@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-
 from pantocheck.conformance.errors import InputError
 
 Real = NDArray[np.float64]
@@ -55,17 +54,21 @@ def find_release(signals: Real, rate: float, nominal: float | None, name: str) -
     beyond = np.any(np.abs(moved[rest_end:]) > ONSET * quiet, axis=1)
     sustained = np.convolve(beyond, np.ones(5), mode="valid") >= 3
     if not sustained.any():
-        raise InputError(name, "nothing moves after the trigger", "Check the trigger time, the channels and their units.")
+        raise InputError(
+            name, "nothing moves after the trigger", "Check the trigger time, the channels and their units."
+        )
     time = (rest_end + int(np.argmax(sustained)) + int(np.argmax(beyond[np.argmax(sustained) :]))) / rate
     late = nominal is not None and time > nominal + 1.0
-    warnings = (f"{name}: the first movement is {time - (nominal or 0):.1f} s after the planned release",) if late else ()
+    warnings = (
+        (f"{name}: the first movement is {time - (nominal or 0):.1f} s after the planned release",) if late else ()
+    )
     if n / rate - time < 1.0:
         raise InputError(name, f"ends {n / rate - time:.2f} s after the release", "Record the whole decay.")
     return Release(time, max(0.0, min(rest_end / rate, time - 0.1)), warnings)
 
 
 def _quiet_start(signals: Real, rate: float, name: str) -> int:
-    """Samples of rest at the beginning, by where the energy of half-second windows first leaps; no trigger time is known."""
+    """Samples of rest at the beginning, where no trigger time is known: until half-second windows first leap."""
     width = max(int(0.5 * rate), 4)
     windows = signals[: signals.shape[0] // width * width].reshape(-1, width, signals.shape[1])
     spread = windows.std(axis=1)

@@ -5,7 +5,6 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-
 from pantocheck.conformance.identification.filters import complete_overlap, lowpass
 from pantocheck.conformance.identification.preparation import Prepared
 
@@ -87,7 +86,7 @@ def aligned(one: Prepared) -> tuple[Real, Real]:
     taps = lowpass(rate, HIGHEST, HIGHEST * 1.5, 50.0)
     samples = complete_overlap(one.record.signals[:, list(one.columns)], taps)
     time = (np.arange(samples.shape[0]) + (taps.size - 1) / 2) / rate - one.release.time
-    return time, samples
+    return np.asarray(time, dtype=np.float64), samples
 
 
 def _compared(first: Prepared, second: Prepared) -> list[Comparison]:
@@ -111,7 +110,13 @@ def _compared(first: Prepared, second: Prepared) -> list[Comparison]:
             signal = [max(float(np.mean(v**2)) - s[c] ** 2, 0.0) for v, s in ((a, noise[0]), (b, noise[1]))]
             share = [p / (p + s[c] ** 2) if p > 0 else 0.0 for p, s in zip(signal, noise, strict=True)]
             correlation = float(a @ b / np.sqrt((a @ a) * (b @ b)))
-            values.append((correlation, float(np.sqrt(share[0] * share[1])), float(np.sqrt(np.mean((a - b) ** 2) / np.mean(a**2)))))
+            values.append(
+                (
+                    correlation,
+                    float(np.sqrt(share[0] * share[1])),
+                    float(np.sqrt(np.mean((a - b) ** 2) / np.mean(a**2))),
+                )
+            )
         early, late = values
         if early is None:
             continue

@@ -6,14 +6,13 @@ from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
-
 from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.files import write_in_place
 from pantocheck.conformance.identification.frequency_response import frequency_response
 from pantocheck.conformance.identification.identify import Identification
 from pantocheck.conformance.identification.modes import Mode
-from pantocheck.conformance.identification.repeatability import Repeatability, repeatability
+from pantocheck.conformance.identification.repeatability import LATER, WINDOW, Repeatability, aligned, repeatability
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 LARGEST_FILE = 50_000_000  # bytes
 SIGNIFICANT = 8
@@ -88,6 +87,7 @@ def summary(found: Identification) -> dict[str, Any]:
     """Every number of one line's identification."""
     repeats = _repeats(found)
     return {
+        "quantity": found.prepared[0].record.quantity,
         "band_Hz": [found.band.low, found.band.high],
         "misfit": rounded(found.misfit),
         "warnings": list(found.warnings),
@@ -95,6 +95,7 @@ def summary(found: Identification) -> dict[str, Any]:
         "groups": _groups(found),
         "modes": [mode_row(mode, found) for mode in found.modes],
         "repeatability": [_repeatability(one) for one in repeats],
+        "overlays": _overlays(found),
         "spectra": [_spectra(found, r) for r in range(len(found.prepared))],
         "frequency_responses": [
             response for r in range(len(found.prepared)) if (response := _response(found, r)) is not None
@@ -212,6 +213,29 @@ def _repeatability(one: Repeatability) -> dict[str, Any]:
             for c in one.comparisons
         ],
     }
+
+
+def _overlays(found: Identification) -> list[dict[str, Any]]:
+    """Repeats of each test at the sensor that moves most, at the start and a minute later."""
+    overlays = []
+    for test in dict.fromkeys(one.test for one in found.prepared):
+        repeats = [one for one in found.prepared if one.test == test]
+        if len(repeats) < 2:
+            continue
+        curves = [aligned(one) for one in repeats]
+        channel = int(np.argmax(curves[0][1].std(axis=0)))
+        runs = []
+        for one, (time, samples) in zip(repeats, curves, strict=True):
+            windows = []
+            for begin in (0.0, LATER):
+                grid = np.arange(begin, begin + WINDOW, 0.025)
+                if grid[-1] <= time[-1]:
+                    signal = np.interp(grid, time, samples[:, channel])
+                    windows.append({"time_s": _list(grid), "signal": _list(signal - signal.mean())})
+            runs.append({"name": one.record.name, "windows": windows})
+        name = repeats[0].record.channels[repeats[0].columns[channel]].name
+        overlays.append({"channel": name, "runs": runs})
+    return overlays
 
 
 def _maybe(value: float | None) -> float | None:

@@ -10,10 +10,11 @@ References
    reduction, J. Guidance 8 (1985) 620-627. doi:10.2514/3.20031
 """
 
+from itertools import pairwise
+
 import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
-
 from pantocheck.conformance.identification.filters import complete_overlap, lowpass
 
 Real = NDArray[np.float64]
@@ -39,7 +40,7 @@ def start_poles(
     """
     count = max(1, round((high - low) / band))
     edges = np.linspace(low, high, count + 1)
-    found = [_band_poles(records, rate, a, b, largest_order) for a, b in zip(edges[:-1], edges[1:], strict=True)]
+    found = [_band_poles(records, rate, a, b, largest_order) for a, b in pairwise(edges)]
     poles = np.concatenate(found)
     return np.asarray(poles[np.argsort(poles.imag)])
 
@@ -98,4 +99,4 @@ def _information_criterion(signals: list[Complex], poles: Complex, dt: float) ->
         score += float(2 * n * np.sum(np.log(left / n)))
         values += 2 * n * signal.shape[1]
         channels += signal.shape[1]
-    return score + 2 * decays.size * (1 + channels) * float(np.log(values))
+    return float(score + 2 * decays.size * (1 + channels) * np.log(values))

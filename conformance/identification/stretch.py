@@ -9,7 +9,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
-
 from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.identification.filters import complete_overlap, lowpass
 from pantocheck.conformance.identification.projection import block, solve
@@ -80,10 +79,12 @@ class Stretch:
     @property
     def duration(self) -> float:
         """[s]"""
-        return self.samples.shape[0] * self.dt
+        return float(self.samples.shape[0] * self.dt)
 
 
-def find_stretch(signals: Real, rate: float, release: Release, band: Band, name: str, clipped_until: float = 0.0) -> Stretch:
+def find_stretch(
+    signals: Real, rate: float, release: Release, band: Band, name: str, clipped_until: float = 0.0
+) -> Stretch:
     """The longest stretch after the release that a sum of decays explains down to the noise.
 
     Parameters
@@ -121,9 +122,7 @@ def find_stretch(signals: Real, rate: float, release: Release, band: Band, name:
         start = max(start, guard)
     warnings = []
     if end < total:
-        warnings.append(
-            f"{name}: used up to {end * dt:.0f} s after the release; no free decay explains what follows"
-        )
+        warnings.append(f"{name}: used up to {end * dt:.0f} s after the release; no free decay explains what follows")
     if (end - start) * dt < SHORTEST - taps.size / rate:
         raise InputError(
             name,
@@ -195,7 +194,6 @@ class _Tested:
         later = np.flatnonzero(self.disturbed & lasting & (self.starts > self.starts[calm[0]]))
         # The first windows that hold a little of a disturbance still look like noise: a quarter of one is given up.
         return int(self.starts[later[0]]) - self.window // 4 if later.size else np.iinfo(np.int64).max
-
 
     def stays_disturbed(self, late: int) -> bool:
         """Whether most windows from a sample on are disturbed: what a fit fails to foresee decays, wind goes on."""
@@ -270,7 +268,9 @@ def _disturbed(ratio: Real, width: float, band: Band) -> NDArray[np.bool_]:
     return np.asarray(together | alone)
 
 
-def _rest_level(signals: Real, rate: float, release: Release, taps: Real, step: int, band: Band, dt: float) -> Real | None:
+def _rest_level(
+    signals: Real, rate: float, release: Release, taps: Real, step: int, band: Band, dt: float
+) -> Real | None:
     """Level of the noise at rest, (c,), None if the rest is too short to tell."""
     rest = signals[: int(release.rest_end * rate)]
     window = int(1.0 / dt)

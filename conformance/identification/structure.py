@@ -12,7 +12,6 @@ import numpy as np
 import scipy.linalg
 import scipy.stats
 from numpy.typing import NDArray
-
 from pantocheck.conformance.identification.kernel import far_pole_columns, kernel, real_columns, stacked
 from pantocheck.conformance.identification.projection import Block, Fit, solve
 from pantocheck.conformance.identification.refine import refine
@@ -137,7 +136,7 @@ def _remove(poles: Complex, blocks: list[Block]) -> Complex:
 
 
 def _sweep(poles: Complex, blocks: list[Block]) -> Complex:
-    """Refine section by section, each with its neighbours: near the optimum in a tenth of the time of all poles at once."""
+    """Refine section by section, each with its neighbours: near the optimum in a tenth of the time."""
     for _ in range(2):
         fits = [solve(poles, data) for data in blocks]
         moved = []
@@ -147,7 +146,9 @@ def _sweep(poles: Complex, blocks: list[Block]) -> Complex:
                 continue
             local = _local(poles, blocks, fits, (low + high) / 2, 2 * np.pi * SECTION)
             inner = (local.poles.imag >= low) & (local.poles.imag < high)
-            refined = refine(local.poles, local.blocks, iterations=8, tolerance=0.3).poles if local.blocks else local.poles
+            refined = (
+                refine(local.poles, local.blocks, iterations=8, tolerance=0.3).poles if local.blocks else local.poles
+            )
             moved.append(refined[inner])
         poles = np.concatenate([*moved, np.zeros(0, dtype=np.complex128)])
     return np.asarray(poles[np.argsort(poles.imag)])
@@ -185,7 +186,7 @@ def _local(poles: Complex, blocks: list[Block], fits: list[Fit], centre: float, 
 
 
 def _suspicious(blocks: list[Block], fits: list[Fit]) -> list[float]:
-    """Angular frequencies [rad/s] where three lines together hold more than noise would, strongest first, spread out."""
+    """Angular frequencies [rad/s] where three lines together hold more than noise, strongest first."""
     found: list[tuple[float, float]] = []
     for data, fit in zip(blocks, fits, strict=True):
         energy = np.convolve(np.sum(np.abs(fit.residual) ** 2, axis=1), np.ones(3), mode="same")
@@ -200,7 +201,7 @@ def _suspicious(blocks: list[Block], fits: list[Fit]) -> list[float]:
 
 
 def _best_candidate(local: _Local, centre: float) -> tuple[complex, float] | None:
-    """The pole that would take most off the residual with all other poles held, and how much (a score test on a grid)."""
+    """The pole that would take most off the residual, all others held, and how much (score test on a grid)."""
     resolution = 2 * np.pi / max(data.duration for data in local.blocks)
     decay = float(np.median(-local.poles.real)) if local.poles.size else 0.003 * centre
     omegas = centre + resolution * np.arange(-3, 3.01, 0.25)

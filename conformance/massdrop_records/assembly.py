@@ -4,7 +4,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
-
 from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.massdrop_records.record import Channel, Drop, DropRecord, Line, Quantity
 from pantocheck.conformance.massdrop_records.sidecar import ChannelTable, Sidecar
@@ -122,7 +121,7 @@ def _described(table: Table, sidecar: Sidecar | None, source: str) -> tuple[Chan
             raise InputError(
                 source,
                 "does not say what its columns are and has no sidecar",
-                "Put a TOML file of the same name beside it, with [record] sampling_rate_hz and one [[channel]] per column.",
+                "Put NAME.toml beside it, with [record] sampling_rate_hz and one [[channel]] per column.",
             )
         return tuple(channel for channel in own if channel is not None)
     declared = sidecar.record.n_channels
@@ -226,7 +225,9 @@ def _doubts(signal: Real, quantity: Quantity, rate: float, where: str) -> list[s
     # A converter's quiet floor also repeats its smallest value; a saturated amplifier sits far from the middle.
     tops = [top for top in flat_tops(signal) if abs(signal[top[0]] - np.median(signal)) > 0.2 * spread]
     if tops:
-        found.append(f"{where}: clipped, {len(tops)} times between {tops[0][0] / rate:.2f} s and {tops[-1][1] / rate:.2f} s")
+        found.append(
+            f"{where}: clipped, {len(tops)} times between {tops[0][0] / rate:.2f} s and {tops[-1][1] / rate:.2f} s"
+        )
     if quantity == "acceleration" and float(np.abs(signal - np.median(signal)).max()) > LARGEST_ACCELERATION:
         found.append(f"{where}: peak of {np.abs(signal).max():.3g} m/s2; check its unit")
     return found

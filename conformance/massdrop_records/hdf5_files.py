@@ -5,7 +5,6 @@ from typing import Any
 
 import h5py
 import numpy as np
-
 from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.massdrop_records.assembly import Column, Table
 from pantocheck.conformance.massdrop_records.record import Drop, Line
@@ -72,7 +71,9 @@ def _columns(file: h5py.File, described: bool, source: str) -> tuple[Column, ...
 def _run(file: h5py.File, name: str, run: int, columns: tuple[Column, ...] | None, source: str) -> Table:
     data = next((file[name][quantity] for quantity in QUANTITIES if quantity in file[name]), None)
     if data is None or data.ndim != 2:
-        raise InputError(f"{source}, {name}", "holds no table of samples", f"Store {name}/acceleration (channel, sample).")
+        raise InputError(
+            f"{source}, {name}", "holds no table of samples", f"Store {name}/acceleration (channel, sample)."
+        )
     values = np.asarray(data[()], dtype=np.float64).T
     if columns is not None and len(columns) != values.shape[1]:
         raise InputError(

@@ -8,7 +8,6 @@ import h5py
 import numpy as np
 import scipy.io
 from numpy.typing import NDArray
-
 from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.massdrop_records.assembly import Column, Table
 from pantocheck.conformance.massdrop_records.sidecar import Sidecar

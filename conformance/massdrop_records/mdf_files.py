@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import numpy as np
-
 from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.massdrop_records.assembly import Column, Table
 from pantocheck.conformance.massdrop_records.sidecar import Sidecar

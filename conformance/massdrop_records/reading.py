@@ -16,7 +16,7 @@ def read_records(path: Path) -> tuple[DropRecord, ...]:
 
     Parameters
     ----------
-    path : .csv, .txt, .uff, .unv, .uf, .mat, .h5, .hdf5, .tdms or .mf4; its sidecar, if any, has the same stem and .toml
+    path : .csv, .txt, .uff, .unv, .mat, .h5, .hdf5, .tdms or .mf4; its sidecar has the same stem and .toml
 
     Raises
     ------

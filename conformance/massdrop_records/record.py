@@ -101,7 +101,7 @@ class DropRecord:
     @property
     def duration(self) -> float:
         """[s]"""
-        return self.signals.shape[0] / self.rate
+        return float(self.signals.shape[0] / self.rate)
 
     def along(self, axis: Axis) -> tuple[int, ...]:
         """Columns that measure along an axis."""

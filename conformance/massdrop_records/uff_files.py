@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pyuff
-
 from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.massdrop_records.assembly import Column, Table
 from pantocheck.conformance.massdrop_records.record import Drop

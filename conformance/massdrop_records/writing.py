@@ -7,7 +7,6 @@ import h5py
 import numpy as np
 import pyuff
 import tomli_w
-
 from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.files import produce_in_place, write_in_place
 from pantocheck.conformance.massdrop_records.record import DropRecord
@@ -39,7 +38,7 @@ def write_csv(record: DropRecord, path: Path) -> None:
 def write_uff(record: DropRecord, path: Path, form: Literal["ascii", "binary"] = "binary") -> None:
     """Write a record as universal file, one data set 58 per channel; parameters and errors as in `write_csv`.
 
-    What the format has no field for (wire, position, mass, trigger) stands in its identification lines and in a sidecar.
+    What the format has no field for (wire, position, mass, trigger) stands in its id lines and in a sidecar.
     """
     sets = [_set_58(record, c, form) for c in range(len(record.channels))]
 
@@ -151,7 +150,7 @@ def _facts(record: DropRecord) -> dict[str, Any]:
 
 
 def _sidecar(record: DropRecord) -> dict[str, Any]:
-    tables = {
+    tables: dict[str, dict[str, Any]] = {
         "test": {
             "name": record.name,
             "spans_m": list(record.line.spans) or None,
@@ -166,7 +165,7 @@ def _sidecar(record: DropRecord) -> dict[str, Any]:
             "quantity": record.quantity,
         },
     }
-    channels = [
+    channels: list[dict[str, Any]] = [
         {
             "column": c,
             "name": channel.name,

@@ -1,4 +1,4 @@
-"""A report of headings, texts, tables and figures, as one HTML file and as PDF; the reports on mass drops are of this kind."""
+"""A report of headings, texts, tables and figures, as one HTML file and as PDF: that of a mass drop."""
 
 import json
 from dataclasses import asdict, dataclass
@@ -8,7 +8,6 @@ from typing import Any
 import typst
 from jinja2 import Environment, FunctionLoader, StrictUndefined
 from markupsafe import Markup
-
 from pantocheck.conformance.files import write_in_place
 from pantocheck.conformance.reports.html import data_uri
 from pantocheck.conformance.reports.pdf import FONTS, moment, showable

@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-
 from pantocheck.conformance.reports.figures import FULL, GREY, INK, LINES, drawn
 
 SHADES = ("#1a1d21", "#6b747e", "#9aa3ac", "#c3cad2")
@@ -50,7 +49,9 @@ def spectra(data: dict[str, Any], unit: str) -> Figure:
         at.plot(data["frequency_Hz"], residual, ":", color=GREY, linewidth=0.7, label="residual")
         at.set_yscale("log")
         ticks = np.full(len(data["poles_Hz"]), 1.0)
-        at.plot(data["poles_Hz"], ticks, "|", color=INK, markersize=6, transform=at.get_xaxis_transform(), clip_on=False)
+        at.plot(
+            data["poles_Hz"], ticks, "|", color=INK, markersize=6, transform=at.get_xaxis_transform(), clip_on=False
+        )
         at.set_ylabel(f"{channel} [{unit} s]")
     axes[-1].set_xlabel("frequency [Hz]; ticks: identified modes")
     _names(axes[0])
@@ -101,7 +102,9 @@ def boxes(modes: list[dict[str, Any]]) -> Figure:
             capprops={"color": GREY},
         )
         for mode, value in zip(members, values, strict=True):
-            axes.plot(number + 0.36, value, "x" if mode["outlier"] else "o", color=INK, markersize=4, markerfacecolor="white")
+            axes.plot(
+                number + 0.36, value, "x" if mode["outlier"] else "o", color=INK, markersize=4, markerfacecolor="white"
+            )
     axes.set_xlim(0.4, (groups[-1] if groups else 1) + 0.8)
     axes.set_xticks(groups, [str(number) for number in groups])
     axes.set_ylim(bottom=0)
@@ -181,7 +184,9 @@ def comparison(data: dict[str, Any]) -> Figure:
         label="measured",
     )
     for (name, ratios), style, shade in zip(data["models"].items(), ("--", "-", ":"), (GREY, INK, INK), strict=False):
-        axes.plot(data["frequency_Hz"], [100 * value for value in ratios], style, color=shade, linewidth=1.1, label=name)
+        axes.plot(
+            data["frequency_Hz"], [100 * value for value in ratios], style, color=shade, linewidth=1.1, label=name
+        )
     axes.set_ylim(0, 1.5 * max(100 * value for value in measured["damping_ratio"]))
     axes.set_xlabel("frequency [Hz]")
     axes.set_ylabel("damping ratio [%]")

@@ -8,7 +8,8 @@ A dropper stays taut in the system's matrix; a force compensates it while it sho
 """
 
 import time
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,8 +32,26 @@ Array = NDArray[np.float64]
 
 OFF = 0.1
 """Relative change of the force at which the transition begins, and share of it at which it has ended."""
-COMPENSATED = {"slack dropper carries nothing": True, "only the elastic force is compensated": False}
-"""Laws by name, and whether they compensate the viscous force too."""
+
+
+@dataclass(frozen=True)
+class Law:
+    """How a slack dropper is treated.
+
+    Parameters
+    ----------
+    line : the line with that law
+    viscous_share : share of the viscous force that is compensated with the elastic one
+    """
+
+    line: Callable[[Discretised], Discretised]
+    viscous_share: float
+
+
+LAWS = {
+    "slack dropper carries nothing": Law(lambda line: line, 1.0),
+    "only the elastic force is compensated": Law(with_viscous_part_kept, 0.0),
+}
 GRADED = "only the elastic force is compensated"
 
 
@@ -59,11 +78,11 @@ def dropper_damping(case: Case, study: DropperDamping) -> Outcome:
     at_rest = run(mesh, passage)
     coefficients = np.array(study.coefficients_s)
     force = {
-        name: np.array([_largest(mesh, passage, at, value, compensated) for value in coefficients])
-        for name, compensated in COMPENSATED.items()
+        name: np.array([_largest(mesh, passage, at, value, law) for value in coefficients])
+        for name, law in LAWS.items()
     }
     findings = {LINE: transition(coefficients, force[GRADED])}
-    runs = 1 + len(COMPENSATED) * coefficients.size
+    runs = 1 + len(LAWS) * coefficients.size
     return Outcome(
         record=record_of(case, passage, at_rest),
         simulated_s=runs * passage.duration,
@@ -121,18 +140,16 @@ def _dropper(line: Catenary, study: DropperDamping, name: str) -> int:
     raise InputError(f"case '{name}', key study.x_m", f"no dropper at {study.x_m:g} m", "Name a dropper's place.")
 
 
-def _largest(mesh: Discretised, passage: Passage, at: int, coefficient: float, compensated: bool) -> float:
+def _largest(mesh: Discretised, passage: Passage, at: int, coefficient: float, law: Law) -> float:
     """Largest force that compensates the taut dropper while it is slack [N]."""
     damping = dict(mesh.catenary.damping) | {Kind.DROPPER: Rayleigh(stiffness_coefficient=coefficient)}
     line = with_damping(mesh, damping)
     dropper, bars = mesh.catenary.droppers[at], line.connectors
     watched = ((dropper.upper, dropper.position), (dropper.lower, dropper.position))
-    used = line if compensated else with_viscous_part_kept(line)
-    history = run(used, replace(passage, watched=watched))
+    history = run(law.line(line), replace(passage, watched=watched))
     change = history.motion[0] - history.motion[1]
     taut = bars.preload[at] + bars.stiffness[at] * change[:, 0]
-    if compensated:
-        taut = taut + bars.damping[at] * change[:, 1]
+    taut += law.viscous_share * bars.damping[at] * change[:, 1]
     return float(max(0.0, -taut.min()))
 
 

@@ -67,6 +67,7 @@ class ReferenceSimulator:
 
 
 def passage_of(case: Case, line: Discretised, step: float, uplift_forces: tuple[float, ...]) -> Passage:
+    """The passage of a case with given uplift forces, on a line that is discretised already."""
     models = []
     for file, force in zip(case.pantographs, uplift_forces, strict=True):
         height = float(static_uplift(line, _along_span(case), force).mean()) + force / file.contact.stiffness_N_m
@@ -109,6 +110,7 @@ def _tuned(case: Case, line: Discretised, step: float) -> tuple[float, ...]:
 
 
 def record_of(case: Case, passage: Passage, history: History) -> Record:
+    """The record of a case's passage."""
     return Record(
         time=history.time,
         speed=passage.speed,
