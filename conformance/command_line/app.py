@@ -4,7 +4,8 @@ from typing import Annotated
 
 import typer
 from pantocheck.conformance.command_line.cases import cases
-for command in (run, cases, show, simulate, drop, identify, fit_damping, verify, schema):
+from pantocheck.conformance.command_line.drop import drop
+from pantocheck.conformance.command_line.fit_damping import fit_damping
 from pantocheck.conformance.command_line.guard import guarded
 from pantocheck.conformance.command_line.identify import identify
 from pantocheck.conformance.command_line.run import run

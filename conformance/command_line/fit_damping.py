@@ -55,6 +55,6 @@ def _line(name: str) -> "Line":
     if name.endswith(".toml") and "geometry" in read_toml(Path(name), "line"):
         return read_model(Path(name), Line, "line")
     found = select([name])
-    if len({one.line for one in found}) != 1:
+    if any(one.line != found[0].line for one in found):
         raise InputError(f"line '{name}'", f"{len(found)} cases with different lines", "Name one case.")
     return found[0].line
