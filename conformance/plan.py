@@ -27,6 +27,9 @@ class Plan(Table):
     trust: Annotated[Trust, Field(description="lowest trust of the limits that carry a verdict")] = "secondary"
     limits: Annotated[str | None, Field(description="file of limits to be laid over the cases")] = None
     jobs: Annotated[int, Field(ge=1, le=256, description="cases that are run side by side")] = 1
+    damping_study: Annotated[
+        bool, Field(description="run every case also with benchmark, initial and updated damping")
+    ] = False
 
 
 def read_plan(path: Path) -> Plan:

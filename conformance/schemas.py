@@ -3,6 +3,7 @@
 from typing import Any
 
 from pantocheck.conformance.cases.case_file import CaseFile
+from pantocheck.conformance.cases.damping import DampingFile
 from pantocheck.conformance.cases.limits import LimitsFile
 from pantocheck.conformance.cases.line import Line
 from pantocheck.conformance.cases.pantograph import Pantograph
@@ -15,6 +16,7 @@ _MODELS: dict[str, type[BaseModel]] = {
     "case": CaseFile,
     "line": Line,
     "pantograph": Pantograph,
+    "damping": DampingFile,
     "limits": LimitsFile,
     "plan": Plan,
     "record": Sidecar,

@@ -12,6 +12,7 @@ from pantocheck.conformance.cases.damping import Damping, overlaid
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.line import Line
 from pantocheck.conformance.cases.pantograph import Pantograph
+from pantocheck.conformance.cases.study import DampingSensitivity
 from pantocheck.conformance.trust import Trust
 
 
@@ -99,7 +100,7 @@ class Case:
             "pantographs": [_numbers(pantograph.model_dump(mode="json")) for pantograph in self.pantographs],
             "case": _numbers(self.file.model_dump(mode="json", exclude=self._not_told)),
         }
-        if self.dampings:
+        if self.dampings and "study" not in self._not_told:
             inputs["dampings"] = {name: _numbers(d.model_dump(mode="json")) for name, d in self.dampings.items()}
         text = json.dumps(inputs, sort_keys=True, separators=(",", ":"), allow_nan=False)
         return "sha256:" + hashlib.sha256(text.encode()).hexdigest()
@@ -108,6 +109,8 @@ class Case:
     def _not_told(self) -> set[str]:
         """Keys of the file that tell a system nothing, or nothing that the line does not tell already."""
         unused = {key for key in ("mass_drop", "study") if getattr(self.file, key) is None}
+        if isinstance(self.file.study, DampingSensitivity):
+            unused.add("study")  # it runs the case as it is, and says more about it
         return {"limit", "line", "requires", "damping", "on_request"} | unused
 
     @property
@@ -144,8 +147,12 @@ class Case:
         merged = {limit.target: limit for limit in (*self.limits, *limits)}
         return replace(self, limits=tuple(merged.values()))
 
+    def without_study(self) -> "Case":
+        """The same case as a system under test gets it: a plain run."""
+        return replace(self, file=self.file.model_copy(update={"study": None}), dampings={})
+
     def with_damping(self, name: str, damping: Damping) -> "Case":
-        """The same passage without limits, another damping laid over its line; its id ends in the name."""
+        """The same case without limits and study, another damping laid over its line; its id ends in the name."""
         file = self.file.model_copy(update={"id": f"{self.id}/{name}", "study": None, "limit": (), "requires": ()})
         line = self.line.model_copy(update={"damping": overlaid(self.line.damping, damping)})
         return replace(self, file=file, line=line, limits=(), dampings={})

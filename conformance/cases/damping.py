@@ -68,10 +68,10 @@ class DampingFile(Table):
 
 
 def overlaid(damping: Damping, over: Damping) -> Damping:
-    """Damping of a line with another laid over it: the kinds that `over` names, and its modal bands, take their place."""
+    """Damping of a line with another laid over it: the kinds that `over` names, and its modal bands, replace the old."""
     said = over.model_fields_set - {"trust", "source", "provisional", "note"}
     kinds = {"contact_wire", "messenger_wire", "stitch_wire", "droppers", "steady_arms"}
-    kept = [kind for kind in kinds & damping.model_fields_set - said]
+    kept = kinds & damping.model_fields_set - said
     changes: dict[str, object] = {key: getattr(over, key) for key in (*said, "trust", "source", "provisional", "note")}
     if kept:
         changes["trust"] = max(damping.trust, over.trust, key=LEVELS.index)

@@ -49,7 +49,7 @@ class MassDrop(Sourced):
               "case has the same noise"),
     ] = 0.0  # fmt: skip
     highest_Hz: Annotated[Positive, Field(le=200, description="modes are identified up to here [Hz]")] = 10.0
-    compared: DampingModels = {}
+    compared: Annotated[DampingModels, Field(default_factory=dict)]
 
     @model_validator(mode="after")
     def _observable(self) -> "MassDrop":

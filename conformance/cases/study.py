@@ -71,7 +71,14 @@ class SteadyArmDamper(Sourced):
     ]
 
 
+class DampingSensitivity(Sourced):
+    """The same passage under several damping models, side by side; nothing of it is graded."""
+
+    kind: Literal["damping-sensitivity"]
+    models: Annotated[DampingModels, Field(min_length=1)]
+
+
 Study = Annotated[
-    DampingChange | ReleaseVelocity | DropperDamping | SteadyArmDamper,
+    DampingChange | DampingSensitivity | ReleaseVelocity | DropperDamping | SteadyArmDamper,
     Field(discriminator="kind", description="what is compared"),
 ]

@@ -12,8 +12,12 @@ SUFFIXES = (".uff", ".csv", ".h5")
 
 
 def drop(
-    case: Annotated[str, typer.Argument(help="Id or path of one case with a mass drop, e.g. vovan2015/mass-drop/updated")],
-    out: Annotated[Path, typer.Option(help="Record to write: NAME.uff, NAME.csv or NAME.h5; NAME.toml is written beside.")],
+    case: Annotated[
+        str, typer.Argument(help="Id or path of one case with a mass drop")
+    ],
+    out: Annotated[
+        Path, typer.Option(help="Record to write: NAME.uff, NAME.csv or NAME.h5.")
+    ],
     number: Annotated[
         int | None,
         typer.Option("--drop", help="Which drop of the case, from 1; left out: all, as NAME-1, NAME-2, ...", min=1),

@@ -35,12 +35,18 @@ def run(
     ] = None,
     limits: Annotated[Path | None, typer.Option(help="TOML file of your own limits, laid over the cases.")] = None,
     jobs: Annotated[int | None, typer.Option(help="Cases run side by side.", show_default="1")] = None,
+    damping_study: Annotated[
+        bool,
+        typer.Option("--damping-study", help="Run every case also with benchmark, initial and updated damping."),
+    ] = False,
 ) -> None:
     """Run cases on a system, grade them, and write the results and the certificate.
 
     Examples:
 
     pantocheck run 'en50318-2002/*' --out report
+
+    pantocheck run en50318-2002/250 --damping-study
 
     pantocheck run my-case.toml --system record:records --formats html,json
     """
@@ -62,10 +68,15 @@ def run(
         trust=trust,
         limits=None if limits is None else str(limits),
         jobs=jobs,
+        damping_study=damping_study or None,
     )
     chosen = select(options.cases)
     if options.limits is not None:
         chosen = overlaid(chosen, read_limits(Path(options.limits)))
+    if options.damping_study:
+        from pantocheck.conformance.studies.damping_sensitivity import with_damping_study
+
+        chosen = [with_damping_study(case) for case in chosen]
     written = checked_formats(options.formats)
     tested, folder = system_named(options.system), Path(options.out)
     check_writable(folder)

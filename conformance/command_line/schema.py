@@ -8,7 +8,8 @@ import typer
 
 def schema(
     name: Annotated[
-        str | None, typer.Argument(help="case, line, pantograph, limits, plan, record or results; without: all")
+        str | None,
+        typer.Argument(help="case, line, pantograph, damping, limits, plan, record or results; without: all"),
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Folder to write NAME.schema.json to, in place of printing.")] = None,
 ) -> None:

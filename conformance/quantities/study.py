@@ -2,7 +2,11 @@
 
 from pantocheck.conformance.quantities.kinds import Quantity
 
-_MODES, _PASSAGES, _DROPPERS = "modes identified from mass drops", "two runs of a train", "runs with several coefficients"
+_MODES, _PASSAGES, _DROPPERS = (
+    "modes identified from mass drops",
+    "two runs of a train",
+    "runs with several coefficients",
+)
 
 
 def _change(name: str, band: str) -> Quantity:
@@ -54,21 +58,21 @@ STUDY_QUANTITIES: tuple[Quantity, ...] = (
     Quantity(
         "dropper_transition_start_s",
         "s",
-        "smallest stiffness coefficient at which a dropper's largest compensation force is 10 % off that without damping",
+        "smallest stiffness coefficient at which a dropper's largest compensation force has changed by 10 %",
         _DROPPERS,
         "study",
     ),
     Quantity(
         "dropper_transition_middle_s",
         "s",
-        "stiffness coefficient above which a dropper's largest compensation force is below half of that without damping",
+        "stiffness coefficient above which half of a dropper's largest compensation force is left",
         _DROPPERS,
         "study",
     ),
     Quantity(
         "dropper_transition_end_s",
         "s",
-        "stiffness coefficient above which a dropper's largest compensation force is below 10 % of that without damping",
+        "stiffness coefficient above which 10 % of a dropper's largest compensation force is left",
         _DROPPERS,
         "study",
     ),

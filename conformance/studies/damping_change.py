@@ -28,7 +28,7 @@ def damping_change(case: Case, study: DampingChange, system: System) -> Outcome:
     system : under test; it is asked for both passages
     """
     ((name, damping),) = case.dampings.items()
-    before, after = system.run(case.with_damping(name, damping)), system.run(replace(case, dampings={}))
+    before, after = system.run(case.with_damping(name, damping)), system.run(case.without_study())
     for run, of in ((before, name), (after, study.after)):
         if run.record is None:
             reason = run.errored or run.skipped or "no record was delivered"

@@ -1,7 +1,13 @@
-"""Which runs a case needs: one of the system under test, or those of a study. What is heavy is imported when it runs."""
+"""Which runs a case needs: one of the system under test, or those of a study. Heavy imports wait until then."""
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.study import DampingChange, DropperDamping, ReleaseVelocity, SteadyArmDamper
+from pantocheck.conformance.cases.study import (
+    DampingChange,
+    DampingSensitivity,
+    DropperDamping,
+    ReleaseVelocity,
+    SteadyArmDamper,
+)
 from pantocheck.conformance.systems import Outcome, System
 
 ONLY_BUILTIN = "this study drives the reference simulator itself; other systems deliver no such runs"
@@ -13,7 +19,7 @@ def run_study(case: Case, system: System) -> Outcome:
     Parameters
     ----------
     case : what is asked
-    system : under test; a change of damping is asked of any system, the other studies of the reference simulator only
+    system : under test; changes of damping are asked of any system, the other studies of the reference simulator only
     """
     match case.file.study:
         case None if case.file.mass_drop is None or system.kind != "builtin":
@@ -22,6 +28,10 @@ def run_study(case: Case, system: System) -> Outcome:
             from pantocheck.conformance.studies.damping_change import damping_change
 
             return damping_change(case, study, system)
+        case DampingSensitivity():
+            from pantocheck.conformance.studies.damping_sensitivity import damping_sensitivity
+
+            return damping_sensitivity(case, system)
         case _ if system.kind != "builtin":
             return Outcome(skipped=ONLY_BUILTIN)
         case None:

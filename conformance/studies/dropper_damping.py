@@ -32,6 +32,8 @@ Array = NDArray[np.float64]
 
 OFF = 0.1
 """Relative change of the force at which the transition begins, and share of it at which it has ended."""
+LEAST_DRAWN = 1.0
+"""Force at which smaller ones are drawn on a logarithmic scale [N]."""
 
 
 @dataclass(frozen=True)
@@ -93,8 +95,8 @@ def dropper_damping(case: Case, study: DropperDamping) -> Outcome:
         charts=(_chart(case, study, force),),
         tables=(findings_table(case.limits, findings, {}), origins(case)),
         notes=(
-            "Which force the study compensates is not printed. Graded is the law that compensates the elastic force only: "
-            "it locks the dropper as the study describes; the law of the reference simulator does not lock it.",
+            "Which force the study compensates is not printed. Graded is the law that compensates the elastic force "
+            "only: it locks the dropper as the study describes; the law of the reference simulator does not lock it.",
         ),
     )
 
@@ -163,15 +165,22 @@ def _chart(case: Case, study: DropperDamping, force: dict[str, Array]) -> Chart:
     if chosen > 0:
         marks.append(Mark(label="chosen by the study", axis="x", low=chosen))
     return Chart(
-        caption=f"Largest compensation force of the dropper at {study.x_m:g} m against its stiffness coefficient.",
+        caption=f"Largest compensation force of the dropper at {study.x_m:g} m against its stiffness coefficient; "
+        f"what is below {LEAST_DRAWN:g} N is drawn there.",
         alternative="; ".join(
             f"{name}: from {values[0]:.4g} N to {values[-1]:.4g} N" for name, values in force.items()
-        ),  # fmt: skip
+        )
         x_label="stiffness coefficient [s]",
         y_label="largest compensation force [N]",
         x_scale="log",
+        y_scale="log",
         series=[
-            Series(label=name, style="line", x=thinned(np.array(study.coefficients_s)), y=thinned(values))
+            Series(
+                label=name,
+                style="line",
+                x=thinned(np.array(study.coefficients_s)),
+                y=thinned(np.maximum(values, LEAST_DRAWN)),
+            )
             for name, values in force.items()
         ],
         marks=marks,

@@ -53,7 +53,9 @@ def _coefficients(results: dict[str, Any], line: Catenary) -> TextTable:
         interval = f"{one['low_95']:.3g} to {one['high_95']:.3g}"
         name = f"{one['kind'].replace('_', ' ')}, {one['matrix']} [{unit[one['matrix']]}]"
         rows.append([name, f"{put_in:.4g}", f"{one['value']:.4g}", interval, off])
-    modal = " Modal bands of the case are not Rayleigh damping: the fit takes them for it." if line.modal_damping else ""
+    modal = (
+        " Modal bands of the case are not Rayleigh damping: the fit takes them for it." if line.modal_damping else ""
+    )
     return TextTable(
         caption="Rayleigh damping of the wires: put into the simulation, and fitted to the identified modes." + modal,
         columns=["Coefficient", "Put in", "Fitted", "95 % interval", "Off by"],
@@ -64,13 +66,13 @@ def _coefficients(results: dict[str, Any], line: Catenary) -> TextTable:
 def _observability(results: dict[str, Any]) -> Chart:
     rows = results["observability"]
     return Chart(
-        caption="Observability of every coefficient: its plausible value over the standard deviation with which the modes "
-        "determine it; above the dashed line it is observable.",
+        caption="Observability of every coefficient: its plausible value over the standard deviation with which the "
+        "modes determine it; above the dashed line it is observable.",
         alternative="; ".join(f"{row['kind']} {row['matrix']}: {row['plausible_over_std']:.3g}" for row in rows),
         x_label="coefficient",
         y_label="plausible value / std [-]",
         y_scale="log",
-        ticks=[f"{row['kind'].replace('_', ' ')}\n{row['matrix']}" for row in rows],
+        ticks=["\n".join((*row["kind"].split("_"), row["matrix"])) for row in rows],
         series=[
             Series(
                 label="all modes together",

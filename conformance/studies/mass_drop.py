@@ -60,8 +60,8 @@ def _against_frequency(case: Case, found: Identification, bound: float | None) -
     models = lines(case) or {"damping of the case": own}
     certain = [mode for mode in found.modes if mode.certain and not mode.lateral]
     return Chart(
-        caption="Damping ratio against frequency: identified from the drops with 95 % intervals, and computed from each "
-        "damping model.",
+        caption="Damping ratio against frequency: identified from the drops with 95 % intervals, and computed from "
+        "each damping model.",
         alternative="Damping ratio over frequency; the medians of the groups are in the table of quantities.",
         x_label="frequency [Hz]",
         y_label="damping ratio [%]",
