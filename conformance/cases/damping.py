@@ -68,7 +68,7 @@ class DampingFile(Table):
 
 
 def overlaid(damping: Damping, over: Damping) -> Damping:
-    """Damping of a line with another laid over it: the kinds that `over` names, and its modal bands, replace the old."""
+    """Damping of a line with another laid over it: the kinds and modal bands of `over` replace its own."""
     said = over.model_fields_set - {"trust", "source", "provisional", "note"}
     kinds = {"contact_wire", "messenger_wire", "stitch_wire", "droppers", "steady_arms"}
     kept = kinds & damping.model_fields_set - said

@@ -167,9 +167,7 @@ def _chart(case: Case, study: DropperDamping, force: dict[str, Array]) -> Chart:
     return Chart(
         caption=f"Largest compensation force of the dropper at {study.x_m:g} m against its stiffness coefficient; "
         f"what is below {LEAST_DRAWN:g} N is drawn there.",
-        alternative="; ".join(
-            f"{name}: from {values[0]:.4g} N to {values[-1]:.4g} N" for name, values in force.items()
-        )
+        alternative="; ".join(f"{name}: {v[0]:.4g} N to {v[-1]:.4g} N" for name, v in force.items()),
         x_label="stiffness coefficient [s]",
         y_label="largest compensation force [N]",
         x_scale="log",

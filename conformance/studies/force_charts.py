@@ -81,7 +81,7 @@ def trailing_force(case: Case, study: DampingChange, runs: Mapping[str, Outcome]
         if series:
             charts.append(
                 Chart(
-                    caption=f"Contact force of the last pantograph over span {study.span}, low-passed at {cutoff:g} Hz.",
+                    caption=f"Contact force of the last pantograph, span {study.span}, low-passed at {cutoff:g} Hz.",
                     alternative=f"Contact force from {start:g} m to {end:g} m under the two damping models.",
                     x_label="position along the track [m]",
                     y_label="contact force [N]",
