@@ -47,6 +47,12 @@ def find_release(signals: Real, rate: float, nominal: float | None, name: str) -
     if nominal is not None and nominal - TRIGGER_TOLERANCE < LEAST_REST:
         return Release(nominal, 0.0, (f"{name}: no rest before the release; the planned release is taken",))
     rest_end = int((nominal - TRIGGER_TOLERANCE) * rate) if nominal is not None else _quiet_start(signals, rate, name)
+    if n - rest_end < rate:
+        raise InputError(
+            name,
+            f"ends {n / rate:.2f} s after its beginning, the release is planned at {nominal or rest_end / rate:.2f} s",
+            "Record the whole decay, or correct the trigger time.",
+        )
     rest = signals[:rest_end]
     moved = signals - np.median(rest, axis=0)
     noise = 1.4826 * np.median(np.abs(moved[:rest_end]), axis=0)

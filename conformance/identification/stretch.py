@@ -23,7 +23,8 @@ GUARD = 2.0  # droppers are taut again this long after the release, as a first g
 FIRST_FIT = 60.0  # length of the first fit [s]
 SHORTEST = 10.0  # below this no damping of a catenary can be had [s]
 LONG_WINDOW, SHORT_WINDOW = 4.0, 1.0  # for the end and the start [s]
-DISTURBED_FIT = 4.0  # a fit that leaves so much more than the noise at rest spans something that is not a decay
+EARLIEST = 1.0  # after the release, whatever the residual says: its test sees little before its own length [s]
+TEST_TRANSITION = 2.5  # of the filter in front of that test [Hz]
 
 
 @dataclass(frozen=True)
@@ -116,8 +117,7 @@ def find_stretch(
     guard = max(int(GUARD / dt), int(np.ceil((clipped_until - release.time) / dt)) + 1)
     if (total - guard) * dt < SHORTEST - taps.size / rate:
         raise InputError(name, "is clipped or disturbed almost to its end", "Repeat the drop with a larger range.")
-    rest = _rest_level(signals, rate, release, taps, step, band, dt)
-    start, end, poles = _search(samples, guard, dt, band, rest)
+    start, end, poles = _search(samples, guard, dt, band)
     if clipped_until > release.time:
         start = max(start, guard)
     warnings = []
@@ -145,7 +145,7 @@ def find_stretch(
     )
 
 
-def _search(samples: Real, guard: int, dt: float, band: Band, rest: Real | None) -> tuple[int, int, Complex]:
+def _search(samples: Real, guard: int, dt: float, band: Band) -> tuple[int, int, Complex]:
     """First sample, end, and poles of the linear stretch.
 
     Fits over ever longer stretches are each tested over the whole record. A fit over a short stretch may fail further
@@ -156,14 +156,12 @@ def _search(samples: Real, guard: int, dt: float, band: Band, rest: Real | None)
     for _ in range(8):
         poles = _poles(samples[begin:end], dt, band)
         tested = _tested(samples, begin, end, poles, dt, band)
-        if rest is not None and np.median(tested.floor / rest) > DISTURBED_FIT and end - begin > 2 * least:
-            limit = end = begin + (end - begin) // 2
-            continue
         late = tested.first_after_calm(begin)
-        if late < end - tested.window and late < limit:
+        if late < end - tested.reach and late < limit:
             limit = end = max(late, begin + least)
             continue
-        if late < limit and tested.stays_disturbed(late):
+        # A fit that foresaw the decay for long is right about its end; one that fails at once missed close modes.
+        if end + (end - begin) // 4 < late < limit and tested.stays_disturbed(late):
             return _first_sample(samples, begin, end, poles, dt, band), late, poles
         further = min(limit, max(late, begin + (end - begin) * 3 // 2)) if late < limit else limit
         if late >= limit or further <= end:
@@ -178,8 +176,8 @@ class _Tested:
 
     starts: NDArray[np.int64]
     disturbed: NDArray[np.bool_]
-    floor: Real
     window: int
+    reach: int  # samples that a window sees, its filter included
 
     def first_after_calm(self, begin: int) -> int:
         """First sample of the first disturbed window that follows calm ones; beyond the record if there is none.
@@ -206,19 +204,21 @@ def _tested(
 ) -> _Tested:
     window = int(width / dt)
     starts, level = levels(_left(samples, begin, end, poles, dt, band), window, dt, band)
-    inside = (starts >= begin) & (starts + window < end)
+    reach = window + _test_filter(dt, band).size
+    inside = (starts >= begin) & (starts + reach < end)
     floor = np.maximum(np.median(level[inside], axis=0), np.finfo(float).tiny)
-    return _Tested(starts, _disturbed(level / floor, width, band), floor, window)
+    return _Tested(starts, _disturbed(level / floor, width, band), window, reach)
 
 
 def _first_sample(samples: Real, begin: int, end: int, poles: Complex, dt: float, band: Band) -> int:
     tested = _tested(samples, begin, end, poles, dt, band, SHORT_WINDOW)
     early = tested.disturbed & (tested.starts < begin + 0.25 * (end - begin))
+    earliest = int(EARLIEST / dt)
     if not early.any():
-        return 0
+        return earliest
     # Going back in time, what first disturbs a window is its first sample; the test's filter weighs its middle most.
     reach = tested.window // 4 + 1 + _test_filter(dt, band).size // 2
-    return min(int(tested.starts[early][-1]) + reach, end - 1)
+    return min(max(int(tested.starts[early][-1]) + reach, earliest), end - 1)
 
 
 def _poles(samples: Real, dt: float, band: Band) -> Complex:
@@ -268,16 +268,7 @@ def _disturbed(ratio: Real, width: float, band: Band) -> NDArray[np.bool_]:
     return np.asarray(together | alone)
 
 
-def _rest_level(
-    signals: Real, rate: float, release: Release, taps: Real, step: int, band: Band, dt: float
-) -> Real | None:
-    """Level of the noise at rest, (c,), None if the rest is too short to tell."""
-    rest = signals[: int(release.rest_end * rate)]
-    window = int(1.0 / dt)
-    left = (rest.shape[0] - taps.size) // step - _test_filter(dt, band).size
-    return levels(complete_overlap(rest, taps)[::step], window, dt, band)[1].mean(axis=0) if left > window else None
-
-
 def _test_filter(dt: float, band: Band) -> Real:
-    """What lies above the band is no part of the test of the residual."""
-    return lowpass(1 / dt, 0.85 * band.high, 1.05 * band.high, 70.0)
+    """What lies above the band is no part of the test of the residual; short, so that it sees where a change is."""
+    passes = max(band.fitted - TEST_TRANSITION, 0.5 * band.fitted)
+    return lowpass(1 / dt, passes, band.fitted, 70.0)

@@ -1,5 +1,6 @@
 """Writing records: UFF 58, CSV with a sidecar, HDF5. What is written here reads back the same."""
 
+import warnings
 from pathlib import Path
 from typing import Any, Literal
 
@@ -45,7 +46,10 @@ def write_uff(record: DropRecord, path: Path, form: Literal["ascii", "binary"] =
     def produce(temporary: Path) -> None:
         # pyuff's mode 'overwrite' destroys binary files; a new file filled by adding does not suffer from it.
         temporary.unlink()
-        pyuff.UFF(str(temporary)).write_sets(sets, mode="add")
+        with warnings.catch_warnings():
+            # pyuff drops open files instead of closing them; they are closed when it returns.
+            warnings.simplefilter("ignore", ResourceWarning)
+            pyuff.UFF(str(temporary)).write_sets(sets, mode="add")
 
     write_in_place(sidecar_of(path), tomli_w.dumps(_sidecar(record)).encode())
     produce_in_place(path, produce)

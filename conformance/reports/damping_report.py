@@ -43,7 +43,8 @@ RESULT = (
 COMPARISON = "Line as it is: with the damping its file has now."
 OBSERVABILITY = (
     "A coefficient is observable if its plausible value would make up at least 5 % of some mode's damping and is at "
-    "least three times the standard deviation with which the modes determine it, the wires' coefficients being unknown too."
+    "least three times the standard deviation with which the modes determine it, the wires' coefficients being "
+    "unknown too."
 )
 
 

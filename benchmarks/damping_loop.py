@@ -1,0 +1,64 @@
+"""The loop closed: damping put into the simulator, a mass dropped, its record identified, a damping model fitted.
+
+    python benchmarks/damping_loop.py
+
+Prints each coefficient put in, what came out, and its 95 % interval. Droppers slacken after the release.
+"""
+
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+from pantocheck.conformance.cases.library import select
+from pantocheck.conformance.identification.damping_results import damping_results
+from pantocheck.conformance.identification.identify import identify
+from pantocheck.conformance.identification.result_files import read_modes, write_modes
+from pantocheck.conformance.massdrop_records import Channel, Drop, DropRecord, Line
+from pantocheck.conformance.systems.line_model import catenary
+from pantocheck.model import Kind, Rayleigh
+from pantocheck.model.drop import Drop as SimulatedDrop
+from pantocheck.model.drop import drop
+from scipy.signal import resample_poly
+
+PUT_IN = {
+    Kind.CONTACT_WIRE: Rayleigh(0.06, 6e-5),
+    Kind.MESSENGER_WIRE: Rayleigh(0.04, 9e-5),
+    Kind.DROPPER: Rayleigh(0.0, 1e-5),
+}
+SENSORS = (("contact wire", 130.0), ("contact wire", 205.5), ("messenger wire", 77.0), ("contact wire", 310.0))
+SHORT = {"contact wire": "CW", "messenger wire": "MW"}
+SPANS, MASS, PLACE, HANGING, DURATION, STEP, ELEMENT, NOISE = 6, 30.0, 165.0, 6.0, 180.0, 1e-3, 1.0, 0.003
+
+
+def main() -> None:
+    """Run the loop once."""
+    case = select(["en50318-2002/250"])[0]
+    six_spans = case.line.geometry.model_copy(update={"spans": SPANS})
+    line = replace(catenary(case.line.model_copy(update={"geometry": six_spans})), damping=PUT_IN)
+    test = SimulatedDrop(MASS, "contact wire", PLACE, 0.0, HANGING, DURATION, STEP, SENSORS)
+    decay = drop(line, ELEMENT, test)
+    print(f"last slack dropper {decay.last_slack} s after the release")
+    signals = resample_poly(decay.motion[:, :, 2].T, 1, 5, axis=0)
+    signals = signals + NOISE * np.random.default_rng(0).standard_normal(signals.shape)
+    record = DropRecord(
+        "loop",
+        "loop",
+        1 / (5 * STEP),
+        signals,
+        tuple(Channel(f"S{i}_z", i, "z", SHORT[wire], x) for i, (wire, x) in enumerate(SENSORS, 1)),
+        drop=Drop(MASS, "CW", PLACE, HANGING),
+        line=Line((case.line.geometry.span_m,) * SPANS),
+    )
+    with TemporaryDirectory() as folder:
+        path = Path(folder, "modes.json")
+        write_modes(path, identify((record,)))
+        results = damping_results(read_modes(path), line, ELEMENT, path.name)
+    for one in results["coefficients"]:
+        true = getattr(PUT_IN[Kind(one["kind"])], f"{one['matrix']}_coefficient")
+        interval = f"[{one['low_95']:.4g}, {one['high_95']:.4g}]"
+        print(f"{one['kind']:<16}{one['matrix']:<10} in {true:<8.4g} out {one['value']:<10.4g} {interval}")
+
+
+if __name__ == "__main__":
+    main()
