@@ -166,12 +166,13 @@ def _check_drops(case: Case, path: Path) -> None:
     if drops is None:
         return
     length, where = case.line.geometry.span_m * case.line.geometry.spans, f"case '{path.name}'"
-    for name, places in (("drop", drops.drop), ("sensor", drops.sensor)):
-        for i, place in enumerate(places, 1):
-            if not 0 < place.x_m < length:
+    places = {"drop": [test.x_m for test in drops.drop], "sensor": [sensor.x_m for sensor in drops.sensor]}
+    for name, along in places.items():
+        for i, x in enumerate(along, 1):
+            if not 0 < x < length:
                 raise InputError(
                     f"{where}, key mass_drop.{name}[{i}].x_m",
-                    f"{place.x_m:g} m is not on the line",
+                    f"{x:g} m is not on the line",
                     f"The line goes from 0 to {length:g} m, its ends anchored.",
                 )
     step, every = case.file.discretisation.time_step_s, 1 / drops.rate_Hz

@@ -1,5 +1,6 @@
 """`pantocheck drop`: the records of a case's mass drops, to be identified like measured ones."""
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -7,17 +8,14 @@ import typer
 
 if TYPE_CHECKING:
     from pantocheck.conformance.massdrop_records.record import DropRecord
+    from rich.progress import Progress, TaskID
 
 SUFFIXES = (".uff", ".csv", ".h5")
 
 
 def drop(
-    case: Annotated[
-        str, typer.Argument(help="Id or path of one case with a mass drop")
-    ],
-    out: Annotated[
-        Path, typer.Option(help="Record to write: NAME.uff, NAME.csv or NAME.h5.")
-    ],
+    case: Annotated[str, typer.Argument(help="Id or path of one case with a mass drop")],
+    out: Annotated[Path, typer.Option(help="Record to write: NAME.uff, NAME.csv or NAME.h5.")],
     number: Annotated[
         int | None,
         typer.Option("--drop", help="Which drop of the case, from 1; left out: all, as NAME-1, NAME-2, ...", min=1),
@@ -50,13 +48,17 @@ def drop(
     with Progress(console=output, transient=True, disable=not output.is_terminal) as bar:
         for n in range(1, drops + 1) if number is None else [number]:
             task = bar.add_task(f"drop {n} of {drops}", total=1.0)
-            made = simulated(found[0], n, lambda share, task=task: bar.update(task, completed=share))
+            made = simulated(found[0], n, partial(_advance, bar, task))
             several = number is None and drops > 1
             path = out.with_name(f"{out.stem}-{n}{out.suffix}") if several else out
             _write(made.record, path)
             slack = made.decay.last_slack
             said = "no dropper slack after the release" if slack is None else f"a dropper slack until {slack:.2f} s"
             output.print(plain(f"{path}: {made.record.duration:g} s, {len(made.record.channels)} sensors, {said}"))
+
+
+def _advance(bar: "Progress", task: "TaskID", share: float) -> None:
+    bar.update(task, completed=share)
 
 
 def _write(record: "DropRecord", path: Path) -> None:

@@ -1,5 +1,6 @@
 """Charts of studies: series, printed values and limits, as a study left them in the results."""
 
+from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ SHADES = (INK, "#6b747e", "#9aa3ac", "#c3cad2")
 MARKERS = "os^Dv"
 FILLS = ("#3a424a", "#aab3bc", "white", "white")
 HATCHES = ("", "", "////", "....")
+TICK_WIDTH = 10  # characters on a line of a tick's name
 
 
 @drawn
@@ -34,7 +36,7 @@ def chart(data: dict[str, Any]) -> Figure:
     for mark in data["marks"]:
         _mark(axes, mark)
     if data["ticks"]:
-        axes.set_xticks(range(len(data["ticks"])), data["ticks"])
+        axes.set_xticks(range(len(data["ticks"])), [fill(name, TICK_WIDTH) for name in data["ticks"]])
         axes.set_xlim(-0.6, len(data["ticks"]) - 0.4)
     if data["y_scale"] == "linear" and all(min(series["y"], default=0) >= 0 for series in data["series"]):
         axes.set_ylim(bottom=0)

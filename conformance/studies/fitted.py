@@ -72,7 +72,7 @@ def _observability(results: dict[str, Any]) -> Chart:
         x_label="coefficient",
         y_label="plausible value / std [-]",
         y_scale="log",
-        ticks=["\n".join((*row["kind"].split("_"), row["matrix"])) for row in rows],
+        ticks=[f"{row['kind'].replace('_', ' ')} {row['matrix']}" for row in rows],
         series=[
             Series(
                 label="all modes together",

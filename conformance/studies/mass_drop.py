@@ -83,8 +83,17 @@ def _against_frequency(case: Case, found: Identification, bound: float | None) -
                 for name, line in models.items()
             ),
         ],
-        marks=_bound(bound),
+        marks=[*_bound(bound), *_printed_groups(case)],
     )
+
+
+def _printed_groups(case: Case) -> list[Mark]:
+    """Where the limits put the groups of modes."""
+    return [
+        Mark(label=f"printed: group {limit.item}", axis="x", low=limit.lower, high=limit.upper)
+        for limit in case.limits
+        if limit.quantity == "mode_frequency_Hz" and limit.lower is not None and limit.upper is not None
+    ]
 
 
 def _boxes(found: Identification, bound: float | None) -> Chart:

@@ -8,7 +8,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study import SteadyArmDamper
 from pantocheck.conformance.evaluation import LINE, Value
 from pantocheck.conformance.identification.identify import Identification, identify
-from pantocheck.conformance.results import Chart, Series, TextTable
+from pantocheck.conformance.results import Chart, Mark, Series, TextTable
 from pantocheck.conformance.studies.drops import mass_drop, simulated
 from pantocheck.conformance.studies.findings import findings_table
 from pantocheck.conformance.studies.origins import origins
@@ -45,7 +45,7 @@ def steady_arm_damper(case: Case, study: SteadyArmDamper) -> Outcome:
         element_m=steps.element_m,
         warnings=tuple(dict.fromkeys(text for one in found.values() for text in one.warnings)),
         findings=findings,
-        charts=(_chart(found),),
+        charts=(_chart(found, study.bands_Hz[-1][0]),),
         tables=(findings_table(case.limits, findings, {}), _table(study.bands_Hz, *medians), origins(case)),
     )
 
@@ -85,7 +85,7 @@ def _table(bands: Bands, without: list[float], damped: list[float]) -> TextTable
     )
 
 
-def _chart(found: dict[str, Identification]) -> Chart:
+def _chart(found: dict[str, Identification], last: float) -> Chart:
     series = []
     for name, one in found.items():
         certain = [mode for mode in one.modes if mode.certain and not mode.lateral]
@@ -104,4 +104,5 @@ def _chart(found: dict[str, Identification]) -> Chart:
         x_label="frequency [Hz]",
         y_label="damping ratio [%]",
         series=series,
+        marks=[Mark(label=f"printed: no effect visible after {last:g} Hz", axis="x", low=last)],
     )

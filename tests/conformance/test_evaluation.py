@@ -153,7 +153,7 @@ def test_registry_has_every_name_of_the_contract():
     statistical_min_N max_force_N min_force_N contact_loss_pct max_uplift_at_support_mm contact_height_range_mm
     presag_mm dropper_length_m elasticity_mm_N elasticity_non_uniformity_pct wave_speed_m_s mode_frequency_Hz
     damping_ratio"""
-    assert set(QUANTITIES) == set(names.split())
+    assert set(names.split()) <= set(QUANTITIES)
     assert len(QUANTITIES) == len(PANTOGRAPH_QUANTITIES) + len(LINE_QUANTITIES) + len(GIVEN_QUANTITIES)
     assert all(
         name == quantity.name and quantity.definition and quantity.needs for name, quantity in QUANTITIES.items()

@@ -11,7 +11,7 @@ from pantocheck.conformance.studies.fitted import fitted_damping
 @pytest.fixture(scope="module")
 def short():
     """The line in three spans, 50 s of one drop."""
-    (case,) = select(["vovan2015/mass-drop/measured"])
+    (case,) = select(["vovan2015/mass-drop/printed"])
     told = case.file.mass_drop
     drop = told.drop[0].model_copy(update={"x_m": 85.5})
     places = ((0, 78.75), (1, 45.0), (2, 99.0), (3, 141.75))

@@ -80,7 +80,7 @@ def test_the_updated_damping_brings_more_above_20_hz(case):
     found, result = rows(case)
     assert [found[key].verdict for key in (LOW, FRONT, REAR, DIFFERENCE)] == ["pass"] * 4
     assert all(row.margin is not None for row in found.values())
-    assert [table.caption for table in result.tables][0] == "Findings"
+    assert result.tables[0].caption == "Findings"
     assert any("span 8" in chart.caption for chart in result.charts)
 
 

@@ -11,6 +11,7 @@ from pantocheck.model import Kind, Rayleigh, discretise
 from pantocheck.model.drop import Drop, drop
 from pantocheck.model.dropper_laws import with_viscous_part_kept
 from pantocheck.model.line import with_damping
+
 from tests.conformance.studies.computed_modes import verdicts
 from tests.model.lines import simple_line
 

@@ -12,6 +12,7 @@ from pantocheck.conformance.systems.line_model import catenary
 from pantocheck.model import Kind, Rayleigh, discretise
 from pantocheck.model.modal_damping import modes_below
 from pantocheck.model.modes import damping_ratios
+
 from tests.conformance.studies.computed_modes import ELEMENT, verdicts
 
 
