@@ -1,10 +1,11 @@
 """From a record to its quantities: what can be computed, and why the rest cannot."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.quantities.registry import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES
-from pantocheck.conformance.quantities.signals import LineSignals, PantographSignals
+from pantocheck.conformance.quantities.signals import ForceSignals, LineSignals, PantographSignals
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.record import Record
 
@@ -56,20 +57,24 @@ def evaluate(record: Record, low_pass: LowPass) -> Evaluation:
     record : of a run or a measurement
     low_pass : filter of the graded force
     """
+    numbered = range(1, record.pantographs + 1)
+    return evaluated({i: pantograph_signals(record, i, low_pass) for i in numbered}, line_signals(record))
+
+
+def evaluated(pantographs: Mapping[int, ForceSignals], line: LineSignals) -> Evaluation:
+    """Every quantity of the signals of pantographs, by number, and of a line; what they cannot support is skipped."""
     values: dict[int, dict[str, Value]] = {LINE: {}}
     skipped: dict[int, dict[str, str]] = {LINE: {}}
-    for pantograph in range(1, record.pantographs + 1):
+    for pantograph, signals in pantographs.items():
         values[pantograph], skipped[pantograph] = {}, {}
-        signals = pantograph_signals(record, pantograph, low_pass)
         for quantity in PANTOGRAPH_QUANTITIES:
             try:
                 values[pantograph][quantity.name] = quantity.compute(signals)
             except QuantityUnavailable as reason:
                 skipped[pantograph][quantity.name] = str(reason)
-    uplift = line_signals(record)
     for line_quantity in LINE_QUANTITIES:
         try:
-            values[LINE][line_quantity.name] = line_quantity.compute(uplift)
+            values[LINE][line_quantity.name] = line_quantity.compute(line)
         except QuantityUnavailable as reason:
             skipped[LINE][line_quantity.name] = str(reason)
     return Evaluation(values, skipped)

@@ -1,16 +1,18 @@
 """From the outcome of a case to its result: quantities, criteria, warnings, traces."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.consistency import findings
 from pantocheck.conformance.criteria import Verdict, margin, verdict_of, worst
 from pantocheck.conformance.evaluation import LINE, Evaluation, Value, evaluate
 from pantocheck.conformance.extended_band import extended_band_warnings
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results import CaseResult, Criterion, FilterFacts, InputGroup, Number, RunFacts
+from pantocheck.conformance.spread import spread
 from pantocheck.conformance.systems import Outcome
 from pantocheck.conformance.traces import pantograph_traces, uplift_traces
 from pantocheck.conformance.trust import Trust, counts
@@ -32,30 +34,49 @@ def graded(case: Case, outcome: Outcome, lowest_trust: Trust) -> CaseResult:
     if (mismatch := _mismatch(case, outcome)) is not None:
         return ungraded(case, "error", mismatch, outcome)
     evaluation = _evaluated(case, outcome)
-    refined = _evaluated(case, outcome.refined) if outcome.refined is not None else None
-    criteria = [_criterion(limit, evaluation, refined, lowest_trust) for limit in case.limits]
     record = outcome.record
+    shifted = {} if record is None else spread(record, case.shifted, case.file.filter.low_pass, evaluation.values)
+    found = findings(case, record) if record is not None else []
+    contradiction = next((finding for finding in found if finding.kind == "contradiction"), None)
+    # Numbers of a record that contradicts itself are shown, but not held against limits: some would pass.
+    graded_limits = [] if contradiction is not None else criteria_of(case, outcome, lowest_trust)
+    criteria = [_with_spread(item, shifted) for item in graded_limits]
     span, spans = case.line.geometry.span_m, case.line.geometry.spans
     supports = [i * span for i in range(spans + 1)]
     return _result(
         case,
         outcome,
-        verdict=worst(criterion.verdict for criterion in criteria),
-        reason=None,
+        verdict=worst(criterion.verdict for criterion in criteria) if contradiction is None else "error",
+        reason=None if contradiction is None else contradiction.text,
         warnings=[
             *outcome.warnings,
+            *(finding.text for finding in found if finding.kind == "doubt"),
             *_close_calls(criteria),
             *_edge_warnings(case, outcome),
-            *extended_band_warnings(outcome, evaluation, refined),
+            *extended_band_warnings(outcome, evaluation, _refined(case, outcome)),
         ],
+        notes=[f"not checked, {finding.text}" for finding in found if finding.kind == "unchecked"],
         criteria=criteria,
-        quantities={str(of): _plain(evaluation.values[of]) for of in evaluation.values if evaluation.values[of]},
+        quantities={str(of): plain(evaluation.values[of]) for of in evaluation.values if evaluation.values[of]},
         skipped={str(of): evaluation.skipped[of] for of in evaluation.skipped if evaluation.skipped[of]},
+        spread={str(of): values for of, values in shifted.items()},
         traces=pantograph_traces(record, case.file.filter.low_pass, supports) if record is not None else {},
         uplift=uplift_traces(record) if record is not None else [],
         charts=list(outcome.charts),
         tables=list(outcome.tables),
     )
+
+
+def criteria_of(case: Case, outcome: Outcome, lowest_trust: Trust) -> list[Criterion]:
+    """Every limit of a case against what was delivered; parameters as in `graded`."""
+    evaluation = _evaluated(case, outcome)
+    refined = _refined(case, outcome)
+    return [criterion(limit, evaluation, lowest_trust, refined) for limit in case.limits]
+
+
+def _refined(case: Case, outcome: Outcome) -> Evaluation | None:
+    """Quantities of the same case with element and time step halved, where a system delivers that."""
+    return _evaluated(case, outcome.refined) if outcome.refined is not None else None
 
 
 def _mismatch(case: Case, outcome: Outcome) -> str | None:
@@ -64,7 +85,7 @@ def _mismatch(case: Case, outcome: Outcome) -> str | None:
     if case.is_static:
         return None
     if record is None:
-        return "the system delivered no record"
+        return None if outcome.summary is not None else "the system delivered no record"
     if record.pantographs != len(case.pantographs):
         return f"the record has {record.pantographs} pantographs, the case has {len(case.pantographs)}"
     if abs(record.speed / case.speed - 1) > 0.005:
@@ -85,21 +106,23 @@ def ungraded(case: Case, verdict: Verdict, reason: str, outcome: Outcome | None 
         verdict=verdict,
         reason=line,
         warnings=[],
+        notes=[],
         criteria=[],
         quantities={},
         skipped={},
+        spread={},
         traces={},
         uplift=[],
     )
 
 
-def _result(case: Case, outcome: Outcome, **parts: object) -> CaseResult:
+def _result(case: Case, outcome: Outcome, notes: Sequence[str], **parts: object) -> CaseResult:
     file, record = case.file, outcome.record
     return CaseResult.model_validate(
         {
             "id": case.id,
             "title": file.title,
-            "notes": [*case.notes, *outcome.notes],
+            "notes": [*case.notes, *outcome.notes, *notes],
             "inputs": [InputGroup(group=i.group, trust=i.trust, source=source_text(i.source)) for i in case.inputs],
             "input_digest": case.digest,
             "run": RunFacts(
@@ -119,17 +142,28 @@ def _result(case: Case, outcome: Outcome, **parts: object) -> CaseResult:
 
 def _evaluated(case: Case, outcome: Outcome) -> Evaluation:
     if outcome.record is None:
-        evaluation = Evaluation({LINE: {}}, {LINE: {}})
+        evaluation = outcome.summary or Evaluation({LINE: {}}, {LINE: {}})
     else:
         evaluation = evaluate(outcome.record, case.file.filter.low_pass)
     ordered = {name: outcome.static[name] for name in QUANTITIES if name in outcome.static}
     values = {**evaluation.values, LINE: {**evaluation.values[LINE], **ordered}}
-    for of, findings in outcome.findings.items():
-        values[of] = {**values.get(of, {}), **{name: findings[name] for name in QUANTITIES if name in findings}}
+    for of, given in outcome.findings.items():
+        values[of] = {**values.get(of, {}), **{name: given[name] for name in QUANTITIES if name in given}}
     return Evaluation(values, evaluation.skipped)
 
 
-def _criterion(limit: Limit, evaluation: Evaluation, refined: Evaluation | None, lowest_trust: Trust) -> Criterion:
+def criterion(
+    limit: Limit, evaluation: Evaluation, lowest_trust: Trust, refined: Evaluation | None = None
+) -> Criterion:
+    """A value against its limit.
+
+    Parameters
+    ----------
+    limit : of one quantity
+    evaluation : that holds the value, or the reason why there is none
+    lowest_trust : lowest trust of the limits that carry a verdict
+    refined : the same with element and time step halved, for the discretisation error
+    """
     value = _value(limit, evaluation)
     fine = _value(limit, refined) if refined is not None else None
     verdict: Verdict = "skip"
@@ -160,6 +194,11 @@ def _criterion(limit: Limit, evaluation: Evaluation, refined: Evaluation | None,
     )
 
 
+def _with_spread(item: Criterion, shifted: dict[int, dict[str, float]]) -> Criterion:
+    found = shifted.get(item.pantograph, {}).get(item.quantity)
+    return item if found is None or item.value is None else item.model_copy(update={"spread": found})
+
+
 def _value(limit: Limit, evaluation: Evaluation) -> float | None:
     value = evaluation.values.get(limit.of, {}).get(limit.quantity)
     if isinstance(value, tuple):
@@ -176,17 +215,21 @@ def _outside(value: float, limit: Limit) -> str:
 
 
 def _close_calls(criteria: list[Criterion]) -> list[str]:
-    """A verdict that a finer mesh could turn is named."""
+    """A verdict that a finer mesh, or another stretch, could turn is named."""
     close = []
     for item in criteria:
-        if item.value is None or item.discretisation_error is None or item.lower == item.upper:
+        if item.value is None or item.lower == item.upper:
             continue
         distance = min(abs(item.value - bound) for bound in (item.lower, item.upper) if bound is not None)
-        if distance < item.discretisation_error:
-            close.append(
-                f"{item.quantity} of pantograph {item.pantograph} lies {distance:.2g} {item.unit} from a limit, "
-                f"less than its discretisation error of {item.discretisation_error:.2g} {item.unit}"
-            )
+        for error, name in (
+            (item.discretisation_error, "discretisation error"),
+            (item.spread, "spread over stretches"),
+        ):
+            if error is not None and distance < error:
+                close.append(
+                    f"{item.quantity} of pantograph {item.pantograph} lies {distance:.2g} {item.unit} from a limit, "
+                    f"less than its {name} of {error:.2g} {item.unit}"
+                )
     return close
 
 
@@ -205,11 +248,12 @@ def _edge_warnings(case: Case, outcome: Outcome) -> list[str]:
     ]
 
 
-def _plain(values: dict[str, Value]) -> dict[str, Number]:
+def plain(values: dict[str, Value]) -> dict[str, Number]:
+    """Values as results hold them: lists and finite numbers."""
     finite: Callable[[float], bool] = math.isfinite
-    plain: dict[str, Number] = {}
+    kept: dict[str, Number] = {}
     for name, value in values.items():
         numbers = list(value) if isinstance(value, tuple) else value
         if all(map(finite, numbers if isinstance(numbers, list) else [numbers])):
-            plain[name] = numbers
-    return plain
+            kept[name] = numbers
+    return kept

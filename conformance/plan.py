@@ -1,10 +1,13 @@
 """Plans: the options of a run in a file, for a pipeline."""
 
+import shlex
 from pathlib import Path
 from typing import Annotated
 
 from pantocheck.conformance.cases.base import Table
+from pantocheck.conformance.cases.library import library_folder
 from pantocheck.conformance.cases.toml_file import read_model
+from pantocheck.conformance.systems.command.arguments import arguments
 from pantocheck.conformance.trust import Trust
 from pydantic import Field
 
@@ -15,9 +18,10 @@ class Plan(Table):
     """What `pantocheck run` shall do; an option on the command line goes before the plan's."""
 
     cases: Annotated[Names, Field(description="ids, globs or paths of cases; left out: every case with limits")] = ()
-    system: Annotated[str, Field(description="builtin or record:DIR")] = "builtin"
+    system: Annotated[str, Field(description="builtin, record:DIR or command:PROGRAM ARGUMENTS")] = "builtin"
+    timeout_s: Annotated[float, Field(gt=0, description="time that a program may take for a case [s]")] = 600.0
     out: Annotated[str, Field(description="folder for the results")] = "report"
-    formats: Annotated[Names, Field(description="what is written: html, pdf, json, junit, md")] = (
+    formats: Annotated[Names, Field(description="what is written: html, pdf, json, junit, md, badge")] = (
         "html",
         "pdf",
         "json",
@@ -26,6 +30,10 @@ class Plan(Table):
     )
     trust: Annotated[Trust, Field(description="lowest trust of the limits that carry a verdict")] = "secondary"
     limits: Annotated[str | None, Field(description="file of limits to be laid over the cases")] = None
+    baseline: Annotated[str | None, Field(description="results.json that values may not drift from")] = None
+    drift_pct: Annotated[
+        float, Field(gt=0, le=100, description="how far a value may be from that of the baseline [%]")
+    ] = 1.0
     jobs: Annotated[int, Field(ge=1, le=256, description="cases that are run side by side")] = 1
     damping_study: Annotated[
         bool, Field(description="run every case also with benchmark, initial and updated damping")
@@ -41,11 +49,23 @@ def read_plan(path: Path) -> Plan:
     """
     plan, folder = read_model(path, Plan, "plan"), path.parent
     kind, _, rest = plan.system.partition(":")
+    system = plan.system
+    if kind == "record":
+        system = f"record:{_beside(folder, rest)}"
+    elif kind == "command":
+        system = f"command:{shlex.join(arguments(rest, folder))}"
     return plan.model_copy(
         update={
             "cases": tuple(str(folder / name) if name.endswith(".toml") else name for name in plan.cases),
-            "system": f"record:{folder / rest}" if kind == "record" else plan.system,
+            "system": system,
             "out": str(folder / plan.out),
+            "baseline": None if plan.baseline is None else str(folder / plan.baseline),
             "limits": None if plan.limits is None else str(folder / plan.limits),
         }
     )
+
+
+def _beside(folder: Path, records: str) -> Path:
+    """A folder of records beside the plan, or else of the library."""
+    beside = folder / records
+    return Path(records) if not beside.is_dir() and (library_folder() / records).is_dir() else beside

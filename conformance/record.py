@@ -10,6 +10,9 @@ Array = NDArray[np.float64]
 MAX_SAMPLES = 20_000_000
 """Numbers in one array of a record; more is a mistake in units or rate, and would exhaust the memory."""
 
+LARGEST_NUMBER = 1e9
+"""No force, position or time in SI units is larger; squares of such numbers are still exact enough to be graded."""
+
 
 class RecordInvalid(ValueError):
     """An array of a record is impossible: graded, it would give a number that means nothing.
@@ -108,6 +111,11 @@ def _checked(name: str, value: ArrayLike) -> Array:
     if bad.size:
         raise RecordInvalid(
             name, f"{bad.size} values are not finite, the first at sample {bad[0] % array.shape[-1] + 1}"
+        )
+    absurd = np.flatnonzero(np.abs(array) > LARGEST_NUMBER)
+    if absurd.size:
+        raise RecordInvalid(
+            name, f"{array.flat[absurd[0]]:.3g} at sample {absurd[0] % array.shape[-1] + 1} is impossible"
         )
     array.setflags(write=False)
     return array

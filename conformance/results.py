@@ -13,7 +13,9 @@ from pydantic import BaseModel, ConfigDict, Field
 SCHEMA = "pantocheck.results/1"
 STATEMENT = "self-declared conformance report, in the style of EN 50318"
 
-Number = float | list[float]
+Finite = Annotated[float, Field(ge=-1e15, le=1e15)]
+Number = Finite | list[Finite]
+Owner = Annotated[str, Field(pattern="^[0-9]{1,2}$", description="number of a pantograph, 0: the line")]
 
 
 class Part(BaseModel):
@@ -57,21 +59,29 @@ class InputGroup(Part):
 
 
 class Criterion(Part):
-    """A value against its limits. `pantograph` is 0 for the line; `item` counts droppers or modes from 1."""
+    """A value against its limits. `pantograph` is 0 for the line; `item` counts droppers or modes from 1.
+
+    `spread` is the largest departure from the value when the evaluated stretch is shifted along the line.
+    `uncertainty` is the half-width of the value's 95 % interval from the length of the record; `baseline` is the value
+    of earlier results, if the limits are how far the value may have drifted from it.
+    """
 
     quantity: str
     pantograph: int
     item: int | None = None
-    value: float | None
+    value: Finite | None
     unit: str
-    lower: float | None
-    upper: float | None
+    lower: Finite | None
+    upper: Finite | None
     verdict: Verdict
     trust: Trust
     source: str
     margin: float | None
     discretisation_error: float | None
+    spread: float | None = None
     reason: str | None
+    uncertainty: float | None = None
+    baseline: float | None = None
 
 
 class FilterFacts(Part):
@@ -187,10 +197,18 @@ class CaseResult(Part):
     inputs: list[InputGroup]
     input_digest: str
     criteria: list[Criterion]
-    quantities: dict[str, dict[str, Number]]
-    skipped: dict[str, dict[str, str]]
+    quantities: dict[Owner, dict[str, Number]]
+    skipped: dict[Owner, dict[str, str]]
+    spread: Annotated[
+        dict[Owner, dict[str, float]],
+        Field(default_factory=dict, description="departure when the stretch is shifted, as in `quantities`"),
+    ]
+    uncertainty: Annotated[
+        dict[Owner, dict[str, float]],
+        Field(default_factory=dict, description="half-width of the 95 % interval, as in `quantities`"),
+    ]
     run: RunFacts
-    traces: dict[str, Traces]
+    traces: dict[Owner, Traces]
     uplift: list[UpliftTrace]
     charts: list[Chart] = []
     tables: list[TextTable] = []

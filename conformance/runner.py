@@ -1,20 +1,17 @@
 """Running cases on a system: side by side, in the order their requirements allow, one failure at a time."""
 
 import multiprocessing
-import platform as host
 import signal
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from datetime import UTC, datetime
-from importlib.metadata import version
+from types import FrameType
 
+from pantocheck.conformance.assembly import assembled, now
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.criteria import worst
 from pantocheck.conformance.grading import graded, ungraded
-from pantocheck.conformance.results import CaseResult, Platform, Results, Suite, SystemIdentity
+from pantocheck.conformance.results import CaseResult, Results, SystemIdentity
 from pantocheck.conformance.studies.dispatch import run_study
-from pantocheck.conformance.suite_identity import suite_commit
 from pantocheck.conformance.systems import System
 from pantocheck.conformance.trust import Trust
 
@@ -55,7 +52,7 @@ def run(
     ------
     RunInterrupted : on KeyboardInterrupt, with what was finished
     """
-    started = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+    started = now()
     finished: dict[str, CaseResult] = {}
 
     def keep(result: CaseResult) -> None:
@@ -66,7 +63,7 @@ def run(
     try:
         if jobs == 1:
             for case in _ordered(cases):
-                keep(_after_requirements(case, finished) or run_case(case, system, trust))
+                keep(run_when_ready(case, system, trust, finished, cases))
         else:
             _run_side_by_side(cases, system, trust, jobs, finished, keep)
     except KeyboardInterrupt:
@@ -86,6 +83,13 @@ def run_case(case: Case, system: System, trust: Trust) -> CaseResult:
         return ungraded(case, "error", f"{type(error).__name__}: {text}" if text else type(error).__name__)
 
 
+def run_when_ready(
+    case: Case, system: System, trust: Trust, finished: dict[str, CaseResult], cases: Sequence[Case]
+) -> CaseResult:
+    """Run one of several cases if those it requires have not failed; else it is skipped."""
+    return _after_requirements(case, finished, cases) or run_case(case, system, trust)
+
+
 def _ordered(cases: Sequence[Case]) -> list[Case]:
     """Cases with those they require before them; the order asked otherwise."""
     by_id = {case.id: case for case in cases}
@@ -102,13 +106,25 @@ def _ordered(cases: Sequence[Case]) -> list[Case]:
     return list(ordered.values())
 
 
-def _after_requirements(case: Case, finished: dict[str, CaseResult]) -> CaseResult | None:
-    """The result of a case whose requirements are not met; None if it can run."""
-    for required in case.file.requires:
+def _after_requirements(case: Case, finished: dict[str, CaseResult], cases: Sequence[Case]) -> CaseResult | None:
+    """The result of a case whose requirements are not met; None if it can run.
+
+    A requirement that the system under test does not offer is no obstacle: a record of a run says nothing of the line
+    at rest, and is graded all the same.
+    """
+    by_id = {one.id: one for one in cases}
+    seen: set[str] = set()
+    waiting = list(case.file.requires)
+    while waiting:
+        required = waiting.pop(0)
+        if required in seen:
+            continue
+        seen.add(required)
         if required not in finished:
             return ungraded(case, "skip", f"requires {required}, which was not run")
-        if finished[required].verdict not in {"pass", "info"}:
+        if finished[required].verdict in {"fail", "error"}:
             return ungraded(case, "skip", f"requires {required}, which ended in {finished[required].verdict}")
+        waiting += by_id[required].file.requires if required in by_id else ()
     return None
 
 
@@ -127,7 +143,7 @@ def _run_side_by_side(
             # No more cases than processes are handed over, so that a dying process takes only its neighbours along.
             for case in ready[: jobs - len(running)]:
                 waiting.remove(case)
-                if (blocked := _after_requirements(case, finished)) is not None:
+                if (blocked := _after_requirements(case, finished, cases)) is not None:
                     keep(blocked)
                 else:
                     running[pool.submit(run_case, case, system, trust)] = case
@@ -160,25 +176,16 @@ def _pool(jobs: int) -> Executor:
 
 def _die_quietly() -> None:
     """In a worker: Ctrl-C reaches all processes at once, and only the first of them has something to say."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    signal.signal(signal.SIGINT, _leave)
+
+
+def _leave(number: int, frame: FrameType | None) -> None:
+    # An exception, so that a system can end what it started before this process ends.
+    raise SystemExit(128 + number)
 
 
 def _results(
     cases: Sequence[Case], system: System, trust: Trust, started: str, finished: dict[str, CaseResult]
 ) -> Results:
-    return Results(
-        suite=Suite(version=version("pantocheck"), commit=suite_commit()),
-        system=SystemIdentity(name=system.name, version=system.version, kind=system.kind),
-        verdict=worst(result.verdict for result in finished.values()),
-        trust=trust,
-        started=started,
-        platform=Platform(
-            python=host.python_version(),
-            numpy=version("numpy"),
-            scipy=version("scipy"),
-            numba=version("numba"),
-            machine=host.machine(),
-            system=host.system(),
-        ),
-        cases=[finished[case.id] for case in cases],
-    )
+    identity = SystemIdentity(name=system.name, version=system.version, kind=system.kind)
+    return assembled([finished[case.id] for case in cases], identity, trust, started)

@@ -5,13 +5,18 @@ from numpy.typing import NDArray
 from pantocheck.conformance.evaluation import line_signals, pantograph_signals
 from pantocheck.conformance.quantities.bands import amplitude_spectrum
 from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE, LowPass
-from pantocheck.conformance.quantities.signals import EXTENDED_CUTOFF_HZ
+from pantocheck.conformance.quantities.signals import EXTENDED_CUTOFF_HZ, ForceSignals
 from pantocheck.conformance.quantities.statistics import histogram
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.record import Record
 from pantocheck.conformance.results import Histogram, Spectrum, Traces, UpliftTrace
 
+Array = NDArray[np.float64]
+
 MOST_POINTS = 1500
+
+LONG_STEP = 10
+"""Up to this many samples to one that is drawn, every k-th shows the force well enough."""
 
 
 def pantograph_traces(record: Record, low_pass: LowPass, supports: list[float]) -> dict[str, Traces]:
@@ -31,23 +36,42 @@ def pantograph_traces(record: Record, low_pass: LowPass, supports: list[float]) 
             inside = signals.inside
         except QuantityUnavailable:
             continue
-        try:
-            graded = signals.graded
-        except QuantityUnavailable:
-            graded = None
+        within = [x for x in supports if start - 1e-6 <= x <= end + 1e-6]
         highest = min(EXTENDED_CUTOFF_HZ, HIGHEST_SHARE_OF_RATE * record.rate, record.filter_applied_Hz or np.inf)
-        frequency, amplitude = _peaks(*amplitude_spectrum(signals.delivered, record.rate, highest))
-        traces[str(pantograph)] = Traces(
-            position_m=thinned(signals.position[inside]),
-            force_N=thinned(signals.delivered),
-            force_20_N=None if graded is None else thinned(graded),
-            mean_N=float(signals.delivered.mean()),
-            std_N=None if graded is None else float(graded.std()),
-            supports_m=[x for x in supports if start - 1e-6 <= x <= end + 1e-6],
-            spectrum=Spectrum(frequency_Hz=thinned(frequency), amplitude_N=thinned(amplitude)),
-            histogram=None if graded is None else _histogram(graded),
+        traces[str(pantograph)] = signal_traces(
+            signals, signals.position[inside], within, amplitude_spectrum(signals.delivered, record.rate, highest)
         )
     return traces
+
+
+def signal_traces(
+    signals: ForceSignals, position: Array, supports: list[float], spectrum: tuple[Array, Array]
+) -> Traces:
+    """What is drawn of one pantograph.
+
+    Parameters
+    ----------
+    signals : that are evaluated
+    position : of their samples along the track [m]
+    supports : positions of the supports there [m]
+    spectrum : frequencies [Hz] and amplitudes [N]; empty if there is none
+    """
+    try:
+        graded = signals.graded
+    except QuantityUnavailable:
+        graded = None
+    frequency, amplitude = _peaks(*spectrum)
+    at = _drawn(signals.delivered)
+    return Traces(
+        position_m=thinned(position[at]),
+        force_N=thinned(signals.delivered[at]),
+        force_20_N=None if graded is None else thinned(graded[at]),
+        mean_N=float(signals.delivered.mean()),
+        std_N=None if graded is None else float(graded.std()),
+        supports_m=supports,
+        spectrum=Spectrum(frequency_Hz=thinned(frequency), amplitude_N=thinned(amplitude)),
+        histogram=None if graded is None else _histogram(graded),
+    )
 
 
 def uplift_traces(record: Record) -> list[UpliftTrace]:
@@ -66,15 +90,29 @@ def uplift_traces(record: Record) -> list[UpliftTrace]:
     ]
 
 
-def thinned(series: NDArray[np.float64]) -> list[float]:
+def thinned(series: Array) -> list[float]:
     """Every k-th value, at most about 1500, rounded to six significant digits."""
-    step = -(-series.size // MOST_POINTS)
+    step = max(1, -(-series.size // MOST_POINTS))
     return [float(f"{value:.6g}") for value in series[::step]]
 
 
-def _peaks(
-    frequency: NDArray[np.float64], amplitude: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _drawn(force: Array) -> NDArray[np.intp]:
+    """Samples of a long record that are drawn, at most 1500: the lowest and the highest of every few neighbours.
+
+    A record of minutes thinned evenly would not show the one peak that its extremes are about.
+    """
+    if force.size <= LONG_STEP * MOST_POINTS:
+        return np.arange(force.size)
+    step = -(-force.size // (MOST_POINTS // 2))
+    found = {
+        first + int(extreme(force[first : first + step]))
+        for first in range(0, force.size, step)
+        for extreme in (np.argmin, np.argmax)
+    }
+    return np.array(sorted(found), dtype=np.intp)
+
+
+def _peaks(frequency: Array, amplitude: Array) -> tuple[Array, Array]:
     """The highest line of every k neighbours: thinning a spectrum must not lose a peak."""
     step = max(1, -(-frequency.size // MOST_POINTS))
     firsts = range(0, frequency.size, step)
@@ -82,6 +120,6 @@ def _peaks(
     return frequency[at], amplitude[at]
 
 
-def _histogram(force: NDArray[np.float64]) -> Histogram:
+def _histogram(force: Array) -> Histogram:
     edges, share = histogram(force)
     return Histogram(edges_N=thinned(edges), share_pct=thinned(share))

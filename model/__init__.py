@@ -12,7 +12,7 @@ from pantocheck.model.catenary import (
     TensionChange,
     Wire,
 )
-from pantocheck.model.line import Discretised, discretise
+from pantocheck.model.line import Discretised, discretise, never_slack
 from pantocheck.model.pantograph import Pantograph, chain
 from pantocheck.model.simulation import History, Passage, run
 
@@ -33,5 +33,6 @@ __all__ = [
     "Wire",
     "chain",
     "discretise",
+    "never_slack",
     "run",
 ]

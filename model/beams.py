@@ -50,7 +50,7 @@ def build_beams(catenary: Catenary, mesh: Mesh) -> Beams:
 
     Returns
     -------
-    the rows; what the droppers add to them is lumped by `connectors.lump_dropper_masses`
+    the rows; what acts on a single row at a single station is lumped onto them by `connectors.lump`
     """
     stations = mesh.position.size
     length = np.diff(mesh.position)
@@ -106,6 +106,11 @@ def wire_matrices(beams: Beams, row: int) -> tuple[sp.csr_array, sp.csr_array]:
     )
     mass = np.array([beam.mass(beams.length[e], beams.mass_per_length[row, e]) for e in present])
     return sp.csr_array((stiffness.ravel(), place), shape=shape), sp.csr_array((mass.ravel(), place), shape=shape)
+
+
+def wire_stiffness(beams: Beams, row: int) -> sp.csr_array:
+    """Stiffness of the wires of one row; as in `wire_matrices`."""
+    return wire_matrices(beams, row)[0]
 
 
 def weight(beams: Beams, row: int, gravity: float) -> Array:

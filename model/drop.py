@@ -97,7 +97,7 @@ def drop(
     rows, stations = watched_stations(line, test.sensors)
     recorded = np.zeros((time.size, rows.size, 3))
     droppers = len(catenary.droppers)
-    work = workspace(stepping, motion, train)
+    work = workspace(stepping, train)
     last_slack = None
     for first in range(0, time.size, BLOCK):
         part = slice(first, min(first + BLOCK, time.size))

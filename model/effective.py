@@ -16,8 +16,8 @@ from pantocheck.model.beams import Beams
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-# Where a column has fallen below this share of its peak, it is left out: an order below rounding.
-NEGLIGIBLE = 1e-17
+# Where a column has fallen below this share of its peak, it is left out: a hundredth of the tolerance of the forces.
+NEGLIGIBLE = 1e-12
 
 
 class Factor(NamedTuple):
@@ -106,80 +106,125 @@ def _eliminate(diagonal: Array, below: Array, free: NDArray[np.bool_], inverse: 
         if s != middle:
             inwards = s + 1 if s < middle else s - 1
             a = below[s + 1] if s < middle else below[s].T  # couples the inward neighbour to this station
-            g = link[s].reshape(2, 2)
+            g = link[s]
             for p in range(2):
-                g[p, 0] = a[p, 0] * ww + a[p, 1] * wr
-                g[p, 1] = a[p, 0] * wr + a[p, 1] * rr
+                g[2 * p] = a[p, 0] * ww + a[p, 1] * wr
+                g[2 * p + 1] = a[p, 0] * wr + a[p, 1] * rr
             for p in range(2):
                 for q in range(2):
-                    diagonal[inwards, p, q] -= g[p, 0] * a[q, 0] + g[p, 1] * a[q, 1]
+                    diagonal[inwards, p, q] -= g[2 * p] * a[q, 0] + g[2 * p + 1] * a[q, 1]
         inverse[s, 0] = ww if free[s, 0] else 0.0
         inverse[s, 1] = wr if free[s, 0] and free[s, 1] else 0.0
         inverse[s, 2] = rr if free[s, 1] else 0.0
 
 
 @njit(cache=True)
-def solve_row(factor: Factor, row: int, first: int, last: int, w: Array, r: Array) -> None:
-    """Solve A x = f on one row between two stations, in place; f is zero and x negligible outside them.
+def solve(inverse: Array, link: Array, first: int, w: Array, r: Array) -> None:
+    """Solve A x = f for a stretch of some rows, in place; f is zero and x negligible outside it.
 
     Parameters
     ----------
-    factor : Factor
-    row : which row
-    first, last : stations that are solved for
-    w, r : (last - first + 1,) on entry forces and moments, on return accelerations of deflection and slope
+    inverse, link : (B, S, 3), (B, S, 4) of the factor
+    first : station where the stretch begins
+    w, r : (B, n) on entry forces and moments, on return accelerations of deflection and slope
     """
-    inverse, link = factor.inverse[row], factor.link[row]
-    middle = min(max(inverse.shape[0] // 2, first), last)
-    left, right = middle - first, last - middle
-    for i in range(max(left, right)):
-        if i < left:
-            g, s = link[first + i], i
-            a, b = w[s], r[s]
-            w[s + 1] -= g[0] * a + g[1] * b
-            r[s + 1] -= g[2] * a + g[3] * b
-        if i < right:
-            g, s = link[last - i], last - first - i
-            a, b = w[s], r[s]
-            w[s - 1] -= g[0] * a + g[1] * b
-            r[s - 1] -= g[2] * a + g[3] * b
-    d, f, m = inverse[middle], w[left], r[left]
-    w[left], r[left] = d[0] * f + d[1] * m, d[1] * f + d[2] * m
-    for i in range(1, max(left, right) + 1):
-        if i <= left:
-            s = left - i
-            d, g, f, m, x, y = inverse[first + s], link[first + s], w[s], r[s], w[s + 1], r[s + 1]
-            w[s] = d[0] * f + d[1] * m - g[0] * x - g[2] * y
-            r[s] = d[1] * f + d[2] * m - g[1] * x - g[3] * y
-        if i <= right:
-            s = left + i
-            d, g, f, m, x, y = inverse[first + s], link[first + s], w[s], r[s], w[s - 1], r[s - 1]
-            w[s] = d[0] * f + d[1] * m - g[0] * x - g[2] * y
-            r[s] = d[1] * f + d[2] * m - g[1] * x - g[3] * y
+    n = w.shape[1]
+    middle = min(max(inverse.shape[1] // 2 - first, 0), n - 1)
+    for b in range(w.shape[0]):
+        _solve_row(inverse[b, first : first + n], link[b, first : first + n], middle, w[b], r[b])
+
+
+@njit(cache=True)
+def _solve_row(inverse: Array, link: Array, middle: int, w: Array, r: Array) -> None:
+    """Eliminate from both ends to the middle, and go back; two chains that do not wait for each other, in registers."""
+    last = w.size - 1
+    left, right = middle, last - middle
+    together = max(min(left, right) - 1, 0)
+    f, m = _inwards(link, 0, max(left - 1 - together, 0), 1, w, r)
+    g, k = _inwards(link, last, max(right - 1 - together, 0), -1, w, r)
+    s, t = max(left - 1 - together, 0), last - max(right - 1 - together, 0)
+    for _ in range(together):
+        p, q = _passed_on(link, s, f, m)
+        u, v = _passed_on(link, t, g, k)
+        s, t = s + 1, t - 1
+        f, m = w[s] - p, r[s] - q
+        g, k = w[t] - u, r[t] - v
+        w[s], r[s] = f, m
+        w[t], r[t] = g, k
+    p, q, u, v = 0.0, 0.0, 0.0, 0.0
+    if left > 0:
+        p, q = _passed_on(link, s, f, m)
+    if right > 0:
+        u, v = _passed_on(link, t, g, k)
+    x, y = _times(inverse, middle, w[middle] - p - u, r[middle] - q - v)
+    w[middle], r[middle] = x, y
+    u, v = x, y
+    both = min(left, right)
+    for i in range(1, both + 1):
+        x, y = _back(inverse, link, middle - i, w, r, x, y)
+        u, v = _back(inverse, link, middle + i, w, r, u, v)
+    for i in range(both + 1, left + 1):
+        x, y = _back(inverse, link, middle - i, w, r, x, y)
+    for i in range(both + 1, right + 1):
+        u, v = _back(inverse, link, middle + i, w, r, u, v)
+
+
+@njit(cache=True)
+def _inwards(link: Array, start: int, count: int, step: int, w: Array, r: Array) -> tuple[float, float]:
+    """Eliminate `count` stations in a row; returns force and moment at the station that is reached."""
+    f, m = w[start], r[start]
+    s = start
+    for _ in range(count):
+        p, q = _passed_on(link, s, f, m)
+        s += step
+        f, m = w[s] - p, r[s] - q
+        w[s], r[s] = f, m
+    return f, m
+
+
+@njit(cache=True)
+def _passed_on(link: Array, s: int, f: float, m: float) -> tuple[float, float]:
+    return link[s, 0] * f + link[s, 1] * m, link[s, 2] * f + link[s, 3] * m
+
+
+@njit(cache=True)
+def _times(inverse: Array, s: int, f: float, m: float) -> tuple[float, float]:
+    return inverse[s, 0] * f + inverse[s, 1] * m, inverse[s, 1] * f + inverse[s, 2] * m
+
+
+@njit(cache=True)
+def _back(inverse: Array, link: Array, s: int, w: Array, r: Array, x: float, y: float) -> tuple[float, float]:
+    """Solution at a station from the one at its inward neighbour."""
+    p, q = _times(inverse, s, w[s], r[s])
+    p -= link[s, 0] * x + link[s, 2] * y
+    q -= link[s, 1] * x + link[s, 3] * y
+    w[s], r[s] = p, q
+    return p, q
 
 
 @njit(cache=True)
 def inverse_column(factor: Factor, row: int, station: int, slope: int, half_width: int, w: Array, r: Array) -> float:
-    """One column of the inverse of A, `half_width` stations either side of the loaded one; returns its relative tail.
+    """One column of the inverse of A around the loaded station; returns its relative tail.
 
     Parameters
     ----------
     factor : Factor
     row, station : where the unit load acts
     slope : 0 for a unit force, 1 for a unit moment
-    half_width : stations kept on either side
-    w, r : (2 half_width + 1,) the column, centred on the station; zero beyond the ends of the line
+    half_width : stations kept before the loaded one, and one less behind it
+    w, r : (2 half_width,) the column, the loaded station at half_width; zero beyond the ends of the line
     """
+    stations = factor.inverse.shape[1]
     w[:] = 0.0
     r[:] = 0.0
     if slope == 0:
         w[half_width] = 1.0
     else:
         r[half_width] = 1.0
-    first = max(0, station - half_width)
-    last = min(factor.inverse.shape[1] - 1, station + half_width)
-    shift = half_width - station
-    solve_row(factor, row, first, last, w[first + shift : last + shift + 1], r[first + shift : last + shift + 1])
+    first, last = max(0, station - half_width), min(stations, station + half_width)
+    there = slice(first + half_width - station, last + half_width - station)
+    middle = min(max(stations // 2 - first, 0), last - first - 1)
+    _solve_row(factor.inverse[row, first:last], factor.link[row, first:last], middle, w[there], r[there])
     size = np.abs(w) + np.abs(r)
     tail = 0.0
     if first == station - half_width:
@@ -202,14 +247,13 @@ def half_width(factor: Factor, loads: list[tuple[int, int]]) -> int:
     -------
     stations on either side
     """
-    stations = factor.inverse.shape[1]
     width = 8
-    while width < stations:
-        w, r = np.zeros(2 * width + 1), np.zeros(2 * width + 1)
+    while width < factor.inverse.shape[1]:
+        w, r = np.zeros(2 * width), np.zeros(2 * width)
         if all(inverse_column(factor, row, s, slope, width, w, r) < NEGLIGIBLE for row, s in loads for slope in (0, 1)):
             break
-        width += 4
-    return int(min(width, stations))
+        width += 8  # whole vector registers
+    return width
 
 
 @njit(cache=True)
@@ -224,9 +268,9 @@ def inverse_columns(factor: Factor, rows: Indices, stations: Indices, slopes: In
 
     Returns
     -------
-    (L, 2, 2 half_width + 1) deflection and slope around each load
+    (L, 2, 2 half_width) deflection and slope around each load
     """
-    columns = np.zeros((rows.size, 2, 2 * half_width + 1))
+    columns = np.zeros((rows.size, 2, 2 * half_width))
     for n in range(rows.size):
         inverse_column(factor, rows[n], stations[n], slopes[n], half_width, columns[n, 0], columns[n, 1])
     return columns
@@ -246,10 +290,8 @@ def solve_rows(factor: Factor, force: Array) -> Array:
     (n, B, S, 2) accelerations
     """
     solved = np.empty_like(force)
-    count, rows, stations = force.shape[:3]
-    for n in range(count):
-        for row in range(rows):
-            w, r = force[n, row, :, 0].copy(), force[n, row, :, 1].copy()
-            solve_row(factor, row, 0, stations - 1, w, r)
-            solved[n, row, :, 0], solved[n, row, :, 1] = w, r
+    for n in range(force.shape[0]):
+        w, r = force[n, :, :, 0].copy(), force[n, :, :, 1].copy()
+        solve(factor.inverse, factor.link, 0, w, r)
+        solved[n, :, :, 0], solved[n, :, :, 1] = w, r
     return solved

@@ -5,18 +5,20 @@ above; the distance between the two gives the dropper lengths. Equilibrium holds
 that the dynamics about this state start from rest.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from pantocheck.model.beams import Beams, weight, wire_matrices
+from pantocheck.model.beams import Beams, weight, wire_stiffness
 from pantocheck.model.catenary import GRAVITY, Catenary, Kind
 from pantocheck.model.held import solve_held
 from pantocheck.model.lateral_state import lateral_state
 from pantocheck.model.mesh import Mesh
 
 Array = NDArray[np.float64]
+Stiffness = Callable[[Beams, int], sp.csr_array]
 
 
 class NoInitialState(ValueError):
@@ -46,7 +48,7 @@ class InitialState:
     arm_force: Array
 
 
-def initial_state(catenary: Catenary, mesh: Mesh, beams: Beams) -> InitialState:
+def initial_state(catenary: Catenary, mesh: Mesh, beams: Beams, stiffness: Stiffness = wire_stiffness) -> InitialState:
     """Equilibrium of the line under its weight.
 
     Parameters
@@ -54,6 +56,7 @@ def initial_state(catenary: Catenary, mesh: Mesh, beams: Beams) -> InitialState:
     catenary : the line
     mesh : its stations and rows
     beams : its rows of beams
+    stiffness : of the wires of one row; as beams, unless strings are asked for
 
     Returns
     -------
@@ -69,7 +72,7 @@ def initial_state(catenary: Catenary, mesh: Mesh, beams: Beams) -> InitialState:
     deflection = np.zeros((mesh.rows, mesh.position.size, 2))
     reaction = np.zeros((mesh.rows, mesh.position.size))
     for row in contact:
-        shape, reaction[row] = _hold_contact_wire(catenary, mesh, beams, row)
+        shape, reaction[row] = _hold_contact_wire(catenary, mesh, beams, row, stiffness(beams, row))
         deflection[row] = shape
     tension = np.array(
         [
@@ -80,7 +83,9 @@ def initial_state(catenary: Catenary, mesh: Mesh, beams: Beams) -> InitialState:
     _refuse_pushing(catenary, tension)
     clamp_force = np.zeros((len(catenary.clamps), 2))
     if upper:
-        deflection[upper], clamp_force[:, 1] = _hang_upper_wires(catenary, mesh, beams, upper, tension)
+        deflection[upper], clamp_force[:, 1] = _hang_upper_wires(
+            catenary, mesh, beams, upper, tension, [stiffness(beams, row) for row in upper]
+        )
     rise = _difference(catenary, mesh, deflection, "z")
     if rise.size and rise.min() <= 0:
         place = catenary.droppers[int(np.argmin(rise))].position
@@ -110,7 +115,9 @@ def _difference(catenary: Catenary, mesh: Mesh, deflection: Array, field: str) -
     )
 
 
-def _hold_contact_wire(catenary: Catenary, mesh: Mesh, beams: Beams, row: int) -> tuple[Array, Array]:
+def _hold_contact_wire(
+    catenary: Catenary, mesh: Mesh, beams: Beams, row: int, stiffness: sp.csr_array
+) -> tuple[Array, Array]:
     """Shape of a contact wire held at its prescribed heights, and the force that holds it at each station."""
     names = {name for (name, field), at in mesh.row_of.items() if at == row and field == "z"}
     held = {
@@ -119,7 +126,6 @@ def _hold_contact_wire(catenary: Catenary, mesh: Mesh, beams: Beams, row: int) -
         if d.lower in names and d.contact_wire_height is not None
     }
     held |= {mesh.station(arm.position): 0.0 for arm in catenary.steady_arms if arm.wire in names and arm.carries_share}
-    stiffness, _ = wire_matrices(beams, row)
     load = weight(beams, row, GRAVITY)
     free = beams.free[row].copy()
     shape = np.zeros((mesh.position.size, 2))
@@ -131,12 +137,12 @@ def _hold_contact_wire(catenary: Catenary, mesh: Mesh, beams: Beams, row: int) -
 
 
 def _hang_upper_wires(
-    catenary: Catenary, mesh: Mesh, beams: Beams, rows: list[int], tension: Array
+    catenary: Catenary, mesh: Mesh, beams: Beams, rows: list[int], tension: Array, wires: list[sp.csr_array]
 ) -> tuple[Array, Array]:
     """Shape of messenger and stitch wires under weight and dropper tensions, clamped together, held at the supports."""
     stations = mesh.position.size
     place = {row: index for index, row in enumerate(rows)}
-    stiffness = sp.block_diag([wire_matrices(beams, row)[0] for row in rows], format="csr")
+    stiffness = sp.block_diag(wires, format="csr")
     load = np.concatenate([weight(beams, row, GRAVITY) for row in rows])
     free = beams.free[rows].copy()
     shape = np.zeros((len(rows), stations, 2))

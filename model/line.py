@@ -79,3 +79,9 @@ def with_damping(line: Discretised, damping: Mapping[Kind, Rayleigh]) -> Discret
     beams = build_beams(catenary, line.mesh)
     lump(catenary, line.mesh, beams)
     return replace(line, catenary=catenary, beams=beams, connectors=build_connectors(catenary, line.mesh, line.state))
+
+
+def never_slack(line: Discretised) -> Discretised:
+    """The same line with droppers that push as well as they pull: wrong, and a measure of what slackening does."""
+    connectors = line.connectors._replace(unilateral=np.zeros_like(line.connectors.unilateral))
+    return replace(line, connectors=connectors)

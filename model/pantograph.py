@@ -1,4 +1,4 @@
-"""Pantographs: chains of lumped masses, or any linear model given by its matrices.
+"""Pantographs: chains of lumped masses, or any linear model given by its matrices or modes.
 
  wire
 ======
@@ -80,6 +80,45 @@ def chain(
         head,
         force,
         uplift_force,
+        contact_stiffness,
+    )
+
+
+def from_matrices(
+    mass: Array,
+    damping: Array,
+    stiffness: Array,
+    head: Array,
+    static_force: float,
+    contact_stiffness: float,
+    working_height: float = 0.0,
+) -> Pantograph:
+    """A linear pantograph given by its matrices, at rest when it presses with its static force at a working height.
+
+    Where its constant uplift force acts makes no difference to a linear model: it only sets this state of rest.
+
+    Parameters
+    ----------
+    mass, damping, stiffness : (n, n) symmetric matrices [kg, N s/m, N/m]; for modal unknowns, per their normalisation
+    head : (n,) picks the head's displacement out of the unknowns
+    static_force : contact force at rest [N]
+    contact_stiffness : [N/m]
+    working_height : of the head at rest, over the contact wire at the supports [m]
+
+    Returns
+    -------
+    the pantograph
+    """
+    head, stiff = np.asarray(head, dtype=float), np.asarray(stiffness, dtype=float)
+    # Any unknowns that put the head at its height will do: what they stretch is preload.
+    at_rest = head * working_height / (head @ head)
+    return Pantograph(
+        np.asarray(mass, dtype=float),
+        np.asarray(damping, dtype=float),
+        stiff,
+        head,
+        static_force * head + stiff @ at_rest,
+        static_force,
         contact_stiffness,
     )
 

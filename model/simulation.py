@@ -10,14 +10,19 @@ from pantocheck.model import beam
 from pantocheck.model.assembly import point_load
 from pantocheck.model.equilibrium import Deflection, Statics
 from pantocheck.model.line import Discretised
-from pantocheck.model.newmark import Line, Motion, Train, Workspace, march
+from pantocheck.model.newmark import march
 from pantocheck.model.pantograph import Pantograph
+from pantocheck.model.state import PIECE, Line, Motion, Train, Workspace
 from pantocheck.model.stepping import time_stepping
 
 Array = NDArray[np.float64]
 
 BLOCK = 500
 """Steps between two reports of progress."""
+
+
+class ImpossiblePassage(ValueError):
+    """There is no pantograph, or one would run off the line: beyond its ends there is nothing to press against."""
 
 
 class DidNotConverge(ArithmeticError):
@@ -105,15 +110,17 @@ def run(line: Discretised, passage: Passage, progress: Callable[[float], None] |
 
     Raises
     ------
+    ImpossiblePassage : there is no pantograph, or one would leave the line
     DidNotConverge : a time step has no solution
     """
+    _check(line, passage)
     stepping = time_stepping(line, passage.time_step, passage.reach)
     motion, train = start(line, stepping, passage)
     steps = round(passage.duration / passage.time_step)
     rows, stations = watched_stations(line, passage.watched)
     force, height = np.zeros((steps, len(passage.pantographs))), np.zeros((steps, len(passage.pantographs)))
     motion_there, no_load, nothing = np.zeros((steps, rows.size, 3)), np.zeros(steps), np.zeros((steps, 0))
-    work = workspace(stepping, motion, train)
+    work = workspace(stepping, train)
     for first in range(0, max(steps, 1), BLOCK):
         part = slice(first, min(first + BLOCK, steps))
         outputs = (force[part], height[part], motion_there[part], nothing[part])
@@ -125,6 +132,17 @@ def run(line: Discretised, passage: Passage, progress: Callable[[float], None] |
     time: Array = passage.time_step * np.arange(1, steps + 1)
     position: Array = np.array(passage.start)[:, None] + passage.speed * time
     return History(time, position, force.T.copy(), height.T.copy(), motion_there.transpose(1, 0, 2).copy())
+
+
+def _check(line: Discretised, passage: Passage) -> None:
+    if not passage.pantographs:
+        raise ImpossiblePassage("there is no pantograph to run")
+    first, last = line.mesh.position[0], line.mesh.position[-1]
+    rear, front = min(passage.start), max(passage.start) + passage.speed * passage.duration
+    if rear < first or front > last:
+        raise ImpossiblePassage(
+            f"pantographs would run from {rear:g} m to {front:g} m on a line that lies from {first:g} m to {last:g} m"
+        )
 
 
 def start(line: Discretised, stepping: Line, passage: Passage) -> tuple[Motion, Train]:
@@ -229,20 +247,15 @@ def _rest(pantograph: Pantograph, head_height: float) -> Array:
     return np.asarray(np.linalg.solve(system, np.append(pantograph.force, head_height))[:n])
 
 
-def workspace(line: Line, motion: Motion, train: Train) -> Workspace:
+def workspace(line: Line, train: Train) -> Workspace:
     """Arrays for the time step of one run."""
-    rows, stations = motion.w.shape[1:]
     pantographs, wires = train.contact.shape
     return Workspace(
-        w=np.zeros((2, rows, stations)),
-        r=np.zeros((2, rows, stations)),
-        seen_w=np.zeros((rows, stations)),
-        seen_r=np.zeros((rows, stations)),
-        shear=np.zeros(stations - 1),
+        seen=np.zeros((2, PIECE + 1)),
+        shear=np.zeros(PIECE),
         elongation=np.zeros((2, line.station.size)),
         shape=np.zeros((pantographs, wires, 4)),
         element=np.zeros(pantographs, dtype=np.int64),
         closing=np.zeros((pantographs, wires)),
         compliance=np.zeros((pantographs, wires)),
-        z=np.zeros((2, pantographs, train.z.shape[2])),
     )

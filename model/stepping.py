@@ -10,7 +10,7 @@ from pantocheck.model.beams import Beams
 from pantocheck.model.effective import factorise, half_width, inverse_columns, solve_rows
 from pantocheck.model.line import Discretised
 from pantocheck.model.modal_damping import modal_terms
-from pantocheck.model.newmark import Line
+from pantocheck.model.state import Line
 
 Array = NDArray[np.float64]
 
@@ -86,7 +86,7 @@ def time_stepping(line: Discretised, time_step: float, reach: float = math.inf, 
         preload=connectors.preload,
         unilateral=connectors.unilateral,
         contact_row=contact_row,
-        contact_columns=contact_columns.reshape(contact_row.size, stations, 2, 2, 2 * width + 1),
+        contact_columns=contact_columns.reshape(contact_row.size, stations, 2, 2, 2 * width),
         modal_damping=modal.damping,
         modal_weight=modal.weight,
         modal_response=response,

@@ -15,6 +15,10 @@ NonNegativeList = Annotated[tuple[NonNegative, ...], Field(strict=False, min_len
 NumberList = Annotated[tuple[float, ...], Field(strict=False, min_length=1, max_length=1000)]
 
 
+PROVENANCE = frozenset({"trust", "source", "provisional", "note"})
+"""Keys of a sourced table that say where its numbers come from."""
+
+
 class Table(BaseModel):
     """A table of a case file: keys that are not in the schema are refused, NaN and infinity too."""
 

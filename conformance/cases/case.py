@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from pantocheck.conformance.cases.base import Sourced
+from pantocheck.conformance.cases.base import PROVENANCE, Sourced
 from pantocheck.conformance.cases.case_file import CaseFile
 from pantocheck.conformance.cases.damping import Damping, overlaid
 from pantocheck.conformance.cases.limits import Limit
@@ -41,6 +41,7 @@ class Case:
     line : its line
     pantographs : one per [[pantograph]] table, in running order
     limits : those of the file, or a user's in their place
+    measured : pantograph whose apparent mass a static case takes
     dampings : other damping models that a study or a comparison needs, by name
     """
 
@@ -48,6 +49,7 @@ class Case:
     line: Line
     pantographs: tuple[Pantograph, ...]
     limits: tuple[Limit, ...]
+    measured: Pantograph | None = None
     dampings: Mapping[str, Damping] = field(default_factory=dict)
 
     @property
@@ -72,6 +74,22 @@ class Case:
         return (spans[0] - 1) * span, spans[-1] * span
 
     @property
+    def shifted(self) -> tuple[tuple[float, float], ...]:
+        """The evaluated stretch shifted span by span along the compared spans, itself among them [m]."""
+        if self.file.compared_spans is None:
+            return ()
+        (first, last), span = self.file.compared_spans, self.line.geometry.span_m
+        start, end = self.evaluated
+        count = last - first + 2 - round((end - start) / span)
+        starts = [(first - 1 + i) * span for i in range(count)]
+        return tuple((at, at + end - start) for at in starts)
+
+    @property
+    def compared(self) -> tuple[float, float]:
+        """Start and end of the stretch that has to be recorded: the compared spans, or else the evaluated [m]."""
+        return (self.shifted[0][0], self.shifted[-1][1]) if self.shifted else self.evaluated
+
+    @property
     def offsets(self) -> tuple[float, ...]:
         """How far each pantograph runs behind the first [m]."""
         spacing = self.file.spacing_m or ()
@@ -85,7 +103,7 @@ class Case:
     @property
     def end(self) -> float:
         """Where the last pantograph is at the end of a run [m]; by default up to a span past the evaluated stretch."""
-        geometry, (_, evaluated_end), behind = self.line.geometry, self.evaluated, self.offsets[-1]
+        geometry, (_, evaluated_end), behind = self.line.geometry, self.compared, self.offsets[-1]
         if self.file.run_out_m is not None:
             return evaluated_end + self.file.run_out_m
         # The first pantograph stays on the line, half a span away from its end.
@@ -99,6 +117,7 @@ class Case:
             "line": _numbers(self.line.model_dump(mode="json")),
             "pantographs": [_numbers(pantograph.model_dump(mode="json")) for pantograph in self.pantographs],
             "case": _numbers(self.file.model_dump(mode="json", exclude=self._not_told)),
+            "measured": None if self.measured is None else _numbers(self.measured.model_dump(mode="json")),
         }
         if self.dampings and "study" not in self._not_told:
             inputs["dampings"] = {name: _numbers(d.model_dump(mode="json")) for name, d in self.dampings.items()}
@@ -123,6 +142,8 @@ class Case:
             tables |= {f"pantograph {i}.{name}": getattr(model, name) for name in type(model).model_fields}
         tables |= {"mass_drop": self.file.mass_drop, "study": self.file.study}
         tables |= {f"damping '{name}'": damping for name, damping in self.dampings.items()}
+        if self.measured is not None:
+            tables |= {f"pantograph.{name}": getattr(self.measured, name) for name in type(self.measured).model_fields}
         return {name: table for name, table in tables.items() if isinstance(table, Sourced)}
 
     @property
@@ -138,7 +159,8 @@ class Case:
     @property
     def notes(self) -> tuple[str, ...]:
         """What the files want a reader to know: on the whole, then group by group."""
-        notes = [self.line.note, *(model.note for model in self.pantographs)]
+        models = [*self.pantographs, *([] if self.measured is None else [self.measured])]
+        notes = [self.line.note, *(model.note for model in models)]
         notes += [f"{name}: {table.note}" for name, table in self.groups.items() if table.note]
         return tuple(dict.fromkeys(note.strip() for note in notes if note))
 
@@ -158,13 +180,18 @@ class Case:
         return replace(self, file=file, line=line, limits=(), dampings={})
 
 
-_SAID_OF_NUMBERS = frozenset({"trust", "source", "provisional", "note", "title", "id", "model"})
+_SAID_OF_NUMBERS = frozenset({*PROVENANCE, "title", "id", "model"})
 
 
 def _numbers(tree: object) -> object:
     """A file without what is said about its numbers, so that a corrected source leaves the digest as it is."""
+    return without_keys(tree, _SAID_OF_NUMBERS)
+
+
+def without_keys(tree: object, keys: frozenset[str]) -> object:
+    """Nested tables and lists without some keys, wherever they stand."""
     if isinstance(tree, dict):
-        return {key: _numbers(value) for key, value in tree.items() if key not in _SAID_OF_NUMBERS}
+        return {key: without_keys(value, keys) for key, value in tree.items() if key not in keys}
     if isinstance(tree, list):
-        return [_numbers(value) for value in tree]
+        return [without_keys(value, keys) for value in tree]
     return tree

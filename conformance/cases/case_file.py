@@ -65,6 +65,21 @@ class Discretisation(Table):
 
     element_m: Annotated[float, Field(ge=0.02, le=5, description="largest length of an element [m]")] = 0.5
     time_step_s: Annotated[float, Field(ge=1e-5, le=0.01, description="time step [s]")] = 0.001
+    reach_m: Annotated[
+        float | None,
+        Field(
+            ge=20,
+            description="what lies farther than this from every pantograph stands still [m]; left out: all moves that "
+            "can come back to a pantograph before the end of the run",
+        ),
+    ] = None
+
+
+class ApparentMass(Table):
+    """Frequency response of a pantograph at its head, taken in a static case."""
+
+    model: Annotated[FileName, Field(description="pantograph file, relative to the case file")]
+    frequency_Hz: Annotated[PositiveList, Field(max_length=100, description="where it is taken [Hz]")]
 
 
 class CaseFile(Sourced):
@@ -97,6 +112,14 @@ class CaseFile(Sourced):
             description="spans that are evaluated, numbered from 1: the first and the last, or all of them",
         ),
     ] = None
+    compared_spans: Annotated[
+        tuple[int, int] | None,
+        Field(
+            strict=False,
+            description="first and last of the spans along which the evaluated stretch is shifted, span by span, to "
+            "see how much the figures depend on where it lies",
+        ),
+    ] = None
     start_m: Annotated[
         float | None,
         Field(ge=0, description="where the last pantograph starts [m]; left out: at the end of the first span"),
@@ -113,6 +136,7 @@ class CaseFile(Sourced):
     pantograph: Annotated[tuple[PantographUse, ...], Field(strict=False, max_length=20)] = ()
     mass_drop: Annotated[MassDrop | None, Field(description="drops of a mass, in place of a train")] = None
     study: Annotated[Study | None, Field(description="several runs that are compared")] = None
+    apparent_mass: ApparentMass | None = None
     filter: Filter = Filter()
     discretisation: Discretisation = Discretisation()
     limit: Annotated[tuple[Limit, ...], Field(strict=False, max_length=10_000)] = ()
@@ -123,6 +147,8 @@ class CaseFile(Sourced):
         if self.speed_km_h is None:
             if self.pantograph:
                 raise problem("speed_km_h", "missing", "Give the speed of the train in km/h, e.g. speed_km_h = 250.0 .")
+        elif self.apparent_mass is not None:
+            raise problem("apparent_mass", "in a case that runs", "Put it into a static case, one without a speed.")
         elif not self.pantograph:
             raise problem("pantograph", "missing", "A run needs at least one [[pantograph]] table.")
         elif self.evaluated_spans is None:
@@ -142,6 +168,14 @@ class CaseFile(Sourced):
                 "evaluated_spans",
                 f"{list(spans)} is not a stretch of neighbouring spans",
                 "Give the first and the last span, numbered from 1, e.g. [5, 6].",
+            )
+        if self.compared_spans is not None and not (
+            1 <= self.compared_spans[0] <= spans[0] and spans[-1] <= self.compared_spans[1]
+        ):
+            raise problem(
+                "compared_spans",
+                f"{list(self.compared_spans)} does not hold the evaluated spans {list(spans)}",
+                "Give the first and the last span of a longer stretch.",
             )
         self._check_limits()
         return self

@@ -106,7 +106,11 @@ def load(path: Path) -> Case:
         read_model(_beside(path, use.model, f"pantograph[{i}].model"), Pantograph, "pantograph")
         for i, use in enumerate(file.pantograph, 1)
     )
-    case = Case(file, line, pantographs, file.limit, _dampings(path, file))
+    measured = None
+    if file.apparent_mass is not None:
+        beside = _beside(path, file.apparent_mass.model, "apparent_mass.model")
+        measured = read_model(beside, Pantograph, "pantograph")
+    case = Case(file, line, pantographs, file.limit, measured, _dampings(path, file))
     _check_geometry(case, path)
     _check_drops(case, path)
     return case
@@ -140,16 +144,17 @@ def _check_geometry(case: Case, path: Path) -> None:
     if case.is_static:
         return
     geometry, where = case.line.geometry, f"case '{path.name}'"
-    last = (case.file.evaluated_spans or (1,))[-1]
-    if last > geometry.spans:
-        raise InputError(
-            f"{where}, key evaluated_spans", f"span {last} does not exist", f"The line has {geometry.spans} spans."
-        )
-    if case.start >= case.evaluated[0]:
+    for key in ("evaluated_spans", "compared_spans"):
+        last = (getattr(case.file, key) or (1,))[-1]
+        if last > geometry.spans:
+            raise InputError(
+                f"{where}, key {key}", f"span {last} does not exist", f"The line has {geometry.spans} spans."
+            )
+    if case.start >= case.compared[0]:
         raise InputError(
             f"{where}, key start_m",
             f"the last pantograph starts at {case.start:g} m, not before the evaluated "
-            f"spans, which begin at {case.evaluated[0]:g} m",
+            f"spans, which begin at {case.compared[0]:g} m",
             "Start earlier, or evaluate later spans.",
         )
     length, front = geometry.span_m * geometry.spans, case.end + case.offsets[-1]

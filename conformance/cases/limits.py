@@ -8,6 +8,8 @@ from pantocheck.conformance.suggestions import nearest
 from pantocheck.conformance.trust import Trust
 from pydantic import Field, field_validator, model_validator
 
+Bound = Annotated[float, Field(ge=-1e12, le=1e12)]
+
 
 class Limit(Table):
     """Bounds of one quantity; a quantity of the line or of a static check belongs to no pantograph."""
@@ -20,8 +22,8 @@ class Limit(Table):
     item: Annotated[
         int | None, Field(ge=1, description="which one of a list-valued quantity (dropper, mode), from 1")
     ] = None
-    lower: Annotated[float | None, Field(description="smallest value that passes, in the unit of the quantity")] = None
-    upper: Annotated[float | None, Field(description="largest value that passes, in the unit of the quantity")] = None
+    lower: Annotated[Bound | None, Field(description="smallest value that passes, in the unit of the quantity")] = None
+    upper: Annotated[Bound | None, Field(description="largest value that passes, in the unit of the quantity")] = None
     trust: Annotated[Trust, Field(description="how far the limit can be trusted")]
     source: Annotated[str | list[str], Field(description="where it was read: keys of sources.toml, or free text")]
     note: Annotated[str | None, Field(description="what a reader should know about it", max_length=4000)] = None

@@ -18,6 +18,9 @@ _BOUNDS = {
     "less_than_equal": ("must be at most", "le"),
 }
 
+LONGEST_KEY = 80
+"""Characters of a key that a message shows; no key of a schema has as many."""
+
 _KINDS = {
     "float_type": "a number",
     "int_type": "a whole number",
@@ -93,33 +96,26 @@ def _walk(model: type[BaseModel], location: tuple[int | str, ...]) -> tuple[type
         if isinstance(part, int):
             key += f"[{part + 1}]"
             continue
-        holder = _model_in(inner)
-        if holder is None:
+        member = next((model for model in _models_in(inner) if part in _names_in_unions(model)), None)
+        holder = next(iter(_models_in(inner)), None)
+        if member is not None or holder is None:
+            inner = member or inner
             continue  # the name of a member of a union, not a key
-        if part not in holder.model_fields and (member := _tagged(inner, part)) is not None:
-            inner = member  # the tag of a member of a union: the keys that follow are its
-            continue
         table, field = holder, holder.model_fields.get(part)
-        key += f".{part}" if key else part
+        name = part if len(part) <= LONGEST_KEY else part[:LONGEST_KEY] + "..."
+        key += f".{name}" if key else name
         inner = field.annotation if field is not None else None
     return table, field, key
 
 
-def _model_in(annotation: Any) -> type[BaseModel] | None:
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return annotation
-    for argument in typing.get_args(annotation):
-        if (found := _model_in(argument)) is not None:
-            return found
-    return None
+def _names_in_unions(model: type[BaseModel]) -> tuple[str, ...]:
+    """What a place inside a member of a union is called after: the model, or the tag in its key `kind`."""
+    kind = model.model_fields.get("kind")
+    return (model.__name__, *(typing.get_args(kind.annotation) if kind is not None else ()))
 
 
-def _tagged(annotation: Any, tag: str) -> type[BaseModel] | None:
-    """The member of a union that a tag names."""
+def _models_in(annotation: Any) -> list[type[BaseModel]]:
+    """Models that an annotation names, in its order."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        kind = annotation.model_fields.get("kind")
-        return annotation if kind is not None and tag in typing.get_args(kind.annotation) else None
-    for argument in typing.get_args(annotation):
-        if (found := _tagged(argument, tag)) is not None:
-            return found
-    return None
+        return [annotation]
+    return [model for argument in typing.get_args(annotation) for model in _models_in(argument)]

@@ -3,6 +3,7 @@
 from typing import Annotated
 
 import typer
+from pantocheck.conformance.command_line.assess import assess
 from pantocheck.conformance.command_line.cases import cases
 from pantocheck.conformance.command_line.drop import drop
 from pantocheck.conformance.command_line.fit_damping import fit_damping
@@ -10,6 +11,7 @@ from pantocheck.conformance.command_line.guard import guarded
 from pantocheck.conformance.command_line.identify import identify
 from pantocheck.conformance.command_line.run import run
 from pantocheck.conformance.command_line.schema import schema
+from pantocheck.conformance.command_line.self_test import self_test
 from pantocheck.conformance.command_line.show import show
 from pantocheck.conformance.command_line.simulate import simulate
 from pantocheck.conformance.command_line.verify import verify
@@ -23,7 +25,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
-for command in (run, cases, show, simulate, drop, identify, fit_damping, verify, schema):
+for command in (run, assess, cases, show, simulate, drop, identify, fit_damping, verify, schema, self_test):
     app.command()(guarded(command))
 
 

@@ -7,10 +7,6 @@ import typer
 
 if TYPE_CHECKING:
     from pantocheck.conformance.plan import Plan
-    from pantocheck.conformance.results import Results
-
-EXIT_CODES = {"pass": 0, "info": 0, "fail": 1, "skip": 1, "error": 2}
-"""A limit that was not graded is a limit that was not met: `skip` must not open a gate."""
 
 
 def run(
@@ -21,7 +17,8 @@ def run(
         Path | None, typer.Option(help="TOML file with the options of a run; see `pantocheck schema plan`.")
     ] = None,
     system: Annotated[
-        str | None, typer.Option(help="System under test: builtin or record:DIR.", show_default="builtin")
+        str | None,
+        typer.Option(help="System under test: builtin, record:DIR or command:PROGRAM.", show_default="builtin"),
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Folder for the results.", show_default="report")] = None,
     formats: Annotated[
@@ -34,11 +31,20 @@ def run(
         ),
     ] = None,
     limits: Annotated[Path | None, typer.Option(help="TOML file of your own limits, laid over the cases.")] = None,
+    baseline: Annotated[
+        Path | None, typer.Option(help="Earlier results.json; a value that drifts from it fails, limits apart.")
+    ] = None,
+    drift: Annotated[
+        float | None, typer.Option(help="How far a value may drift from the baseline, in percent.  [default: 1]")
+    ] = None,
     jobs: Annotated[int | None, typer.Option(help="Cases run side by side.", show_default="1")] = None,
     damping_study: Annotated[
         bool,
         typer.Option("--damping-study", help="Run every case also with benchmark, initial and updated damping."),
     ] = False,
+    timeout: Annotated[
+        float | None, typer.Option(help="Seconds that a program may take for a case.", show_default="600")
+    ] = None,
 ) -> None:
     """Run cases on a system, grade them, and write the results and the certificate.
 
@@ -49,12 +55,22 @@ def run(
     pantocheck run en50318-2002/250 --damping-study
 
     pantocheck run my-case.toml --system record:records --formats html,json
+
+    pantocheck run 'en50318-2002/*' --system 'command:python3 my_adapter.py' --timeout 300
+
+    pantocheck run --plan conformance.toml --baseline baseline/results.json --drift 2
     """
+    from pantocheck.conformance.baseline import against_baseline
     from pantocheck.conformance.cases.library import overlaid, read_limits, select
     from pantocheck.conformance.command_line.guard import INTERRUPTED
-    from pantocheck.conformance.command_line.run_output import print_results, reported_progress
+    from pantocheck.conformance.command_line.run_output import (
+        EXIT_CODES,
+        print_results,
+        reported_progress,
+    )
     from pantocheck.conformance.files import check_writable
-    from pantocheck.conformance.reports.writers import checked_formats
+    from pantocheck.conformance.reports.writers import checked_formats, write_all
+    from pantocheck.conformance.results_file import read_results
     from pantocheck.conformance.runner import RunInterrupted
     from pantocheck.conformance.runner import run as run_cases
     from pantocheck.conformance.systems.choice import system_named
@@ -67,8 +83,11 @@ def run(
         formats=None if formats is None else tuple(name.strip() for name in formats.split(",") if name.strip()),
         trust=trust,
         limits=None if limits is None else str(limits),
+        baseline=None if baseline is None else str(baseline),
+        drift_pct=drift,
         jobs=jobs,
         damping_study=damping_study or None,
+        timeout_s=timeout,
     )
     chosen = select(options.cases)
     if options.limits is not None:
@@ -78,7 +97,8 @@ def run(
 
         chosen = [with_damping_study(case) for case in chosen]
     written = checked_formats(options.formats)
-    tested, folder = system_named(options.system), Path(options.out)
+    earlier = None if options.baseline is None else read_results(Path(options.baseline))
+    tested, folder = system_named(options.system, options.timeout_s), Path(options.out)
     check_writable(folder)
     interrupted = False
     try:
@@ -87,7 +107,9 @@ def run(
     except RunInterrupted as stopped:
         results, interrupted = stopped.results, True
         typer.echo("Interrupted: what was finished is kept.", err=True)
-    print_results(results, [str(path) for path in _write(results, folder, written)])
+    if earlier is not None and options.baseline is not None:
+        results = against_baseline(results, earlier, options.drift_pct, Path(options.baseline).name)
+    print_results(results, write_all(results, folder, written))
     raise typer.Exit(INTERRUPTED if interrupted else EXIT_CODES[results.verdict])
 
 
@@ -102,16 +124,3 @@ def _options(plan: Path | None, **given: object) -> "Plan":
         return Plan.model_validate(base | {key: value for key, value in given.items() if value is not None})
     except ValidationError as error:
         raise input_error(error, Plan, "command line") from None
-
-
-def _write(results: "Results", folder: Path, formats: tuple[str, ...]) -> list[Path]:
-    from pantocheck.conformance.files import write_in_place
-    from pantocheck.conformance.reports.writers import FILES, writer
-
-    content = results.to_dict()
-    for name in formats:
-        if name == "json":
-            write_in_place(folder / FILES[name], results.to_json())
-        else:
-            writer(name)(content, folder / FILES[name])
-    return [folder / FILES[name] for name in formats]

@@ -2,14 +2,19 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 
 from pantocheck.conformance.command_line.console import console, number, plain, verdict_text
+from pantocheck.conformance.criteria import Verdict
 from pantocheck.conformance.results import CaseResult, Criterion, Results
 from pantocheck.conformance.runner import Progress as Report
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 from rich.text import Text
+
+EXIT_CODES: dict[Verdict, int] = {"pass": 0, "info": 0, "fail": 1, "skip": 1, "error": 2}
+"""A limit that was not graded is a limit that was not met: `skip` must not open a gate."""
 
 
 @contextmanager
@@ -22,7 +27,7 @@ def reported_progress(cases: int) -> Iterator[Report]:
         yield lambda result: bar.advance(task)
 
 
-def print_results(results: Results, files: Sequence[str]) -> None:
+def print_results(results: Results, files: Sequence[Path]) -> None:
     """Verdict first, then a table of criteria for each case, then the files."""
     output = console()
     criteria = [criterion for case in results.cases for criterion in case.criteria]
@@ -45,20 +50,21 @@ def print_results(results: Results, files: Sequence[str]) -> None:
             output.print(_criteria_table(case))
     output.print()
     for name in files:
-        output.print(plain(name), soft_wrap=True)
+        output.print(plain(str(name)), soft_wrap=True)
 
 
 def _criteria_table(case: CaseResult) -> Table:
     table = Table(box=None, pad_edge=True, header_style="dim")
-    for heading in ("criterion", "value", "+- mesh", "lower", "upper", "margin", "verdict", "trust", "reason"):
-        table.add_column(
-            heading, justify="right" if heading in {"value", "+- mesh", "lower", "upper", "margin"} else "left"
-        )
+    numbers = ("value", "+-", "+- stretch", "lower", "upper", "margin")
+    for heading in ("criterion", *numbers, "verdict", "trust", "reason"):
+        table.add_column(heading, justify="right" if heading in numbers else "left")
     for item in case.criteria:
+        error = item.discretisation_error if item.uncertainty is None else item.uncertainty
         table.add_row(
             plain(_name(item)),
             number(item.value),
-            "-" if item.discretisation_error is None else f"{item.discretisation_error:.2g}",
+            "-" if error is None else f"{error:.2g}",
+            "-" if item.spread is None else f"{item.spread:.2g}",
             number(item.lower),
             number(item.upper),
             "-" if item.margin is None else f"{item.margin:+.2f}",

@@ -9,7 +9,10 @@ import typer
 def schema(
     name: Annotated[
         str | None,
-        typer.Argument(help="case, line, pantograph, damping, limits, plan, record or results; without: all"),
+        typer.Argument(
+            help="case, line, pantograph, damping, limits, plan, record, summary, profile, results, command-request or "
+            "command-answer; without: all"
+        ),
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Folder to write NAME.schema.json to, in place of printing.")] = None,
 ) -> None:

@@ -1,5 +1,6 @@
 """`pantocheck show`: everything a case says, with where each number comes from."""
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -12,15 +13,60 @@ if TYPE_CHECKING:
 
 def show(
     case: Annotated[str, typer.Argument(help="Id, glob or path of a case file, e.g. en50318-2002/250")],
+    at_rest: Annotated[
+        bool,
+        typer.Option("--at-rest", help="Compute the line at rest and the frequency response of the pantograph, too."),
+    ] = False,
+    drawing: Annotated[
+        Path | None, typer.Option(help="SVG file to draw the line to, from the side and from above, to scale.")
+    ] = None,
 ) -> None:
-    """Show the inputs, the limits and the notes of a case, each with its trust and source."""
+    """Show the inputs, the limits and the notes of a case, each with its trust and source.
+
+    Examples:
+
+    pantocheck show en50318-2018/ac-simple/275 --at-rest
+
+    pantocheck show en50318-2018/ac-stitched/static --drawing line.svg
+    """
     from pantocheck.conformance.cases.library import select
-    from pantocheck.conformance.command_line.console import console
+    from pantocheck.conformance.command_line.console import console, plain
+    from pantocheck.conformance.errors import InputError
 
     output = console()
-    for one in select([case]):
+    chosen = _named(case, select([case]))
+    if drawing is not None:
+        if len({one.file.line for one in chosen}) > 1:
+            raise InputError(f"case '{case}'", "these cases have several lines", "Draw one case at a time.")
+        _draw(chosen[0], drawing)
+    for one in chosen:
         for part in _parts(one):
             output.print(part)
+        if at_rest:
+            from pantocheck.conformance.command_line.show_at_rest import at_rest_tables
+
+            for part in at_rest_tables(one):
+                output.print(part)
+    if drawing is not None:
+        output.print(plain(str(drawing)), soft_wrap=True)
+
+
+def _named(pattern: str, found: "list[Case]") -> "list[Case]":
+    """The cases asked for, without those they require."""
+    exact = [case for case in found if case.id == pattern]
+    needed = {required for case in found for required in case.file.requires}
+    return exact or [case for case in found if case.id not in needed] or found
+
+
+def _draw(case: "Case", path: Path) -> None:
+    from pantocheck.conformance.files import check_writable, write_in_place
+    from pantocheck.conformance.reports.line_drawing import line_drawing
+    from pantocheck.conformance.systems.line_model import catenary
+    from pantocheck.model import discretise
+
+    check_writable(path.parent)
+    line = discretise(catenary(case.line), case.file.discretisation.element_m)
+    write_in_place(path, line_drawing(line, case.line.title, case.line.geometry.span_m).encode())
 
 
 def _parts(case: "Case") -> list["RenderableType"]:

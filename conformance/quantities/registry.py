@@ -4,9 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from pantocheck.conformance.quantities.bands import band_rms
 from pantocheck.conformance.quantities.kinds import Quantity
-from pantocheck.conformance.quantities.signals import LineSignals, PantographSignals
+from pantocheck.conformance.quantities.signals import ForceSignals, LineSignals
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, contact_loss, statistical_extremes
 from pantocheck.conformance.quantities.study import STUDY_QUANTITIES
 
@@ -15,7 +14,7 @@ from pantocheck.conformance.quantities.study import STUDY_QUANTITIES
 class PantographQuantity(Quantity):
     """A quantity computed from the signals of one pantograph."""
 
-    compute: Callable[[PantographSignals], float]
+    compute: Callable[[ForceSignals], float]
 
 
 @dataclass(frozen=True)
@@ -26,24 +25,24 @@ class LineQuantity(Quantity):
 
 
 def _of_pantograph(
-    name: str, unit: str, definition: str, needs: str, compute: Callable[[PantographSignals], float]
+    name: str, unit: str, definition: str, needs: str, compute: Callable[[ForceSignals], float]
 ) -> PantographQuantity:
     return PantographQuantity(name, unit, definition, needs, "pantograph", compute)
 
 
-def _band(low: float, high: float) -> Callable[[PantographSignals], float]:
-    return lambda signals: band_rms(signals.delivered, signals.rate, low, high, signals.filter_applied_Hz)
+def _band(low: float, high: float) -> Callable[[ForceSignals], float]:
+    return lambda signals: signals.band(low, high)
 
 
-def _mean(signals: PantographSignals) -> float:
+def _mean(signals: ForceSignals) -> float:
     return float(signals.delivered.mean())
 
 
-def _std(signals: PantographSignals) -> float:
+def _std(signals: ForceSignals) -> float:
     return float(signals.graded.std())
 
 
-def _std_50(signals: PantographSignals) -> float:
+def _std_50(signals: ForceSignals) -> float:
     return float(signals.extended.std())
 
 
@@ -119,8 +118,34 @@ LINE_QUANTITIES: tuple[LineQuantity, ...] = (
 
 GIVEN_QUANTITIES: tuple[Quantity, ...] = (
     Quantity("presag_mm", "mm", "sag of the contact wire at the droppers, one value each", "initial state", "static"),
-    Quantity("dropper_length_m", "m", "length of the droppers of a span, one value each", "initial state", "static"),
-    Quantity("elasticity_mm_N", "mm/N", "largest uplift per force along a span", "static check", "static"),
+    Quantity(
+        "dropper_length_m",
+        "m",
+        "length of the droppers of a span by string statics in the vertical plane, one value each",
+        "initial state",
+        "static",
+    ),
+    Quantity(
+        "dropper_length_bending_m",
+        "m",
+        "the same with the bending stiffness of the wires",
+        "initial state",
+        "static",
+    ),
+    Quantity(
+        "dropper_length_stagger_m",
+        "m",
+        "the same with bending stiffness and stagger: along the inclined droppers",
+        "initial state of a line with stagger",
+        "static",
+    ),
+    Quantity(
+        "elasticity_mm_N",
+        "mm/N",
+        "largest uplift per force along a span, for a force that slackens no dropper",
+        "static check",
+        "static",
+    ),
     Quantity(
         "elasticity_non_uniformity_pct",
         "%",
@@ -128,7 +153,71 @@ GIVEN_QUANTITIES: tuple[Quantity, ...] = (
         "static check",
         "static",
     ),
+    Quantity(
+        "elasticity_along_span_mm_N",
+        "mm/N",
+        "uplift per force at equal distances from a support on, for a force that slackens no dropper",
+        "static check",
+        "static",
+    ),
+    Quantity(
+        "elasticity_200_N_mm_N",
+        "mm/N",
+        "largest uplift per force along a span for 200 N, droppers slackening",
+        "static check",
+        "static",
+    ),
+    Quantity(
+        "elasticity_200_N_non_uniformity_pct",
+        "%",
+        "the non-uniformity for 200 N, droppers slackening",
+        "static check",
+        "static",
+    ),
+    Quantity(
+        "elasticity_200_N_along_span_mm_N",
+        "mm/N",
+        "uplift per force at equal distances from a support on, for 200 N, droppers slackening",
+        "static check",
+        "static",
+    ),
     Quantity("wave_speed_m_s", "m/s", "speed of transverse waves on the contact wire", "static check", "static"),
+    Quantity(
+        "reflection_coefficient",
+        "",
+        "share of a wave on the contact wire that a dropper reflects: sqrt(T m) of the messenger over that of both",
+        "static check",
+        "static",
+    ),
+    Quantity("doppler_factor", "", "(c - v) / (c + v), c the wave speed, v the train's", "static check", "static"),
+    Quantity(
+        "amplification_coefficient",
+        "",
+        "reflection coefficient over Doppler factor",
+        "static check",
+        "static",
+    ),
+    Quantity(
+        "natural_frequency_Hz",
+        "Hz",
+        "first natural frequencies of up to ten spans of the line, modes of mainly vertical motion",
+        "static check",
+        "static",
+    ),
+    Quantity(
+        "apparent_mass_kg",
+        "kg",
+        "size of the apparent mass of each pantograph's head, force over acceleration, at the case's frequencies",
+        "pantograph model",
+        "static",
+    ),
+    Quantity(
+        "speed_over_wave_speed",
+        "",
+        "speed of the train over the speed of transverse waves on the contact wire",
+        "wave speed",
+        "static",
+    ),
     Quantity("mode_frequency_Hz", "Hz", "frequency of a mode, or of a group of modes", "mass-drop record", "mass_drop"),
     Quantity("damping_ratio", "", "damping ratio of a mode, or of a group of modes", "mass-drop record", "mass_drop"),
     *STUDY_QUANTITIES,

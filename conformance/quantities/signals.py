@@ -2,9 +2,11 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+from pantocheck.conformance.quantities.bands import band_rms
 from pantocheck.conformance.quantities.filters import LowPass, low_passed
 from pantocheck.conformance.quantities.unavailable import BandNotObservable, ChannelMissing, StretchNotCovered
 
@@ -15,6 +17,33 @@ EXTENDED_CUTOFF_HZ = 50.0
 
 SHORTEST_PERIODS = 4
 """Periods of the cut-off frequency that the evaluated stretch must last: less is not a statistic."""
+
+
+class ForceSignals(Protocol):
+    """What a quantity of a pantograph is computed from; each raises `QuantityUnavailable` if there is no such thing."""
+
+    @property
+    def filter_applied_Hz(self) -> float | None:
+        """Cut-off of a low-pass the force has been through [Hz]; None: unfiltered."""
+
+    @property
+    def delivered(self) -> Array:
+        """Force as delivered, over what is evaluated [N]."""
+
+    @property
+    def graded(self) -> Array:
+        """Force through the case's filter [N]."""
+
+    @property
+    def extended(self) -> Array:
+        """Force through the same kind of filter at 50 Hz [N]."""
+
+    @property
+    def height(self) -> Array:
+        """Height of the contact point [m]."""
+
+    def band(self, low: float, high: float) -> float:
+        """Rms of the force in the band ]low, high] Hz [N]."""
 
 
 @dataclass(frozen=True)
@@ -76,6 +105,10 @@ class PantographSignals:
     def extended(self) -> Array:
         """Force through the same kind of filter at 50 Hz, over the evaluated stretch [N]."""
         return self._through(replace(self.low_pass, cutoff_Hz=EXTENDED_CUTOFF_HZ))
+
+    def band(self, low: float, high: float) -> float:
+        """Rms of the force in the band ]low, high] Hz, over the evaluated stretch [N]."""
+        return band_rms(self.delivered, self.rate, low, high, self.filter_applied_Hz)
 
     def _through(self, low_pass: LowPass) -> Array:
         duration = self.delivered.size / self.rate

@@ -2,13 +2,20 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from pantocheck.conformance.quantities.unavailable import AlreadyFiltered
+from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, NoMeanForce
 
 Array = NDArray[np.float64]
 
 
 def coefficient_of_variation(mean: float, deviation: float) -> float:
-    """Standard deviation over mean force [-] (EN 50317 practice; Vo Van et al. 2015, Table 1)."""
+    """Standard deviation over mean force [-] (EN 50317 practice; Vo Van et al. 2015, Table 1).
+
+    Raises
+    ------
+    NoMeanForce : the mean is not positive
+    """
+    if mean <= 0:
+        raise NoMeanForce(f"the mean force is {mean:.4g} N: a variation relative to it means nothing")
     return deviation / mean
 
 

@@ -19,3 +19,7 @@ class StretchNotCovered(QuantityUnavailable):
 
 class ChannelMissing(QuantityUnavailable):
     """The record has no channel for a quantity, so that nothing is known about it."""
+
+
+class NoMeanForce(QuantityUnavailable):
+    """The mean force is not positive: divided by it, the worst record of all would have the lowest variation."""

@@ -10,7 +10,8 @@ from pantocheck.conformance.cases.toml_file import read_toml
 from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.files import produce_in_place, write_in_place
 from pantocheck.conformance.record import Array, Record
-from pantocheck.conformance.record_files.sidecar import SCHEMA, Sidecar, column_name
+from pantocheck.conformance.record_files.channels import column_name
+from pantocheck.conformance.record_files.sidecar import SCHEMA, Sidecar
 
 HDF5_SUFFIXES = (".h5", ".hdf5")
 

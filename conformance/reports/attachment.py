@@ -1,22 +1,30 @@
 """Taking the results out of a certificate that a stranger sent."""
 
-import json
 from pathlib import Path
 from typing import Any
 
 from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.reports.embedding import NAME
 from pantocheck.conformance.reports.text import clean
-from pantocheck.conformance.results import Results
-from pydantic import ValidationError
+from pantocheck.conformance.results_file import results_from
 from pypdf import PdfReader
 from pypdf.errors import PyPdfError
 
 LARGEST_FILE = 64 * 2**20  # bytes of a PDF; a certificate of two cases has half a million
-LARGEST_RESULTS = 64 * 2**20  # bytes of the embedded results
 
 # A damaged file can break any assumption of the parser, and it has no single exception for that.
-DAMAGED = (PyPdfError, OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError, NotImplementedError)
+DAMAGED = (
+    PyPdfError,
+    OSError,
+    ValueError,
+    LookupError,
+    TypeError,
+    AttributeError,
+    RecursionError,
+    NotImplementedError,
+    ArithmeticError,
+    AssertionError,
+)
 
 
 def opened(path: Path) -> PdfReader:
@@ -78,19 +86,7 @@ def embedded_results(path: Path, reader: PdfReader) -> dict[str, Any]:
         hint = f"A certificate holds one {NAME}; other PDFs cannot be verified."
         raise InputError(str(path), f"{number} attachment named {NAME}", hint)
     where = f"{path}, attachment {NAME}"
-    if len(content) > LARGEST_RESULTS:
-        raise InputError(where, f"{len(content)} bytes", f"Results have at most {LARGEST_RESULTS} bytes.")
-    try:
-        data = json.loads(content)
-    except (ValueError, RecursionError) as error:
-        raise InputError(where, f"not JSON ({clean(str(error))})", "Ask for the certificate once more.") from None
-    try:
-        return Results.model_validate(data).to_dict()
-    except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        key = clean(".".join(map(str, first["loc"]))) or "top level"
-        hint = "The results must have the format that 'pantocheck schema' prints."
-        raise InputError(f"{where}, key {key}", clean(first["msg"]), hint) from None
+    return results_from(content, where).to_dict()
 
 
 def _damaged(path: Path, error: Exception) -> InputError:

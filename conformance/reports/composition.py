@@ -48,6 +48,7 @@ def _case(case: dict[str, Any], at: int) -> Case:
         verdict=case["verdict"],
         sentence=reasons.of_case(case),
         criteria=rows,
+        error_name=error_name(case),
         sources=tuple(sources),
         bands=tables.bands(case),
         quantities=tables.quantities(case),
@@ -62,6 +63,12 @@ def _case(case: dict[str, Any], at: int) -> Case:
         warnings=tuple(case.get("warnings") or []),
         facts=facts.of_case(case),
     )
+
+
+def error_name(case: dict[str, Any]) -> str:
+    """What stands beside the values of a case: their uncertainty, or their discretisation error."""
+    uncertain = any(row.get("uncertainty") is not None for row in case["criteria"])
+    return "Uncertainty (95 %)" if uncertain else "Discretisation error"
 
 
 def _figures(case: dict[str, Any]) -> tuple[Figure, ...]:
@@ -94,7 +101,7 @@ def _drawn(content: str) -> tuple[Figure, ...]:
 def _force(key: str, trace: dict[str, Any], rows: list[dict[str, Any]]) -> Figure:
     start, end = trace["position_m"][0], trace["position_m"][-1]
     mean, std = trace.get("mean_N"), trace.get("std_N")
-    text = f"Pantograph {key}: contact force from {number(start)} m to {number(end)} m"
+    text = f"Pantograph {key}: contact force from {plain(start)} m to {plain(end)} m"
     if mean is not None and std is not None:
         low, high = number(mean - 3 * std), number(mean + 3 * std)
         text += f"; mean {number(mean)} N, mean ± 3 σ from {low} N to {high} N"

@@ -81,7 +81,8 @@ def _whole(case: dict[str, Any]) -> ElementTree.Element:
 
 
 def _test(case: str, row: dict[str, Any]) -> ElementTree.Element:
-    test = ElementTree.Element("testcase", {"classname": case, "name": f"{row['quantity']} of {owner(row)}"})
+    kind = "" if row.get("baseline") is None else "drift of "
+    test = ElementTree.Element("testcase", {"classname": case, "name": f"{kind}{row['quantity']} of {owner(row)}"})
     value = "no value" if row["value"] is None else f"{row['value']:.8g} {row['unit']}".rstrip()
     bounds = f"limits {_bound(row['lower'])} to {_bound(row['upper'])}"
     margin = "" if row["margin"] is None else f", margin {row['margin']:.4g}"

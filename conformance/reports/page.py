@@ -72,6 +72,7 @@ class Case:
     verdict: str
     sentence: str
     criteria: tuple[Criterion, ...]
+    error_name: str
     sources: tuple[str, ...]
     bands: Table
     quantities: Table

@@ -3,10 +3,10 @@
 from collections import Counter
 from typing import Any
 
-from pantocheck.conformance.reports.criteria_rows import signed, unresolved
+from pantocheck.conformance.reports.criteria_rows import error_of, signed, title, unresolved
 from pantocheck.conformance.reports.page import Reasons
 from pantocheck.conformance.reports.text import beside_limits, limits
-from pantocheck.conformance.reports.words import label, owner, words
+from pantocheck.conformance.reports.words import owner, words
 
 CLOSEST = 3
 
@@ -45,12 +45,15 @@ def reasons(results: dict[str, Any]) -> tuple[Reasons, ...]:
             f"{case['id']}: {case['reason']}" for case in cases if case["verdict"] == verdict and case.get("reason")
         ]
 
-    unsure = [(case, row) for case, row in rows if unresolved(row)]
+    unsure: dict[str, list[str]] = {}
+    for case, row in rows:
+        if unresolved(row):
+            unsure.setdefault(error_of(row)[1], []).append(_where(case, row))
     groups = (
         ("What could not be run", [*whole("error"), *(_why(case, row) for case, row in of("error"))]),
         ("What failed", [*whole("fail"), *(_where(case, row) for case, row in of("fail"))]),
         ("What could not be evaluated", [*whole("skip"), *(_why(case, row) for case, row in of("skip"))]),
-        ("Closer to a limit than the discretisation error", [_where(case, row) for case, row in unsure]),
+        *((f"Closer to a limit than the {name}", sentences) for name, sentences in unsure.items()),
         ("Closest margins", [_where(case, row) for case, row in of("pass") if _has_width(row)][:CLOSEST]),
     )
     return tuple(Reasons(name, tuple(sentences)) for name, sentences in groups if sentences)
@@ -72,7 +75,7 @@ def of_case(case: dict[str, Any]) -> str:
 
 def who(row: dict[str, Any]) -> str:
     """The owner of a value and the quantity's name in words."""
-    return f"{owner(row)}, {label(row['quantity'])}"
+    return f"{owner(row)}, {title(row)}"
 
 
 def _has_width(row: dict[str, Any]) -> bool:

@@ -7,6 +7,7 @@ from typing import Any
 from jinja2 import Environment, FunctionLoader, StrictUndefined
 from pantocheck.conformance.files import write_in_place
 from pantocheck.conformance.reports import facts, reasons
+from pantocheck.conformance.reports.composition import error_name
 from pantocheck.conformance.reports.criteria_rows import criterion
 from pantocheck.conformance.reports.text import cleaned
 from pantocheck.conformance.reports.words import TEMPLATES, words
@@ -48,7 +49,7 @@ def render(results: dict[str, Any]) -> str:
         reasons=reasons.reasons(results),
         system=facts.system(results),
         suite=facts.suite(results),
-        cases=[(case, [criterion(row, []) for row in case["criteria"]]) for case in results["cases"]],
+        cases=[(case, [criterion(row, []) for row in case["criteria"]], error_name(case)) for case in results["cases"]],
         words={name: of["word"] for name, of in words()["verdict"].items()},
     )
 

@@ -56,7 +56,9 @@ def quantities(case: dict[str, Any]) -> Table:
         value = case["quantities"].get(key, {}).get(name)
         if value is None:
             return "skipped" if name in case["skipped"].get(key, {}) else ""
-        return ", ".join(number(one, 5) for one in (value if isinstance(value, list) else [value]))
+        error = (case.get("uncertainty") or {}).get(key, {}).get(name)
+        shown = ", ".join(number(one, 5) for one in (value if isinstance(value, list) else [value]))
+        return shown if error is None else f"{shown} ± {number(error, 2)}"
 
     return Table(
         tuple(heading(key) for key in keys),

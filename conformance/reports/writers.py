@@ -6,6 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from pantocheck.conformance.errors import InputError
+from pantocheck.conformance.files import write_in_place
+from pantocheck.conformance.results import Results
 from pantocheck.conformance.suggestions import nearest
 
 FILES = {
@@ -40,3 +42,19 @@ def writer(name: str) -> Callable[[dict[str, Any], Path], None]:
         f"pantocheck.conformance.reports.{_MODULES[name]}"
     ).write
     return write
+
+
+def write_all(results: Results, folder: Path, formats: Sequence[str]) -> list[Path]:
+    """Write results in several formats; where each was written.
+
+    Raises
+    ------
+    InputError : a file cannot be written
+    """
+    content = results.to_dict()
+    for name in formats:
+        if name == "json":
+            write_in_place(folder / FILES[name], results.to_json())
+        else:
+            writer(name)(content, folder / FILES[name])
+    return [folder / FILES[name] for name in formats]

@@ -75,7 +75,7 @@ def simulated(
     motion = decay.motion[:, :, ORDER[told.quantity]].T
     signals = decimated(motion, round(1 / told.rate_Hz / steps.time_step_s))
     if told.noise_rms:
-        signals = signals + told.noise_rms * _generator(case, number).standard_normal(signals.shape)
+        signals = signals + told.noise_rms * _generator(test, number).standard_normal(signals.shape)
     return SimulatedDrop(_record(case, told, test, number, signals), decay)
 
 
@@ -114,9 +114,9 @@ def _wire(line: Catenary, name: str) -> str:
     return next(wire.name for wire in line.wires if wire.kind is Kind(name))
 
 
-def _generator(case: Case, number: int) -> np.random.Generator:
-    """Noise of its own for every drop of every case, the same each time."""
-    seed = hashlib.sha256(f"{case.digest} {number}".encode()).digest()
+def _generator(test: DropTest, number: int) -> np.random.Generator:
+    """Noise of its own for every drop, the same each time and under every damping model."""
+    seed = hashlib.sha256(f"{test.model_dump_json()} {number}".encode()).digest()
     return np.random.default_rng(int.from_bytes(seed[:8], "little"))
 
 

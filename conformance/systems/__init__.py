@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from typing import Literal, Protocol
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.evaluation import Value
+from pantocheck.conformance.evaluation import Evaluation, Value
 from pantocheck.conformance.record import Record
 from pantocheck.conformance.results import Chart, TextTable
 
@@ -26,6 +26,7 @@ class Outcome:
     errored : one line on what went wrong; None if nothing did
     findings : quantities of a study, by pantograph (0: the line) and name
     charts, tables : of a study, for the report
+    summary : quantities that were delivered as numbers, in place of a record
     refined : the same case with element and time step halved, from which the discretisation error is taken
     """
 
@@ -42,6 +43,7 @@ class Outcome:
     findings: dict[int, dict[str, Value]] = field(default_factory=dict)
     charts: tuple[Chart, ...] = ()
     tables: tuple[TextTable, ...] = ()
+    summary: Evaluation | None = None
     refined: "Outcome | None" = None
 
 

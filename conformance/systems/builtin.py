@@ -6,26 +6,32 @@ from importlib.metadata import version
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.evaluation import Value
 from pantocheck.conformance.record import Record
 from pantocheck.conformance.systems import Outcome
 from pantocheck.conformance.systems.line_model import catenary
 from pantocheck.conformance.systems.passage import pantograph, starts, watched_supports
+from pantocheck.conformance.systems.static_check import along_span, static_quantities
+from pantocheck.conformance.systems.tuning import tuned
 from pantocheck.model import Discretised, History, Passage, discretise, run
-from pantocheck.model.beam import wave_speed
 from pantocheck.model.simulation import causal_reach
-from pantocheck.model.statics import non_uniformity, static_uplift
-
-SAMPLES_PER_SPAN = 24
-"""Places along a span at which static quantities are taken."""
-MEAN_FORCE_TOLERANCE = 0.02
-"""The tuned mean contact force is this close to its target [N]."""
-MOST_TUNING_RUNS = 12
+from pantocheck.model.statics import static_uplift
 
 
-class NotTuned(ArithmeticError):
-    """The uplift force that gives the target mean was not found; grading another mean would compare the wrong run."""
+@dataclass(frozen=True)
+class Run:
+    """One run of a case: its record, and what it took to make it.
+
+    Parameters
+    ----------
+    record : of the run
+    simulated_s, wall_s : time that was simulated, and that it took [s]
+    """
+
+    record: Record
+    simulated_s: float
+    wall_s: float
 
 
 @dataclass(frozen=True)
@@ -39,40 +45,77 @@ class ReferenceSimulator:
     def run(self, case: Case) -> Outcome:
         """Run a case."""
         steps = case.file.discretisation
-        coarse, uplift_forces = self._run_once(case, steps.element_m, steps.time_step_s, None)
-        fine, _ = self._run_once(case, steps.element_m / 2, steps.time_step_s / 2, uplift_forces)
+        coarse, uplift_forces = _outcome(case, steps.element_m, steps.time_step_s)
+        fine, _ = _outcome(case, steps.element_m / 2, steps.time_step_s / 2, uplift_forces)
         return replace(coarse, refined=fine)
 
     def run_unrefined(self, case: Case) -> Outcome:
         """Run a case once, at its own discretisation."""
         steps = case.file.discretisation
-        return self._run_once(case, steps.element_m, steps.time_step_s, None)[0]
+        return _outcome(case, steps.element_m, steps.time_step_s)[0]
 
-    def _run_once(
-        self, case: Case, element: float, step: float, uplift_forces: tuple[float, ...] | None
-    ) -> tuple[Outcome, tuple[float, ...]]:
-        line = discretise(catenary(case.line), element)
-        outcome = Outcome(static=_static_quantities(case, line), dt_s=step, element_m=element)
-        if case.is_static:
-            return outcome, ()
-        forces = uplift_forces or _tuned(case, line, step)
-        passage = passage_of(case, line, step, forces)
-        run(line, replace(passage, duration=0.0))  # compiles the kernels, which is not part of the run
-        begin = time.perf_counter()
-        history = run(line, passage)
-        wall = time.perf_counter() - begin
-        return replace(
-            outcome, record=record_of(case, passage, history), simulated_s=passage.duration, wall_s=wall
-        ), forces
+
+def _outcome(
+    case: Case, element: float, step: float, uplift_forces: tuple[float, ...] | None = None
+) -> tuple[Outcome, tuple[float, ...]]:
+    return run_line(case, discretise(catenary(case.line), element), element, step, uplift_forces)
+
+
+def run_line(
+    case: Case, line: Discretised, element: float, step: float, uplift_forces: tuple[float, ...] | None = None
+) -> tuple[Outcome, tuple[float, ...]]:
+    """Run a case on a line that is discretised already.
+
+    Parameters
+    ----------
+    case : to run
+    line : its line
+    element, step : length of an element [m] and time step [s], as reported
+    uplift_forces : of the pantographs [N]; None: those of the case, tuned if it asks for a mean
+
+    Returns
+    -------
+    outcome, uplift forces
+    """
+    outcome = Outcome(static=static_quantities(case, line), dt_s=step, element_m=element)
+    if case.is_static:
+        return outcome, ()
+    uses = case.file.pantograph
+    begin = uplift_forces or tuple(use.uplift_force_N or use.target_mean_force_N or 0.0 for use in uses)
+    run(line, replace(passage_of(case, line, step, begin), duration=0.0))  # compiles the kernels, not part of the run
+    made, forces = tuned(
+        lambda forces: _run(case, line, step, forces),
+        _means,
+        begin,
+        [None if uplift_forces else use.target_mean_force_N for use in uses],
+    )
+    return replace(outcome, record=made.record, simulated_s=made.simulated_s, wall_s=made.wall_s), forces
+
+
+def _run(case: Case, line: Discretised, step: float, uplift_forces: tuple[float, ...]) -> Run:
+    passage = passage_of(case, line, step, uplift_forces)
+    begin = time.perf_counter()
+    history = run(line, passage)
+    return Run(record_of(case, passage, history), passage.duration, time.perf_counter() - begin)
+
+
+def _means(made: Run) -> NDArray[np.float64]:
+    """Mean contact force of every pantograph over the evaluated stretch [N]."""
+    record = made.record
+    inside = (record.position >= record.evaluated[0]) & (record.position <= record.evaluated[1])
+    return np.array([force[here].mean() for force, here in zip(record.force, inside, strict=True)])
 
 
 def passage_of(case: Case, line: Discretised, step: float, uplift_forces: tuple[float, ...]) -> Passage:
     """The passage of a case with given uplift forces, on a line that is discretised already."""
+    places = along_span(case.evaluated[0], case.line.geometry.span_m)
     models = []
     for file, force in zip(case.pantographs, uplift_forces, strict=True):
-        height = float(static_uplift(line, _along_span(case), force).mean()) + force / file.contact.stiffness_N_m
+        height = float(static_uplift(line, places, force).mean()) + force / file.contact.stiffness_N_m
         models.append(pantograph(file, force, height))
     duration = (case.end - case.start) / case.speed
+    wanted = case.file.discretisation.reach_m
+    causal = causal_reach(line, case.speed, duration)
     return Passage(
         pantographs=tuple(models),
         start=starts(case),
@@ -80,33 +123,8 @@ def passage_of(case: Case, line: Discretised, step: float, uplift_forces: tuple[
         duration=duration,
         time_step=step,
         watched=watched_supports(case, line),
-        reach=causal_reach(line, case.speed, duration),
+        reach=causal if wanted is None else min(wanted, causal),
     )
-
-
-def _along_span(case: Case) -> np.ndarray:
-    """Places along the first evaluated span."""
-    start, span = case.evaluated[0], case.line.geometry.span_m
-    return start + span * np.arange(SAMPLES_PER_SPAN) / SAMPLES_PER_SPAN
-
-
-def _tuned(case: Case, line: Discretised, step: float) -> tuple[float, ...]:
-    """Uplift forces with which every mean over the evaluated spans meets its target, if it has one."""
-    uses = case.file.pantograph
-    forces = np.array([use.uplift_force_N or use.target_mean_force_N or 0.0 for use in uses])
-    if not any(use.target_mean_force_N for use in uses):
-        return tuple(map(float, forces))
-    for _ in range(MOST_TUNING_RUNS):
-        passage = passage_of(case, line, step, tuple(map(float, forces)))
-        record = record_of(case, passage, run(line, passage))
-        inside = (record.position >= record.evaluated[0]) & (record.position <= record.evaluated[1])
-        means = [force[here].mean() for force, here in zip(record.force, inside, strict=True)]
-        # The mean follows the uplift force nearly one to one: what is missing is added.
-        missing = np.array([(u.target_mean_force_N or m) - m for u, m in zip(uses, means, strict=True)])
-        if np.abs(missing).max() < MEAN_FORCE_TOLERANCE:
-            return tuple(map(float, forces))
-        forces = forces + missing
-    raise NotTuned(f"the mean contact force is still {np.abs(missing).max():.2f} N off its target")
 
 
 def record_of(case: Case, passage: Passage, history: History) -> Record:
@@ -121,21 +139,3 @@ def record_of(case: Case, passage: Passage, history: History) -> Record:
         support_position=np.array([position for _, position in passage.watched]),
         support_uplift=history.motion[:, :, 0],
     )
-
-
-def _static_quantities(case: Case, line: Discretised) -> dict[str, Value]:
-    geometry, wire = case.line.geometry, case.line.contact_wire
-    middle = geometry.spans // 2
-    droppers = [i for i, d in enumerate(line.catenary.droppers) if d.position // geometry.span_m == middle]
-    elasticity = static_uplift(line, middle * geometry.span_m + _fractions(geometry.span_m), 1.0)
-    return {
-        "presag_mm": tuple(0.0 - 1e3 * (line.catenary.droppers[i].contact_wire_height or 0.0) for i in droppers),
-        "dropper_length_m": tuple(float(line.state.dropper_length[i]) for i in droppers),
-        "elasticity_mm_N": float(1e3 * elasticity.max()),
-        "elasticity_non_uniformity_pct": 100 * non_uniformity(elasticity),
-        "wave_speed_m_s": wave_speed(wire.tension_N, wire.mass_kg_m),
-    }
-
-
-def _fractions(span: float) -> np.ndarray:
-    return span * np.arange(SAMPLES_PER_SPAN) / SAMPLES_PER_SPAN

@@ -6,9 +6,17 @@ from pathlib import Path
 from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.systems import System
 
+TIMEOUT_S = 600.0
+"""Time a program may take for a case [s], if nothing else is said."""
 
-def system_named(text: str) -> System:
-    """The system under test for `builtin` or `record:DIR`.
+
+def system_named(text: str, timeout_s: float = TIMEOUT_S) -> System:
+    """The system under test for `builtin`, `record:DIR` or `command:PROGRAM ARGUMENTS`.
+
+    Parameters
+    ----------
+    text : as `--system` takes it
+    timeout_s : time that a program may take for a case [s]
 
     Raises
     ------
@@ -23,4 +31,10 @@ def system_named(text: str) -> System:
         from pantocheck.conformance.systems.record_folder import record_folder
 
         return record_folder(Path(rest))
-    raise InputError(f"system '{text}'", "there is no such system", "Known are builtin and record:DIR .")
+    if kind == "command":
+        from pantocheck.conformance.systems.command import command
+
+        return command(rest, Path(), timeout_s)
+    raise InputError(
+        f"system '{text}'", "there is no such system", "Known are builtin, record:DIR and command:PROGRAM ARGUMENTS ."
+    )

@@ -1,14 +1,15 @@
 """A folder of records as a system: every record that names a case is graded as that case's run."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.toml_file import read_model, read_toml
+from pantocheck.conformance.cases.library import library_folder, source_text
+from pantocheck.conformance.cases.toml_file import read_toml
 from pantocheck.conformance.errors import InputError
-from pantocheck.conformance.record_files.reading import read_record
-from pantocheck.conformance.record_files.sidecar import SCHEMA, Sidecar
+from pantocheck.conformance.record_files import Sidecar, Summary, read_record
+from pantocheck.conformance.record_files.kinds import SCHEMAS, read_either
 from pantocheck.conformance.systems import Outcome
 
 
@@ -19,7 +20,7 @@ class RecordFolder:
     Parameters
     ----------
     name, version : of what the records come from, if their sidecars agree; else the folder's name
-    sidecars : case id and sidecar of every record
+    sidecars : case id and sidecar, or summary record, of every record
     """
 
     name: str
@@ -32,40 +33,84 @@ class RecordFolder:
         path = dict(self.sidecars).get(case.id)
         if path is None:
             return Outcome(skipped="there is no record of this case")
+        said = read_either(path)
+        if isinstance(said, Summary):
+            return _of_summary(said, case)
         record, sidecar = read_record(path)
+        if sidecar.evaluated_m is None and not case.is_static:
+            record = replace(record, evaluated=case.evaluated)
         run = sidecar.run
         return Outcome(record, {}, run.simulated_s, run.wall_s, run.dt_s, run.element_m)
 
 
+def _of_summary(summary: Summary, case: Case) -> Outcome:
+    if (mismatch := _mismatch(summary, case)) is not None:
+        return Outcome(errored=mismatch)
+    source = (summary.source,) if isinstance(summary.source, str) else tuple(summary.source)
+    run = summary.run
+    return Outcome(
+        simulated_s=run.simulated_s,
+        wall_s=run.wall_s,
+        dt_s=run.dt_s,
+        element_m=run.element_m,
+        notes=(
+            f"The values are a summary record, graded as given ({summary.trust}): {source_text(source)}",
+            *((summary.note.strip(),) if summary.note else ()),
+        ),
+        warnings=summary.contradictions,
+        summary=summary.evaluation,
+    )
+
+
+def _mismatch(summary: Summary, case: Case) -> str | None:
+    """Why a summary is not one of this case."""
+    cutoff, speed = case.file.filter.cutoff_Hz, case.file.speed_km_h
+    if len(summary.pantograph) != len(case.pantographs):
+        return f"the summary record has {len(summary.pantograph)} pantographs, the case has {len(case.pantographs)}"
+    if speed is not None and abs(summary.speed_km_h / speed - 1) > 0.005:
+        return f"the summary record is of {summary.speed_km_h:g} km/h, the case runs at {speed:g} km/h"
+    if abs(summary.filter_cutoff_Hz / cutoff - 1) > 0.001:
+        return (
+            f"the summary record's force was filtered at {summary.filter_cutoff_Hz:g} Hz, the case asks {cutoff:g} Hz"
+        )
+    stretch = summary.evaluated_m
+    if stretch is not None and any(abs(a - b) > 0.01 for a, b in zip(stretch, case.evaluated, strict=True)):
+        (first, last) = case.evaluated
+        return f"the summary record evaluates {stretch[0]:g} m to {stretch[1]:g} m, the case {first:g} m to {last:g} m"
+    return None
+
+
 def record_folder(folder: Path) -> RecordFolder:
-    """Find the records of a folder and the folders below it.
+    """Find the records of a folder and the folders below it; a folder of the library may be named by its place there.
 
     Raises
     ------
     InputError : there is no such folder or no record in it, a sidecar is wrong, or two are of the same case
     """
     where = f"system record:{folder}"
+    if not folder.is_dir() and not folder.is_absolute() and (library_folder() / folder).is_dir():
+        folder = library_folder() / folder
     if not folder.is_dir():
         raise InputError(where, "there is no such folder", "Give the folder that holds records and their sidecars.")
     found: dict[str, Path] = {}
     systems = set()
     for path in sorted(folder.rglob("*.toml")):
-        if read_toml(path, "sidecar").get("schema") != SCHEMA:
+        schema = read_toml(path, "sidecar").get("schema")
+        if not isinstance(schema, str) or schema not in SCHEMAS:
             continue
-        sidecar = read_model(path, Sidecar, "sidecar")
-        if sidecar.case is None:
+        said: Sidecar | Summary = read_either(path)
+        if said.case is None:
             continue
-        if sidecar.case in found:
+        if said.case in found:
             raise InputError(
                 where,
-                f"{path.name} and {found[sidecar.case].name} are both of case {sidecar.case}",
+                f"{path.name} and {found[said.case].name} are both of case {said.case}",
                 "Keep one record of each case.",
             )
-        found[sidecar.case] = path
-        systems.add((sidecar.system.name, sidecar.system.version) if sidecar.system else (folder.resolve().name, ""))
+        found[said.case] = path
+        systems.add((said.system.name, said.system.version) if said.system else (folder.resolve().name, ""))
     if not found:
-        raise InputError(
-            where, "no sidecar in it names a case", f'A sidecar says schema = "{SCHEMA}" and case = "...".'
-        )
+        schemas = " or ".join(f'"{schema}"' for schema in SCHEMAS)
+        raise InputError(where, "no sidecar in it names a case", f'A sidecar says schema = {schemas} and case = "...".')
     name, version = systems.pop() if len(systems) == 1 else (folder.resolve().name, "")
     return RecordFolder(name, version, tuple(found.items()))

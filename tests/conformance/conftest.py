@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import library_folder, load
+from pantocheck.conformance.cases.pantograph import Pantograph
 from pantocheck.conformance.record import Record
 from pantocheck.conformance.systems import Outcome
+from pantocheck.conformance.systems.passage import pantograph
 
 MEAN, SIGMA, UPLIFT_MM = 119.0, 28.0, 50.0
 
@@ -39,7 +41,15 @@ class Wave:
         force = self.mean + np.sqrt(2) * self.sigma * np.sin(2 * np.pi * position / span)
         supports = np.arange(case.line.geometry.spans + 1) * span
         uplift = 1e-3 * UPLIFT_MM * np.exp(-(((position[0] - supports[:, None]) / 5) ** 2))
-        return Record(time, case.speed, position, force, case.evaluated, None, 1e-4 * force, supports, uplift)
+        height = np.array([self.height(*of, case.speed, span) for of in zip(case.pantographs, position, strict=True)])
+        return Record(time, case.speed, position, force, case.evaluated, None, height, supports, uplift)
+
+    def height(self, file: Pantograph, position: np.ndarray, speed: float, span: float) -> np.ndarray:
+        """Motion of a pantograph's head under that force, once it has settled."""
+        model, omega = pantograph(file, 0.0, 0.0), 2 * np.pi * speed / span
+        stiffness = model.stiffness + 1j * omega * model.damping - omega**2 * model.mass
+        compliance = model.head @ np.linalg.solve(stiffness, model.head)
+        return -np.imag(compliance * np.sqrt(2) * self.sigma * np.exp(2j * np.pi * position / span))
 
 
 @pytest.fixture

@@ -144,9 +144,13 @@ def test_truncated_record_never_passes(case_250, wave):
         contact_height=None, support_uplift=whole.support_uplift[:, :n],
     )  # fmt: skip
     (result,) = run([case_250], Scripted({case_250.id: Outcome(cut)})).cases
-    assert result.verdict == "skip"
+    assert result.verdict == "error"
     assert result.quantities.keys() == {"0"}
-    assert "the evaluated stretch is 240 m to 360 m" in result.criteria[0].reason
+    assert not result.criteria
+    assert result.reason == (
+        "the record of pantograph 1 is cut short: the record covers 60 m to 309.931 m; "
+        "the evaluated stretch is 240 m to 360 m"
+    )
 
 
 def test_short_run_out_is_warned_of(case_250, wave):

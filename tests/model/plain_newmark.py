@@ -11,8 +11,8 @@ from itertools import pairwise
 import numpy as np
 from pantocheck.model.assembly import assemble, connector_directions, order, point_load
 from pantocheck.model.line import Discretised
-from pantocheck.model.newmark import Motion, Train
 from pantocheck.model.simulation import Passage
+from pantocheck.model.state import Motion, Train
 from scipy.linalg import solve
 
 from .lines import Array, without_connectors

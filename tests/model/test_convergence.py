@@ -6,8 +6,9 @@ import numpy as np
 from pantocheck.model import Passage, chain
 from pantocheck.model.assembly import assemble, order
 from pantocheck.model.line import discretise
-from pantocheck.model.newmark import Motion, step
+from pantocheck.model.newmark import step
 from pantocheck.model.simulation import no_train, start, workspace
+from pantocheck.model.state import Motion
 from pantocheck.model.stepping import time_stepping
 from scipy.linalg import eigh
 
@@ -33,7 +34,7 @@ def test_free_vibration_converges_with_the_second_order() -> None:
         stepping, train = time_stepping(line, time_step), no_train(1)
         initial = np.array([amplitude.sum(axis=1), np.zeros(place.size), -amplitude @ omega**2])
         motion = Motion(*spread(initial), line.connectors.preload.copy(), np.zeros(0), np.zeros(1))
-        work = workspace(stepping, motion, train)
+        work = workspace(stepping, train)
         for _ in range(round(duration / time_step)):
             assert step(stepping, motion, train, work)
             assert (motion.tension > 0).all()
@@ -58,7 +59,7 @@ def test_contact_force_converges_with_the_second_order() -> None:
         time_step = 4e-3 / 2**halvings
         stepping = time_stepping(line, time_step)
         motion, train = start(line, stepping, Passage((PANTOGRAPH,), (27.3,), 0.0, duration, time_step))
-        work, force = workspace(stepping, motion, train), []
+        work, force = workspace(stepping, train), []
         for n in range(1, round(duration / time_step) + 1):
             train.force[0, 0] = 120.0 + 30.0 * np.sin(np.pi * n * time_step / duration) ** 4
             assert step(stepping, motion, train, work)

@@ -8,8 +8,9 @@ from pantocheck.model.assembly import assemble, connector_directions, order, poi
 from pantocheck.model.catenary import Kind, Rayleigh
 from pantocheck.model.equilibrium import Statics
 from pantocheck.model.line import Discretised, discretise
-from pantocheck.model.newmark import Motion, step
+from pantocheck.model.newmark import step
 from pantocheck.model.simulation import no_train, still, workspace
+from pantocheck.model.state import Motion
 from pantocheck.model.stepping import time_stepping
 from scipy.sparse import csc_array
 
@@ -32,7 +33,7 @@ def free_decay(line: Discretised, time_step: float, steps: int) -> tuple[Array, 
     motion = still(Statics(line).deflection(-600.0 * taken))
     _accelerate(line, motion, taken)
     stepping, train = time_stepping(line, time_step), no_train(1)
-    work = workspace(stepping, motion, train)
+    work = workspace(stepping, train)
     energy, tensions = [], np.zeros((steps, stiffness.size))
     for n in range(steps):
         if n % EVERY == 0:

@@ -82,5 +82,5 @@ def test_step_reports_a_state_that_is_not_a_number(where: str) -> None:
         "far away": motion.w[0, 0, -3:-2],
     }
     spot[where][:] = np.nan
-    work = workspace(stepping, motion, train)
+    work = workspace(stepping, train)
     assert step(stepping, motion, train, work) == 0

@@ -7,8 +7,9 @@ from pantocheck.model import Discretised, Kind, ModalBand, Rayleigh, discretise
 from pantocheck.model.assembly import assemble, order
 from pantocheck.model.modal_damping import modal_terms
 from pantocheck.model.modes import damping_ratios, modes
-from pantocheck.model.newmark import Motion, step
+from pantocheck.model.newmark import step
 from pantocheck.model.simulation import no_train, workspace
+from pantocheck.model.state import Motion
 from pantocheck.model.stepping import time_stepping
 from scipy.linalg import eig
 
@@ -70,7 +71,7 @@ def test_the_step_equals_one_with_the_full_matrix() -> None:
     )
     motion = Motion(w, r, tension, np.zeros(stepping.modal_damping.size), np.zeros(1))
     train = no_train(1)
-    work = workspace(stepping, motion, train)
+    work = workspace(stepping, train)
     effective = mass + dt / 2 * damping + dt**2 / 4 * stiffness
     for _ in range(300):
         assert step(stepping, motion, train, work) > 0

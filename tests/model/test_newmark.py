@@ -36,7 +36,7 @@ def largest_differences(
     for p, pantograph in enumerate(passage.pantographs):
         train.z[1, p, : pantograph.head.size] = -drop * pantograph.head
     twin = PlainNewmark(line, passage)
-    state, work, place = twin.take(motion, train), workspace(stepping, motion, train), order(line)[twin.free]
+    state, work, place = twin.take(motion, train), workspace(stepping, train), order(line)[twin.free]
     ours: dict[str, list[Array]] = {name: [] for name in ("q", "v", "a", "tension", "contact")}
     theirs: dict[str, list[Array]] = {name: [] for name in ours}
     for _ in range(steps):

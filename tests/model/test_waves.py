@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from pantocheck.model import beam
 from pantocheck.model.line import Discretised, discretise
-from pantocheck.model.newmark import Motion, step
+from pantocheck.model.newmark import step
 from pantocheck.model.pantograph import Pantograph
 from pantocheck.model.simulation import Passage, no_train, start, workspace
+from pantocheck.model.state import Motion
 from pantocheck.model.stepping import time_stepping
 
 from .lines import Array, bare_wire
@@ -52,7 +53,7 @@ def test_pulse_travels_with_the_speed_of_each_of_its_waves(bending_stiffness: fl
     at_start, at_end = travelled(line, bending_stiffness, width, centre, np.array([0.0, steps * dt]))
     motion = Motion(at_start[:, :1].copy(), at_start[:, 1:].copy(), np.zeros(0), np.zeros(0), np.zeros(1))
     train = no_train(1)
-    work = workspace(stepping, motion, train)
+    work = workspace(stepping, train)
     for _ in range(steps):
         assert step(stepping, motion, train, work)
     error = np.abs(motion.w[0, 0] - at_end[0, 0]).max() / 0.01
@@ -90,7 +91,7 @@ def test_moving_load_on_a_long_string(share: float, tolerance: float) -> None:
     passage = Passage((heavy,), (origin,), speed, duration, dt)
     stepping = time_stepping(line, dt)
     motion, train = start(line, stepping, passage)
-    work = workspace(stepping, motion, train)
+    work = workspace(stepping, train)
     steps = round(duration / dt)
     for n in range(1, steps + 1):
         train.z[:] = 0.0

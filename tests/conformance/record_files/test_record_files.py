@@ -62,7 +62,17 @@ def damaged_csv(written, change):
         (4, "abc" + ",1" * 14, "line 5, column 1: 'abc' is not a number"),
         (4, "1,2,3", "line 5: 3 columns where there were 15"),
         (4, "0.003,260,nan" + ",1" * 12, "channel force: 1 values are not finite, the first at sample 4"),
-        (0, "time_s,position_1_m,force_1_kN", r"column 'force_1_kN': unknown column.\n  Forces are given in newtons"),
+        (
+            0,
+            "time_s,position_1_m,force_1_lbf",
+            r"line 1, column 'force_1_lbf': unknown column.\n  Did you mean force_1_N",
+        ),
+        (
+            0,
+            "time_s,position_1_m,force_2_N",
+            r"line 1, column 'force_2_N': the sidecar has no pantograph 2.\n  It has 1",
+        ),
+        (0, "force_1_N,position_1_m,force_1_kN", "two columns have the same name"),
         (0, "time_s,position_1_m,contact_height_1_m", "columns of numbers under 3 names"),
         (0, "time_s,time_s,force_1_N", "two columns have the same name"),
     ],
@@ -111,7 +121,7 @@ def test_changed_table_contradicts_its_digest(written):
         ('file = "a.csv"', 'file = "../a.csv"', "is a path"),
         ('file = "a.csv"', 'file = "b.csv"', "record 'b.csv': cannot be read"),
         ("speed_km_h = 250.0", "speed_m_s = 69.4", "key speed_m_s: unknown key"),
-        ("pantographs = 1", "pantographs = 2", "1 columns of position_m, expected 2"),
+        ("pantographs = 1", "pantographs = 2", "1 rows of position_m, expected 2"),
     ],
 )
 def test_wrong_sidecar(written, old, new, message):

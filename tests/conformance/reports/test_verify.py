@@ -6,6 +6,7 @@ import json
 import random
 
 import pytest
+from pantocheck.conformance import results_file
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.reports import attachment, pdf
@@ -157,7 +158,7 @@ def test_no_file_and_too_large_a_file(certificate_file, tmp_path, monkeypatch):
         verify(tmp_path / "none.pdf")
     with pytest.raises(InputError, match="cannot be read"):
         verify(tmp_path)
-    monkeypatch.setattr(attachment, "LARGEST_RESULTS", 1000)
+    monkeypatch.setattr(results_file, "LARGEST", 1000)
     with pytest.raises(InputError, match=r"attachment results\.json: .* bytes"):
         verify(certificate_file)
     monkeypatch.setattr(attachment, "LARGEST_FILE", 1000)

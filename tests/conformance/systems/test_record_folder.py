@@ -32,7 +32,7 @@ def test_wrong_folders(case_250, wave, tmp_path):
         record_folder(tmp_path)
 
 
-@pytest.mark.parametrize("text", ["builtins", "record:", "command:python", ""])
+@pytest.mark.parametrize("text", ["builtins", "record:", "commands:python", ""])
 def test_unknown_system(text):
     with pytest.raises(InputError, match="there is no such system"):
         system_named(text)

@@ -1,0 +1,101 @@
+"""Convergence in mesh and time on AC simple at 320 km/h; prints the tables of docs/convergence.md.
+
+python benchmarks/convergence.py [--spans 18]
+"""
+
+import argparse
+import math
+import time
+
+import numpy as np
+from lines import ac_simple, passage, staggered, vertical
+from pantocheck.conformance.evaluation import evaluate
+from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.record import Record
+from pantocheck.model import Catenary, discretise, run
+
+QUANTITIES = (
+    "std_force_N",
+    "rms_0_5_N",
+    "rms_5_20_N",
+    "rms_20_50_N",
+    "max_force_N",
+    "min_force_N",
+    "max_uplift_at_support_mm",
+)
+DEFAULT = (0.5, 1e-3)
+ALLOWED_PCT = dict.fromkeys(QUANTITIES[:4], 1.0) | dict.fromkeys(QUANTITIES[4:], 2.0)
+"""What the extrapolated error at the default setting should stay below."""
+
+
+def figures(case, built: Catenary, element: float, step: float) -> dict[str, float]:
+    """Quantities of one run, the last eight spans but two evaluated."""
+    spans, span = case.line.geometry.spans, case.line.geometry.span_m
+    line = discretise(built, element)
+    way = passage(case, line, step, 1, (spans - 1.5) * span, math.inf)
+    history = run(line, way)
+    record = Record(
+        time=history.time,
+        speed=way.speed,
+        position=history.position,
+        force=history.force,
+        evaluated=((spans - 10) * span, (spans - 2) * span),
+        support_position=np.array([x for _, x in way.watched]),
+        support_uplift=history.motion[:, :, 0],
+    )
+    values = evaluate(record, LowPass("butterworth", 6, 20.0, "zero")).values
+    return {name: float({**values[0], **values[1]}[name]) for name in QUANTITIES}
+
+
+def table(title: str, rows: list[tuple[str, dict[str, float]]]) -> None:
+    """A table of Markdown, with the observed order and the limit of the last three rows, each step halved."""
+    print(f"\n{title}\n\n| setting | {' | '.join(QUANTITIES)} |\n| :-- |{' --: |' * len(QUANTITIES)}")
+    for name, values in rows:
+        print(f"| {name} | {' | '.join(f'{values[q]:.3f}' for q in QUANTITIES)} |")
+    orders, limits = zip(*(extrapolated([values[q] for _, values in rows[-3:]]) for q in QUANTITIES), strict=True)
+    print(f"| observed order | {' | '.join(f'{order:.1f}' for order in orders)} |")
+    print(f"| limit | {' | '.join(f'{limit:.3f}' for limit in limits)} |")
+    default = dict(rows).get("0.5 m, 1 ms")
+    if default is not None:
+        errors = [100 * (default[q] / limit - 1) for q, limit in zip(QUANTITIES, limits, strict=True)]
+        print(f"| error at the default [%] | {' | '.join(f'{error:+.2f}' for error in errors)} |")
+        above = [q for q, error in zip(QUANTITIES, errors, strict=True) if abs(error) > ALLOWED_PCT[q]]
+        print(f"\nAbove what is aimed at: {', '.join(above) or 'none'}.")
+
+
+def extrapolated(values: list[float]) -> tuple[float, float]:
+    """Observed order and limit of three values of steps halved twice (Richardson); order 2 where they show none."""
+    first, second = values[1] - values[0], values[2] - values[1]
+    order = math.log2(first / second) if second != 0 and first / second > 1 else math.nan
+    ratio = 2 ** (order if 0.5 < order < 4.5 else 2.0)
+    return order, values[2] + second / (ratio - 1)
+
+
+def main() -> None:
+    """Run and print."""
+    options = argparse.ArgumentParser(description=__doc__)
+    options.add_argument("--spans", type=int, default=18, help="spans of the line; eight of them are evaluated")
+    case = ac_simple(options.parse_args().spans)
+    built = staggered(case)
+    begin = time.process_time()
+
+    def at(element: float, step: float, line: Catenary = built) -> tuple[str, dict[str, float]]:
+        return f"{element:g} m, {1e3 * step:g} ms", figures(case, line, element, step)
+
+    fine, finer = (0.25, 5e-4), (0.125, 2.5e-4)
+    both = [at(1.0, 2e-3), at(*DEFAULT), at(*fine), at(*finer)]
+    table("Element and time step halved together", both)
+    table("Element alone, time step 0.5 ms", [at(1.0, 5e-4), at(0.5, 5e-4), both[2], at(0.125, 5e-4)])
+    table("Time step alone, elements of 0.25 m", [at(0.25, 2e-3), at(0.25, 1e-3), both[2], at(0.25, 2.5e-4)])
+    plane = vertical(case, discretise(built, 0.5).state)
+    print("\nStagger of 0.2 m against the vertical plane, default setting\n")
+    (_, flat), (_, with_stagger) = at(*DEFAULT, plane), both[1]
+    print(f"| | {' | '.join(QUANTITIES)} |\n| :-- |{' --: |' * len(QUANTITIES)}")
+    for name, values in (("stagger", with_stagger), ("vertical plane", flat)):
+        print(f"| {name} | {' | '.join(f'{values[q]:.3f}' for q in QUANTITIES)} |")
+    print(f"| change [%] | {' | '.join(f'{100 * (flat[q] / with_stagger[q] - 1):+.2f}' for q in QUANTITIES)} |")
+    print(f"\n{time.process_time() - begin:.0f} s of process time.")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,300 @@
+"""Byte-level fuzz of every reader: damaged files are refused with one message, or read; nothing else may happen.
+
+    python benchmarks/fuzz.py --seconds 600 [--seed 1] [--keep FOLDER]
+
+Each round damages one file of a small seed corpus (bytes flipped, cut, doubled, swapped for tokens that break parsers),
+gives it to its reader under a time limit, and grades what was read. Three things are failures:
+
+* a traceback: any exception other than `InputError`, or a crash of the process;
+* a hang: more than `SLOWEST_S` seconds;
+* a false pass: a passing verdict that does not follow from its own numbers, or from a file whose digest is wrong.
+
+The failing input is kept, its name printed; the exit code is 1 if there was any.
+"""
+
+import argparse
+import logging
+import random
+import re
+import shutil
+import signal
+import sys
+import tempfile
+import time
+import traceback
+from collections import Counter
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from pantocheck.conformance.assessment import assess, subject_of
+from pantocheck.conformance.baseline import against_baseline
+from pantocheck.conformance.cases.library import library_folder, load, overlaid, read_limits, select
+from pantocheck.conformance.errors import InputError
+from pantocheck.conformance.plan import read_plan
+from pantocheck.conformance.profiles import profile_named
+from pantocheck.conformance.record import Record
+from pantocheck.conformance.record_files import write_record
+from pantocheck.conformance.record_files.sidecar import LineTable
+from pantocheck.conformance.reports import pdf
+from pantocheck.conformance.reports.recomputation import discrepancies
+from pantocheck.conformance.reports.verify import verify
+from pantocheck.conformance.results import Results
+from pantocheck.conformance.results_file import read_results
+from pantocheck.conformance.runner import run
+from pantocheck.conformance.systems.record_folder import record_folder
+
+SLOWEST_S = 20
+CASE = "en50318-2002/250"
+PASSING = library_folder() / "en50318-2002" / "known-passing-code"
+
+TOKENS = tuple(
+    text.encode()
+    for text in (
+        "nan", "inf", "-inf", "1e999", "-1e308", "1e-320", "0", "-1", "9" * 400, "true", "null", '""', "[]", "{}",
+        "[[", "'''", '"""', "\\u0000", "\x00", "\ufeff", "\u202e", "é", "\r", "\n\n", "=", ",", ",,", ";", "#", "0x1p9",
+        "../../etc/passwd", "C:\\x", "1_000", "1.5.2", "2026-11-20", "1979-05-27T07:32:00Z", "." * 50, "a" * 5000,
+        "pantograph = 99", "\n[line]\n", "\n[[limit]]\n", "speed_km_h = 0.0\n", "speed_km_h = 1e300\n",
+    )
+)  # fmt: skip
+
+
+class Falsehood(AssertionError):
+    """A verdict passed that does not follow from what was read: the one defect a conformance suite must not have."""
+
+
+class Target(NamedTuple):
+    """A reader under fuzz: the files it starts from, which of them is damaged, and what is done with it."""
+
+    name: str
+    files: dict[str, bytes]
+    damaged: str
+    use: Callable[[Path], object]
+
+
+def damaged(content: bytes, chance: random.Random) -> bytes:
+    """A file with a few things wrong with it."""
+    data = bytearray(content)
+    for _ in range(chance.choice((1, 1, 1, 2, 4, 16))):
+        at = chance.randrange(len(data) + 1)
+        span = chance.choice((1, 1, 4, 30, 1000))
+        match chance.randrange(8):
+            case 0:
+                data[at : at + 1] = bytes([chance.randrange(256)])
+            case 1:
+                del data[at : at + span]
+            case 2:
+                data = data[:at]
+            case 3:
+                data[at:at] = data[at : at + span] * chance.choice((1, 2, 50))
+            case 4:
+                data[at : at + chance.choice((0, 1, 3))] = chance.choice(TOKENS)
+            case 5:
+                data[at : at + span] = chance.randbytes(min(span, 50))
+            case 6:
+                data = _number_replaced(data, chance)
+            case _:
+                data = _lines_swapped(data, chance)
+    return bytes(data)
+
+
+def _number_replaced(data: bytearray, chance: random.Random) -> bytearray:
+    """Another number where one stands, which a change of bytes seldom leaves."""
+    found = list(re.finditer(rb"-?\d+(\.\d+)?([eE][-+]?\d+)?", data))
+    if not found:
+        return data
+    number = chance.choice(found)
+    other = chance.choice((b"0", b"-1", b"1e9", b"1e300", b"nan", b"99999999999999999999", b"0.5", b"-0.0", b"2"))
+    return data[: number.start()] + other + data[number.end() :]
+
+
+def _lines_swapped(data: bytearray, chance: random.Random) -> bytearray:
+    lines = data.split(b"\n")
+    i, j = chance.randrange(len(lines)), chance.randrange(len(lines))
+    lines[i], lines[j] = lines[j], lines[i]
+    return bytearray(b"\n".join(lines))
+
+
+def targets(folder: Path) -> list[Target]:
+    """Every reader with a small file that it likes."""
+    tables: dict[str, dict[str, bytes]] = {}
+    for suffix in ("csv", "h5"):
+        home = folder / suffix
+        write_record(home / f"a.{suffix}", _record(), case=CASE, system={"name": "seed", "version": "1"})
+        sidecar = (home / "a.toml").read_text()
+        free = "\n".join(line for line in sidecar.splitlines() if not line.startswith("sha256"))
+        tables[suffix] = {f"a.{suffix}": (home / f"a.{suffix}").read_bytes(), "a.toml": free.encode()}
+        tables[f"{suffix} with digest"] = {**tables[suffix], "a.toml": sidecar.encode()}
+    home = library_folder() / "en50318-2002"
+    case = {name: (home / name).read_bytes() for name in ("250.toml", "line.toml", "pantograph.toml")}
+    summary = {"a.toml": (PASSING / "250.toml").read_bytes()}
+    failing = {"a.toml": summary["a.toml"].replace(b"std_force_N = 27.6", b"std_force_N = 31.5")}
+    limits = b'[[limit]]\nquantity = "std_force_N"\nlower = 20.0\nupper = 25.0\ntrust = "primary"\nsource = "own"\n'
+    plan = (
+        b'cases = ["en50318-2002/*"]\nsystem = "record:x"\nformats = ["json"]\nbaseline = "b.json"\ndrift_pct = 2.0\n'
+    )
+    results = run(select([CASE]), record_folder(PASSING))
+    profile = (library_folder() / "profiles" / "acceptance-ac.toml").read_bytes()
+    with_digest = [
+        Target(f"{suffix} table, digest known", tables[f"{suffix} with digest"], f"a.{suffix}", use_digested)
+        for suffix in ("csv", "h5")
+    ]
+    tabled = [
+        Target(f"{suffix} {what}", tables[suffix], name, use_record)
+        for suffix in ("csv", "h5")
+        for what, name in (("table", f"a.{suffix}"), ("sidecar", "a.toml"))
+    ]
+    return [
+        *tabled,
+        *with_digest,
+        *(Target(f"case: {name}", case, name, lambda path: load(path / "250.toml")) for name in case),
+        Target("summary record", summary, "a.toml", use_record),
+        Target("failing summary record", failing, "a.toml", use_record),
+        Target("limits", {"l.toml": limits}, "l.toml", use_limits),
+        Target("plan", {"p.toml": plan}, "p.toml", lambda path: read_plan(path / "p.toml")),
+        Target("profile", {**tables["csv"], "p.toml": profile}, "p.toml", use_profile),
+        Target("results as baseline", {"r.json": results.to_json()}, "r.json", use_baseline(results)),
+        Target("certificate", {"c.pdf": pdf.render(results.to_dict(), 1)}, "c.pdf", lambda p: verify(p / "c.pdf")),
+    ]
+
+
+def _record() -> Record:
+    """A short record of the case, by hand; its sine fails on the extremes."""
+    rate, speed = 200.0, 250 / 3.6
+    time_s = np.arange(int(5.2 * rate)) / rate
+    position = 60 + speed * time_s
+    force = 119 + 39 * np.sin(2 * np.pi * position / 60) + 5 * np.sin(2 * np.pi * 12 * time_s)
+    supports = np.array([240.0, 300.0, 360.0])
+    uplift = 0.05 * np.exp(-(((position - supports[:, None]) / 5) ** 2))
+    return Record(time_s, speed, position[None], force[None], (240.0, 360.0), None, None, supports, uplift)
+
+
+def use_record(folder: Path) -> None:
+    """Grade a record as the run of a case, and assess it."""
+    try:
+        system = record_folder(folder)
+    except InputError:
+        pass
+    else:
+        # What the record itself raises while it runs is told by `record_folder(...).run`: the runner would hide it.
+        (case,) = select([CASE])
+        with suppress(InputError):
+            system.run(case)
+        check(run([case], system))
+    profile = profile_named("acceptance-ac")
+    check(assess(subject_of(folder / "a.toml", profile, LineTable(wave_speed_m_s=120.0)), profile))
+
+
+def use_digested(folder: Path) -> None:
+    """A table whose bytes are not those of its digest must be refused."""
+    use_record(folder)
+    raise Falsehood("a table that contradicts its digest was read")
+
+
+def use_limits(folder: Path) -> None:
+    """Lay limits over the case, and grade the passing code."""
+    check(run(overlaid(select([CASE]), read_limits(folder / "l.toml")), record_folder(PASSING)))
+
+
+def use_profile(folder: Path) -> None:
+    """Assess a sound record by a damaged profile."""
+    profile = profile_named(str(folder / "p.toml"))
+    check(assess(subject_of(folder / "a.toml", profile, LineTable(wave_speed_m_s=120.0)), profile))
+
+
+def use_baseline(results: Results) -> Callable[[Path], None]:
+    """Compare sound results with damaged ones; grade the damaged ones once more, as `verify` does."""
+
+    def use(folder: Path) -> None:
+        damaged_results = read_results(folder / "r.json")
+        discrepancies(damaged_results.to_dict())
+        check(against_baseline(results, damaged_results, 1.0, "r.json"))
+
+    return use
+
+
+def check(results: Results) -> None:
+    """Whatever was graded is consistent in itself, and a case in `error` says why in the words of the suite."""
+    found = discrepancies(results.to_dict())
+    if found and results.verdict in {"pass", "info"}:
+        raise Falsehood(f"{results.verdict}: {found[0]}")
+    for case in results.cases:
+        raised = (case.reason or "").split(":")[0].endswith(("Error", "Exception", "Warning"))
+        if case.verdict == "error" and raised and not (case.reason or "").startswith("InputError"):
+            raise Falsehood(f"the runner caught {case.reason}")
+        if case.verdict == "pass" and any(item.value is None for item in case.criteria):
+            raise Falsehood("a criterion without a value passed")
+
+
+def one_round(target: Target, folder: Path, chance: random.Random) -> str:
+    """Give a damaged file to its reader: `read` or `refused`; anything else is raised."""
+    content = damaged(target.files[target.damaged], chance)
+    for name, original in target.files.items():
+        (folder / name).write_bytes(content if name == target.damaged else original)
+    if target.use is use_digested and content == target.files[target.damaged]:
+        return "read"
+    try:
+        target.use(folder)
+    except InputError as error:
+        if "\n  " not in str(error) or not error.found or len(str(error)) > 3000:
+            raise Falsehood(f"a message that helps nobody: {str(error)[:200]!r}") from None
+        return "refused"
+    return "read"
+
+
+class Hang(BaseException):
+    """A reader takes longer than a person would wait."""
+
+
+def _hang(*_: object) -> None:
+    raise Hang(f"more than {SLOWEST_S} s")
+
+
+def campaign(seconds: float, seed: int, keep: Path) -> int:
+    """Fuzz all readers in turn until the time is over; gives how many failures there were."""
+    chance, outcomes, failures = random.Random(seed), Counter[tuple[str, str]](), 0
+    signal.signal(signal.SIGALRM, _hang)
+    with tempfile.TemporaryDirectory() as name:
+        seeds, scratch = Path(name, "seeds"), Path(name, "scratch")
+        all_targets = targets(seeds)
+        end = time.monotonic() + seconds
+        rounds = 0
+        while time.monotonic() < end:
+            target = all_targets[rounds % len(all_targets)]
+            rounds += 1
+            shutil.rmtree(scratch, ignore_errors=True)
+            scratch.mkdir()
+            signal.alarm(SLOWEST_S)
+            try:
+                outcomes[target.name, one_round(target, scratch, chance)] += 1
+            except (Exception, Hang) as error:
+                failures += 1
+                outcomes[target.name, "FAILED"] += 1
+                kept = keep / f"{failures:03d}"
+                signal.alarm(0)
+                shutil.copytree(scratch, kept, dirs_exist_ok=True)
+                (kept / "why.txt").write_text("".join(traceback.format_exception(error)))
+                print(f"{target.name}: {type(error).__name__}: {str(error)[:160]}  [{kept}]", flush=True)
+            finally:
+                signal.alarm(0)
+    for (target_name, outcome), count in sorted(outcomes.items()):
+        print(f"{target_name:28} {outcome:8} {count:7}")
+    print(f"{rounds} rounds, {failures} failures")
+    return failures
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--seconds", type=float, default=600.0)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--keep", type=Path, default=Path("fuzz-failures"))
+    options = parser.parse_args()
+    logging.getLogger("pypdf").setLevel(logging.CRITICAL)  # it tells of every object of a damaged file
+    sys.exit(bool(campaign(options.seconds, options.seed, options.keep)))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,82 @@
+"""Lines and passages that the benchmarks share: AC simple of EN 50318:2018 at 320 km/h, made shorter or longer."""
+
+from dataclasses import replace
+
+import numpy as np
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.library import select
+from pantocheck.conformance.systems.line_model import catenary
+from pantocheck.conformance.systems.passage import pantograph
+from pantocheck.model import Catenary, Discretised, Passage
+from pantocheck.model.connectors import arm_direction
+from pantocheck.model.initial_state import InitialState
+
+UPLIFT_FORCE = 172.7
+"""Constant uplift force, with which the mean contact force is about 169 N [N]."""
+SPACING = 200.0
+
+
+def ac_simple(spans: int, stagger: float = 0.2, case: str = "en50318-2018/ac-simple/320") -> Case:
+    """The case with another number of spans and another stagger [m]."""
+    found = next(one for one in select([case]) if one.id == case)
+    geometry = found.line.geometry.model_copy(update={"spans": spans, "stagger_contact_wire_m": stagger})
+    return replace(found, line=found.line.model_copy(update={"geometry": geometry}))
+
+
+def staggered(case: Case) -> Catenary:
+    """The line of a case."""
+    return catenary(case.line)
+
+
+def vertical(case: Case, state: InitialState) -> Catenary:
+    """The same line in the vertical plane, each arm as stiff as its axial force makes it under the stagger.
+
+    Parameters
+    ----------
+    case : with stagger
+    state : of the line with stagger, which gives the forces
+    """
+    built = catenary(case.line)
+    arms = tuple(
+        replace(arm, vertical_stiffness=arm_direction(arm, force)[2] / (arm.length or 1.0))
+        for arm, force in zip(built.steady_arms, state.arm_force, strict=True)
+    )
+    wires = tuple(replace(wire, stagger=None) for wire in built.wires)
+    return replace(built, wires=wires, steady_arms=arms)
+
+
+def passage(
+    case: Case,
+    line: Discretised,
+    step: float,
+    pantographs: int,
+    until: float,
+    reach: float,
+    uplift_force: float | None = None,
+) -> Passage:
+    """Pantographs from the end of the first span on, until the last has come to a place.
+
+    Parameters
+    ----------
+    case : gives speed and pantograph
+    line : the discretised line
+    step : time step [s]
+    pantographs : 1 or 2
+    until : where the last pantograph stops [m]
+    reach : what lies farther than this from every pantograph stands still [m]
+    uplift_force : [N]
+    """
+    span = case.line.geometry.span_m
+    model = pantograph(case.pantographs[0], uplift_force or UPLIFT_FORCE, 0.06)
+    starts = tuple(span + SPACING * (pantographs - 1 - i) for i in range(pantographs))
+    return Passage(
+        pantographs=(model,) * pantographs,
+        start=starts,
+        speed=case.speed,
+        duration=(until - span) / case.speed,
+        time_step=step,
+        watched=tuple(
+            ("contact wire", float(x)) for x in np.arange(span, span * case.line.geometry.spans - 1e-6, span)
+        ),
+        reach=reach,
+    )

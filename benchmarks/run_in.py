@@ -1,0 +1,67 @@
+"""How the figures of AC simple settle with the run-in; prints the tables of docs/run-in.md.
+
+python benchmarks/run_in.py [--spans 72]
+"""
+
+import argparse
+
+import numpy as np
+from convergence import QUANTITIES
+from lines import ac_simple, passage, staggered
+from pantocheck.conformance.evaluation import evaluate
+from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.record import Record
+from pantocheck.model import discretise, run
+
+EVALUATED = 10
+CHOSEN = {275: 24, 320: 30}
+"""Spans before the evaluated ones in the cases."""
+FIRST = (3, 6, 10, 14, 17, 20, 24, 27, 30, 35, 40, 48)
+RESERVE = 10
+"""Spans left at the end, so that waves that come back from it are not evaluated."""
+
+
+def table(speed: int, spans: int) -> None:
+    """Figures over ten spans after more and more spans of run-in, and how far they move when it is doubled."""
+    case = ac_simple(spans, case=f"en50318-2018/ac-simple/{speed}")
+    span = case.line.geometry.span_m
+    line = discretise(staggered(case), 0.5)
+    use = case.file.pantograph[0]
+    way = passage(case, line, 1e-3, 1, (spans - RESERVE + 1) * span, 660.0, use.uplift_force_N)
+    history = run(line, way)
+
+    def figures(first: int) -> np.ndarray:
+        record = Record(
+            time=history.time,
+            speed=way.speed,
+            position=history.position,
+            force=history.force,
+            evaluated=(first * span, (first + EVALUATED) * span),
+            support_position=np.array([x for _, x in way.watched]),
+            support_uplift=history.motion[:, :, 0],
+        )
+        values = evaluate(record, LowPass("butterworth", 6, 20.0, "zero")).values
+        return np.array([float({**values[0], **values[1]}[name]) for name in QUANTITIES])
+
+    print(f"\n### {speed} km/h\n\n| run-in [spans] | {' | '.join(QUANTITIES)} |")
+    print(f"| --: |{' --: |' * len(QUANTITIES)}")
+    for first in FIRST:
+        if first + EVALUATED <= spans - RESERVE:
+            print(f"| {first - 1} | {' | '.join(f'{value:.2f}' for value in figures(first))} |")
+    chosen = CHOSEN[speed]
+    twice = min(2 * chosen - 1, spans - RESERVE - EVALUATED)
+    moved = 100 * (figures(twice) / figures(chosen) - 1)
+    print(f"| from {chosen - 1} to {twice - 1}: moves by [%] | {' | '.join(f'{value:+.2f}' for value in moved)} |")
+
+
+def main() -> None:
+    """Run and print."""
+    options = argparse.ArgumentParser(description=__doc__)
+    options.add_argument("--spans", type=int, default=72, help="spans of the line")
+    spans = options.parse_args().spans
+    for speed in CHOSEN:
+        table(speed, spans)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,95 @@
+"""Wall time per simulated time on AC simple at 320 km/h; prints the tables of docs/speed.md.
+
+python benchmarks/speed.py
+
+Process time on one core is measured, after compilation, so that other work on the machine does not count.
+"""
+
+import argparse
+import math
+import os
+import resource
+import subprocess
+import sys
+import time
+from dataclasses import replace
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+import numpy as np
+from lines import ac_simple, passage, staggered, vertical
+from pantocheck.model import Discretised, Passage, discretise, run
+from pantocheck.model.simulation import causal_reach
+
+STEP, ELEMENT = 1e-3, 0.5
+SPANS = (10, 20, 30, 40, 60)
+RUN_SPANS = 4
+"""A run over so many spans, whatever the length of the line."""
+
+
+def measured(line: Discretised, way: Passage) -> tuple[float, np.ndarray]:
+    """Process time per simulated time, best of two, and the contact force."""
+    run(line, replace(way, duration=0.01))
+    best, force = math.inf, np.zeros(0)
+    for _ in range(2):
+        begin = time.process_time()
+        force = run(line, way).force
+        best = min(best, time.process_time() - begin)
+    return best / way.duration, force
+
+
+def kernel(spans: int, pantographs: int, plane: bool, reach: float | None) -> tuple[float, float]:
+    """Process time per simulated time, and the standard deviation of the leading pantograph's force [-, N]."""
+    case = ac_simple(spans)
+    built = staggered(case)
+    line = discretise(vertical(case, discretise(built, ELEMENT).state) if plane else built, ELEMENT)
+    way = passage(case, line, STEP, pantographs, 55.0 * (1 + RUN_SPANS), math.inf)
+    causal = causal_reach(line, way.speed, way.duration)
+    ratio, force = measured(line, replace(way, reach=causal if reach is None else reach))
+    return ratio, float(force[0].std())
+
+
+def memory(spans: int) -> float:
+    """Largest memory of a process that runs one case with stagger and two pantographs [MB]."""
+    code = f"import speed; speed.kernel({spans}, 2, False, None)"
+    command = [sys.executable, "-c", code]
+    subprocess.run(command, check=True, cwd=os.path.dirname(os.path.abspath(__file__)), timeout=600)
+    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
+
+
+def same_line() -> None:
+    """Our kernel, and scipy refactorising, on one short stretch in the vertical plane."""
+    from refactorised import run_refactorised
+
+    case = ac_simple(20)
+    line = discretise(vertical(case, discretise(staggered(case), ELEMENT).state), ELEMENT)
+    way = replace(passage(case, line, STEP, 2, 55.0 * 3, math.inf), duration=0.5)
+    ratio, force = measured(line, way)
+    print("\n| solver, 20 spans, vertical plane, 2 pantographs, 0.5 s | process time / simulated time | sigma [N] |")
+    print("| :-- | --: | --: |")
+    print(f"| kernel | {ratio:.3f} | {force[0].std():.4f} |")
+    record, spent = run_refactorised(line, replace(way, duration=0.1))
+    difference = np.abs(record.T - force[:, : record.shape[0]]).max()
+    print(
+        f"| scipy, refactorised every iteration (0.1 s) | {spent / 0.1:.2f} | largest difference {difference:.1e} N |"
+    )
+
+
+def main() -> None:
+    """Measure and print."""
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
+    print("| plane | pantographs | spans | process time / simulated time |\n| :-- | --: | --: | --: |")
+    for plane in (True, False):
+        for pantographs in (1, 2):
+            ratio, _ = kernel(20, pantographs, plane, math.inf)
+            print(f"| {'vertical' if plane else 'with stagger'} | {pantographs} | 20 | {ratio:.3f} |", flush=True)
+    print("\n| spans | all moves | what waves reach | 660 m |\n| --: | --: | --: | --: |")
+    for spans in SPANS:
+        ratios = [kernel(spans, 2, False, reach)[0] for reach in (math.inf, None, 660.0)]
+        print(f"| {spans} | {' | '.join(f'{ratio:.3f}' for ratio in ratios)} |", flush=True)
+    print(f"\nMemory of a process with stagger, 2 pantographs, 60 spans: {memory(60):.0f} MB.")
+    same_line()
+
+
+if __name__ == "__main__":
+    main()

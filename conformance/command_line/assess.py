@@ -1,0 +1,124 @@
+"""`pantocheck assess`: a record by the rules of a profile."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from pantocheck.conformance.cases.limits import Limit
+    from pantocheck.conformance.plan import Plan
+    from pantocheck.conformance.record_files.sidecar import LineTable
+
+
+def assess(
+    record: Annotated[Path, typer.Argument(help="Record: its sidecar, its table, or a summary record.")],
+    profile: Annotated[
+        str,
+        typer.Option(
+            help="acceptance-ac, acceptance-dc-3kv, acceptance-dc-1500v, line-test, or the path of your own .toml ."
+        ),
+    ],
+    measured: Annotated[
+        Path | None, typer.Option(help="Measured record to compare with, for a profile such as line-test.")
+    ] = None,
+    out: Annotated[Path, typer.Option(help="Folder for the results.")] = Path("report"),
+    formats: Annotated[
+        str, typer.Option(help="What is written: html, pdf, json, junit, md, badge.")
+    ] = "html,pdf,json,junit,md",
+    trust: Annotated[
+        str, typer.Option(help="Lowest trust of rules that count: primary, secondary or provisional.")
+    ] = "secondary",
+    limits: Annotated[Path | None, typer.Option(help="TOML file of your own limits, in place of the rules.")] = None,
+    wave_speed_m_s: Annotated[
+        float | None, typer.Option(help="Wave speed of the contact wire, if the record does not say it.")
+    ] = None,
+    uplift_space_mm: Annotated[
+        float | None, typer.Option(help="Space for uplift at the supports, if the record does not say it.")
+    ] = None,
+    baseline: Annotated[
+        Path | None, typer.Option(help="Earlier results.json; a value that drifts from it fails, limits apart.")
+    ] = None,
+    drift: Annotated[float, typer.Option(help="How far a value may drift from the baseline, in percent.")] = 1.0,
+) -> None:
+    """Assess a record, simulated or measured, by a profile: acceptance of a line, or a line test.
+
+    Examples:
+
+    pantocheck assess run42.csv --profile acceptance-ac --wave-speed-m-s 122 --out report
+
+    pantocheck assess simulated.toml --profile line-test --measured train.toml --trust provisional
+    """
+    from pantocheck.conformance.assessment import assess as assessed
+    from pantocheck.conformance.assessment import subject_of
+    from pantocheck.conformance.baseline import against_baseline
+    from pantocheck.conformance.command_line.run_output import EXIT_CODES, print_results
+    from pantocheck.conformance.files import check_writable
+    from pantocheck.conformance.profiles import profile_named
+    from pantocheck.conformance.record_files.sidecar import LineTable
+    from pantocheck.conformance.reports.writers import checked_formats, write_all
+    from pantocheck.conformance.results_file import read_results
+
+    options = _options(
+        out=str(out),
+        formats=tuple(name.strip() for name in formats.split(",") if name.strip()),
+        trust=trust,
+        drift_pct=drift,
+    )
+    written = checked_formats(options.formats)
+    rules = profile_named(profile)
+    own = () if limits is None else _limits(limits)
+    line = _line(wave_speed_m_s=wave_speed_m_s, uplift_space_mm=uplift_space_mm)
+    earlier = None if baseline is None else read_results(baseline)
+    check_writable(out)
+    subject = subject_of(record, rules, line)
+    other = None if measured is None else subject_of(measured, rules, LineTable())
+    _check_owners(own, len(subject.pantographs))
+    results = assessed(subject, rules, options.trust, other, own)
+    if earlier is not None and baseline is not None:
+        results = against_baseline(results, earlier, options.drift_pct, baseline.name)
+    print_results(results, write_all(results, out, written))
+    raise typer.Exit(EXIT_CODES[results.verdict])
+
+
+def _options(**given: object) -> "Plan":
+    """Options that mean the same as those of a run, checked in the same way."""
+    from pantocheck.conformance.cases.messages import input_error
+    from pantocheck.conformance.plan import Plan
+    from pydantic import ValidationError
+
+    try:
+        return Plan.model_validate(given)
+    except ValidationError as error:
+        raise input_error(error, Plan, "command line") from None
+
+
+def _line(**given: float | None) -> "LineTable":
+    from pantocheck.conformance.cases.messages import input_error
+    from pantocheck.conformance.record_files.sidecar import LineTable
+    from pydantic import ValidationError
+
+    try:
+        return LineTable.model_validate({key: value for key, value in given.items() if value is not None})
+    except ValidationError as error:
+        raise input_error(error, LineTable, "command line") from None
+
+
+def _limits(path: Path) -> "Sequence[Limit]":
+    from pantocheck.conformance.cases.library import read_limits
+
+    return read_limits(path)
+
+
+def _check_owners(limits: "Sequence[Limit]", pantographs: int) -> None:
+    from pantocheck.conformance.errors import InputError
+
+    for i, limit in enumerate(limits, 1):
+        if limit.of > pantographs:
+            raise InputError(
+                f"limits, key limit[{i}].pantograph",
+                f"there is no pantograph {limit.of}",
+                f"The record has {pantographs}, numbered from 1 at the front.",
+            )

@@ -1,0 +1,63 @@
+"""`pantocheck self-test`: systems that are wrong on purpose must not pass."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from pantocheck.conformance.self_test import SelfTest
+
+
+def self_test(
+    case: Annotated[
+        list[str] | None,
+        typer.Argument(help="Ids of cases the reference simulator passes.  [default: 2002 model]"),
+    ] = None,
+    markdown: Annotated[Path | None, typer.Option(help="Markdown file to write the table to.")] = None,
+) -> None:
+    """Test the suite itself: the right system must pass, and every wrong one be caught for its reason.
+
+    Example: pantocheck self-test --markdown self-test.md
+    """
+    from pantocheck.conformance.cases.library import select
+    from pantocheck.conformance.command_line.console import console
+    from pantocheck.conformance.files import write_in_place
+    from pantocheck.conformance.self_test import self_test as test_suite
+    from pantocheck.conformance.self_test.page import page
+
+    cases = [one for one in select(case or ["en50318-2002/250", "en50318-2002/300"]) if not one.is_static]
+    output = console()
+    with output.status("testing the suite") as status:
+        done = test_suite(cases, lambda name: status.update(f"testing the suite: {name}"))
+    _print(done)
+    if markdown is not None:
+        write_in_place(markdown, page(done).encode())
+        output.print(str(markdown), soft_wrap=True)
+    raise typer.Exit(0 if done.passed else 1)
+
+
+def _print(done: "SelfTest") -> None:
+    from pantocheck.conformance.command_line.console import console, plain, verdict_text
+    from rich.table import Table
+
+    output = console()
+    caught = sum(row.caught for row in done.rows)
+    output.print(
+        verdict_text("pass" if done.passed else "fail"),
+        plain(f" {caught} of {len(done.rows)} mutants caught for the reason stated"),
+    )
+    for name, (verdict, reason) in done.right.items():
+        output.print(plain(f"the right system on {name}:"), verdict_text(verdict), plain(reason))
+    for title, rows in (("must be caught", done.rows), ("may pass", done.mild)):
+        table = Table(title=title, box=None, header_style="dim", title_justify="left")
+        for heading in ("mutant", "case", "verdict", "limits alone", "caught by", "what a user is told"):
+            table.add_column(heading)
+        for row in rows:
+            by = row.mutant.caught_by or ", ".join(row.checks)
+            table.add_row(
+                plain(row.mutant.name), plain(row.case), verdict_text(row.verdict), verdict_text(row.by_limits),
+                plain(by if row.caught else f"MISSED, expected {by}"), plain(row.reason[:160]),
+            )  # fmt: skip
+        output.print()
+        output.print(table)

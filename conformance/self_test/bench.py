@@ -1,0 +1,132 @@
+"""Running mutants: every one is graded as any system is, and once more by the limits of the case alone."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.consistency import findings
+from pantocheck.conformance.criteria import Verdict, worst
+from pantocheck.conformance.errors import InputError
+from pantocheck.conformance.extended_band import ABOUT
+from pantocheck.conformance.grading import criteria_of, graded
+from pantocheck.conformance.results import CaseResult
+from pantocheck.conformance.self_test.mutants import MILD, MUTANTS, Mutant
+from pantocheck.conformance.systems import Outcome
+from pantocheck.conformance.systems.builtin import ReferenceSimulator
+
+TRUST: Final = "secondary"
+
+
+class NothingToMutate(RuntimeError):
+    """The reference simulator delivered no record: without the right system, no mutant proves anything."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """A mutant on a case.
+
+    Parameters
+    ----------
+    mutant : which one
+    case : id of the case
+    verdict : of the whole suite
+    by_limits : verdict of the limits of the case alone
+    outside : quantities outside their limits
+    checks : checks of the record that object, with what they say
+    caught : whether it ended in fail or error for the reason it must, or may pass
+    reason : what a user is told
+    """
+
+    mutant: Mutant
+    case: str
+    verdict: Verdict
+    by_limits: Verdict
+    outside: tuple[str, ...]
+    checks: tuple[str, ...]
+    caught: bool
+    reason: str
+
+
+@dataclass(frozen=True)
+class SelfTest:
+    """The right system and the mutants.
+
+    Parameters
+    ----------
+    right : verdict of the right system on each case, with the reason if it did not pass
+    rows : mutants that must be caught
+    mild : mutants that may pass
+    """
+
+    right: dict[str, tuple[Verdict, str]]
+    rows: tuple[Row, ...]
+    mild: tuple[Row, ...]
+
+    @property
+    def passed(self) -> bool:
+        """Whether the right system passes and every mutant is caught for its reason."""
+        return all(verdict == "pass" for verdict, _ in self.right.values()) and all(row.caught for row in self.rows)
+
+
+def self_test(cases: Sequence[Case], progress: Callable[[str], None] | None = None) -> SelfTest:
+    """Run the right system and all mutants on cases.
+
+    Parameters
+    ----------
+    cases : that the right system passes
+    progress : called with the name of each mutant before it runs
+
+    Raises
+    ------
+    NothingToMutate : the right system delivers no record of a case
+    """
+    right: dict[str, tuple[Verdict, str]] = {}
+    rows: dict[tuple[Mutant, ...], list[Row]] = {MUTANTS: [], MILD: []}
+    for case in cases:
+        if progress:
+            progress("the right system")
+        outcome = ReferenceSimulator().run_unrefined(case)
+        if outcome.record is None:
+            raise NothingToMutate(f"{case.id}: the reference simulator delivered no record")
+        result = graded(case, outcome, TRUST)
+        right[case.id] = result.verdict, _reason(result)
+        for mutants, found in rows.items():
+            for mutant in mutants:
+                if progress:
+                    progress(mutant.name)
+                found.append(_row(mutant, case, outcome))
+    in_order = {mutants: tuple(row for m in mutants for row in rows[mutants] if row.mutant == m) for mutants in rows}
+    return SelfTest(right, in_order[MUTANTS], in_order[MILD])
+
+
+def _row(mutant: Mutant, case: Case, right: Outcome) -> Row:
+    if right.record is None:
+        raise NothingToMutate(case.id)
+    try:
+        outcome = mutant.make(case, right.record)
+    except InputError as error:  # what the suite refuses to read: the same as a case that ends in error
+        caught = mutant.caught_by == "record file"
+        return Row(mutant, case.id, "error", "skip", (), ("record file",), caught, f"{error.where}: {error.found}")
+    result = graded(case, outcome, TRUST)
+    criteria = criteria_of(case, outcome, TRUST)
+    outside = tuple(item.quantity for item in criteria if item.verdict == "fail")
+    found = findings(case, outcome.record) if outcome.record is not None else []
+    checks = tuple(finding.check for finding in found if finding.kind != "unchecked")
+    reasons: tuple[str, ...] = checks if result.verdict == "error" else (*checks, *(["limits"] if outside else []))
+    return Row(
+        mutant,
+        case.id,
+        result.verdict,
+        worst(item.verdict for item in criteria),
+        outside,
+        checks,
+        mutant.caught_by is None or (result.verdict in {"fail", "error"} and mutant.caught_by in reasons),
+        _reason(result),
+    )
+
+
+def _reason(result: CaseResult) -> str:
+    failed = [f"{item.quantity} {item.reason}" for item in result.criteria if item.verdict == "fail"]
+    own = [warning for warning in result.warnings if not warning.startswith(ABOUT)]  # those are said of any system
+    return result.reason or "; ".join([*failed, *own])

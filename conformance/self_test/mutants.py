@@ -1,0 +1,149 @@
+"""Systems that are wrong on purpose, each in one way that has happened to somebody."""
+
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.record import Record
+from pantocheck.conformance.record_files import write_record
+from pantocheck.conformance.systems import Outcome
+from pantocheck.conformance.systems.builtin import ReferenceSimulator, run_line
+from pantocheck.conformance.systems.line_model import catenary
+from pantocheck.conformance.systems.record_folder import record_folder
+from pantocheck.model import discretise, never_slack
+
+Make = Callable[[Case, Record], Outcome]
+
+SAMPLE_CHANNELS = ("time", "position", "force", "contact_height", "support_uplift")
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """A system that is wrong.
+
+    Parameters
+    ----------
+    name : short
+    wrong : what is wrong with it, one sentence
+    make : gives what it delivers, from the case and the right record
+    caught_by : the check that must catch it; `limits`: those of the case alone; None: a mild fault that may pass
+    """
+
+    name: str
+    wrong: str
+    make: Make
+    caught_by: Literal["coverage", "support passing", "roll-off", "dynamics", "limits", "record file"] | None
+
+
+def _changed(**change: Callable[[Case, Record], Any]) -> Make:
+    """The right record with some of its fields replaced."""
+    return lambda case, record: Outcome(replace(record, **{name: of(case, record) for name, of in change.items()}))
+
+
+def _filtered(order: int) -> Make:
+    """The force through a zero-phase filter of another order at the cut-off of the case, and said to be filtered."""
+
+    def make(case: Case, record: Record) -> Outcome:
+        low_pass = replace(case.file.filter.low_pass, order=order)
+        force = np.array([low_pass(force, record.rate) for force in record.force])
+        return Outcome(replace(record, force=force, filter_applied_Hz=low_pass.cutoff_Hz))
+
+    return make
+
+
+def _late(seconds: float) -> Make:
+    """The force held back against everything else; what runs over the end comes in at the beginning."""
+    return _changed(force=lambda _, record: np.roll(record.force, round(seconds * record.rate), axis=1))
+
+
+def _coarse(element: float) -> Make:
+    def make(case: Case, record: Record) -> Outcome:
+        discretisation = case.file.discretisation.model_copy(update={"element_m": element})
+        file = case.file.model_copy(update={"discretisation": discretisation})
+        return ReferenceSimulator().run_unrefined(replace(case, file=file))
+
+    return make
+
+
+def _bilateral(case: Case, record: Record) -> Outcome:
+    steps = case.file.discretisation
+    line = never_slack(discretise(catenary(case.line), steps.element_m))
+    return run_line(case, line, steps.element_m, steps.time_step_s)[0]
+
+
+def _cut(case: Case, record: Record) -> Outcome:
+    """The record ends in the middle of the evaluated stretch."""
+    n = int(np.searchsorted(record.position[0], np.mean(case.evaluated)))
+    channels = {name: getattr(record, name) for name in SAMPLE_CHANNELS}
+    return Outcome(replace(record, **{k: value[..., :n] for k, value in channels.items() if value is not None}))
+
+
+def _damaged(case: Case, record: Record) -> Outcome:
+    """The file of the record lost its last half; the sidecar is whole."""
+    with tempfile.TemporaryDirectory(prefix="pantocheck-") as name:
+        table = Path(name) / "record.csv"
+        write_record(table, record, case.id)
+        content = table.read_bytes()
+        table.write_bytes(content[: content.rfind(b"\n", 0, len(content) // 2) + 1])
+        return record_folder(Path(name)).run(case)
+
+
+MUTANTS: tuple[Mutant, ...] = (
+    Mutant(
+        "gain 1.05",
+        "The force is 5 % too large, as from a load cell calibrated wrongly.",
+        _changed(force=lambda _, record: 1.05 * record.force),
+        "dynamics",
+    ),
+    Mutant(
+        "unfiltered",
+        "The force is said to be filtered as the case asks, and is not.",
+        _changed(filter_applied_Hz=lambda case, _: case.file.filter.cutoff_Hz),
+        "roll-off",
+    ),
+    Mutant("filter order 2", "The force was filtered with order 2 in place of 6.", _filtered(2), "roll-off"),
+    Mutant("time shift", "The force comes 0.1 s late against the other channels.", _late(0.1), "dynamics"),
+    Mutant(
+        "position shift",
+        "Positions are 10 m ahead of what was measured there.",
+        _changed(position=lambda _, record: record.position + 10.0),
+        "support passing",
+    ),
+    Mutant("no slackening", "Droppers push as well as they pull.", _bilateral, "limits"),
+    Mutant(
+        "units x1000",
+        "The force is in millinewtons.",
+        _changed(force=lambda _, record: 1000 * record.force),
+        "dynamics",
+    ),
+    Mutant(
+        "uplift in mm",
+        "The uplift of the supports is in millimetres.",
+        _changed(support_uplift=lambda _, record: None if (u := record.support_uplift) is None else 1000 * u),
+        "limits",
+    ),
+    Mutant("coarse mesh", "Elements are 4 m long.", _coarse(4.0), "limits"),
+    Mutant("truncated record", "The record ends in the middle of the evaluated stretch.", _cut, "coverage"),
+    Mutant("truncated file", "The table of samples lost its second half on the way.", _damaged, "record file"),
+)
+"""Those that must not pass."""
+
+MILD: tuple[Mutant, ...] = (
+    Mutant("gain 1.02", "The force is 2 % too large.", _changed(force=lambda _, record: 1.02 * record.force), None),
+    Mutant("filter order 4", "The force was filtered with order 4 in place of 6.", _filtered(4), None),
+    Mutant("time shift 5 ms", "The force comes 0.005 s late.", _late(0.005), None),
+    Mutant(
+        "time shift, force alone",
+        "The force comes 0.1 s late, and the record has no contact height.",
+        lambda case, record: Outcome(
+            replace(record, force=np.roll(record.force, round(0.1 * record.rate), axis=1), contact_height=None)
+        ),
+        None,
+    ),
+    Mutant("mesh of 2 m", "Elements are 2 m long.", _coarse(2.0), None),
+)
+"""Smaller faults, to show where the suite stops seeing: they may pass."""

@@ -1,0 +1,70 @@
+"""The files that a program says it wrote: inside its folder, unchanged, and of the case that was asked."""
+
+import hashlib
+from pathlib import Path
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.errors import InputError
+from pantocheck.conformance.record_files.reading import LARGEST_FILE, read_record
+from pantocheck.conformance.systems import Outcome
+from pantocheck.conformance.systems.command.messages import Delivered, File
+
+
+class DeliveryRefused(ValueError):
+    """Files are missing, changed, out of place or of another case: graded, they would speak for a run they are not."""
+
+
+def outcome_of(case: Case, answer: Delivered, folder: Path, wall: float) -> Outcome:
+    """Read what was delivered; to be called when the program has ended and can change its files no more.
+
+    Parameters
+    ----------
+    case : that was asked
+    answer : of the program
+    folder : of the run
+    wall : time from question to answer [s]
+
+    Raises
+    ------
+    DeliveryRefused : a file is not what the answer says
+    InputError : the record itself is wrong
+    """
+    if answer.record is None:
+        return Outcome(static=dict(answer.static), wall_s=wall, notes=answer.notes)
+    sidecar_path, table_path = (_checked(file, folder) for file in (answer.record.sidecar, answer.record.table))
+    record, sidecar = read_record(sidecar_path)
+    if sidecar_path.parent / sidecar.file != table_path:
+        raise DeliveryRefused(f"the sidecar is of {sidecar.file!r}, the answer names {answer.record.table.file!r}")
+    if sidecar.case != case.id:
+        raise DeliveryRefused(f"the record is of case {sidecar.case!r}, asked was {case.id!r}")
+    run = sidecar.run
+    return Outcome(
+        record,
+        dict(answer.static),
+        simulated_s=run.simulated_s,
+        wall_s=wall if run.wall_s is None else run.wall_s,
+        dt_s=run.dt_s,
+        element_m=run.element_m,
+        notes=answer.notes,
+    )
+
+
+def _checked(file: File, folder: Path) -> Path:
+    root = folder.resolve()
+    try:
+        path = (root / file.file).resolve()
+        if not path.is_relative_to(root):
+            raise DeliveryRefused(f"the file {file.file!r} lies outside the folder of the run")
+        if not path.is_file():
+            raise DeliveryRefused(f"there is no file {file.file!r} in the folder of the run")
+        if path.stat().st_size > LARGEST_FILE:
+            raise InputError(f"record '{path.name}'", "too large", f"A record has at most {LARGEST_FILE} bytes.")
+        with path.open("rb") as content:
+            digest = hashlib.file_digest(content, "sha256").hexdigest()
+    except (OSError, ValueError) as error:
+        if isinstance(error, DeliveryRefused | InputError):
+            raise
+        raise DeliveryRefused(f"the file {file.file!r} cannot be read ({error})") from None
+    if digest != file.sha256:
+        raise DeliveryRefused(f"the content of {file.file!r} is not what its sha256 says")
+    return path

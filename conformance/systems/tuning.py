@@ -1,0 +1,65 @@
+"""Uplift forces with which mean contact forces meet their targets."""
+
+from collections.abc import Callable, Sequence
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+TOLERANCE = 0.02
+"""A tuned mean contact force is this close to its target [N]."""
+MOST_RUNS = 12
+
+
+class NotTuned(ArithmeticError):
+    """The uplift force that gives the target mean was not found; grading another mean would compare the wrong run."""
+
+
+Run = TypeVar("Run")
+
+
+def tuned(
+    run: Callable[[tuple[float, ...]], Run],
+    means: Callable[[Run], Array],
+    start: Sequence[float],
+    targets: Sequence[float | None],
+) -> tuple[Run, tuple[float, ...]]:
+    """Secant on every pantograph's own force.
+
+    Parameters
+    ----------
+    run : makes a run with the given uplift forces [N]
+    means : mean contact forces of a run [N]
+    start : forces of the first run [N]
+    targets : mean contact forces that are wanted; None leaves a force as it is [N]
+
+    Returns
+    -------
+    the run that meets the targets, and its forces
+
+    Raises
+    ------
+    NotTuned : it is not among the first runs
+    """
+    wanted = np.array([np.nan if target is None else target for target in targets])
+    aimed = np.isfinite(wanted)
+    forces = np.array(start, dtype=float)
+    # The mean follows the uplift force nearly one to one.
+    slope = np.ones(forces.size)
+    made = run(tuple(map(float, forces)))
+    found = means(made)
+    for _ in range(MOST_RUNS - 1):
+        missing = np.where(aimed, wanted - found, 0.0)
+        if np.abs(missing).max(initial=0.0) <= TOLERANCE:
+            return made, tuple(map(float, forces))
+        change = missing / slope
+        forces = forces + change
+        made = run(tuple(map(float, forces)))
+        now = means(made)
+        # Two pantographs act on each other: a quotient far from one is the other's doing.
+        moved = np.abs(change) > TOLERANCE / 10
+        quotient = np.divide(now - found, change, out=slope.copy(), where=moved)
+        slope, found = np.clip(quotient, 0.5, 2.0), now
+    raise NotTuned(f"a mean contact force is still {np.nanmax(np.abs(wanted - found)):.2f} N off its target")

@@ -1,0 +1,116 @@
+"""An adapter around another program that reads input files and writes output files.
+
+The program here is `pantocheck simulate`, in a process of its own; exchange `simulate` for yours. The pattern stays:
+write the program's input from the case, run it with a time limit, and hand over what it wrote.
+
+Try it:  pantocheck run 'en50318-2002/*' --system 'command:python3 examples/external_program/adapter.py pantocheck'
+The argument is the command that starts the program.
+"""
+
+import hashlib
+import json
+import os
+import subprocess
+import sys
+from itertools import pairwise
+from pathlib import Path
+
+PROTOCOL = "pantocheck.command/1"
+GIVEN = {"trust": "provisional", "source": "given over the protocol"}
+
+
+def toml(table, path=()):
+    """Nested tables as TOML text: plain values first, then tables, then lists of tables."""
+    tables = {key: value for key, value in table.items() if isinstance(value, dict)}
+    lists = {
+        key: value for key, value in table.items() if isinstance(value, list) and value and isinstance(value[0], dict)
+    }
+    for key, value in table.items():
+        if key not in tables and key not in lists and value is not None:
+            yield f"{key} = {json.dumps(value)}"
+    for key, value in tables.items():
+        yield f"[{'.'.join((*path, key))}]"
+        yield from toml(value, (*path, key))
+    for key, values in lists.items():
+        for value in values:
+            yield f"[[{'.'.join((*path, key))}]]"
+            yield from toml(value, (*path, key))
+
+
+def sourced(table):
+    """A table of groups, each saying where its numbers come from, as the input of this program wants it."""
+    return {key: {**value, **GIVEN} if isinstance(value, dict) else value for key, value in table.items()}
+
+
+def write_input(case):
+    """Write the case, its line and its pantographs as files."""
+    Path("line.toml").write_text("\n".join(toml(sourced(case["line"]))), encoding="utf-8")
+    uses = []
+    for i, train in enumerate(case["pantographs"], 1):
+        model = {"title": f"pantograph {i}", "chain": train["chain"], "contact": train["contact"]}
+        Path(f"pantograph{i}.toml").write_text("\n".join(toml(sourced(model))), encoding="utf-8")
+        forces = {key: train[key] for key in ("uplift_force_N", "target_mean_force_N")}
+        uses.append({"model": f"pantograph{i}.toml", **forces, **GIVEN})
+    span, starts = case["line"]["geometry"]["span_m"], [train["start_m"] for train in case["pantographs"]]
+    first, last = case["evaluated_m"]
+    content = {
+        "id": case["id"],
+        "title": case["title"],
+        "line": "line.toml",
+        "speed_km_h": case["speed_km_h"],
+        "evaluated_spans": [round(first / span) + 1, round(last / span)],
+        "start_m": starts[-1],
+        "run_out_m": case["pantographs"][-1]["end_m"] - last,
+        "spacing_m": [a - b for a, b in pairwise(starts)] or None,
+        **GIVEN,
+        "filter": case["filter"],
+        "discretisation": case["discretisation"],
+        "pantograph": uses,
+    }
+    if content["evaluated_spans"][0] == content["evaluated_spans"][1]:
+        content["evaluated_spans"].pop()
+    Path("case.toml").write_text("\n".join(toml(content)), encoding="utf-8")
+
+
+def simulate(program, time_limit):
+    """Run the program; what it says goes to our standard error, where Pantocheck keeps the end of it."""
+    subprocess.run(
+        [*program, "simulate", "case.toml", "--out", "record.h5"],
+        stdout=sys.stderr, timeout=time_limit, check=True, env={**os.environ, "OMP_NUM_THREADS": "1"},
+    )  # fmt: skip
+
+
+def digest(name):
+    """A file with its SHA-256."""
+    return {"file": name, "sha256": hashlib.sha256(Path(name).read_bytes()).hexdigest()}
+
+
+def main(program):
+    """Answer messages until `stop` or the end of the input."""
+    for line in sys.stdin:
+        message = json.loads(line)
+        if message["message"] == "stop":
+            break
+        if message["message"] == "start":
+            version = subprocess.run([*program, "--version"], capture_output=True, text=True, check=True).stdout
+            name, _, version = version.strip().rpartition(" ")
+            answer = {"message": "started", "protocol": PROTOCOL, "name": f"{name} (external)", "version": version}
+        elif message["case"]["speed_km_h"] is None:
+            answer = {
+                "message": "skipped",
+                "id": message["id"],
+                "reason": "checks of the line at rest are not supported",
+            }
+        else:
+            write_input(message["case"])
+            try:
+                simulate(program, 0.9 * message["time_limit_s"])
+                record = {"sidecar": digest("record.toml"), "table": digest("record.h5")}
+                answer = {"message": "delivered", "id": message["id"], "record": record}
+            except (OSError, subprocess.SubprocessError) as error:
+                answer = {"message": "errored", "id": message["id"], "reason": str(error)}
+        print(json.dumps(answer), flush=True)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

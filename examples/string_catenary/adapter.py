@@ -1,0 +1,98 @@
+"""The adapter of `simulator.py`: everything Pantocheck asks of a program, in the standard library.
+
+Try it:  pantocheck run 'en50318-2002/*' --system 'command:python3 examples/string_catenary/adapter.py'
+"""
+
+import hashlib
+import json
+import sys
+import time
+
+PROTOCOL = "pantocheck.command/1"
+NAME, VERSION = "string catenary", "1.0"
+
+
+def reason_to_skip(case):
+    """Why the simulator cannot do a case; None if it can. An honest refusal is no failure."""
+    line, trains = case["line"], case["pantographs"]
+    if case["speed_km_h"] is None:
+        return "checks of the line at rest are not supported"
+    if len(trains) != 1:
+        return "only one pantograph is supported"
+    if trains[0]["uplift_force_N"] is None or trains[0]["target_mean_force_N"] is not None:
+        return "the uplift force is not tuned"
+    if trains[0]["chain"]["base_spring_unstretched"] != "working_height":
+        return "the base spring is unstretched at the working height here"
+    if line["stitch_wire"] or line["contact_wire"]["number"] > 1 or line["damping"]["modal"]:
+        return "stitch wires, twin contact wires and modal damping are not supported"
+    if line["geometry"]["stagger_contact_wire_m"] or line["geometry"]["stagger_messenger_m"]:
+        return "only the vertical plane is simulated: no stagger"
+    if line["droppers"]["stiffness_N_m"] is None or line["droppers"]["mass_kg_m"]:
+        return "droppers need a stiffness of their own and no mass per length"
+    if line["steady_arm"]["vertical_stiffness_N_m"] is None or line["steady_arm"]["vertical_damper_N_s_m"]:
+        return "steady arms need a vertical stiffness, and have no damper"
+    return None
+
+
+def run(case):
+    """Simulate a case and write its record into the working folder; the answer without its id."""
+    import simulator
+
+    began = time.perf_counter()
+    supports, history = simulator.simulate(case)
+    wall = time.perf_counter() - began
+    names = ["time_s", "position_1_m", "force_1_N", "contact_height_1_m"]
+    names += [f"uplift_{i + 1}_m" for i in range(len(supports))]
+    with open("record.csv", "w") as table:
+        print(",".join(names), file=table)
+        for sample in history:
+            print(",".join(f"{value:.9g}" for value in sample), file=table)
+    sidecar = {
+        "schema": "pantocheck.record/1",
+        "case": case["id"],
+        "file": "record.csv",
+        "speed_km_h": case["speed_km_h"],
+        "pantographs": 1,
+        "evaluated_m": case["evaluated_m"],
+        "filter_applied_Hz": "none",
+        "support_position_m": list(map(float, supports)),
+    }
+    with open("record.toml", "w") as file:
+        for key, value in sidecar.items():
+            print(key, "=", json.dumps(value), file=file)  # these values read the same in JSON and in TOML
+        print(f"[system]\nname = {json.dumps(NAME)}\nversion = {json.dumps(VERSION)}", file=file)
+        print(f"[run]\nwall_s = {wall:.3f}\nsimulated_s = {history[-1, 0]:.9g}", file=file)
+        print(f"dt_s = {case['discretisation']['time_step_s']}", file=file)
+        print(f"element_m = {case['discretisation']['element_m']}", file=file)
+    record = {"sidecar": digest("record.toml"), "table": digest("record.csv")}
+    return {"message": "delivered", "record": record, "notes": ["Finite differences, explicit time stepping."]}
+
+
+def digest(name):
+    """A file with its SHA-256."""
+    with open(name, "rb") as file:
+        return {"file": name, "sha256": hashlib.sha256(file.read()).hexdigest()}
+
+
+def main():
+    """Answer messages until `stop` or the end of the input."""
+    answers = sys.stdout
+    sys.stdout = sys.stderr  # what a library prints must not end up between the answers
+    for line in sys.stdin:
+        message = json.loads(line)
+        if message["message"] == "stop":
+            break
+        if message["message"] == "start":
+            answer = {"message": "started", "protocol": PROTOCOL, "name": NAME, "version": VERSION}
+        elif (reason := reason_to_skip(message["case"])) is not None:
+            answer = {"message": "skipped", "id": message["id"], "reason": reason}
+        else:
+            try:
+                answer = run(message["case"]) | {"id": message["id"]}
+            except (ArithmeticError, ValueError) as error:
+                answer = {"message": "errored", "id": message["id"], "reason": str(error) or type(error).__name__}
+        print(json.dumps(answer), file=answers, flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,112 @@
+"""Pantographs by chain, by matrices and by modes: three ways to say the same."""
+
+import numpy as np
+import pytest
+from pantocheck.conformance.cases.library import library_folder
+from pantocheck.conformance.cases.pantograph import Pantograph
+from pantocheck.conformance.cases.toml_file import read_model
+from pantocheck.conformance.errors import InputError
+from pantocheck.conformance.systems.line_model import catenary
+from pantocheck.conformance.systems.passage import pantograph
+from pantocheck.model import Passage, discretise, run
+from pantocheck.model.pantograph import apparent_mass
+from scipy.linalg import eigh
+
+HEAD = 'title = "measured"\n[contact]\nstiffness_N_m = 5e4\ntrust = "primary"\nsource = "rig"\n'
+SAID = 'trust = "primary"\nsource = "rig"\n'
+
+
+def of_the_library():
+    return read_model(library_folder() / "en50318-2018" / "pantograph.toml", Pantograph, "pantograph")
+
+
+def written(folder, text):
+    path = folder / "pantograph.toml"
+    path.write_text(HEAD + text)
+    return read_model(path, Pantograph, "pantograph")
+
+
+def rows(matrix):
+    return "[" + ", ".join(str([float(x) for x in row]) for row in matrix) + "]"
+
+
+def by_matrices(folder, model, head=(0, 0, 1)):
+    text = f"mass_kg = {rows(model.mass)}\ndamping_N_s_m = {rows(model.damping)}\n"
+    text += f"stiffness_N_m = {rows(model.stiffness)}\n"
+    return written(folder, f"[matrices]\n{text}head = {[float(x) for x in head]}\n{SAID}")
+
+
+def test_matrices_repeat_the_chain_in_frequency_and_on_a_line(tmp_path, case_250):
+    """The uplift force acts elsewhere, which a linear pantograph does not feel: the same force to rounding, 1e-6 N.
+
+    Without a spring to the base, that is: in a chain its force follows the mass it holds, not the head.
+    """
+    file = of_the_library()
+    free = file.chain.model_copy(update={"stiffness_N_m": (0.0, 15500.0, 7000.0)})
+    chain = pantograph(file.model_copy(update={"chain": free}), 150.0, 0.05)
+    matrices = pantograph(by_matrices(tmp_path, chain), 150.0, 0.05)
+    frequency = np.linspace(0.2, 50, 40)
+    assert apparent_mass(matrices, frequency) == pytest.approx(apparent_mass(chain, frequency), rel=1e-9)
+    geometry = case_250.line.geometry.model_copy(update={"spans": 3})
+    line = discretise(catenary(case_250.line.model_copy(update={"geometry": geometry})), 1.0)
+    one, other = (run(line, Passage((p,), (60.0,), 60.0, 0.3, 1e-3)).force for p in (chain, matrices))
+    assert np.ptp(one) > 10
+    assert np.abs(one - other).max() < 1e-6
+
+
+def test_modes_repeat_an_undamped_chain(tmp_path):
+    chain = pantograph(of_the_library(), 150.0, 0.0)
+    w2, shapes = eigh(chain.stiffness, chain.mass)
+    text = f"frequency_Hz = {list(np.sqrt(w2) / (2 * np.pi))}\ndamping_ratio = [0.0, 0.0, 0.0]\n"
+    text = text.replace("np.float64(", "").replace(")", "")
+    shape = [float(x) for x in chain.head @ shapes]
+    modes = pantograph(written(tmp_path, f"[modes]\n{text}head_shape = {shape}\n{SAID}"), 150.0, 0.05)
+    undamped = np.zeros_like(chain.damping)
+    by_hand = type(chain)(chain.mass, undamped, chain.stiffness, chain.head, chain.force, 150.0, 5e4)
+    frequency = np.array([0.3, 1.5, 4.0, 12.0, 30.0])
+    assert apparent_mass(modes, frequency) == pytest.approx(apparent_mass(by_hand, frequency), rel=1e-9)
+
+
+@pytest.mark.parametrize("model", ["matrices", "modes"])
+def test_at_rest_it_presses_with_its_static_force_at_working_height(tmp_path, model):
+    """The bordered static system has the static force as its multiplier."""
+    if model == "matrices":
+        file = by_matrices(tmp_path, pantograph(of_the_library(), 1.0, 0.0))
+    else:
+        text = "frequency_Hz = [0.9, 7.0]\ndamping_ratio = [0.2, 0.05]\nhead_shape = [0.2, 0.3]\n"
+        file = written(tmp_path, f"[modes]\n{text}{SAID}")
+    made = pantograph(file, 170.0, 0.06)
+    n = made.head.size
+    system = np.block([[made.stiffness, made.head[:, None]], [made.head[None], np.zeros((1, 1))]])
+    solution = np.linalg.solve(system, np.append(made.force, 0.06))
+    assert solution[n] == pytest.approx(170.0, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "there is no model of the pantograph"),
+        (
+            "[modes]\nfrequency_Hz = [1.0]\ndamping_ratio = [0.1, 0.2]\nhead_shape = [0.3]\n" + SAID,
+            "2 values for 1 modes",
+        ),
+        (
+            "[matrices]\nmass_kg = [[1.0, 0.5], [0.4, 1.0]]\ndamping_N_s_m = [[0.0, 0.0], [0.0, 0.0]]\n"
+            "stiffness_N_m = [[1.0, 0.0], [0.0, 1.0]]\nhead = [0.0, 1.0]\n" + SAID,
+            "not symmetric",
+        ),
+        (
+            "[matrices]\nmass_kg = [[1.0, 2.0], [2.0, 1.0]]\ndamping_N_s_m = [[0.0, 0.0], [0.0, 0.0]]\n"
+            "stiffness_N_m = [[1.0, 0.0], [0.0, 1.0]]\nhead = [0.0, 1.0]\n" + SAID,
+            "lowest eigenvalue is -1",
+        ),
+        (
+            "[matrices]\nmass_kg = [[1.0]]\ndamping_N_s_m = [[0.0]]\nstiffness_N_m = [[1.0, 0.0]]\nhead = [1.0]\n"
+            + SAID,
+            "not 1 rows of 1 values",
+        ),
+    ],
+)
+def test_impossible_models_are_refused(tmp_path, text, message):
+    with pytest.raises(InputError, match=message):
+        written(tmp_path, text)

@@ -1,0 +1,149 @@
+"""A short fuzz of every reader; benchmarks/fuzz.py runs the same for as long as one likes."""
+
+import importlib.util
+import logging
+import random
+from pathlib import Path
+
+import pytest
+import tomli_w
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from pantocheck.conformance.cases.library import library_folder, select
+from pantocheck.conformance.errors import InputError
+from pantocheck.conformance.record_files.kinds import read_either
+from pantocheck.conformance.record_files.reading import read_samples
+from pantocheck.conformance.runner import run
+from pantocheck.conformance.systems.record_folder import record_folder
+
+FUZZ = Path(__file__).parents[3] / "benchmarks" / "fuzz.py"
+ROUNDS = 12
+
+NAMES = (
+    "csv table",
+    "csv sidecar",
+    "h5 table",
+    "h5 sidecar",
+    "csv table, digest known",
+    "h5 table, digest known",
+    "case: 250.toml",
+    "case: line.toml",
+    "case: pantograph.toml",
+    "summary record",
+    "failing summary record",
+    "limits",
+    "plan",
+    "profile",
+    "results as baseline",
+    "certificate",
+)
+
+
+@pytest.fixture(scope="module")
+def fuzz():
+    spec = importlib.util.spec_from_file_location("fuzz", FUZZ)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def targets(fuzz, tmp_path_factory):
+    return {target.name: target for target in fuzz.targets(tmp_path_factory.mktemp("seeds"))}
+
+
+def test_every_reader_is_fuzzed(targets):
+    assert sorted(targets) == sorted(NAMES)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_damaged_file_is_read_or_refused(fuzz, targets, name, tmp_path):
+    logging.getLogger("pypdf").setLevel(logging.CRITICAL)
+    chance = random.Random(name)
+    outcomes = [fuzz.one_round(targets[name], tmp_path, chance) for _ in range(ROUNDS)]
+    assert "refused" in outcomes
+
+
+def test_fuzzer_sees_a_false_pass(fuzz, targets, tmp_path):
+    """The check that watches over all this can fail: a verdict turned to pass is a falsehood."""
+    (tmp_path / "a.toml").write_bytes(targets["failing summary record"].files["a.toml"])
+    results = run(select(["en50318-2002/250"]), record_folder(tmp_path))
+    assert results.verdict == "fail"
+    fuzz.check(results)
+    with pytest.raises(fuzz.Falsehood):
+        fuzz.check(results.model_copy(update={"verdict": "pass"}))
+
+
+# Values around the limits of the case, the limits themselves included, and a few far away.
+VALUES = {
+    "mean_force_N": st.one_of(st.floats(100, 130), st.sampled_from([110.0, 120.0, -110.0, 1e9])),
+    "std_force_N": st.one_of(st.floats(20, 35), st.sampled_from([26.0, 31.0, 0.0])),
+    "statistical_max_N": st.floats(180, 220),
+    "statistical_min_N": st.floats(10, 50),
+    "max_force_N": st.floats(170, 220),
+    "min_force_N": st.floats(40, 80),
+    "contact_loss_pct": st.sampled_from([0.0, 1e-9, 100.0]),
+}
+
+
+@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.fixed_dictionaries(VALUES), st.floats(40, 60))
+def test_summary_passes_exactly_if_every_value_is_inside(tmp_path, values, uplift):
+    (case,) = select(["en50318-2002/250"])
+    text = (library_folder() / "en50318-2002" / "known-passing-code" / "250.toml").read_text()
+    head = text.split("[[pantograph]]")[0]
+    content = {"pantograph": [values], "quantities": {"max_uplift_at_support_mm": uplift}}
+    (tmp_path / "a.toml").write_text(head + tomli_w.dumps(content))
+    (result,) = run([case], record_folder(tmp_path)).cases
+    everything = {**values, "max_uplift_at_support_mm": uplift}
+    inside = all(limit.lower <= everything[limit.quantity] <= limit.upper for limit in case.limits)
+    assert (result.verdict == "pass") == inside
+
+
+SOUND = {"speed_km_h": 250.0, "pantographs": 1, "filter_applied_Hz": "none", "file": "a.csv"}
+
+
+def refused(read, path):
+    """The error with which a reader refuses a file; None if it reads it."""
+    try:
+        read(path)
+    except InputError as error:
+        return error
+    return None
+
+
+ANYTHING = st.recursive(
+    st.one_of(st.booleans(), st.integers(), st.floats(), st.text(max_size=20), st.dates(), st.datetimes()),
+    lambda inner: st.one_of(st.lists(inner, max_size=4), st.dictionaries(st.text(max_size=8), inner, max_size=4)),
+    max_leaves=6,
+)
+KEYS = st.sampled_from(
+    ["case", "file", "sha256", "speed_km_h", "pantographs", "evaluated_m", "filter_applied_Hz", "start_m", "spacing_m",
+     "support_position_m", "line", "system", "run", "filter_cutoff_Hz", "pantograph", "quantities", "trust", "source"]
+)  # fmt: skip
+
+
+@settings(max_examples=80, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.sampled_from(["pantocheck.record/1", "pantocheck.summary/1"]), st.dictionaries(KEYS, ANYTHING, max_size=4))
+def test_any_toml_is_a_record_or_refused_with_its_key(tmp_path, schema, said):
+    base = SOUND if schema == "pantocheck.record/1" else {}
+    (tmp_path / "a.toml").write_text(tomli_w.dumps({"schema": schema, **base, **said}), encoding="utf-8")
+    refusal = refused(read_either, tmp_path / "a.toml")
+    if refusal is not None:
+        assert refusal.where.startswith(("sidecar 'a.toml'", "summary record 'a.toml'", "record 'a.toml'"))
+        assert refusal.hint
+
+
+CELLS = st.one_of(st.floats().map(repr), st.integers().map(str), st.text(max_size=6), st.just(""))
+
+
+@settings(max_examples=80, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.lists(st.lists(CELLS, min_size=3, max_size=3), max_size=6), st.sampled_from(["\n", "\r\n", "\r"]))
+def test_any_text_is_a_table_or_refused(tmp_path, rows, end):
+    sidecar = {"schema": "pantocheck.record/1", **SOUND}
+    (tmp_path / "a.toml").write_text(tomli_w.dumps(sidecar))
+    lines = ["time_s,position_1_m,force_1_N", *(",".join(row) for row in rows)]
+    (tmp_path / "a.csv").write_bytes(end.join(lines).encode("utf-8", "surrogatepass"))
+    refusal = refused(read_samples, tmp_path / "a.toml")
+    if refusal is not None:
+        assert refusal.where.startswith("record 'a.csv'")

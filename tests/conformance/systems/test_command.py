@@ -1,0 +1,282 @@
+"""A program as a system under test: what it is told, and what becomes of every way to misbehave."""
+
+import json
+import os
+import sys
+import tempfile
+from pathlib import Path
+
+import jsonschema
+import pytest
+from numpy.testing import assert_allclose
+from pantocheck.conformance.cases.library import select
+from pantocheck.conformance.errors import InputError
+from pantocheck.conformance.plan import read_plan
+from pantocheck.conformance.record_files import write_record
+from pantocheck.conformance.runner import run
+from pantocheck.conformance.schemas import schema_of
+from pantocheck.conformance.systems.choice import system_named
+from pantocheck.conformance.systems.command.arguments import arguments
+from pantocheck.conformance.systems.command.messages import AnswerRefused, parsed
+
+# A program that behaves but for one thing, which its first argument names.
+PROGRAM = """
+import hashlib, json, os, shutil, subprocess, sys, time
+how, records, log = sys.argv[1:4]
+def say(**message):
+    sys.stdout.write(json.dumps(message) + "\\n")
+    sys.stdout.flush()
+def digest(name):
+    return {"file": name, "sha256": hashlib.sha256(open(name, "rb").read()).hexdigest()}
+def hang():
+    time.sleep(1000)
+for line in sys.stdin:
+    message = json.loads(line)
+    with open(log, "a") as file:
+        file.write(line)
+    if message["message"] == "stop":
+        if how == "deaf":
+            hang()
+        break
+    if message["message"] == "start":
+        if how == "slow start":
+            hang()
+        if how == "old":
+            say(message="started", protocol="pantocheck.command/0", name="p", version="1")
+            continue
+        say(message="started", protocol="pantocheck.command/1", name="p", version="1")
+        continue
+    case, number = message["case"]["id"], message["id"]
+    if how == "crash" and case.endswith("250"):
+        sys.exit("no licence\\nleft")
+    if how == "abort":
+        os.abort()
+    if how == "hang":
+        hang()
+    if how == "child":
+        subprocess.Popen([sys.executable, "-c", "import time; time.sleep(1000)"], start_new_session=True)
+        subprocess.Popen([sys.executable, "-c", "import time; time.sleep(1000)"])
+        hang()
+    if how == "garbage":
+        print("Reading licence ...", flush=True)
+    if how == "partial":
+        sys.stdout.write('{"message": "deliv')
+        sys.exit()
+    if how == "long line":
+        sys.stdout.write("x" * 2000000)
+    if how == "flood":
+        while True:
+            print('{"message": "started", "protocol": "x", "name": "x", "version": ""}')
+    if how == "binary":
+        os.write(1, bytes(range(128, 256)) + b"\\n")
+    if how == "nan":
+        say(message="delivered", id=number, static={"wave_speed_m_s": float("nan")})
+    if how == "skip":
+        say(message="skipped", id=number, reason="no such line")
+        continue
+    if how == "error":
+        say(message="errored", id=number, reason="diverged at 1.2 s")
+        continue
+    if how == "wrong id":
+        number = 7
+    if how == "closes":
+        os.close(1)
+        hang()
+    for name in ("record.toml", "record.csv"):
+        shutil.copy(os.path.join(records, name), name)
+    if how == "outside":
+        shutil.copy("record.toml", "../stray.toml")
+        record = {"sidecar": dict(digest("record.toml"), file="../stray.toml"), "table": digest("record.csv")}
+    elif how == "link":
+        os.remove("record.csv")
+        os.symlink(os.path.join(records, "record.csv"), "record.csv")
+        record = {"sidecar": digest("record.toml"), "table": digest("record.csv")}
+    else:
+        record = {"sidecar": digest("record.toml"), "table": digest("record.csv")}
+    if how == "absent":
+        os.remove("record.csv")
+    if how == "changed":
+        with open("record.csv", "a") as file:
+            file.write("\\n")
+    if how == "other table":
+        shutil.copy("record.csv", "b.csv")
+        record["table"] = digest("b.csv")
+    say(message="delivered", id=number, record=record, static={"wave_speed_m_s": 121.7}, notes=["as asked"])
+"""
+
+
+@pytest.fixture
+def cases():
+    return select(["en50318-2002/*"])
+
+
+@pytest.fixture
+def program(case_250, wave, tmp_path):
+    """The program of a way to behave, with a time limit."""
+    write_record(tmp_path / "record.csv", wave().record(case_250), case_250.id)
+    script = tmp_path / "a program.py"
+    script.write_text(PROGRAM)
+
+    def system(how, timeout=20.0):
+        text = f"{sys.executable} -S '{script}' '{how}' '{tmp_path}' '{tmp_path / 'log'}'"
+        return system_named(f"command:{text}", timeout)
+
+    return system
+
+
+def test_delivered_record_is_read(program, case_250, wave):
+    system = program("well")
+    assert (system.name, system.version, system.kind) == ("p", "1", "command")
+    outcome = system.run(case_250)
+    assert outcome.errored is None
+    assert_allclose(outcome.record.force, wave().record(case_250).force, rtol=1e-11)  # twelve digits in the file
+    assert outcome.static == {"wave_speed_m_s": 121.7}
+    assert outcome.notes == ("as asked",)
+    assert outcome.warnings == ()
+
+
+def test_case_is_given_whole_and_without_limits(program, case_250, tmp_path):
+    program("well").run(case_250)
+    messages = [json.loads(line) for line in (tmp_path / "log").read_text().splitlines()][2:]
+    assert [message["message"] for message in messages] == ["start", "run", "stop"]
+    for message in messages:
+        jsonschema.validate(message, schema_of("command-request"))
+    given = messages[1]["case"]
+    text = json.dumps(given)
+    for withheld in ("limit", "trust", "source", "note", "provisional"):
+        assert f'"{withheld}"' not in text
+    assert given["line"]["droppers"]["x_m"] == [5.0, 10.5, 17.0, 23.5, 30.0, 36.5, 43.0, 49.5, 55.0]
+    assert given["line"]["contact_wire"]["tension_N"] == 20e3
+    assert given["pantographs"][0]["chain"]["masses_kg"] == [15.0, 7.2]
+    assert (given["pantographs"][0]["start_m"], given["pantographs"][0]["end_m"]) == (60.0, 420.0)
+    assert given["evaluated_m"] == [240.0, 360.0]
+
+
+def test_answers_of_the_program_follow_their_schema():
+    digest = {"file": "a.toml", "sha256": "0" * 64}
+    for message in (
+        {"message": "started", "protocol": "pantocheck.command/1", "name": "p", "version": ""},
+        {"message": "delivered", "id": 1, "record": {"sidecar": digest, "table": digest}},
+        {"message": "delivered", "id": 1, "static": {"dropper_length_m": [1.0, 0.9]}},
+        {"message": "skipped", "id": 1, "reason": "why"},
+        {"message": "errored", "id": 1, "reason": "why"},
+    ):
+        jsonschema.validate(message, schema_of("command-answer"))
+        assert parsed(json.dumps(message).encode()).message == message["message"]
+
+
+@pytest.mark.parametrize(
+    ("how", "verdict", "reason"),
+    [
+        ("skip", "skip", "no such line"),
+        ("error", "error", "diverged at 1.2 s"),
+        ("abort", "error", "p: was ended by SIGABRT before it answered"),
+        ("garbage", "error", "p: its answer is not JSON: 'Reading licence ...' (a log belongs on standard error)"),
+        ("binary", "error", "p: its answer is not JSON"),
+        ("partial", "error", 'p: ended in the middle of a line, after b\'{"message": "deliv\''),
+        ("long line", "error", "p: wrote a line of more than 1000000 bytes"),
+        ("flood", "error", "p: its answer to 'run' is 'started'"),
+        ("nan", "error", "finite number"),
+        ("wrong id", "error", "p: its answer is to run 7, asked was run 1"),
+        ("closes", "error", "p: closed its output before it answered"),
+        ("outside", "error", "p: the file '../stray.toml' lies outside the folder of the run"),
+        ("link", "error", "p: the file 'record.csv' lies outside the folder of the run"),
+        ("absent", "error", "p: there is no file 'record.csv' in the folder of the run"),
+        ("changed", "error", "p: the content of 'record.csv' is not what its sha256 says"),
+        ("other table", "error", "p: the sidecar is of 'record.csv', the answer names 'b.csv'"),
+    ],
+)
+def test_misbehaviour_is_the_verdict_of_its_case(program, case_250, how, verdict, reason):
+    try:
+        (result,) = run([case_250], program(how)).cases
+    finally:
+        Path(tempfile.gettempdir(), "stray.toml").unlink(missing_ok=True)
+    assert result.verdict == verdict
+    assert reason in result.reason
+    assert "\n" not in result.reason
+
+
+def test_crash_with_its_last_words_leaves_the_other_cases_and_a_record_of_another_case_is_refused(program, cases):
+    first, second = run(cases, program("crash")).cases
+    assert first.reason == "p: ended with exit code 1 before it answered; its last words: no licence left"
+    assert second.reason == "p: the record is of case 'en50318-2002/250', asked was 'en50318-2002/300'"
+
+
+def living(text):
+    found = []
+    for path in Path("/proc").glob("[0-9]*/cmdline"):
+        try:
+            if text in path.read_bytes():
+                found.append(path.parent.name)
+        except OSError:
+            continue
+    return found
+
+
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="processes are counted in /proc")
+def test_time_limit_ends_the_program_and_all_its_children(program, case_250):
+    """One child stays in the program's group, the other leaves it for a session of its own."""
+    outcome = program("child", timeout=1.0).run(case_250)
+    assert outcome.errored == "p: gave no answer within 1 s"
+    assert not living(b"time.sleep(1000)")
+
+
+def test_program_that_does_not_stop_is_ended_and_warned_of(program, case_250, monkeypatch):
+    monkeypatch.setattr("pantocheck.conformance.systems.command.program.PATIENCE", 0.2)
+    outcome = program("deaf").run(case_250)
+    assert outcome.record is not None
+    assert outcome.warnings == ("p did not end when told to, and was ended",)
+
+
+@pytest.mark.parametrize(
+    ("how", "reason"),
+    [
+        ("slow start", "gave no answer within 1 s"),
+        ("old", "it speaks 'pantocheck.command/0', the suite 'pantocheck.command/1'"),
+    ],
+)
+def test_program_that_does_not_start_is_the_error_of_every_case(program, cases, how, reason):
+    results = run(cases, program(how, timeout=1.0))
+    assert [case.verdict for case in results.cases] == ["error", "error"]
+    assert all(reason in case.reason for case in results.cases)
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("", "names no program"),
+        ("'", "cannot be split"),
+        ("no-such-program --x", "there is no program 'no-such-program'"),
+        ("./missing.sh", "there is no program './missing.sh'"),
+        ("sh\0", "names no program"),
+    ],
+)
+def test_wrong_commands(text, found, tmp_path):
+    with pytest.raises(InputError, match=found):
+        arguments(text, tmp_path)
+
+
+def test_nothing_of_a_command_is_left_to_a_shell(tmp_path):
+    (tmp_path / "a b.py").touch()
+    given = arguments("sh 'a b.py' $HOME ;rm -rf * | cat '' # x", tmp_path)
+    assert given[1:] == (str(tmp_path / "a b.py"), "$HOME", ";rm", "-rf", "*", "|", "cat", "", "#", "x")
+    assert os.path.isabs(given[0])
+
+
+def test_plan_names_a_command_relative_to_itself(tmp_path):
+    (tmp_path / "ad apter.py").touch()
+    (tmp_path / "plan.toml").write_text("system = \"command:sh 'ad apter.py'\"\n")
+    system = read_plan(tmp_path / "plan.toml").system
+    assert system.startswith("command:/")
+    assert system.endswith(f"'{tmp_path}/ad apter.py'")
+
+
+@pytest.mark.parametrize(
+    "line",
+    [b"", b"{}", b"[]", b"1", b"[" * 100_000, b'{"message": "x"}', b"9" * 5000, b'{"message": "skipped", "id": 1}',
+     b'{"message": "skipped", "id": 1, "reason": "\\ud800"}', b'{"message": "skipped", "id": 1.5, "reason": "x"}',
+     b'{"message": "skipped", "id": 1, "reason": "x", "more": 1}', b"\xff\xfe"],
+)  # fmt: skip
+def test_what_is_no_message_is_refused(line):
+    with pytest.raises(AnswerRefused):
+        parsed(line)

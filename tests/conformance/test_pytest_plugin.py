@@ -1,0 +1,237 @@
+"""The pytest plugin as users meet it: in a session of their own."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+from pantocheck.conformance import pytest_collection  # noqa: F401 - once here, or anew in every session below
+from pantocheck.conformance.cases.library import select
+from pantocheck.conformance.record_files import write_record
+
+pytest_plugins = ["pytester"]
+
+SKIPPER = """
+import json, sys
+for line in sys.stdin:
+    message = json.loads(line)
+    if message["message"] == "stop":
+        break
+    if message["message"] == "start":
+        answer = {"message": "started", "protocol": "pantocheck.command/1", "name": "skipper", "version": "1"}
+    else:
+        with open(sys.argv[1], "a") as log:
+            print(message["case"]["id"], file=log)
+        answer = {"message": "skipped", "id": message["id"], "reason": "no such line"}
+    print(json.dumps(answer), flush=True)
+"""
+
+
+# Another plugin takes a second to load; it has nothing to do here.
+ALONE = ("-p", "no:hypothesispytest")
+
+
+def session(pytester, *arguments):
+    return pytester.runpytest_inprocess(*ALONE, *arguments)
+
+
+def process(pytester, *arguments):
+    return pytester.runpytest_subprocess(*ALONE, *arguments)
+
+
+@pytest.fixture
+def plan(pytester, wave):
+    """A plan on records of both cases: sines, whose extremes fail."""
+    pytester.path.joinpath("records").mkdir()
+    for case in select(["en50318-2002/*"]):
+        write_record(pytester.path / "records" / f"{case.file.speed_km_h:g}.csv", wave().record(case), case.id)
+    path = pytester.path / "conformance.toml"
+    path.write_text(
+        'cases = ["en50318-2002/250", "en50318-2002/300"]\nsystem = "record:records"\nformats = ["json", "junit"]\n'
+    )
+    return path
+
+
+def outcomes_250(verdicts):
+    return [f"conformance.toml::en50318-2002/250::{name} {verdict}*" for name, verdict in verdicts.items()]
+
+
+def test_every_criterion_is_an_item_with_a_one_line_reason(pytester, plan):
+    done = session(pytester, "-v", "conformance.toml")
+    done.stdout.fnmatch_lines(
+        outcomes_250(
+            {"1::mean_force_N": "PASSED", "1::std_force_N": "PASSED", "1::max_force_N": "FAILED",
+             "line::max_uplift_at_support_mm": "PASSED"}
+        )
+    )  # fmt: skip
+    failed = done.parseoutcomes()["failed"]
+    assert failed + done.parseoutcomes()["passed"] == 16
+    done.stdout.fnmatch_lines(
+        ["max_force_N of pantograph 1 = 158.6 N, limits 175 to 210: 16.4 N below the lower limit"]
+    )
+    assert "Traceback" not in done.stdout.str()
+    done.stdout.fnmatch_lines([f"conformance.toml: FAIL, {16 - failed} of 16 graded criteria*report/results.json"])
+    results = json.loads((pytester.path / "report" / "results.json").read_text())
+    assert [case["id"] for case in results["cases"]] == ["en50318-2002/250", "en50318-2002/300"]
+    assert sum(c["verdict"] == "fail" for case in results["cases"] for c in case["criteria"]) == failed
+    assert sorted(path.name for path in (pytester.path / "report").iterdir()) == ["junit.xml", "results.json"]
+
+
+def test_items_are_chosen_by_id_and_options_go_before_the_plan(pytester, plan):
+    done = session(
+        pytester,
+        "conformance.toml::en50318-2002/250::1::std_force_N", "--pantocheck-out", "asked",
+        "--pantocheck-formats", "json", "--pantocheck-trust", "primary",
+    )  # fmt: skip
+    done.assert_outcomes(skipped=1)
+    done = session(pytester, "-rs", "conformance.toml", "-k", "250 and std", "--pantocheck-trust", "primary")
+    done.stdout.fnmatch_lines(["SKIPPED*would pass; the limit is secondary and does not count"])
+    results = json.loads((pytester.path / "asked" / "results.json").read_text())
+    assert results["trust"] == "primary"
+    assert results["cases"][1]["reason"] == "not run in this session of pytest"
+    assert [path.name for path in (pytester.path / "asked").iterdir()] == ["results.json"]
+
+
+@pytest.mark.parametrize("workers", [(), ("-n2",)])
+def test_each_case_is_run_once_in_a_session(pytester, plan, workers):
+    (pytester.path / "skipper.py").write_text(SKIPPER)
+    log = pytester.path / "log"
+    text = plan.read_text().replace("record:records", f"command:{sys.executable} skipper.py {log}")
+    plan.write_text(text)
+    done = process(pytester, "-rs", "conformance.toml", *workers)
+    done.assert_outcomes(skipped=16)
+    done.stdout.fnmatch_lines(["SKIPPED*no such line"])
+    assert sorted(log.read_text().split()) == ["en50318-2002/250", "en50318-2002/300"]
+    results = json.loads((pytester.path / "report" / "results.json").read_text())
+    assert (results["verdict"], results["system"]["name"]) == ("skip", "skipper")
+
+
+def test_error_of_a_case_fails_its_criteria_with_the_reason(pytester, plan):
+    (pytester.path / "skipper.py").write_text(SKIPPER.replace("print(json.dumps(answer), flush=True)", "sys.exit(3)"))
+    plan.write_text(plan.read_text().replace("record:records", f"command:{sys.executable} skipper.py log"))
+    done = session(pytester, "conformance.toml")
+    done.assert_outcomes(failed=16)
+    done.stdout.fnmatch_lines(["error: *ended with exit code 3 before it answered"])
+
+
+def test_drift_from_a_baseline_fails_the_session(pytester, plan):
+    session(pytester, "conformance.toml", "--pantocheck-out", "before")
+    (pytester.path / "before" / "results.json").rename(pytester.path / "baseline.json")
+    plan.write_text(plan.read_text() + 'baseline = "baseline.json"\n')
+    chosen = ("conformance.toml", "-k", "mean_force")
+    assert session(pytester, *chosen).ret == 0
+    content = json.loads((pytester.path / "baseline.json").read_text())
+    content["cases"][0]["quantities"]["1"]["rms_0_5_N"] *= 1.05
+    (pytester.path / "baseline.json").write_text(json.dumps(content))
+    done = session(pytester, *chosen)
+    done.assert_outcomes(passed=2, deselected=14)
+    assert done.ret == 1
+    done.stdout.fnmatch_lines(["conformance.toml: 1 values drifted from the baseline *baseline.json"])
+
+
+def test_wrong_plans_say_what_to_do(pytester, plan):
+    for text, said in (
+        ('cases = ["en50318-2002/25"]', "*there is no such case*"),
+        ("case = 1", "*key case: unknown key*"),
+        ("cases = [", "*is not valid TOML*"),
+        ('formats = ["htm"]', "*format 'htm': there is no such format*"),
+    ):
+        plan.write_text(text)
+        done = session(pytester, "conformance.toml")
+        done.assert_outcomes(errors=1)
+        done.stdout.fnmatch_lines([said])
+        assert "Traceback" not in done.stdout.str()
+
+
+def test_silent_when_not_asked_for(pytester, plan):
+    """A plan that is not named is left alone, and so is every other TOML file."""
+    pytester.makepyfile("def test_own(): pass")
+    done = session(pytester)
+    done.assert_outcomes(passed=1)
+    assert "pantocheck" not in done.stdout.str().split("collected 1 item")[1]
+    assert not (pytester.path / "report").exists()
+
+
+@pytest.mark.parametrize("arguments", [("conformance.toml",), (".", "conformance.toml"), ()])
+def test_plan_is_collected_when_named(pytester, plan, arguments):
+    """On the command line, also beside a folder that holds it, or in `testpaths`."""
+    if not arguments:
+        pytester.makeini("[pytest]\ntestpaths = conformance.toml")
+    done = session(pytester, "--collect-only", "-q", *arguments)
+    assert done.stdout.str().count("conformance.toml::") == 16
+    assert not (pytester.path / "report" / "results.json").exists()
+
+
+def test_loading_the_plugin_imports_nothing_heavy():
+    code = "import sys, pantocheck.conformance.pytest_plugin; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    loaded = set(done.stdout.split())
+    assert "pantocheck.conformance.pytest_plugin" in loaded
+    assert not loaded & {"numpy", "scipy", "numba", "pydantic", "typer", "rich", "h5py", "matplotlib", "filelock"}
+    ours = {name for name in loaded if name.startswith("pantocheck")}
+    assert ours <= {"pantocheck", "pantocheck.conformance", "pantocheck.conformance.pytest_plugin"}
+
+
+def test_fixtures_grade_records_and_arrays(pytester, plan):
+    pytester.makepyfile(
+        """
+        import numpy as np
+        import pytest
+        from pantocheck.conformance.errors import InputError
+
+        def test_record(pantocheck_assess):
+            graded = pantocheck_assess("en50318-2002/250", "records/250.csv")
+            assert graded.verdict == "fail"
+            assert any("max_force_N of pantograph 1" in reason for reason in graded.reasons)
+            graded.check("mean_force_N", "std_force_N")
+            with pytest.raises(AssertionError, match="16.4 N below the lower limit"):
+                graded.check()
+            with pytest.raises(AssertionError, match="rms_0_5_N has no limits"):
+                graded.check("rms_0_5_N")
+
+        def test_arrays(pantocheck_assess):
+            time = np.arange(0, 5.2, 1e-3)
+            position = 60 + 250 / 3.6 * time
+            force = 119 + 28 * np.sqrt(2) * np.sin(2 * np.pi * position / 60)
+            graded = pantocheck_assess("en50318-2002/250", time_s=time, position_m=position, force_N=force)
+            assert graded.value("mean_force_N") == pytest.approx(119, abs=0.1)
+            with pytest.raises(InputError, match="channel|force"):
+                pantocheck_assess("en50318-2002/250", time_s=time, position_m=position, force_N=force[1:])
+            with pytest.raises(InputError, match="no record"):
+                pantocheck_assess("en50318-2002/250")
+
+        def test_run(pantocheck_run):
+            graded = pantocheck_run("en50318-2002/250", system="record:records")
+            assert graded.result.id == "en50318-2002/250"
+
+        def test_shown(pantocheck_run):
+            pantocheck_run("en50318-2002/250", "record:records").check("max_force_N")
+        """
+    )
+    done = session(pytester)
+    done.assert_outcomes(passed=3, failed=1)
+    done.stdout.fnmatch_lines(["E*en50318-2002/250: max_force_N of pantograph 1 = 158.6 N, limits 175 to 210: 16.4 N*"])
+
+
+def test_users_own_modules_of_our_folders_names_do_not_collide(pytester, plan):
+    """`model.py`, `templates/` and `conformance/` beside the tests, imported by them and found first."""
+    pytester.makepyfile(model="WHOSE = 'mine'", conformance="WHOSE = 'mine'")
+    pytester.mkpydir("templates")
+    pytester.mkpydir("reference_cases")
+    pytester.makepyfile(
+        """
+        import conformance, model, reference_cases, templates
+
+        def test_both(pantocheck_run):
+            assert model.WHOSE == conformance.WHOSE == "mine"
+            assert "pantocheck" not in templates.__file__
+            from pantocheck.model import Catenary
+            assert Catenary.__module__ == "pantocheck.model.catenary"
+            assert pantocheck_run("en50318-2002/250", "record:records").verdict == "fail"
+        """
+    )
+    done = process(pytester)
+    done.assert_outcomes(passed=1)
+    done = process(pytester, "conformance.toml", "--pantocheck-formats=html,md")
+    assert done.parseoutcomes()["passed"] > 0
+    assert (pytester.path / "report" / "certificate.html").is_file()

@@ -1,0 +1,83 @@
+"""The workflow files: valid YAML of the shape their services want, and shell steps that gate in a scratch project."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+from pantocheck.conformance.cases.library import library_folder
+from pantocheck.conformance.command_line.app import app
+from typer.testing import CliRunner
+
+CI = Path(__file__).parents[2] / "docs" / "ci"
+PASSING = library_folder() / "en50318-2002" / "known-passing-code"
+GITHUB = yaml.safe_load((CI / "github.yml").read_text())
+GITLAB = yaml.safe_load((CI / "gitlab.yml").read_text())
+
+STEPS = [step for step in GITHUB["jobs"]["conformance"]["steps"] if "run" in step and step["name"] != "Install"]
+
+
+@pytest.fixture
+def project(tmp_path, monkeypatch):
+    """A repository as the page describes it; its simulator copies published results."""
+    shutil.copy(CI / "conformance.toml", tmp_path)
+    shutil.copytree(PASSING, tmp_path / "solver")
+    script = tmp_path / "simulate.sh"
+    script.write_text('#!/bin/sh\nmkdir -p "$1" && cp solver/*.toml "$1"\n')
+    script.chmod(0o755)
+    plan = tmp_path / "conformance.toml"
+    text = plan.read_text().replace('"html", "pdf", ', "")  # the certificate is tested elsewhere
+    first = "".join(line for line in text.splitlines(True) if not line.startswith(("baseline", "drift")))
+    plan.write_text(first)
+    monkeypatch.chdir(tmp_path)
+    subprocess.run(["./simulate.sh", "records"], check=True)
+    assert CliRunner().invoke(app, ["run", "--plan", "conformance.toml"]).exit_code == 0
+    (tmp_path / "baseline").mkdir()
+    shutil.move(tmp_path / "report" / "results.json", tmp_path / "baseline")
+    plan.write_text(text)
+    return tmp_path
+
+
+def outcome(folder):
+    """Exit code of the job: its steps in order, those that always run after a failure too."""
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    environment = {**os.environ, "PATH": path, "GITHUB_STEP_SUMMARY": str(folder / "page.md"), "OMP_NUM_THREADS": "1"}
+    code = 0
+    for step in STEPS:
+        if code == 0 or step.get("if") == "always()":
+            shell = ["bash", "-eo", "pipefail", "-c", step["run"]]
+            done = subprocess.run(shell, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+            assert "Traceback" not in done.stderr
+            code = code or done.returncode
+    return code
+
+
+def test_gate_opens_and_closes(project):
+    assert outcome(project) == 0
+    solver = project / "solver" / "250.toml"
+    # Two per cent more sigma is inside its limits: only the baseline sees it.
+    solver.write_text(solver.read_text().replace("std_force_N = 27.6", "std_force_N = 28.15"))
+    assert outcome(project) == 1
+    assert "drift of std_force_N" in (project / "report" / "junit.xml").read_text()
+    assert [line.split(":")[0] for line in (project / "page.md").read_text().splitlines() if line[:2] == "# "] == [
+        "# PASS", "# FAIL",
+    ]  # fmt: skip
+
+
+def test_both_services_run_the_same_commands():
+    job = [step["run"] for step in STEPS if step.get("if") != "always()"]
+    assert GITLAB["conformance"]["script"] == job
+
+
+def test_files_have_the_shape_their_services_want():
+    job = GITHUB["jobs"]["conformance"]
+    assert GITHUB[True] == ["push", "pull_request"]  # YAML 1.1 reads the key `on` as true; the service does not
+    assert {"runs-on", "steps", "timeout-minutes"} <= set(job)
+    assert all(("uses" in step) != ("run" in step) for step in job["steps"])
+    assert GITLAB["conformance"]["artifacts"]["reports"]["junit"] == "report/junit.xml"
+    assert GITLAB["conformance"]["artifacts"]["when"] == "always"
+    installs = [step["run"] for step in job["steps"] if step.get("name") == "Install"]
+    assert installs == GITLAB["conformance"]["before_script"]

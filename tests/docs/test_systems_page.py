@@ -1,0 +1,21 @@
+"""The conversation shown in docs/systems.md is one that the schemas allow, with a case that is still the library's."""
+
+import json
+from pathlib import Path
+
+import jsonschema
+from pantocheck.conformance.cases.library import select
+from pantocheck.conformance.schemas import schema_of
+from pantocheck.conformance.systems.command.given import given
+
+PAGE = Path(__file__).parents[2] / "docs" / "systems.md"
+
+
+def test_conversation_follows_the_schemas():
+    shown = PAGE.read_text(encoding="utf-8").split("## A whole conversation")[1].split("```")[1].strip().splitlines()
+    messages = [(line[0], json.loads(line[2:])) for line in shown]
+    assert [message["message"] for _, message in messages] == ["start", "started", "run", "delivered", "stop"]
+    for side, message in messages:
+        jsonschema.validate(message, schema_of("command-request" if side == ">" else "command-answer"))
+    (case,) = select(["en50318-2002/250"])
+    assert messages[2][1]["case"] == given(case)
