@@ -16,7 +16,7 @@ NEGLIGIBLE_FORCE = 1e-13
 """Changes of a force below this are rounding, and are not passed on [N]."""
 
 
-@njit(cache=True, no_cpython_wrapper=True)
+@njit(cache=True)
 def predict_connectors(line: Line, motion: Motion, work: Workspace, first: int, last: int) -> None:
     """Predicted elongations; the connectors pull with their tensions of the last step to begin with."""
     for n in range(line.station.size):
@@ -33,7 +33,7 @@ def predict_connectors(line: Line, motion: Motion, work: Workspace, first: int, 
         work.elongation[0, n], work.elongation[1, n] = d, rate
 
 
-@njit(cache=True, no_cpython_wrapper=True)
+@njit(cache=True)
 def add_column(w: Array, r: Array, column: Array, station: int, value: float, limits: tuple[int, int]) -> None:
     """Add `value` times a local column of the inverse to the accelerations of one row, between two stations."""
     half = column.shape[1] // 2
@@ -43,19 +43,19 @@ def add_column(w: Array, r: Array, column: Array, station: int, value: float, li
     _add_scaled(r[first:last], column[1, first + shift : last + shift], value)
 
 
-@njit(cache=True, no_cpython_wrapper=True)
+@njit(cache=True)
 def _add_scaled(target: Array, source: Array, value: float) -> None:
     for i in range(target.size):
         target[i] += value * source[i]
 
 
-@njit(cache=True, no_cpython_wrapper=True)
+@njit(cache=True)
 def larger(a: float, b: float) -> float:
     """The larger of two numbers, or NaN where either is: `max` would drop it, and a lost run would look settled."""
     return a if a >= b or math.isnan(a) else b
 
 
-@njit(cache=True, no_cpython_wrapper=True)
+@njit(cache=True)
 def turn_connectors(line: Line, motion: Motion, work: Workspace, w: Array, r: Array, first: int, last: int) -> float:
     """Solve every connector between two stations once, the others held; returns the largest change of a tension [N]."""
     dt = line.time_step

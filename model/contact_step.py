@@ -4,12 +4,13 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 from pantocheck.model.connector_step import NEGLIGIBLE_FORCE, add_column, larger
+from pantocheck.model.local_flexibility import local_flexibility
 from pantocheck.model.state import Line, Motion, Train, Workspace
 
 Array = NDArray[np.float64]
 
 
-@njit(cache=True, no_cpython_wrapper=True)
+@njit(cache=True)
 def predict_train(line: Line, motion: Motion, train: Train, work: Workspace) -> None:
     """Move the pantographs on, predict them, and press with the contact forces of the last step to begin with."""
     dt = line.time_step
@@ -37,7 +38,7 @@ def predict_train(line: Line, motion: Motion, train: Train, work: Workspace) -> 
             _predict_contact(line, motion, train, work, p, k, head, compliance)
 
 
-@njit(cache=True, no_cpython_wrapper=True)
+@njit(cache=True)
 def _predict_contact(
     line: Line, motion: Motion, train: Train, work: Workspace, p: int, k: int, head: float, head_compliance: float
 ) -> None:
@@ -61,19 +62,20 @@ def _predict_contact(
                 at = half + i - j
                 compliance += n[2 * j + m] * (n[2 * i] * column[0, at] + n[2 * i + 1] * column[1, at])
     work.element[p] = e
+    work.stiffness[p, k] = 1 / (1 / train.contact_stiffness[p] + local_flexibility(line.bubble[k, e], s))
     work.closing[p, k] = head - wire
     work.compliance[p, k] = compliance
 
 
-@njit(cache=True, no_cpython_wrapper=True)
+@njit(cache=True)
 def turn_contacts(line: Line, train: Train, work: Workspace, w: Array, r: Array, first: int, last: int) -> float:
     """Solve every contact once, the other forces held; returns the largest change of a contact force [N]."""
     dt = line.time_step
     largest = 0.0
     for p in range(train.position.size):
-        e, k = work.element[p], train.contact_stiffness[p]
+        e = work.element[p]
         for m in range(train.contact.shape[1]):
-            row, n = line.contact_row[m], work.shape[p, m]
+            row, n, k = line.contact_row[m], work.shape[p, m], work.stiffness[p, m]
             approach = 0.0
             for i in range(train.z.shape[2]):
                 approach += train.head[p, i] * train.z[2, p, i]
@@ -96,7 +98,7 @@ def turn_contacts(line: Line, train: Train, work: Workspace, w: Array, r: Array,
     return largest
 
 
-@njit(cache=True, no_cpython_wrapper=True)
+@njit(cache=True)
 def correct_train(dt: float, train: Train) -> None:
     """Turn the predictors back into displacement and velocity, with the accelerations that were found."""
     for p in range(train.position.size):

@@ -92,7 +92,7 @@ def drop(
     hanging = Statics(line).deflection(weight * point_load(line, load.row, test.position))
     motion, train = still(hanging, stepping.modal_damping.size), no_train(len(line.contact_rows))
     before, after = (round(duration / test.time_step) for duration in (test.hanging, test.duration))
-    time = test.time_step * np.arange(1 - before, after + 1)
+    time: Array = test.time_step * np.arange(1 - before, after + 1).astype(np.float64)
     history = weight * _share_left(time, test.release_duration)
     rows, stations = watched_stations(line, test.sensors)
     recorded = np.zeros((time.size, rows.size, 3))

@@ -9,7 +9,7 @@ from pantocheck.model.state import Line, Motion
 Array = NDArray[np.float64]
 
 
-@njit(cache=True, no_cpython_wrapper=True)
+@njit(cache=True)
 def add_mode(w: Array, r: Array, shape: Array, value: float) -> None:
     for b in range(w.shape[0]):
         for s in range(w.shape[1]):
@@ -17,7 +17,7 @@ def add_mode(w: Array, r: Array, shape: Array, value: float) -> None:
             r[b, s] += value * shape[b, s, 1]
 
 
-@njit(cache=True, no_cpython_wrapper=True)
+@njit(cache=True)
 def turn_modes(line: Line, motion: Motion, w: Array, r: Array) -> float:
     """Solve the damping force on every mode of its own damping once, the others held; returns the largest change."""
     dt = line.time_step

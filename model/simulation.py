@@ -10,6 +10,7 @@ from pantocheck.model import beam
 from pantocheck.model.assembly import point_load
 from pantocheck.model.equilibrium import Deflection, Statics
 from pantocheck.model.line import Discretised
+from pantocheck.model.local_flexibility import local_flexibility
 from pantocheck.model.newmark import march
 from pantocheck.model.pantograph import Pantograph
 from pantocheck.model.state import PIECE, Line, Motion, Train, Workspace
@@ -129,7 +130,7 @@ def run(line: Discretised, passage: Passage, progress: Callable[[float], None] |
             raise DidNotConverge(f"the forces of the step at {(first + done) * passage.time_step:.3f} s did not settle")
         if progress:
             progress(part.stop / max(steps, 1))
-    time: Array = passage.time_step * np.arange(1, steps + 1)
+    time: Array = passage.time_step * np.arange(1, steps + 1).astype(np.float64)
     position: Array = np.array(passage.start)[:, None] + passage.speed * time
     return History(time, position, force.T.copy(), height.T.copy(), motion_there.transpose(1, 0, 2).copy())
 
@@ -213,8 +214,10 @@ def _train(line: Discretised, stepping: Line, passage: Passage, at_rest: Deflect
         inverse[p, :n, :n] = np.linalg.inv(pantograph.mass + half * pantograph.damping + quarter * pantograph.stiffness)
         damping[p, :n, :n], stiffness[p, :n, :n] = pantograph.damping, pantograph.stiffness
         head[p, :n], force[p, :n] = pantograph.head, pantograph.force
-        wire = np.mean([_height(stepping, profile[k], k, passage.start[p]) for k in range(wires)])
-        z[0, p, :n] = _rest(pantograph, float(wire) + pantograph.static_force / wires / pantograph.contact_stiffness)
+        places = [_under_head(stepping, profile[k], k, passage.start[p]) for k in range(wires)]
+        wire, flexibility = np.mean(places, axis=0)
+        closing = pantograph.static_force / wires * (1 / pantograph.contact_stiffness + float(flexibility))
+        z[0, p, :n] = _rest(pantograph, float(wire) + closing)
     contact = np.array([[p.static_force / wires] * wires for p in passage.pantographs])
     return Train(
         position=np.array(passage.start),
@@ -230,12 +233,14 @@ def _train(line: Discretised, stepping: Line, passage: Passage, at_rest: Deflect
     )
 
 
-def _height(stepping: Line, profile: Array, wire: int, position: float) -> float:
-    """Height of a contact wire at one place in a static deflection."""
+def _under_head(stepping: Line, profile: Array, wire: int, position: float) -> tuple[float, float]:
+    """Height of a contact wire at one place in a static deflection, and its local flexibility there [m, m/N]."""
     x = stepping.position
     e = int(np.clip(np.searchsorted(x, position) - 1, 0, x.size - 2))
-    values = (stepping.rest[wire] + profile)[e : e + 2].ravel()
-    return float(beam.shape((position - x[e]) / (x[e + 1] - x[e]), x[e + 1] - x[e]) @ values)
+    h = x[e + 1] - x[e]
+    s = (position - x[e]) / h
+    height = float(beam.shape(s, h) @ (stepping.rest[wire] + profile)[e : e + 2].ravel())
+    return height, local_flexibility(stepping.bubble[wire, e], s)
 
 
 def _rest(pantograph: Pantograph, head_height: float) -> Array:
@@ -256,6 +261,7 @@ def workspace(line: Line, train: Train) -> Workspace:
         elongation=np.zeros((2, line.station.size)),
         shape=np.zeros((pantographs, wires, 4)),
         element=np.zeros(pantographs, dtype=np.int64),
+        stiffness=np.zeros((pantographs, wires)),
         closing=np.zeros((pantographs, wires)),
         compliance=np.zeros((pantographs, wires)),
     )

@@ -34,6 +34,7 @@ class Line(NamedTuple):
     stiffness, damping, preload : (N,) [N/m, N s/m, N]
     unilateral : (N,) whether the tension cannot be negative
     contact_row : (W,) rows that a pantograph touches
+    bubble : (W, S-1, 6) what a point force bends an element between its stations, see `local_flexibility` [m/N]
     contact_columns : (W, S, 2, 2, 2H) the inverse around every station, for a force and for a moment
     modal_damping : (J,) of the modes whose damping is set one by one [1/s]
     modal_weight : (J, B, S, 2) M phi of these modes [kg^1/2]
@@ -64,6 +65,7 @@ class Line(NamedTuple):
     preload: Array
     unilateral: NDArray[np.bool_]
     contact_row: Indices
+    bubble: Array
     contact_columns: Array
     modal_damping: Array
     modal_weight: Array
@@ -130,6 +132,7 @@ class Workspace(NamedTuple):
     elongation : (2, N) predicted, and its rate [m, m/s]
     shape : (P, W, 4) Hermite functions at the contacts
     element : (P,) element over each pantograph
+    stiffness : (P, W) of penalty and local flexibility of the wire in series [N/m]
     closing : (P, W) predicted overlap of head and wire [m]
     compliance : (P, W) relative acceleration that a newton of contact force causes [1/kg]
     """
@@ -139,5 +142,6 @@ class Workspace(NamedTuple):
     elongation: Array
     shape: Array
     element: Indices
+    stiffness: Array
     closing: Array
     compliance: Array

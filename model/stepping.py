@@ -9,6 +9,7 @@ from pantocheck.model import beam
 from pantocheck.model.beams import Beams
 from pantocheck.model.effective import factorise, half_width, inverse_columns, solve_rows
 from pantocheck.model.line import Discretised
+from pantocheck.model.local_flexibility import bubble_flexibility
 from pantocheck.model.modal_damping import modal_terms
 from pantocheck.model.state import Line
 
@@ -86,6 +87,7 @@ def time_stepping(line: Discretised, time_step: float, reach: float = math.inf, 
         preload=connectors.preload,
         unilateral=connectors.unilateral,
         contact_row=contact_row,
+        bubble=_bubbles(beams, line.contact_rows),
         contact_columns=contact_columns.reshape(contact_row.size, stations, 2, 2, 2 * width),
         modal_damping=modal.damping,
         modal_weight=modal.weight,
@@ -106,3 +108,17 @@ def _stiffness_entries(beams: Beams) -> Array:
             k = beam.stiffness(beams.length[e], beams.tension[row, e], beams.bending_stiffness[row, e])
             entries[row, :, e] = k[0, 0], k[0, 1], k[1, 1], k[1, 3]
     return entries
+
+
+def _bubbles(beams: Beams, rows: list[int]) -> Array:
+    """Flexibility of the elements of the contact wires between their stations; alike elements are worked out once."""
+    known: dict[tuple[float, float, float], Array] = {}
+    bubbles = np.zeros((len(rows), beams.length.size, 6))
+    for k, row in enumerate(rows):
+        for e in np.flatnonzero(beams.mass_per_length[row]):
+            data = (float(beams.length[e]), float(beams.tension[row, e]), float(beams.bending_stiffness[row, e]))
+            key = (round(data[0], 9), *data[1:])
+            if key not in known:
+                known[key] = bubble_flexibility(*data)
+            bubbles[k, e] = known[key]
+    return bubbles

@@ -8,7 +8,7 @@ from pantocheck.model.state import PIECE, Line, Motion, Workspace
 Array = NDArray[np.float64]
 
 
-@njit(cache=True, no_cpython_wrapper=True)
+@njit(cache=True)
 def predict_wires(dt: float, motion: Motion, first: int, last: int) -> None:
     """Turn displacement and velocity between two stations into Newmark's predictors, in place."""
     for now in (motion.w, motion.r):
@@ -20,7 +20,7 @@ def predict_wires(dt: float, motion: Motion, first: int, last: int) -> None:
                 v[s] += dt / 2 * a[s]
 
 
-@njit(cache=True, no_cpython_wrapper=True)
+@njit(cache=True)
 def correct_wires(dt: float, motion: Motion, first: int, last: int) -> None:
     """Turn the predictors back into displacement and velocity, with the accelerations that were found."""
     for now in (motion.w, motion.r):
@@ -32,7 +32,7 @@ def correct_wires(dt: float, motion: Motion, first: int, last: int) -> None:
                 v[s] += dt / 2 * a[s]
 
 
-@njit(cache=True, no_cpython_wrapper=True)
+@njit(cache=True)
 def wire_forces(line: Line, motion: Motion, work: Workspace, first: int, last: int) -> None:
     """Forces and moments that wires and lumped parts exert on the stations, in place of their accelerations.
 
@@ -64,7 +64,7 @@ def wire_forces(line: Line, motion: Motion, work: Workspace, first: int, last: i
             f[s] -= spring[s] * q[s] + damper[s] * v[s]
 
 
-@njit(cache=True, no_cpython_wrapper=True)
+@njit(cache=True)
 def _add_stiffness_forces(
     k11: Array, k12: Array, k22: Array, k24: Array, p: Array, t: Array, shear: Array, w: Array, r: Array
 ) -> None:
@@ -83,7 +83,7 @@ def _add_stiffness_forces(
         r1[e] -= k12[e] * (p0[e] - p1[e]) + k24[e] * t0[e] + k22[e] * t1[e]
 
 
-@njit(cache=True, no_cpython_wrapper=True)
+@njit(cache=True)
 def _add_mass_damping(c: float, scale: Array, length: Array, v: Array, u: Array, w: Array, r: Array) -> None:
     """Damping proportional to the consistent mass of beam elements, in velocities v and u of deflection and slope."""
     v0, v1, u0, u1 = v[:-1], v[1:], u[:-1], u[1:]

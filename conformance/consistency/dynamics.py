@@ -109,7 +109,10 @@ def _fit(motion: Array, response: Array) -> Fit:
 
 
 def _responses(file: PantographFile, force: Array, step: float) -> tuple[Array, Array]:
-    """Head's response to the force from rest, and its (n, 2 m + 1) free motions and the constant."""
+    """Head's response to the force from rest, and the (n, k) motions that are free: a constant and its modes.
+
+    Modes that decay or swing faster than the samples can follow have no part in filtered motions.
+    """
     from pantocheck.conformance.systems.passage import pantograph
 
     model = pantograph(file, 0.0, 0.0)
@@ -118,10 +121,13 @@ def _responses(file: PantographFile, force: Array, step: float) -> tuple[Array, 
     state = np.block([[np.zeros((m, m)), np.eye(m)], [-inverse @ model.stiffness, -inverse @ model.damping]])
     drive = np.concatenate([np.zeros(m), -inverse @ model.head])[:, None]
     head = np.concatenate([model.head, np.zeros(m)])[None]
-    system, time = (state, drive, head, np.zeros((1, 1))), step * np.arange(force.size)
-    response = lsim(system, force - force.mean(), time)[1]
-    free = [lsim(system, np.zeros(force.size), time, X0=start)[1] for start in np.eye(2 * m)]
-    return np.asarray(response), np.column_stack([np.ones(force.size), *free])
+    time = step * np.arange(force.size)
+    response = lsim((state, drive, head, np.zeros((1, 1))), force - force.mean(), time)[1]
+    poles = np.linalg.eigvals(state)
+    slow = poles[(poles.imag >= 0) & (np.abs(poles) < 2 * np.pi / (SAMPLES_PER_PERIOD * step))]
+    modes = np.exp(time[:, None] * slow)
+    drift = [time] if np.abs(poles).min() < 1e-3 else []  # without a spring to the base
+    return np.asarray(response), np.column_stack([np.ones(force.size), *drift, modes.real, modes.imag])
 
 
 def _without(signal: Array, free: Array) -> Array:

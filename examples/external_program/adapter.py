@@ -47,7 +47,8 @@ def write_input(case):
     Path("line.toml").write_text("\n".join(toml(sourced(case["line"]))), encoding="utf-8")
     uses = []
     for i, train in enumerate(case["pantographs"], 1):
-        model = {"title": f"pantograph {i}", "chain": train["chain"], "contact": train["contact"]}
+        parts = {key: train[key] for key in ("chain", "matrices", "modes", "contact") if train[key] is not None}
+        model = {"title": f"pantograph {i}", **parts}
         Path(f"pantograph{i}.toml").write_text("\n".join(toml(sourced(model))), encoding="utf-8")
         forces = {key: train[key] for key in ("uplift_force_N", "target_mean_force_N")}
         uses.append({"model": f"pantograph{i}.toml", **forces, **GIVEN})

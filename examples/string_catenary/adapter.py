@@ -21,6 +21,8 @@ def reason_to_skip(case):
         return "only one pantograph is supported"
     if trains[0]["uplift_force_N"] is None or trains[0]["target_mean_force_N"] is not None:
         return "the uplift force is not tuned"
+    if trains[0]["chain"] is None:
+        return "the pantograph has to be a chain of masses"
     if trains[0]["chain"]["base_spring_unstretched"] != "working_height":
         return "the base spring is unstretched at the working height here"
     if line["stitch_wire"] or line["contact_wire"]["number"] > 1 or line["damping"]["modal"]:

@@ -18,4 +18,4 @@ def test_conversation_follows_the_schemas():
     for side, message in messages:
         jsonschema.validate(message, schema_of("command-request" if side == ">" else "command-answer"))
     (case,) = select(["en50318-2002/250"])
-    assert messages[2][1]["case"] == given(case)
+    assert messages[2][1]["case"] == given(case), "the page shows an older case: put json.dumps(given(case)) there"

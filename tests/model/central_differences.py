@@ -11,7 +11,7 @@ from pantocheck.model.assembly import assemble, connector_directions, order, poi
 from pantocheck.model.equilibrium import Statics
 from scipy.sparse.linalg import splu
 
-from .lines import Array, without_connectors
+from .lines import Array, contact_stiffness, without_connectors
 
 
 def contact_force(line: Discretised, passage: Passage) -> Array:
@@ -47,11 +47,12 @@ def contact_force(line: Discretised, passage: Passage) -> Array:
     record = np.zeros(steps)
     for step in range(steps):
         # Forces at the start of the step, the pantograph where it is then.
-        share = point_load(line, row, passage.start[0] + passage.speed * dt * step)
+        here = passage.start[0] + passage.speed * dt * step
+        share = point_load(line, row, here)
         tension = connectors.stiffness * (pull @ q) + connectors.damping * (pull @ v)
         change = np.where(connectors.unilateral, np.maximum(tension, -connectors.preload), tension)
         closing = model.head @ z - share[free] @ q - share @ rest
-        force = max(0.0, model.contact_stiffness * closing)
+        force = max(0.0, contact_stiffness(line, row, here, model.contact_stiffness) * closing)
         record[step] = force
         v = v + dt * solve(share[free] * force - stiffness @ q - damping @ v - bars @ change)
         q = q + dt * v

@@ -15,7 +15,7 @@ from pantocheck.model.simulation import Passage
 from pantocheck.model.state import Motion, Train
 from scipy.linalg import solve
 
-from .lines import Array, without_connectors
+from .lines import Array, contact_stiffness, without_connectors
 
 
 @dataclass
@@ -82,8 +82,14 @@ class PlainNewmark:
         v0 = state.v + dt / 2 * state.a
         closing, rest_height = self._closing(state.time)
         bars = self.elongation
-        wires = len(self.line.contact_rows)
-        stiff = np.repeat([p.contact_stiffness for p in self.passage.pantographs], wires)
+        places = [x + self.passage.speed * state.time for x in self.passage.start]
+        stiff = np.array(
+            [
+                contact_stiffness(self.line, row, place, pantograph.contact_stiffness)
+                for pantograph, place in zip(self.passage.pantographs, places, strict=True)
+                for row in self.line.contact_rows
+            ]
+        )
         taut = ~line.unilateral | (state.tension > 0)
         touching = state.contact > 0
         for _ in range(100):

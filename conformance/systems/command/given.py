@@ -22,8 +22,7 @@ def given(case: Case) -> object:
         "line": case.line.model_dump(mode="json"),
         "pantographs": [
             {
-                "chain": model.chain.model_dump(mode="json"),
-                "contact": model.contact.model_dump(mode="json"),
+                **model.model_dump(mode="json", exclude={"title"}),
                 "uplift_force_N": use.uplift_force_N,
                 "target_mean_force_N": use.target_mean_force_N,
                 "start_m": case.start + case.offsets[-1] - behind,

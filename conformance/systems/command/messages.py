@@ -6,7 +6,7 @@ from typing import Annotated, Any, Final, Literal
 from pantocheck.conformance.cases.base import PROVENANCE, Table
 from pantocheck.conformance.cases.case_file import Discretisation, Filter
 from pantocheck.conformance.cases.line import Line
-from pantocheck.conformance.cases.pantograph import Chain, Contact
+from pantocheck.conformance.cases.pantograph import Chain, Contact, Matrices, Modes
 from pydantic import Field, TypeAdapter, ValidationError
 
 PROTOCOL: Final = "pantocheck.command/1"
@@ -27,9 +27,11 @@ class Start(Table):
 
 
 class GivenPantograph(Table):
-    """One pantograph of a run, in running order."""
+    """One pantograph of a run, in running order; one of chain, matrices and modes says what it is."""
 
-    chain: Chain
+    chain: Chain | None
+    matrices: Matrices | None
+    modes: Modes | None
     contact: Contact
     uplift_force_N: Annotated[float | None, Field(description="constant uplift force, or where tuning starts [N]")]
     target_mean_force_N: Annotated[
