@@ -9,6 +9,7 @@ from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.consistency import findings
 from pantocheck.conformance.criteria import Verdict, margin, verdict_of, worst
 from pantocheck.conformance.evaluation import LINE, Evaluation, Value, evaluate
+from pantocheck.conformance.extended_band import extended_band_warnings
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results import CaseResult, Criterion, FilterFacts, InputGroup, Number, RunFacts
 from pantocheck.conformance.spread import spread
@@ -52,6 +53,7 @@ def graded(case: Case, outcome: Outcome, lowest_trust: Trust) -> CaseResult:
             *(finding.text for finding in found if finding.kind == "doubt"),
             *_close_calls(criteria),
             *_edge_warnings(case, outcome),
+            *extended_band_warnings(outcome, evaluation, _refined(case, outcome)),
         ],
         notes=[f"not checked, {finding.text}" for finding in found if finding.kind == "unchecked"],
         criteria=criteria,
@@ -60,14 +62,21 @@ def graded(case: Case, outcome: Outcome, lowest_trust: Trust) -> CaseResult:
         spread={str(of): values for of, values in shifted.items()},
         traces=pantograph_traces(record, case.file.filter.low_pass, supports) if record is not None else {},
         uplift=uplift_traces(record) if record is not None else [],
+        charts=list(outcome.charts),
+        tables=list(outcome.tables),
     )
 
 
 def criteria_of(case: Case, outcome: Outcome, lowest_trust: Trust) -> list[Criterion]:
     """Every limit of a case against what was delivered; parameters as in `graded`."""
     evaluation = _evaluated(case, outcome)
-    refined = _evaluated(case, outcome.refined) if outcome.refined is not None else None
+    refined = _refined(case, outcome)
     return [criterion(limit, evaluation, lowest_trust, refined) for limit in case.limits]
+
+
+def _refined(case: Case, outcome: Outcome) -> Evaluation | None:
+    """Quantities of the same case with element and time step halved, where a system delivers that."""
+    return _evaluated(case, outcome.refined) if outcome.refined is not None else None
 
 
 def _mismatch(case: Case, outcome: Outcome) -> str | None:
@@ -137,7 +146,10 @@ def _evaluated(case: Case, outcome: Outcome) -> Evaluation:
     else:
         evaluation = evaluate(outcome.record, case.file.filter.low_pass)
     ordered = {name: outcome.static[name] for name in QUANTITIES if name in outcome.static}
-    return Evaluation({**evaluation.values, LINE: {**evaluation.values[LINE], **ordered}}, evaluation.skipped)
+    values = {**evaluation.values, LINE: {**evaluation.values[LINE], **ordered}}
+    for of, given in outcome.findings.items():
+        values[of] = {**values.get(of, {}), **{name: given[name] for name in QUANTITIES if name in given}}
+    return Evaluation(values, evaluation.skipped)
 
 
 def criterion(

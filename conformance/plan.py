@@ -35,6 +35,9 @@ class Plan(Table):
         float, Field(gt=0, le=100, description="how far a value may be from that of the baseline [%]")
     ] = 1.0
     jobs: Annotated[int, Field(ge=1, le=256, description="cases that are run side by side")] = 1
+    damping_study: Annotated[
+        bool, Field(description="run every case also with benchmark, initial and updated damping")
+    ] = False
 
 
 def read_plan(path: Path) -> Plan:

@@ -141,6 +141,50 @@ class UpliftTrace(Part):
     uplift_mm: list[float]
 
 
+class Series(Part):
+    """Data of a chart. `boxes` draws a box of the values of each x; `bars` stand side by side at the ticks."""
+
+    label: str
+    style: Literal["line", "points", "boxes", "bars"]
+    x: list[float]
+    y: list[float]
+    error: list[float] | None = None
+    """Half the length of each point's error bar."""
+
+
+class Mark(Part):
+    """A value that a publication prints, or a limit: a line across a chart, or a band where `high` is given."""
+
+    label: str
+    axis: Literal["x", "y"]
+    low: float
+    high: float | None = None
+
+
+class Chart(Part):
+    """A figure of a study."""
+
+    caption: str
+    alternative: str
+    x_label: str
+    y_label: str
+    x_scale: Literal["linear", "log"] = "linear"
+    y_scale: Literal["linear", "log"] = "linear"
+    ticks: list[str] | None = None
+    """Names at x = 0, 1, 2, ..."""
+    series: list[Series]
+    marks: list[Mark] = []
+    wide: bool = True
+
+
+class TextTable(Part):
+    """A table of a study, ready to be printed."""
+
+    caption: str
+    columns: list[str]
+    rows: list[list[str]]
+
+
 class CaseResult(Part):
     """All of one case. In `quantities`, `skipped` and `traces`, the key is the pantograph, `0` the line."""
 
@@ -166,6 +210,8 @@ class CaseResult(Part):
     run: RunFacts
     traces: dict[Owner, Traces]
     uplift: list[UpliftTrace]
+    charts: list[Chart] = []
+    tables: list[TextTable] = []
 
 
 class Results(Part):

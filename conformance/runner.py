@@ -11,6 +11,7 @@ from pantocheck.conformance.assembly import assembled, now
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.grading import graded, ungraded
 from pantocheck.conformance.results import CaseResult, Results, SystemIdentity
+from pantocheck.conformance.studies.dispatch import run_study
 from pantocheck.conformance.systems import System
 from pantocheck.conformance.trust import Trust
 
@@ -76,7 +77,7 @@ def run(
 def run_case(case: Case, system: System, trust: Trust) -> CaseResult:
     """Run one case and grade it; what its system raises ends as `error` with one line, so that the others go on."""
     try:
-        return graded(case, system.run(case), trust)
+        return graded(case, run_study(case, system), trust)
     except Exception as error:
         text = " ".join(str(error).split())[:300]
         return ungraded(case, "error", f"{type(error).__name__}: {text}" if text else type(error).__name__)

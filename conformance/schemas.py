@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 from pantocheck.conformance.cases.case_file import CaseFile
+from pantocheck.conformance.cases.damping import DampingFile
 from pantocheck.conformance.cases.limits import LimitsFile
 from pantocheck.conformance.cases.line import Line
 from pantocheck.conformance.cases.pantograph import Pantograph
@@ -19,6 +20,7 @@ _MODELS: dict[str, type[BaseModel]] = {
     "case": CaseFile,
     "line": Line,
     "pantograph": Pantograph,
+    "damping": DampingFile,
     "limits": LimitsFile,
     "plan": Plan,
     "record": Sidecar,

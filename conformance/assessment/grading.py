@@ -14,6 +14,7 @@ from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.criteria import Verdict, worst
 from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.evaluation import LINE
+from pantocheck.conformance.extended_band import not_validated
 from pantocheck.conformance.grading import criterion, plain
 from pantocheck.conformance.profiles import NoBound, Profile, Rule, bounds
 from pantocheck.conformance.quantities.bands import amplitude_spectrum
@@ -78,6 +79,7 @@ def assess(
             *(_of(one, warning, told) for one in told for warning in one.warnings),
             *graded.left_out,
             *_turning(graded.criteria, measured),
+            *not_validated(subject.values),
         ],
         inputs=[group for one in told for group in one.inputs],
         input_digest=f"sha256:{digest}",

@@ -2,14 +2,17 @@
 
 import hashlib
 import json
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from pantocheck.conformance.cases.base import PROVENANCE, Sourced
 from pantocheck.conformance.cases.case_file import CaseFile
+from pantocheck.conformance.cases.damping import Damping, overlaid
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.line import Line
 from pantocheck.conformance.cases.pantograph import Pantograph
+from pantocheck.conformance.cases.study import DampingSensitivity
 from pantocheck.conformance.trust import Trust
 
 
@@ -39,6 +42,7 @@ class Case:
     pantographs : one per [[pantograph]] table, in running order
     limits : those of the file, or a user's in their place
     measured : pantograph whose apparent mass a static case takes
+    dampings : other damping models that a study or a comparison needs, by name
     """
 
     file: CaseFile
@@ -46,6 +50,7 @@ class Case:
     pantographs: tuple[Pantograph, ...]
     limits: tuple[Limit, ...]
     measured: Pantograph | None = None
+    dampings: Mapping[str, Damping] = field(default_factory=dict)
 
     @property
     def id(self) -> str:
@@ -111,11 +116,21 @@ class Case:
         inputs = {
             "line": _numbers(self.line.model_dump(mode="json")),
             "pantographs": [_numbers(pantograph.model_dump(mode="json")) for pantograph in self.pantographs],
+            "case": _numbers(self.file.model_dump(mode="json", exclude=self._not_told)),
             "measured": None if self.measured is None else _numbers(self.measured.model_dump(mode="json")),
-            "case": _numbers(self.file.model_dump(mode="json", exclude={"limit", "line", "requires"})),
         }
+        if self.dampings and "study" not in self._not_told:
+            inputs["dampings"] = {name: _numbers(d.model_dump(mode="json")) for name, d in self.dampings.items()}
         text = json.dumps(inputs, sort_keys=True, separators=(",", ":"), allow_nan=False)
         return "sha256:" + hashlib.sha256(text.encode()).hexdigest()
+
+    @property
+    def _not_told(self) -> set[str]:
+        """Keys of the file that tell a system nothing, or nothing that the line does not tell already."""
+        unused = {key for key in ("mass_drop", "study") if getattr(self.file, key) is None}
+        if isinstance(self.file.study, DampingSensitivity):
+            unused.add("study")  # it runs the case as it is, and says more about it
+        return {"limit", "line", "requires", "damping", "on_request"} | unused
 
     @property
     def groups(self) -> dict[str, Sourced]:
@@ -125,6 +140,8 @@ class Case:
         for i, (use, model) in enumerate(zip(self.file.pantograph, self.pantographs, strict=True), 1):
             tables |= {f"pantograph {i}": use}
             tables |= {f"pantograph {i}.{name}": getattr(model, name) for name in type(model).model_fields}
+        tables |= {"mass_drop": self.file.mass_drop, "study": self.file.study}
+        tables |= {f"damping '{name}'": damping for name, damping in self.dampings.items()}
         if self.measured is not None:
             tables |= {f"pantograph.{name}": getattr(self.measured, name) for name in type(self.measured).model_fields}
         return {name: table for name, table in tables.items() if isinstance(table, Sourced)}
@@ -151,6 +168,16 @@ class Case:
         """The same case under other limits: one replaces that of the same quantity, the rest are added."""
         merged = {limit.target: limit for limit in (*self.limits, *limits)}
         return replace(self, limits=tuple(merged.values()))
+
+    def without_study(self) -> "Case":
+        """The same case as a system under test gets it: a plain run."""
+        return replace(self, file=self.file.model_copy(update={"study": None}), dampings={})
+
+    def with_damping(self, name: str, damping: Damping) -> "Case":
+        """The same case without limits and study, another damping laid over its line; its id ends in the name."""
+        file = self.file.model_copy(update={"id": f"{self.id}/{name}", "study": None, "limit": (), "requires": ()})
+        line = self.line.model_copy(update={"damping": overlaid(self.line.damping, damping)})
+        return replace(self, file=file, line=line, limits=(), dampings={})
 
 
 _SAID_OF_NUMBERS = frozenset({*PROVENANCE, "title", "id", "model"})

@@ -3,7 +3,10 @@
 from typing import Annotated, Literal
 
 from pantocheck.conformance.cases.base import PositiveList, Sourced, Table, problem
+from pantocheck.conformance.cases.damping import Damping
 from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.cases.mass_drop import MassDrop
+from pantocheck.conformance.cases.study import Study
 from pantocheck.conformance.quantities.filters import LowPass
 from pydantic import Field, model_validator
 
@@ -87,6 +90,15 @@ class CaseFile(Sourced):
     ]
     title: Annotated[str, Field(max_length=200, description="what it is")]
     line: Annotated[FileName, Field(description="line file, relative to the case file")]
+    damping: Annotated[
+        FileName | Damping | None,
+        Field(
+            description="laid over the line's damping: a damping file, relative to the case file, or the table itself"
+        ),
+    ] = None
+    on_request: Annotated[
+        bool, Field(description="left out of a run that names no case: it takes minutes, or is expected to fail")
+    ] = False
     requires: Annotated[
         tuple[str, ...], Field(strict=False, max_length=100, description="ids of cases that must pass first")
     ] = ()
@@ -122,6 +134,8 @@ class CaseFile(Sourced):
         PositiveList | None, Field(description="distances between the pantographs, from the front [m]")
     ] = None
     pantograph: Annotated[tuple[PantographUse, ...], Field(strict=False, max_length=20)] = ()
+    mass_drop: Annotated[MassDrop | None, Field(description="drops of a mass, in place of a train")] = None
+    study: Annotated[Study | None, Field(description="several runs that are compared")] = None
     apparent_mass: ApparentMass | None = None
     filter: Filter = Filter()
     discretisation: Discretisation = Discretisation()
@@ -129,6 +143,7 @@ class CaseFile(Sourced):
 
     @model_validator(mode="after")
     def _consistent(self) -> "CaseFile":
+        self._check_study()
         if self.speed_km_h is None:
             if self.pantograph:
                 raise problem("speed_km_h", "missing", "Give the speed of the train in km/h, e.g. speed_km_h = 250.0 .")
@@ -164,6 +179,17 @@ class CaseFile(Sourced):
             )
         self._check_limits()
         return self
+
+    def _check_study(self) -> None:
+        if self.mass_drop is not None and self.speed_km_h is not None:
+            raise problem("mass_drop", "a train and a mass drop in one case", "Make two cases of it.")
+        if self.study is None:
+            return
+        drops = self.study.kind in {"release-velocity", "steady-arm-damper"}
+        if drops and self.mass_drop is None:
+            raise problem("mass_drop", "missing", f"A study of kind {self.study.kind} compares mass drops.")
+        if not drops and self.speed_km_h is None:
+            raise problem("speed_km_h", "missing", f"A study of kind {self.study.kind} compares runs of a train.")
 
     def _check_limits(self) -> None:
         seen = set()

@@ -7,6 +7,7 @@ from itertools import pairwise
 from typing import Annotated
 
 from pantocheck.conformance.cases.base import Sourced, Table, problem
+from pantocheck.conformance.trust import LEVELS
 from pydantic import Field, model_validator
 
 
@@ -58,3 +59,26 @@ class Damping(Sourced):
                     "A mode can only have one damping ratio.",
                 )
         return self
+
+
+class DampingFile(Table):
+    """A damping model in a file of its own, as `pantocheck fit-damping` writes it."""
+
+    damping: Damping
+
+
+def overlaid(damping: Damping, over: Damping) -> Damping:
+    """Damping of a line with another laid over it: the kinds and modal bands of `over` replace its own."""
+    said = over.model_fields_set - {"trust", "source", "provisional", "note"}
+    kinds = {"contact_wire", "messenger_wire", "stitch_wire", "droppers", "steady_arms"}
+    kept = kinds & damping.model_fields_set - said
+    changes: dict[str, object] = {key: getattr(over, key) for key in (*said, "trust", "source", "provisional", "note")}
+    if kept:
+        changes["trust"] = max(damping.trust, over.trust, key=LEVELS.index)
+        changes["source"] = list(dict.fromkeys((*_listed(over.source), *_listed(damping.source))))
+    # A modal band keeps its meaning only with the model it was fitted with.
+    return damping.model_copy(update={"modal": (), **changes})
+
+
+def _listed(source: str | list[str]) -> list[str]:
+    return [source] if isinstance(source, str) else source

@@ -9,6 +9,8 @@ from pathlib import Path
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import CaseFile
+from pantocheck.conformance.cases.damping import Damping, DampingFile
+from pantocheck.conformance.cases.damping import overlaid as overlaid_damping
 from pantocheck.conformance.cases.limits import LimitOverride, LimitsFile
 from pantocheck.conformance.cases.line import Line
 from pantocheck.conformance.cases.pantograph import Pantograph
@@ -38,7 +40,7 @@ def library_ids(folder: Path) -> dict[str, Path]:
 def select(patterns: Sequence[str]) -> list[Case]:
     """Cases for ids, globs and paths of case files, in the order asked, those they require put before them.
 
-    Without a pattern: every case of the library that has limits.
+    Without a pattern: every case of the library that has limits and is not marked to be run on request only.
 
     Raises
     ------
@@ -50,8 +52,9 @@ def select(patterns: Sequence[str]) -> list[Case]:
         for path in _matching(pattern, known):
             _add(load(path), known, chosen, ())
     if not patterns:
-        needed = {required for case in chosen.values() if case.limits for required in case.file.requires}
-        return [case for case in chosen.values() if case.limits or case.id in needed]
+        graded = {case.id for case in chosen.values() if case.limits and not case.file.on_request}
+        needed = {required for case in chosen.values() if case.id in graded for required in case.file.requires}
+        return [case for case in chosen.values() if case.id in graded | needed]
     return list(chosen.values())
 
 
@@ -96,6 +99,9 @@ def load(path: Path) -> Case:
     """
     file = read_model(path, CaseFile, "case")
     line = read_model(_beside(path, file.line, "line"), Line, "reference line")
+    if file.damping is not None:
+        over = _damping(path, file.damping, "damping") if isinstance(file.damping, str) else file.damping
+        line = line.model_copy(update={"damping": overlaid_damping(line.damping, over)})
     pantographs = tuple(
         read_model(_beside(path, use.model, f"pantograph[{i}].model"), Pantograph, "pantograph")
         for i, use in enumerate(file.pantograph, 1)
@@ -104,9 +110,22 @@ def load(path: Path) -> Case:
     if file.apparent_mass is not None:
         beside = _beside(path, file.apparent_mass.model, "apparent_mass.model")
         measured = read_model(beside, Pantograph, "pantograph")
-    case = Case(file, line, pantographs, file.limit, measured)
+    case = Case(file, line, pantographs, file.limit, measured, _dampings(path, file))
     _check_geometry(case, path)
+    _check_drops(case, path)
     return case
+
+
+def _damping(case_path: Path, name: str, key: str) -> Damping:
+    return read_model(_beside(case_path, name, key), DampingFile, "damping").damping
+
+
+def _dampings(path: Path, file: CaseFile) -> dict[str, Damping]:
+    """The other damping models that a case names, read."""
+    named = dict(file.mass_drop.compared) if file.mass_drop is not None else {}
+    if file.study is not None:
+        named |= getattr(file.study, "models", {}) | getattr(file.study, "before", {})
+    return {name: _damping(path, found, f"damping model {name!r}") for name, found in named.items()}
 
 
 def _beside(case_path: Path, name: str, key: str) -> Path:
@@ -144,6 +163,29 @@ def _check_geometry(case: Case, path: Path) -> None:
             f"{where}, key run_out_m",
             f"the first pantograph would run to {front:g} m on a line of {length:g} m",
             "Add spans, evaluate earlier ones, or shorten run_out_m.",
+        )
+
+
+def _check_drops(case: Case, path: Path) -> None:
+    drops = case.file.mass_drop
+    if drops is None:
+        return
+    length, where = case.line.geometry.span_m * case.line.geometry.spans, f"case '{path.name}'"
+    places = {"drop": [test.x_m for test in drops.drop], "sensor": [sensor.x_m for sensor in drops.sensor]}
+    for name, along in places.items():
+        for i, x in enumerate(along, 1):
+            if not 0 < x < length:
+                raise InputError(
+                    f"{where}, key mass_drop.{name}[{i}].x_m",
+                    f"{x:g} m is not on the line",
+                    f"The line goes from 0 to {length:g} m, its ends anchored.",
+                )
+    step, every = case.file.discretisation.time_step_s, 1 / drops.rate_Hz
+    if abs(every / step - round(every / step)) > 1e-6:
+        raise InputError(
+            f"{where}, key mass_drop.rate_Hz",
+            f"a sample every {every:g} s is not a whole number of time steps of {step:g} s",
+            f"Give a rate that divides {1 / step:g} Hz, e.g. {1 / step / max(1, round(every / step)):g} .",
         )
 
 

@@ -96,7 +96,7 @@ def _walk(model: type[BaseModel], location: tuple[int | str, ...]) -> tuple[type
         if isinstance(part, int):
             key += f"[{part + 1}]"
             continue
-        member = next((model for model in _models_in(inner) if model.__name__ == part), None)
+        member = next((model for model in _models_in(inner) if part in _names_in_unions(model)), None)
         holder = next(iter(_models_in(inner)), None)
         if member is not None or holder is None:
             inner = member or inner
@@ -106,6 +106,12 @@ def _walk(model: type[BaseModel], location: tuple[int | str, ...]) -> tuple[type
         key += f".{name}" if key else name
         inner = field.annotation if field is not None else None
     return table, field, key
+
+
+def _names_in_unions(model: type[BaseModel]) -> tuple[str, ...]:
+    """What a place inside a member of a union is called after: the model, or the tag in its key `kind`."""
+    kind = model.model_fields.get("kind")
+    return (model.__name__, *(typing.get_args(kind.annotation) if kind is not None else ()))
 
 
 def _models_in(annotation: Any) -> list[type[BaseModel]]:

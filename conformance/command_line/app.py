@@ -5,6 +5,7 @@ from typing import Annotated
 import typer
 from pantocheck.conformance.command_line.assess import assess
 from pantocheck.conformance.command_line.cases import cases
+from pantocheck.conformance.command_line.drop import drop
 from pantocheck.conformance.command_line.fit_damping import fit_damping
 from pantocheck.conformance.command_line.guard import guarded
 from pantocheck.conformance.command_line.identify import identify
@@ -24,7 +25,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
-for command in (run, assess, cases, show, simulate, identify, fit_damping, verify, schema, self_test):
+for command in (run, assess, cases, show, simulate, drop, identify, fit_damping, verify, schema, self_test):
     app.command()(guarded(command))
 
 

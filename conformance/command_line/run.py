@@ -38,6 +38,10 @@ def run(
         float | None, typer.Option(help="How far a value may drift from the baseline, in percent.  [default: 1]")
     ] = None,
     jobs: Annotated[int | None, typer.Option(help="Cases run side by side.", show_default="1")] = None,
+    damping_study: Annotated[
+        bool,
+        typer.Option("--damping-study", help="Run every case also with benchmark, initial and updated damping."),
+    ] = False,
     timeout: Annotated[
         float | None, typer.Option(help="Seconds that a program may take for a case.", show_default="600")
     ] = None,
@@ -47,6 +51,8 @@ def run(
     Examples:
 
     pantocheck run 'en50318-2002/*' --out report
+
+    pantocheck run en50318-2002/250 --damping-study
 
     pantocheck run my-case.toml --system record:records --formats html,json
 
@@ -80,11 +86,16 @@ def run(
         baseline=None if baseline is None else str(baseline),
         drift_pct=drift,
         jobs=jobs,
+        damping_study=damping_study or None,
         timeout_s=timeout,
     )
     chosen = select(options.cases)
     if options.limits is not None:
         chosen = overlaid(chosen, read_limits(Path(options.limits)))
+    if options.damping_study:
+        from pantocheck.conformance.studies.damping_sensitivity import with_damping_study
+
+        chosen = [with_damping_study(case) for case in chosen]
     written = checked_formats(options.formats)
     earlier = None if options.baseline is None else read_results(Path(options.baseline))
     tested, folder = system_named(options.system, options.timeout_s), Path(options.out)

@@ -10,7 +10,7 @@ def schema(
     name: Annotated[
         str | None,
         typer.Argument(
-            help="case, line, pantograph, limits, plan, record, summary, profile, results, command-request or "
+            help="case, line, pantograph, damping, limits, plan, record, summary, profile, results, command-request or "
             "command-answer; without: all"
         ),
     ] = None,

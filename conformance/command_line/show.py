@@ -112,6 +112,7 @@ def _parts(case: "Case") -> list["RenderableType"]:
 def _numbers(table: "Sourced") -> list[tuple[str, str]]:
     """Keys of a table as its file has them, tables inside it with dots; what was left out has no source to show."""
     said = {"trust", "source", "provisional", "note", "id", "title", "line", "model", "requires", "limit", "pantograph"}
+    said |= {"mass_drop", "study"}  # groups of their own
     return _flat(table.model_dump(mode="json", exclude={*said, "discretisation"}, exclude_unset=True))
 
 

@@ -2,31 +2,12 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
+from pantocheck.conformance.quantities.kinds import Quantity
 from pantocheck.conformance.quantities.signals import ForceSignals, LineSignals
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, contact_loss, statistical_extremes
-
-
-@dataclass(frozen=True)
-class Quantity:
-    """A number that can be graded.
-
-    Parameters
-    ----------
-    name : as it stands in case files and results, the unit at its end
-    unit : as printed; empty for a ratio
-    definition : one sentence
-    needs : what a record, or a static check, must deliver for it
-    scope : `pantograph` (one value each), `line` (one value a run), `static` (of the line at rest), `mass_drop`
-    """
-
-    name: str
-    unit: str
-    definition: str
-    needs: str
-    scope: Literal["pantograph", "line", "static", "mass_drop"]
+from pantocheck.conformance.quantities.study import STUDY_QUANTITIES
 
 
 @dataclass(frozen=True)
@@ -239,8 +220,9 @@ GIVEN_QUANTITIES: tuple[Quantity, ...] = (
     ),
     Quantity("mode_frequency_Hz", "Hz", "frequency of a mode, or of a group of modes", "mass-drop record", "mass_drop"),
     Quantity("damping_ratio", "", "damping ratio of a mode, or of a group of modes", "mass-drop record", "mass_drop"),
+    *STUDY_QUANTITIES,
 )
-"""Quantities that a static check or an identification delivers as numbers; nothing is computed from a record."""
+"""Quantities that a static check, an identification or a study delivers; nothing is computed from a single record."""
 
 QUANTITIES: dict[str, Quantity] = {
     quantity.name: quantity for quantity in (*PANTOGRAPH_QUANTITIES, *LINE_QUANTITIES, *GIVEN_QUANTITIES)

@@ -4,9 +4,9 @@ import json
 from functools import lru_cache
 from typing import Any
 
-from pantocheck.conformance.reports import facts, figures, reasons, tables
+from pantocheck.conformance.reports import charts, facts, figures, reasons, tables
 from pantocheck.conformance.reports.criteria_rows import criterion
-from pantocheck.conformance.reports.page import Case, Figure, Input, Page
+from pantocheck.conformance.reports.page import Case, Figure, Input, Page, TextTable
 from pantocheck.conformance.reports.text import cleaned, number, plain
 from pantocheck.conformance.reports.words import words
 
@@ -53,6 +53,10 @@ def _case(case: dict[str, Any], at: int) -> Case:
         bands=tables.bands(case),
         quantities=tables.quantities(case),
         skipped=tables.skipped(case),
+        tables=tuple(
+            TextTable(one["caption"], tuple(one["columns"]), tuple(tuple(row) for row in one["rows"]))
+            for one in case.get("tables") or []
+        ),
         figures=_figures(case),
         inputs=tuple(Input(one["group"], one["trust"], one.get("source") or "") for one in case.get("inputs") or []),
         notes=tuple(case.get("notes") or []),
@@ -68,14 +72,16 @@ def error_name(case: dict[str, Any]) -> str:
 
 
 def _figures(case: dict[str, Any]) -> tuple[Figure, ...]:
-    return _drawn(json.dumps({key: case.get(key) for key in ("traces", "uplift", "criteria", "quantities")}))
+    return _drawn(json.dumps({key: case.get(key) for key in ("charts", "traces", "uplift", "criteria", "quantities")}))
 
 
 @lru_cache(maxsize=32)
 def _drawn(content: str) -> tuple[Figure, ...]:
     """Figures of the parts of a case that are drawn. Drawing takes most of a page's time, so HTML and PDF share it."""
     case = json.loads(content)
-    drawn: list[Figure] = []
+    drawn = [
+        Figure(charts.chart(one), one["alternative"], one["caption"], one["wide"]) for one in case.get("charts") or []
+    ]
     for key, trace in sorted((case.get("traces") or {}).items(), key=lambda item: (len(item[0]), item[0])):
         rows = [row for row in case["criteria"] if str(row.get("pantograph")) == key]
         if trace.get("position_m"):

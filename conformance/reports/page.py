@@ -35,6 +35,15 @@ class Table:
 
 
 @dataclass(frozen=True)
+class TextTable:
+    """A table of a study: names of the columns, rows of texts."""
+
+    caption: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+
+@dataclass(frozen=True)
 class Figure:
     """A drawn figure, the sentence under it, and what it shows to who cannot see it."""
 
@@ -68,6 +77,7 @@ class Case:
     bands: Table
     quantities: Table
     skipped: tuple[tuple[str, str, str], ...]
+    tables: tuple[TextTable, ...]
     figures: tuple[Figure, ...]
     inputs: tuple[Input, ...]
     notes: tuple[str, ...]

@@ -8,6 +8,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.consistency import findings
 from pantocheck.conformance.criteria import Verdict, worst
 from pantocheck.conformance.errors import InputError
+from pantocheck.conformance.extended_band import ABOUT
 from pantocheck.conformance.grading import criteria_of, graded
 from pantocheck.conformance.results import CaseResult
 from pantocheck.conformance.self_test.mutants import MILD, MUTANTS, Mutant
@@ -127,4 +128,5 @@ def _row(mutant: Mutant, case: Case, right: Outcome) -> Row:
 
 def _reason(result: CaseResult) -> str:
     failed = [f"{item.quantity} {item.reason}" for item in result.criteria if item.verdict == "fail"]
-    return result.reason or "; ".join([*failed, *result.warnings])
+    own = [warning for warning in result.warnings if not warning.startswith(ABOUT)]  # those are said of any system
+    return result.reason or "; ".join([*failed, *own])

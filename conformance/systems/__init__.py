@@ -6,6 +6,7 @@ from typing import Literal, Protocol
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.evaluation import Evaluation, Value
 from pantocheck.conformance.record import Record
+from pantocheck.conformance.results import Chart, TextTable
 
 
 @dataclass(frozen=True)
@@ -23,6 +24,8 @@ class Outcome:
     warnings : what should make him careful
     skipped : why the system does not run this case; None if it did
     errored : one line on what went wrong; None if nothing did
+    findings : quantities of a study, by pantograph (0: the line) and name
+    charts, tables : of a study, for the report
     summary : quantities that were delivered as numbers, in place of a record
     refined : the same case with element and time step halved, from which the discretisation error is taken
     """
@@ -37,6 +40,9 @@ class Outcome:
     warnings: tuple[str, ...] = ()
     skipped: str | None = None
     errored: str | None = None
+    findings: dict[int, dict[str, Value]] = field(default_factory=dict)
+    charts: tuple[Chart, ...] = ()
+    tables: tuple[TextTable, ...] = ()
     summary: Evaluation | None = None
     refined: "Outcome | None" = None
 

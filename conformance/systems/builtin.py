@@ -82,7 +82,7 @@ def run_line(
         return outcome, ()
     uses = case.file.pantograph
     begin = uplift_forces or tuple(use.uplift_force_N or use.target_mean_force_N or 0.0 for use in uses)
-    run(line, replace(_passage(case, line, step, begin), duration=0.0))  # compiles the kernels, not part of the run
+    run(line, replace(passage_of(case, line, step, begin), duration=0.0))  # compiles the kernels, not part of the run
     made, forces = tuned(
         lambda forces: _run(case, line, step, forces),
         _means,
@@ -93,10 +93,10 @@ def run_line(
 
 
 def _run(case: Case, line: Discretised, step: float, uplift_forces: tuple[float, ...]) -> Run:
-    passage = _passage(case, line, step, uplift_forces)
+    passage = passage_of(case, line, step, uplift_forces)
     begin = time.perf_counter()
     history = run(line, passage)
-    return Run(_record(case, passage, history), passage.duration, time.perf_counter() - begin)
+    return Run(record_of(case, passage, history), passage.duration, time.perf_counter() - begin)
 
 
 def _means(made: Run) -> NDArray[np.float64]:
@@ -106,7 +106,8 @@ def _means(made: Run) -> NDArray[np.float64]:
     return np.array([force[here].mean() for force, here in zip(record.force, inside, strict=True)])
 
 
-def _passage(case: Case, line: Discretised, step: float, uplift_forces: tuple[float, ...]) -> Passage:
+def passage_of(case: Case, line: Discretised, step: float, uplift_forces: tuple[float, ...]) -> Passage:
+    """The passage of a case with given uplift forces, on a line that is discretised already."""
     places = along_span(case.evaluated[0], case.line.geometry.span_m)
     models = []
     for file, force in zip(case.pantographs, uplift_forces, strict=True):
@@ -126,7 +127,8 @@ def _passage(case: Case, line: Discretised, step: float, uplift_forces: tuple[fl
     )
 
 
-def _record(case: Case, passage: Passage, history: History) -> Record:
+def record_of(case: Case, passage: Passage, history: History) -> Record:
+    """The record of a case's passage."""
     return Record(
         time=history.time,
         speed=passage.speed,

@@ -162,7 +162,7 @@ def test_short_run_out_is_warned_of(case_250, wave):
     )  # fmt: skip
     (result,) = run([case_250], Scripted({case_250.id: Outcome(cut)})).cases
     assert any("run-out" in warning for warning in result.warnings)
-    assert run([case_250], wave()).cases[0].warnings == []
+    assert not any("run-out" in warning for warning in run([case_250], wave()).cases[0].warnings)
 
 
 def test_value_nearer_to_its_limit_than_its_discretisation_error_is_warned_of(case_250, wave):
@@ -170,7 +170,7 @@ def test_value_nearer_to_its_limit_than_its_discretisation_error_is_warned_of(ca
     for upper, warned in ((28.2, True), (28.4, False)):
         (result,) = run([limited(case_250, ("std_force_N", None, upper))], wave()).cases
         assert result.verdict == "pass"
-        assert bool(result.warnings) == warned
+        assert any("discretisation error" in warning for warning in result.warnings) == warned
 
 
 def test_list_valued_static_quantity_is_graded_item_by_item(case_250, wave):

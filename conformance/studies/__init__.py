@@ -1,0 +1,1 @@
+"""Studies: mass drops with their identification, and comparisons of several runs."""

@@ -1,0 +1,101 @@
+"""One passage under several damping models, side by side: how much a line's contact force owes to its damping."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.damping import DampingFile
+from pantocheck.conformance.cases.library import library_folder
+from pantocheck.conformance.cases.study import DampingSensitivity
+from pantocheck.conformance.cases.toml_file import read_model
+from pantocheck.conformance.evaluation import LINE, Value, evaluate
+from pantocheck.conformance.results import TextTable
+from pantocheck.conformance.studies.force_charts import bars
+from pantocheck.conformance.systems import Outcome, System
+
+MODELS = {name: f"vovan2015/damping/{name}.toml" for name in ("benchmark", "initial", "updated")}
+"""Damping files of the library that a study of any line uses."""
+BANDS = ("rms_0_5_N", "rms_5_20_N", "rms_20_50_N")
+ROWS = (
+    "mean_force_N",
+    "std_force_N",
+    "std_force_50_N",
+    "cov_20",
+    "cov_50",
+    *BANDS,
+    "max_force_N",
+    "min_force_N",
+    "contact_loss_pct",
+    "max_uplift_at_support_mm",
+)
+OWN = "of the case"
+
+Values = Mapping[int, Mapping[str, Value]]
+
+
+def with_damping_study(case: Case) -> Case:
+    """A case that is also run with the library's damping models; what has no train, or is a study, stays as it is.
+
+    Raises
+    ------
+    InputError : a damping file of the library is damaged
+    """
+    if case.is_static or case.file.study is not None:
+        return case
+    dampings = {
+        name: read_model(library_folder() / path, DampingFile, "damping").damping for name, path in MODELS.items()
+    }
+    study = DampingSensitivity(
+        kind="damping-sensitivity", models=MODELS, trust="provisional", source="damping models of vovan2015"
+    )
+    return replace(case, file=case.file.model_copy(update={"study": study}), dampings=dampings)
+
+
+def damping_sensitivity(case: Case, system: System) -> Outcome:
+    """Run a case as it is, and once more with each of its other damping models.
+
+    Parameters
+    ----------
+    case : a passage
+    system : under test
+    """
+    outcome = system.run(case.without_study())
+    if outcome.record is None:
+        return outcome
+    values, missing = {OWN: evaluate(outcome.record, case.file.filter.low_pass).values}, []
+    for name, damping in case.dampings.items():
+        run = _once(system, case.with_damping(name, damping))
+        if run.record is None:
+            missing.append(f"damping '{name}': {run.errored or run.skipped or 'no record was delivered'}")
+        else:
+            values[name] = evaluate(run.record, case.file.filter.low_pass).values
+    return replace(
+        outcome,
+        warnings=(*outcome.warnings, *missing),
+        charts=(*outcome.charts, *bars(values, {}, BANDS)),
+        tables=(*outcome.tables, _table(values)),
+    )
+
+
+def _once(system: System, case: Case) -> Outcome:
+    """A run without its refinement pair, where the system can be asked for one."""
+    from pantocheck.conformance.systems.builtin import ReferenceSimulator
+
+    return system.run_unrefined(case) if isinstance(system, ReferenceSimulator) else system.run(case)
+
+
+def _table(values: Mapping[str, Values]) -> TextTable:
+    owners = sorted({of for found in values.values() for of in found}, key=lambda of: (of == LINE, of))
+    rows = []
+    for of in owners:
+        for quantity in ROWS:
+            cells = [found.get(of, {}).get(quantity) for found in values.values()]
+            if any(isinstance(cell, float) for cell in cells):
+                who = "line" if of == LINE else f"pantograph {of}"
+                texts = [f"{cell:.4g}" if isinstance(cell, float) else "-" for cell in cells]
+                rows.append([quantity, who, *texts])
+    return TextTable(
+        caption="Damping sensitivity: the same run under several damping models",
+        columns=["Quantity", "Of", *values],
+        rows=rows,
+    )

@@ -1,0 +1,41 @@
+"""Findings of a publication in a table: what it says, what was computed, and whether they agree."""
+
+from collections.abc import Mapping, Sequence
+
+from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.criteria import verdict_of
+from pantocheck.conformance.evaluation import Value
+from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.results import TextTable
+
+Values = Mapping[int, Mapping[str, Value]]
+
+
+def findings_table(limits: Sequence[Limit], computed: Values, printed: Values) -> TextTable:
+    """One row per limit of a case: the finding in words, printed and computed value, reproduced or not.
+
+    Parameters
+    ----------
+    limits : of the case; their notes are the findings in words
+    computed, printed : by pantograph and name
+    """
+    rows = []
+    for limit in limits:
+        value = _one(computed, limit)
+        verdict = "not evaluated" if value is None else verdict_of(value, limit.lower, limit.upper)
+        said = {"pass": "reproduced", "fail": "not reproduced"}.get(verdict, verdict)
+        unit = QUANTITIES[limit.quantity].unit
+        rows.append([limit.note or limit.quantity, _text(_one(printed, limit), unit), _text(value, unit), said])
+    return TextTable(caption="Findings", columns=["Finding", "Printed", "Computed", "Verdict"], rows=rows)
+
+
+def _one(values: Values, limit: Limit) -> float | None:
+    value = values.get(limit.of, {}).get(limit.quantity)
+    if isinstance(value, tuple):
+        at = (limit.item or 1) - 1
+        return value[at] if at < len(value) else None
+    return value
+
+
+def _text(value: float | None, unit: str) -> str:
+    return "-" if value is None else f"{value:.3g} {unit}".strip()

@@ -1,0 +1,54 @@
+"""Charts and tables of studies on the pages: drawn with what is printed, and in both formats."""
+
+import pytest
+from pantocheck.conformance.reports.charts import chart
+from pantocheck.conformance.reports.composition import page
+from pantocheck.conformance.reports.html import render
+from pantocheck.conformance.results import Chart, Mark, Series, TextTable
+
+LINE = Series(label="computed", style="line", x=[1e-6, 1e-3, 1.0], y=[3.0, 2.0, 1.0])
+
+
+def drawn(**parts):
+    given = {"caption": "c", "alternative": "a", "x_label": "x [s]", "y_label": "y [N]", "series": [LINE]}
+    return chart(Chart.model_validate(given | parts).model_dump())
+
+
+def test_same_data_same_bytes():
+    assert drawn() == drawn()
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"marks": [Mark(label="printed", axis="y", low=2.5)]},
+        {"marks": [Mark(label="printed", axis="x", low=1e-4, high=1e-2)]},
+        {"x_scale": "log"},
+        {"series": [LINE.model_copy(update={"style": "points", "error": [0.1, 0.1, 0.1]})]},
+        {"series": [LINE.model_copy(update={"style": "boxes", "x": [1.0, 1.0, 2.0]})]},
+        {
+            "series": [LINE.model_copy(update={"style": "bars", "x": [0.0, 1.0, 2.0]})],
+            "ticks": ["0-5", "5-20", "20-50"],
+        },
+        {"wide": False},
+    ],
+)
+def test_everything_a_chart_can_hold_changes_the_drawing(change):
+    assert drawn(**change) != drawn()
+
+
+def test_negative_values_are_not_cut_off():
+    """An axis that starts at zero would hide half of a velocity."""
+    assert drawn(series=[LINE.model_copy(update={"y": [-3.0, 2.0, 1.0]})]) != drawn()
+
+
+def test_tables_and_charts_stand_on_the_page_escaped(results):
+    case = results["cases"][0]
+    case["charts"] = [Chart(caption="Figure of a study", alternative="what it shows", x_label="x", y_label="y",
+                            series=[LINE]).model_dump()]  # fmt: skip
+    table = TextTable(caption="Findings", columns=["Finding", "Verdict"], rows=[["<b>less</b> in front", "reproduced"]])
+    case["tables"] = [table.model_dump()]
+    text = render(results)
+    assert "Figure of a study" in text
+    assert "&lt;b&gt;less&lt;/b&gt; in front" in text
+    assert page(results).cases[0].tables[0].rows == (("<b>less</b> in front", "reproduced"),)

@@ -1,0 +1,57 @@
+"""A case under several damping models side by side."""
+
+from dataclasses import dataclass
+
+from pantocheck.conformance.cases.library import select
+from pantocheck.conformance.runner import run
+from pantocheck.conformance.studies.damping_sensitivity import MODELS, OWN, with_damping_study
+from pantocheck.conformance.systems import Outcome
+
+
+def told_apart(wave):
+    """A system whose deviation follows the case's damping: 20 N and 1e5 N/s for every second of it."""
+
+    @dataclass(frozen=True)
+    class Damped(wave):
+        def run(self, case):
+            stiffness = case.line.damping.contact_wire.stiffness_coefficient_s
+            return Outcome(wave(sigma=20 + 1e5 * stiffness).record(case))
+
+    return Damped()
+
+
+def test_every_model_has_a_column_of_its_own(case_250, wave):
+    studied = with_damping_study(case_250)
+    (result,) = run([studied], told_apart(wave)).cases
+    (table,) = result.tables
+    assert table.columns == ["Quantity", "Of", OWN, *MODELS]
+    rows = {(row[0], row[1]): row[2:] for row in table.rows}
+    # The case and the benchmark have 1e-4 s, the initial model 2.35e-4 s.
+    updated = studied.dampings["updated"].contact_wire.stiffness_coefficient_s
+    assert rows["std_force_N", "pantograph 1"] == ["30", "30", "43.5", f"{20 + 1e5 * updated:.4g}"]
+    assert rows["max_uplift_at_support_mm", "line"] == ["50", "50", "50", "50"]
+    assert len(result.charts) == 1
+
+
+def test_the_case_is_graded_as_without_the_study(case_250, wave):
+    plain, studied = (run([case], wave()).cases[0] for case in (case_250, with_damping_study(case_250)))
+    assert studied.criteria == plain.criteria
+    assert studied.input_digest == plain.input_digest
+
+
+def test_a_system_that_cannot_run_a_model_is_named_in_a_warning(case_250, wave):
+    @dataclass(frozen=True)
+    class Only(wave):
+        def run(self, case):
+            return wave().run(case) if case.id == case_250.id else Outcome(skipped="there is no record of this case")
+
+    (result,) = run([with_damping_study(case_250)], Only()).cases
+    assert [w for w in result.warnings if w.startswith("damping '")] == [
+        f"damping '{name}': there is no record of this case" for name in MODELS
+    ]
+    assert result.tables[0].columns == ["Quantity", "Of", OWN]
+
+
+def test_static_cases_and_studies_stay_as_they_are():
+    for case in select(["en50318-2018/ac-simple/static", "vovan2015/contact-force"]):
+        assert with_damping_study(case) is case

@@ -1,0 +1,83 @@
+"""The dropper's compensation force against its stiffness coefficient: where it changes, and what locks a dropper."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.testing import assert_allclose
+from pantocheck.conformance.cases.library import select
+from pantocheck.conformance.evaluation import LINE
+from pantocheck.conformance.studies.dropper_damping import dropper_damping, transition
+from pantocheck.model import Kind, Rayleigh, discretise
+from pantocheck.model.drop import Drop, drop
+from pantocheck.model.dropper_laws import with_viscous_part_kept
+from pantocheck.model.line import with_damping
+
+from tests.conformance.studies.computed_modes import verdicts
+from tests.model.lines import simple_line
+
+COEFFICIENTS = np.geomspace(1e-6, 1e-1, 51)
+
+
+def low_pass_curve(corner):
+    """Force that falls like 1 / (1 + (a / corner)^2)."""
+    return 1000 / (1 + (COEFFICIENTS / corner) ** 2)
+
+
+def test_levels_of_a_known_curve():
+    """Half is left at the corner, 90 % at a third and 10 % at three times of it; points lie 26 % apart."""
+    found = transition(COEFFICIENTS, low_pass_curve(2e-3))
+    assert_allclose(found["dropper_transition_start_s"], 2e-3 / 3, rtol=0.03)
+    assert_allclose(found["dropper_transition_middle_s"], 2e-3, rtol=0.01)
+    assert_allclose(found["dropper_transition_end_s"], 6e-3, rtol=0.03)
+    assert_allclose(found["dropper_locked_force_pct"], 100 / (1 + 50**2), rtol=1e-3)
+
+
+def graded(force):
+    (case,) = select(["vovan2015/dropper-damping"])
+    rows = verdicts(case, {LINE: transition(COEFFICIENTS, force)})
+    return {quantity.removeprefix("dropper_"): row.verdict for (quantity, _), row in rows.items()}
+
+
+def test_a_transition_out_of_place_is_caught():
+    start, middle, locked = "transition_start_s", "transition_middle_s", "locked_force_pct"
+    assert graded(low_pass_curve(2e-3)) == {start: "pass", middle: "pass", "transition_end_s": "info", locked: "pass"}
+    assert graded(low_pass_curve(2e-4))[start] == "fail"
+    late = graded(low_pass_curve(0.06))
+    assert (late[start], late[middle], late[locked]) == ("fail", "fail", "fail")
+
+
+def test_a_dropper_that_never_locks_is_caught():
+    """No transition is not a pass: there is nothing to grade, and the force that is left is too much."""
+    found = graded(np.full(COEFFICIENTS.size, 1000.0))
+    assert found["transition_middle_s"] == "skip"
+    assert found["locked_force_pct"] == "fail"
+
+
+def test_the_law_that_compensates_the_elastic_force_locks_and_the_other_does_not():
+    (case,) = select(["vovan2015/dropper-damping"])
+    coarse = case.file.discretisation.model_copy(update={"element_m": 1.5, "time_step_s": 0.002})
+    study = case.file.study.model_copy(update={"coefficients_s": (1e-6, 3e-3, 1e-1), "x_m": 283.5})
+    file = case.file.model_copy(
+        update={"discretisation": coarse, "study": study, "evaluated_spans": (4, 5), "run_out_m": 0.0}
+    )
+    outcome = dropper_damping(replace(case, file=file), study)
+    (chart,) = outcome.charts
+    nothing, elastic = (series.y for series in chart.series)
+    # Neither law knows the other without damping: they agree to what a coefficient of 1e-6 s does.
+    assert_allclose(nothing[0], elastic[0], rtol=0.01)
+    assert nothing[-1] > nothing[0]
+    assert elastic[-1] < 0.1 * elastic[0]
+    assert outcome.findings[LINE]["dropper_locked_force_pct"] < 10
+    assert outcome.record is not None
+
+
+def test_both_laws_are_the_same_while_every_dropper_is_taut():
+    """Two linear systems with the same matrices: only rounding may differ."""
+    line = simple_line(damping={Kind.DROPPER: Rayleigh(stiffness_coefficient=1e-3)})
+    mesh = discretise(line, 2.0)
+    kept = with_viscous_part_kept(mesh)
+    assert kept.connectors.damping.sum() == mesh.connectors.damping.sum()
+    assert not kept.connectors.unilateral[mesh.connectors.station.size :].any()
+    test = Drop(0.5, "contact", 30.0, 0.0, 0.1, 1.0, 0.002, (("contact", 30.0),))
+    assert drop(line, 2.0, test).slack_at_start == 0
+    assert with_damping(kept, line.damping).connectors.station.size == mesh.connectors.station.size
