@@ -8,68 +8,73 @@ The unknowns of an element are (w1, r1, w2, r2); cubic Hermite shape functions m
 """
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 
 
-def stiffness(h: float, tension: float, bending_stiffness: float) -> Array:
-    """Stiffness of one element, the integral of EI w''^2 + T w'^2.
+def stiffness(h: ArrayLike, tension: ArrayLike, bending_stiffness: ArrayLike) -> Array:
+    """Stiffness of elements, the integral of EI w''^2 + T w'^2.
 
     Parameters
     ----------
-    h : length of the element [m]
-    tension : axial tension T [N]
-    bending_stiffness : EI [N m2]
+    h : (...) length of each element [m]
+    tension : (...) axial tension T [N]
+    bending_stiffness : (...) EI [N m2]
 
     Returns
     -------
-    (4, 4) symmetric matrix [N/m, N, N m]
+    (..., 4, 4) symmetric matrices [N/m, N, N m]
     """
+    h = np.asarray(h, dtype=np.float64)
+    one = np.ones_like(h)
     bending = np.array(
         [
-            [12, 6 * h, -12, 6 * h],
+            [12 * one, 6 * h, -12 * one, 6 * h],
             [6 * h, 4 * h**2, -6 * h, 2 * h**2],
-            [-12, -6 * h, 12, -6 * h],
+            [-12 * one, -6 * h, 12 * one, -6 * h],
             [6 * h, 2 * h**2, -6 * h, 4 * h**2],
         ]
     )
     string = np.array(
         [
-            [36, 3 * h, -36, 3 * h],
+            [36 * one, 3 * h, -36 * one, 3 * h],
             [3 * h, 4 * h**2, -3 * h, -(h**2)],
-            [-36, -3 * h, 36, -3 * h],
+            [-36 * one, -3 * h, 36 * one, -3 * h],
             [3 * h, -(h**2), -3 * h, 4 * h**2],
         ]
     )
-    return np.asarray(bending_stiffness / h**3 * bending + tension / (30 * h) * string)
+    return _by_element(bending_stiffness / h**3 * bending + tension / (30 * h) * string)
 
 
-def mass(h: float, mass_per_length: float) -> Array:
-    """Consistent mass of one element.
+def mass(h: ArrayLike, mass_per_length: ArrayLike) -> Array:
+    """Consistent mass of elements.
 
     Parameters
     ----------
-    h : length of the element [m]
-    mass_per_length : [kg/m]
+    h : (...) length of each element [m]
+    mass_per_length : (...) [kg/m]
 
     Returns
     -------
-    (4, 4) symmetric matrix [kg, kg m, kg m2]
+    (..., 4, 4) symmetric matrices [kg, kg m, kg m2]
     """
-    return np.asarray(
-        mass_per_length
-        * h
-        / 420
-        * np.array(
-            [
-                [156, 22 * h, 54, -13 * h],
-                [22 * h, 4 * h**2, 13 * h, -3 * h**2],
-                [54, 13 * h, 156, -22 * h],
-                [-13 * h, -3 * h**2, -22 * h, 4 * h**2],
-            ]
-        )
+    h = np.asarray(h, dtype=np.float64)
+    one = np.ones_like(h)
+    shares = np.array(
+        [
+            [156 * one, 22 * h, 54 * one, -13 * h],
+            [22 * h, 4 * h**2, 13 * h, -3 * h**2],
+            [54 * one, 13 * h, 156 * one, -22 * h],
+            [-13 * h, -3 * h**2, -22 * h, 4 * h**2],
+        ]
     )
+    return _by_element(mass_per_length * h / 420 * shares)
+
+
+def _by_element(matrices: Array) -> Array:
+    """The indices of the matrix last."""
+    return np.moveaxis(matrices, (0, 1), (-2, -1))
 
 
 def uniform_load(h: float, load_per_length: float) -> Array:

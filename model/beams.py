@@ -97,15 +97,20 @@ def wire_matrices(beams: Beams, row: int) -> tuple[sp.csr_array, sp.csr_array]:
     -------
     stiffness, mass : (2 S, 2 S)
     """
-    present = np.flatnonzero(beams.mass_per_length[row])
-    at = 2 * present[:, None] + np.arange(4)
+    at = 2 * np.arange(beams.length.size)[:, None] + np.arange(4)
     shape = (beams.free.shape[1] * 2,) * 2
     place = (np.repeat(at, 4, axis=1).ravel(), np.tile(at, (1, 4)).ravel())
-    stiffness = np.array(
-        [beam.stiffness(beams.length[e], beams.tension[row, e], beams.bending_stiffness[row, e]) for e in present]
-    )
-    mass = np.array([beam.mass(beams.length[e], beams.mass_per_length[row, e]) for e in present])
-    return sp.csr_array((stiffness.ravel(), place), shape=shape), sp.csr_array((mass.ravel(), place), shape=shape)
+    # An element without a wire has neither stiffness nor mass.
+    stiffness = sp.csr_array((element_stiffness(beams, row).ravel(), place), shape=shape)
+    mass = sp.csr_array((beam.mass(beams.length, beams.mass_per_length[row]).ravel(), place), shape=shape)
+    stiffness.eliminate_zeros()
+    mass.eliminate_zeros()
+    return stiffness, mass
+
+
+def element_stiffness(beams: Beams, row: int) -> Array:
+    """Stiffness of every element of one row, (S-1, 4, 4)."""
+    return beam.stiffness(beams.length, beams.tension[row], beams.bending_stiffness[row])
 
 
 def wire_stiffness(beams: Beams, row: int) -> sp.csr_array:

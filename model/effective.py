@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 from pantocheck.model import beam
-from pantocheck.model.beams import Beams
+from pantocheck.model.beams import Beams, element_stiffness
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -54,14 +54,11 @@ def effective_blocks(beams: Beams, time_step: float) -> tuple[Array, Array]:
     for row in range(rows):
         on_mass = 1 + half * beams.mass_coefficient[row]
         on_stiffness = quarter + half * beams.stiffness_coefficient[row]
-        for e in np.flatnonzero(beams.mass_per_length[row]):
-            h = beams.length[e]
-            element = on_mass * beam.mass(h, beams.mass_per_length[row, e]) + on_stiffness * beam.stiffness(
-                h, beams.tension[row, e], beams.bending_stiffness[row, e]
-            )
-            diagonal[row, e] += element[:2, :2]
-            diagonal[row, e + 1] += element[2:, 2:]
-            below[row, e + 1] = element[2:, :2]
+        element = on_mass * beam.mass(beams.length, beams.mass_per_length[row])
+        element += on_stiffness * element_stiffness(beams, row)
+        diagonal[row, :-1] += element[:, :2, :2]
+        diagonal[row, 1:] += element[:, 2:, 2:]
+        below[row, 1:] = element[:, 2:, :2]
     diagonal[:, :, 0, 0] += beams.lumped_mass + half * beams.lumped_damping + quarter * beams.lumped_stiffness
     fixed = ~beams.free
     for i in range(2):

@@ -5,8 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pantocheck.model import beam
-from pantocheck.model.beams import Beams
+from pantocheck.model.beams import Beams, element_stiffness
 from pantocheck.model.effective import factorise, half_width, inverse_columns, solve_rows
 from pantocheck.model.line import Discretised
 from pantocheck.model.local_flexibility import bubble_flexibility
@@ -101,13 +100,8 @@ def time_stepping(line: Discretised, time_step: float, reach: float = math.inf, 
 
 def _stiffness_entries(beams: Beams) -> Array:
     """The four distinct entries 11, 12, 22, 24 of every element's stiffness."""
-    rows, elements = beams.mass_per_length.shape
-    entries = np.zeros((rows, 4, elements))
-    for row in range(rows):
-        for e in np.flatnonzero(beams.mass_per_length[row]):
-            k = beam.stiffness(beams.length[e], beams.tension[row, e], beams.bending_stiffness[row, e])
-            entries[row, :, e] = k[0, 0], k[0, 1], k[1, 1], k[1, 3]
-    return entries
+    matrices = np.array([element_stiffness(beams, row) for row in range(len(beams.mass_per_length))])
+    return np.stack([matrices[:, :, i, j] for i, j in ((0, 0), (0, 1), (1, 1), (1, 3))], axis=1)
 
 
 def _bubbles(beams: Beams, rows: list[int]) -> Array:
