@@ -8,12 +8,12 @@ The unknowns of an element are (w1, r1, w2, r2); cubic Hermite shape functions m
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
 
-def stiffness(h: ArrayLike, tension: ArrayLike, bending_stiffness: ArrayLike) -> Array:
+def stiffness(h: float | Array, tension: float | Array, bending_stiffness: float | Array) -> Array:
     """Stiffness of elements, the integral of EI w''^2 + T w'^2.
 
     Parameters
@@ -47,7 +47,7 @@ def stiffness(h: ArrayLike, tension: ArrayLike, bending_stiffness: ArrayLike) ->
     return _by_element(bending_stiffness / h**3 * bending + tension / (30 * h) * string)
 
 
-def mass(h: ArrayLike, mass_per_length: ArrayLike) -> Array:
+def mass(h: float | Array, mass_per_length: float | Array) -> Array:
     """Consistent mass of elements.
 
     Parameters
