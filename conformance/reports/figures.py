@@ -28,6 +28,9 @@ LINES = ("-", "--", "-.", ":")
 
 P = ParamSpec("P")
 
+MOST_NAMED = 4
+"""Supports that are told apart by their lines; of more, the largest uplift stands out."""
+
 
 @cache
 def _style() -> Any:
@@ -164,11 +167,14 @@ def uplift(supports: list[dict[str, Any]], criteria: list[dict[str, Any]]) -> Fi
     """Uplift at each support over time, with the limits of the maximum where it is graded."""
     figure = Figure(figsize=(FULL, 2.1))
     axes = figure.subplots()
-    for at, support in enumerate(supports):
-        shade = ("#1a1d21", "#6b747e", "#9aa3ac")[at % 3]
-        style = LINES[at % len(LINES)]
-        name = f"support at {support['support_m']:g} m"
-        axes.plot(support["time_s"], support["uplift_mm"], style, color=shade, linewidth=1.1, label=name)
+    if len(supports) <= MOST_NAMED:
+        for at, support in enumerate(supports):
+            shade = ("#1a1d21", "#6b747e", "#9aa3ac")[at % 3]
+            name = f"support at {support['support_m']:g} m"
+            style = LINES[at % len(LINES)]
+            axes.plot(support["time_s"], support["uplift_mm"], style, color=shade, linewidth=1.1, label=name)
+    else:
+        _many_supports(axes, supports)
     limits = {(row["lower"], row["upper"]) for row in criteria if row["quantity"] == "max_uplift_at_support_mm"}
     for lower, upper in sorted(limits, key=str):
         if lower is not None and upper is not None:
@@ -181,6 +187,17 @@ def uplift(supports: list[dict[str, Any]], criteria: list[dict[str, Any]]) -> Fi
     axes.set_ylabel("uplift [mm]")
     _legend(axes)
     return figure
+
+
+def _many_supports(axes: Axes, supports: list[dict[str, Any]]) -> None:
+    """All supports in grey, and the one with the largest uplift drawn over them: names of all would fill the figure."""
+    largest = max(supports, key=lambda support: max(support["uplift_mm"]))
+    others = [support for support in supports if support is not largest]
+    for support in others:
+        name = "other supports" if support is others[0] else None
+        axes.plot(support["time_s"], support["uplift_mm"], color="#9aa3ac", linewidth=0.8, label=name)
+    name = f"largest: support at {largest['support_m']:g} m"
+    axes.plot(largest["time_s"], largest["uplift_mm"], color="#1a1d21", linewidth=1.3, label=name)
 
 
 def _legend(axes: Axes) -> None:
