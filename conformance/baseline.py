@@ -1,5 +1,6 @@
 """Baselines: earlier results that values may not drift from, whatever the limits say."""
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -75,11 +76,16 @@ def _values(case: CaseResult) -> Iterator[_Value]:
                 yield _Value(of, quantity, None, value)
 
 
+def _rounded(limit: float, allowed: float) -> float:
+    """A limit to a hundredth of the allowed drift or finer, so that no page prints twelve digits of it."""
+    return round(limit, 3 - math.floor(math.log10(allowed))) if allowed > 0 else limit
+
+
 def _row(case: CaseResult, then: _Value, now: float | None, drift_pct: float, name: str) -> Criterion:
     unit = QUANTITIES[then.quantity].unit if then.quantity in QUANTITIES else ""
     scale = max(abs(then.value), LEAST if unit else LEAST_RATIO)
     allowed = drift_pct / 100 * scale
-    lower, upper = then.value - allowed, then.value + allowed
+    lower, upper = (_rounded(then.value + side * allowed, allowed) for side in (-1, 1))
     verdict = "skip" if now is None else verdict_of(now, lower, upper)
     why_none = case.skipped.get(then.of, {}).get(then.quantity, "the system no longer delivers it")
     if now is None:

@@ -98,8 +98,9 @@ class OneLine(pytest.Item):
     """A test that fails with one line."""
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
-        """The line, if it is a verdict."""
-        return str(excinfo.value) if isinstance(excinfo.value, NotMet) else super().repr_failure(excinfo, style)
+        """The line, if it is a verdict or an error of input; anything else is a defect and keeps its traceback."""
+        told = isinstance(excinfo.value, NotMet | InputError)
+        return str(excinfo.value) if told else super().repr_failure(excinfo, style)
 
     def reportinfo(self) -> tuple[Path, None, str]:
         """Where it stands."""

@@ -8,6 +8,7 @@ from pantocheck.conformance.cases.damping import DampingFile
 from pantocheck.conformance.cases.limits import LimitsFile
 from pantocheck.conformance.cases.line import Line
 from pantocheck.conformance.cases.pantograph import Pantograph
+from pantocheck.conformance.massdrop_records.sidecar import Sidecar as MassDropSidecar
 from pantocheck.conformance.plan import Plan
 from pantocheck.conformance.profiles import Profile
 from pantocheck.conformance.record_files.sidecar import Sidecar
@@ -24,6 +25,7 @@ _MODELS: dict[str, type[BaseModel]] = {
     "limits": LimitsFile,
     "plan": Plan,
     "record": Sidecar,
+    "mass-drop": MassDropSidecar,
     "summary": Summary,
     "profile": Profile,
 }

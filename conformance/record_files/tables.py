@@ -29,6 +29,8 @@ def read_csv(path: Path, sidecar: Sidecar, where: str) -> Rows:
     try:
         with path.open(encoding="utf-8-sig") as file:
             names = [name.strip() for name in file.readline(100_000).split(",")]
+            if not any(names):
+                raise InputError(where, "the first line is empty, expected the names of the columns", FORMAT)
             columns = _columns(names, sidecar, where)
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", UserWarning)  # no data is said below, an empty line is no sample

@@ -105,8 +105,9 @@ def _force(key: str, trace: dict[str, Any], rows: list[dict[str, Any]]) -> Figur
     if mean is not None and std is not None:
         low, high = number(mean - 3 * std), number(mean + 3 * std)
         text += f"; mean {number(mean)} N, mean ± 3 σ from {low} N to {high} N"
-    limited = " On the right: the limits of the force's statistics, and where the values lie." if rows else ""
-    return Figure(figures.force(trace, rows), f"{text}.", f"{text}.{limited}", wide=True)
+    limited = figures.limited_rows(rows)
+    strip = " On the right: the limits of the force's statistics, and where the values lie." if limited else ""
+    return Figure(figures.force(trace, limited), f"{text}.", f"{text}.{strip}", wide=True)
 
 
 def _spectrum(key: str, trace: dict[str, Any], quantities: dict[str, Any]) -> Figure:

@@ -23,7 +23,8 @@ def damping_document(results: dict[str, Any], block: str) -> Document:
         f"Rayleigh damping fitted to {len(results['pairs'])} modes leaves {100 * results['residual']:.2g} % "
         f"of their damping ratios. Observable: {', '.join(kinds) or 'nothing'}."
     )
-    warnings = tuple(f"no counterpart in the line's model: mode at {f:.4g} Hz" for f in results["unpaired"])
+    without = ", ".join(number(f) for f in results["unpaired"])
+    warnings = (f"measured modes without a counterpart in the line's model: {without} Hz",) if without else ()
     return Document(
         "Damping model from mass drops",
         headline,

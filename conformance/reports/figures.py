@@ -58,15 +58,14 @@ def drawn(paint: Callable[P, Figure]) -> Callable[P, str]:
 
 
 @drawn
-def force(trace: dict[str, Any], criteria: list[dict[str, Any]]) -> Figure:
+def force(trace: dict[str, Any], limited: list[dict[str, Any]]) -> Figure:
     """Contact force over the evaluated stretch; on the right, where its statistics lie between their limits.
 
     Parameters
     ----------
     trace : one pantograph's entry of a case's `traces`
-    criteria : the criteria of that pantograph; only those on the force are drawn
+    limited : what `limited_rows` leaves of the criteria of that pantograph
     """
-    limited = [row for name in FORCE_LIMITS for row in criteria if row["quantity"] == name and _has_limits(row)]
     figure = Figure(figsize=(FULL, 2.6))
     if limited:
         left, right = figure.subplots(1, 2, sharey=True, width_ratios=(1, 0.062 * (len(limited) + 1)))
@@ -90,6 +89,11 @@ def force(trace: dict[str, Any], criteria: list[dict[str, Any]]) -> Figure:
     left.set_ylabel("contact force [N]")
     _legend(left)
     return figure
+
+
+def limited_rows(criteria: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Criteria of a pantograph whose limits are drawn beside its force, in the order of `FORCE_LIMITS`."""
+    return [row for name in FORCE_LIMITS for row in criteria if row["quantity"] == name and _has_limits(row)]
 
 
 def _has_limits(row: dict[str, Any]) -> bool:

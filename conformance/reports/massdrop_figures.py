@@ -140,6 +140,7 @@ def damping(modes: list[dict[str, Any]]) -> Figure:
     certain = [100 * m["damping_ratio"] for m in modes if m["certain"]]
     # One wild uncertain mode must not press all others flat.
     axes.set_ylim(0, 1.4 * max(certain) if certain else None)
+    axes.margins(x=0.02)
     axes.set_xlabel("frequency [Hz]")
     axes.set_ylabel("damping ratio [%]")
     _names(axes)

@@ -47,6 +47,8 @@ def test_value_that_drifts_fails_within_its_limits(results, was, drifts):
         (finding,) = (row for row in compared.cases[0].criteria if row.verdict == "fail")
         assert (finding.quantity, finding.value, finding.baseline) == ("std_force_N", 27.6, was)
         assert "% from the baseline of" in finding.reason
+        # To a hundredth of the drift of 0.54 N: four decimals, not twelve.
+        assert (finding.lower, finding.upper) == (round(0.98 * was, 4), round(1.02 * was, 4))
         assert discrepancies(compared.to_dict()) == []
         assert b'name="drift of std_force_N of pantograph 1"' in junit.render(compared.to_dict())
         assert compared.cases[1].verdict == "pass"

@@ -114,6 +114,14 @@ def test_error_of_a_case_fails_its_criteria_with_the_reason(pytester, plan):
     done.stdout.fnmatch_lines(["error: *ended with exit code 3 before it answered"])
 
 
+def test_missing_records_are_told_in_one_line(pytester, plan):
+    plan.write_text(plan.read_text().replace("record:records", "record:nowhere"))
+    done = session(pytester, "conformance.toml")
+    done.assert_outcomes(failed=16)
+    done.stdout.fnmatch_lines(["system record:*nowhere: there is no such folder."])
+    done.stdout.no_fnmatch_line("*raise InputError*")
+
+
 def test_drift_from_a_baseline_fails_the_session(pytester, plan):
     session(pytester, "conformance.toml", "--pantocheck-out", "before")
     (pytester.path / "before" / "results.json").rename(pytester.path / "baseline.json")

@@ -91,6 +91,8 @@ def test_missing_channel_empty_table_and_gap(written):
         read_record(damaged_csv(written, drop_force))
     with pytest.raises(InputError, match="no columns of numbers"):
         read_record(damaged_csv(written, lambda lines: lines.__delitem__(slice(1, None))))
+    with pytest.raises(InputError, match="the first line is empty"):
+        read_record(damaged_csv(written, lambda lines: lines.clear()))
     with pytest.raises(InputError, match="not evenly spaced"):
         read_record(damaged_csv(written, lambda lines: lines.__delitem__(slice(100, 200))))
 
