@@ -12,13 +12,13 @@ from pantocheck.model.state import Line, Motion, Workspace
 
 Array = NDArray[np.float64]
 
-NEGLIGIBLE_FORCE = 1e-13
-"""Changes of a force below this are rounding, and are not passed on [N]."""
+NEGLIGIBLE_FORCE = 1e-11
+"""Changes of a force below this, a hundredth of what a step is solved to, are not passed on [N]."""
 
 
 @njit(cache=True)
 def predict_connectors(line: Line, motion: Motion, work: Workspace, first: int, last: int) -> None:
-    """Predicted elongations; the connectors pull with their tensions of the last step to begin with."""
+    """Predicted tensions; the connectors pull with their tensions of the last step to begin with."""
     for n in range(line.station.size):
         s = line.station[n]
         if s < first or s > last:
@@ -30,7 +30,7 @@ def predict_connectors(line: Line, motion: Motion, work: Workspace, first: int, 
             d += c * motion.w[0, row, s]
             rate += c * motion.w[1, row, s]
             motion.w[2, row, s] -= c * change
-        work.elongation[0, n], work.elongation[1, n] = d, rate
+        work.tension[n] = line.preload[n] + line.stiffness[n] * d + line.damping[n] * rate
 
 
 @njit(cache=True)
@@ -58,21 +58,16 @@ def larger(a: float, b: float) -> float:
 @njit(cache=True)
 def turn_connectors(line: Line, motion: Motion, work: Workspace, w: Array, r: Array, first: int, last: int) -> float:
     """Solve every connector between two stations once, the others held; returns the largest change of a tension [N]."""
-    dt = line.time_step
-    half = line.columns.shape[2] // 2
     largest = 0.0
     for n in range(line.station.size):
-        s, k, c = line.station[n], line.stiffness[n], line.damping[n]
+        s = line.station[n]
         if s < first or s > last:
             continue
-        acceleration, compliance = 0.0, 0.0
+        acceleration = 0.0
         for e in range(line.end_row.shape[1]):
-            f = line.end_coefficient[n, e]
-            acceleration += f * w[line.end_row[n, e], s]
-            compliance += f * f * line.columns[line.end_column[n, e], 0, half]
-        gain = k * dt * dt / 4 + c * dt / 2
-        elastic = line.preload[n] + k * work.elongation[0, n] + c * work.elongation[1, n] + gain * acceleration
-        tension = (elastic + gain * compliance * motion.tension[n]) / (1 + gain * compliance)
+            acceleration += line.end_coefficient[n, e] * w[line.end_row[n, e], s]
+        linear = work.tension[n] + line.gain[n] * acceleration
+        tension = (linear + line.yielding[n] * motion.tension[n]) / (1 + line.yielding[n])
         if line.unilateral[n] and tension < 0.0:
             tension = 0.0
         change = tension - motion.tension[n]

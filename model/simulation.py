@@ -258,7 +258,7 @@ def workspace(line: Line, train: Train) -> Workspace:
     return Workspace(
         seen=np.zeros((2, PIECE + 1)),
         shear=np.zeros(PIECE),
-        elongation=np.zeros((2, line.station.size)),
+        tension=np.zeros(line.station.size),
         shape=np.zeros((pantographs, wires, 4)),
         element=np.zeros(pantographs, dtype=np.int64),
         stiffness=np.zeros((pantographs, wires)),

@@ -32,6 +32,8 @@ class Line(NamedTuple):
     end_row, end_column : (N, E) row of each end, and its column in `columns`
     end_coefficient : (N, E) in the elongation; zero for an end that is not there
     stiffness, damping, preload : (N,) [N/m, N s/m, N]
+    gain : (N,) tension per acceleration of the elongation within a step [kg]
+    yielding : (N,) gain times what a newton of tension accelerates the elongation back [-]
     unilateral : (N,) whether the tension cannot be negative
     contact_row : (W,) rows that a pantograph touches
     bubble : (W, S-1, 6) what a point force bends an element between its stations, see `local_flexibility` [m/N]
@@ -63,6 +65,8 @@ class Line(NamedTuple):
     stiffness: Array
     damping: Array
     preload: Array
+    gain: Array
+    yielding: Array
     unilateral: NDArray[np.bool_]
     contact_row: Indices
     bubble: Array
@@ -129,7 +133,7 @@ class Workspace(NamedTuple):
     ----------
     seen : (2, PIECE + 1) deflection and slope that the stiffness of a piece of wire sees
     shear : (PIECE,) of its elements [N]
-    elongation : (2, N) predicted, and its rate [m, m/s]
+    tension : (N,) of the connectors in the predicted state, as if all could push [N]
     shape : (P, W, 4) Hermite functions at the contacts
     element : (P,) element over each pantograph
     stiffness : (P, W) of penalty and local flexibility of the wire in series [N/m]
@@ -139,7 +143,7 @@ class Workspace(NamedTuple):
 
     seen: Array
     shear: Array
-    elongation: Array
+    tension: Array
     shape: Array
     element: Indices
     stiffness: Array

@@ -61,6 +61,7 @@ def time_stepping(line: Discretised, time_step: float, reach: float = math.inf, 
     width = half_width(factor, loads + contact_loads[:: max(1, stations // 200)])
     rows_, stations_ = (np.array([load[i] for load in loads], dtype=np.int64) for i in range(2))
     columns = inverse_columns(factor, rows_, stations_, np.zeros_like(rows_), width)
+    gain = time_step**2 / 4 * connectors.stiffness + time_step / 2 * connectors.damping
     contact = np.repeat(np.array(contact_loads, dtype=np.int64).reshape(-1, 2), 2, axis=0)
     slopes = np.tile(np.arange(2), len(contact_loads))
     contact_columns = inverse_columns(factor, contact[:, 0].copy(), contact[:, 1].copy(), slopes, width)
@@ -84,6 +85,8 @@ def time_stepping(line: Discretised, time_step: float, reach: float = math.inf, 
         stiffness=connectors.stiffness,
         damping=connectors.damping,
         preload=connectors.preload,
+        gain=gain,
+        yielding=gain * (end_coefficient**2 * columns[end_column, 0, width]).sum(axis=1),
         unilateral=connectors.unilateral,
         contact_row=contact_row,
         bubble=_bubbles(beams, line.contact_rows),
