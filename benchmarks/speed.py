@@ -6,6 +6,7 @@ Process time on one core is measured, after compilation, so that other work on t
 """
 
 import argparse
+import importlib.util
 import math
 import os
 import resource
@@ -13,6 +14,7 @@ import subprocess
 import sys
 import time
 from dataclasses import replace
+from importlib.metadata import version
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
@@ -75,6 +77,32 @@ def same_line() -> None:
     )
 
 
+def general_engine() -> None:
+    """Our kernel, and Exudyn on the same matrices, on one line in the vertical plane in one run."""
+    print("\n| solver, 10 spans, vertical plane, 2 pantographs, 1 s | process time / simulated time | sigma [N] |")
+    print("| :-- | --: | --: |")
+    case = ac_simple(10)
+    line = discretise(vertical(case, discretise(staggered(case), ELEMENT).state), ELEMENT)
+    way = replace(passage(case, line, STEP, 2, 55.0 * 3, math.inf), duration=1.0)
+    ratio, force = measured(line, way)
+    print(f"| kernel | {ratio:.3f} | {sigmas(force)} |", flush=True)
+    if importlib.util.find_spec("exudyn") is None:
+        print("| Exudyn | not installed: `pip install 'pantocheck[peers]'` | |")
+        return
+    from exudyn_engine import run_exudyn
+
+    run_exudyn(line, replace(way, duration=0.01))
+    theirs, spent, in_python = min((run_exudyn(line, way) for _ in range(2)), key=lambda one: one[1])
+    print(f"| Exudyn {version('exudyn')} | {spent / way.duration:.2f} | {sigmas(theirs)} |")
+    print(f"\nLargest difference of the force {np.abs(theirs - force).max():.1e} N.")
+    print(f"Of Exudyn's time {in_python / spent:.0%} passes in our Python functions for droppers and contact.")
+
+
+def sigmas(force: np.ndarray) -> str:
+    """Standard deviation of each pantograph's force."""
+    return ", ".join(f"{one:.4f}" for one in force.std(axis=1))
+
+
 def main() -> None:
     """Measure and print."""
     argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
@@ -89,6 +117,7 @@ def main() -> None:
         print(f"| {spans} | {' | '.join(f'{ratio:.3f}' for ratio in ratios)} |", flush=True)
     print(f"\nMemory of a process with stagger, 2 pantographs, 60 spans: {memory(60):.0f} MB.")
     same_line()
+    general_engine()
 
 
 if __name__ == "__main__":

@@ -1,0 +1,204 @@
+"""The same physics in a general multibody engine: Exudyn integrates our matrices with its own Newmark and Newton.
+
+The engine is given the assembled mass, damping and stiffness of line and pantographs with every dropper taut, as one
+general second-order object. What is not linear, slack droppers and the moving contact, is a user function of that
+object, with its tangent. Method (average acceleration), time step and elements are those of the kernel; solving of the
+equations, Newton's method and its tolerances are the engine's.
+"""
+
+import math
+import time
+from itertools import pairwise
+
+import exudyn as exu
+import numpy as np
+import scipy.sparse as sp
+from exudyn.itemInterface import NodeGenericODE2, ObjectGenericODE2
+from numpy.typing import NDArray
+from pantocheck.model import Discretised, Passage
+from pantocheck.model.assembly import assemble, connector_directions, order, point_load
+from pantocheck.model.local_flexibility import local_flexibility
+from pantocheck.model.simulation import start
+from pantocheck.model.stepping import time_stepping
+
+Array = NDArray[np.float64]
+
+
+class DroppersAndContact:
+    """Forces of line and pantographs that are not linear, and their tangent.
+
+    Parameters
+    ----------
+    line : with one contact wire
+    passage : pantographs, their places and speed
+    """
+
+    def __init__(self, line: Discretised, passage: Passage) -> None:
+        """Line and pantographs at rest, and the matrices of both."""
+        stepping = time_stepping(line, passage.time_step, math.inf)
+        motion, train = start(line, stepping, passage)
+        matrices = assemble(line)
+        self.line, self.passage, self.free = line, passage, matrices.free
+        n, sizes = matrices.free.size, [p.head.size for p in passage.pantographs]
+        at = n + np.concatenate([[0], np.cumsum(sizes)])
+        self.own = [slice(int(a), int(b)) for a, b in pairwise(at)]
+        self.size = int(at[-1])
+        place = order(line)
+        self.mass, self.damping, self.stiffness = (
+            sp.csr_matrix(sp.block_diag([of_line, *of_pantographs]))
+            for of_line, of_pantographs in (
+                (matrices.mass, [p.mass for p in passage.pantographs]),
+                (matrices.damping, [p.damping for p in passage.pantographs]),
+                (matrices.stiffness, [p.stiffness for p in passage.pantographs]),
+            )
+        )
+        self.constant_force = np.concatenate([np.zeros(n), *(p.force for p in passage.pantographs)])
+        at_rest = np.stack([motion.w[0], motion.r[0]], axis=-1).ravel()[place][matrices.free]
+        moving = [train.z[0, p, :size] for p, size in enumerate(sizes)]
+        self.at_rest = np.concatenate([at_rest, *moving])
+        self.rest = line.state.deflection.ravel()[place]
+        self.bubble = stepping.bubble[0]
+        unilateral = line.connectors.unilateral
+        self.bars = sp.csr_matrix(
+            sp.vstack(
+                [
+                    connector_directions(line)[matrices.free][:, unilateral],
+                    sp.csr_array((self.size - n, int(unilateral.sum()))),
+                ]
+            )
+        )
+        self.elongations = sp.csr_matrix(self.bars.T)
+        self.dropper_stiffness = line.connectors.stiffness[unilateral]
+        self.dropper_damping = line.connectors.damping[unilateral]
+        self.preload = line.connectors.preload[unilateral]
+
+    def force(self, t: float, q: Array, v: Array) -> Array:
+        """What comes on top of the linear system: what slack droppers would push is taken back, and the contact [N]."""
+        force = np.asarray(self.bars @ np.minimum(self._tension(q, v), 0.0))
+        for p in range(len(self.own)):
+            touched, shares, stiffness, closing = self._contact(t, q, p)
+            force[touched] -= shares * stiffness * max(closing, 0.0)
+        return force
+
+    def contact_force(self, t: float, q: Array) -> Array:
+        """Contact force of each pantograph [N]."""
+        contacts = [self._contact(t, q, p) for p in range(len(self.own))]
+        return np.array([stiffness * max(closing, 0.0) for _, _, stiffness, closing in contacts])
+
+    def tangent(self, t: float, q: Array, v: Array, on_q: float, on_v: float) -> sp.csr_matrix:
+        """Derivative of minus `force`, weighted: `on_q` times that by displacement, `on_v` times that by velocity."""
+        slack = self._tension(q, v) < 0.0
+        loose = np.where(slack, -on_q * self.dropper_stiffness - on_v * self.dropper_damping, 0.0)
+        whole = self.bars @ sp.diags_array(loose) @ self.elongations
+        for p in range(len(self.own)):
+            touched, shares, stiffness, closing = self._contact(t, q, p)
+            if closing > 0.0:
+                head = sp.csr_matrix((shares, (touched, np.zeros_like(touched))), shape=(self.size, 1))
+                whole = whole + on_q * stiffness * (head @ head.T)
+        tangent = sp.csr_matrix(whole)
+        tangent.eliminate_zeros()
+        return tangent
+
+    def _tension(self, q: Array, v: Array) -> Array:
+        elastic = self.preload + self.dropper_stiffness * (self.elongations @ q)
+        return np.asarray(elastic + self.dropper_damping * (self.elongations @ v))
+
+    def _contact(self, t: float, q: Array, p: int) -> tuple[NDArray[np.int64], Array, float, float]:
+        """Unknowns that close a contact, their shares in it, its stiffness [N/m] and how far it is closed [m]."""
+        model, x = self.passage.pantographs[p], self.passage.start[p] + self.passage.speed * t
+        share = point_load(self.line, self.line.contact_rows[0], x)
+        direction = np.zeros(self.size)
+        direction[: self.free.size], direction[self.own[p]] = -share[self.free], model.head
+        stations = self.line.mesh.position
+        e = int(np.clip(np.searchsorted(stations, x) - 1, 0, stations.size - 2))
+        flexibility = local_flexibility(self.bubble[e], (x - stations[e]) / (stations[e + 1] - stations[e]))
+        touched = np.flatnonzero(direction)
+        shares = direction[touched]
+        closing = float(shares @ q[touched] - share @ self.rest)
+        return touched, shares, 1 / (1 / model.contact_stiffness + flexibility), closing
+
+
+def run_exudyn(line: Discretised, passage: Passage) -> tuple[Array, float, float]:
+    """Exudyn's implicit Newmark solver with sparse matrices and Newton's method.
+
+    Parameters
+    ----------
+    line : in the vertical plane, with one contact wire
+    passage : what is to be run
+
+    Returns
+    -------
+    (P, T) contact force [N], process time of the engine's solver [s], the part of it spent in user functions [s]
+    """
+    model = DroppersAndContact(line, passage)
+    forces: list[Array] = []
+    in_user_functions = 0.0
+
+    def force(_system: object, t: float, _item: int, q: Array, v: Array) -> Array:
+        nonlocal in_user_functions
+        begin = time.process_time()
+        result = model.force(t, np.asarray(q), np.asarray(v))
+        in_user_functions += time.process_time() - begin
+        return result
+
+    def tangent(_system: object, t: float, _item: int, q: Array, v: Array, on_q: float, on_v: float) -> object:
+        nonlocal in_user_functions
+        begin = time.process_time()
+        result = _sparse(model.tangent(t, np.asarray(q), np.asarray(v), on_q, on_v))
+        in_user_functions += time.process_time() - begin
+        return result
+
+    def record(system: exu.MainSystem, t: float) -> bool:
+        nonlocal in_user_functions
+        begin = time.process_time()
+        forces.append(model.contact_force(t, np.asarray(system.systemData.GetODE2Coordinates())))
+        in_user_functions += time.process_time() - begin
+        return True
+
+    system = exu.SystemContainer().AddSystem()
+    node = NodeGenericODE2(
+        numberOfODE2Coordinates=model.size,
+        referenceCoordinates=np.zeros(model.size),
+        initialCoordinates=model.at_rest,
+        initialCoordinates_t=np.zeros(model.size),
+    )
+    system.AddObject(
+        ObjectGenericODE2(
+            nodeNumbers=[system.AddNode(node)],
+            massMatrix=_sparse(model.mass),
+            dampingMatrix=_sparse(model.damping),
+            stiffnessMatrix=_sparse(model.stiffness),
+            forceVector=model.constant_force,
+            forceUserFunction=force,
+            jacobianUserFunction=tangent,
+        )
+    )
+    system.SetPostStepUserFunction(record)
+    system.Assemble()
+    begin = time.process_time()
+    system.SolveDynamic(_settings(passage))
+    spent = time.process_time() - begin
+    # The first record is that of the start.
+    return np.array(forces[1:]).T, spent, in_user_functions
+
+
+def _sparse(matrix: sp.csr_matrix) -> exu.MatrixContainer:
+    container = exu.MatrixContainer()
+    container.SetWithSparseMatrix(matrix, *matrix.shape, useDenseMatrix=False)
+    return container
+
+
+def _settings(passage: Passage) -> exu.SimulationSettings:
+    """The engine's defaults, but for Newmark of average acceleration with a constant step, and sparse matrices."""
+    settings = exu.SimulationSettings()
+    integration = settings.timeIntegration
+    integration.numberOfSteps, integration.endTime = round(passage.duration / passage.time_step), passage.duration
+    integration.adaptiveStep = False
+    integration.generalizedAlpha.useNewmark = True
+    # The start is at rest under the forces that hold it: accelerations are zero, as the kernel has them.
+    integration.generalizedAlpha.computeInitialAccelerations = False
+    # The full method evaluates the forces about twice a step, the modified one seven times at the same cost in all.
+    integration.newton.useModifiedNewton = False
+    settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
+    settings.solution.file.write = False
+    return settings
