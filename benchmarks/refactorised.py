@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import scipy.sparse as sp
 from pantocheck.model import Discretised, Passage
-from pantocheck.model.assembly import assemble, connector_directions, order, point_load
+from pantocheck.model.assembly import assemble, connector_directions, contact_stiffness, order, point_load
 from pantocheck.model.simulation import start
 from pantocheck.model.stepping import time_stepping
 from scipy.sparse.linalg import splu
@@ -38,7 +38,7 @@ def run_refactorised(line: Discretised, passage: Passage) -> tuple[np.ndarray, f
         np.concatenate([np.stack([motion.w[i], motion.r[i]], axis=-1).ravel()[place], *train.z[i]]) for i in range(3)
     )
     force = np.concatenate([np.zeros(n), *(p.force for p in passage.pantographs)])
-    stiff = np.array([p.contact_stiffness for p in passage.pantographs])
+    stiff = np.zeros(len(sizes))
     tension, contact = motion.tension.copy(), train.contact[:, 0].copy()
     rest = line.state.deflection.ravel()[order(line)]
     row = line.contact_rows[0]
@@ -48,7 +48,8 @@ def run_refactorised(line: Discretised, passage: Passage) -> tuple[np.ndarray, f
     for step in range(steps):
         closing, height = np.zeros((at[-1], len(sizes))), np.zeros(len(sizes))
         for p, model in enumerate(passage.pantographs):
-            share = point_load(line, row, passage.start[p] + passage.speed * dt * (step + 1))
+            here = passage.start[p] + passage.speed * dt * (step + 1)
+            share, stiff[p] = point_load(line, row, here), contact_stiffness(line, row, here, model.contact_stiffness)
             closing[:n, p], closing[own[p], p] = -share[matrices.free], model.head
             height[p] = share @ rest
         heads = sp.csc_array(closing)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from pantocheck.model import beam
 from pantocheck.model.beams import wire_matrices
 from pantocheck.model.line import Discretised
+from pantocheck.model.local_flexibility import bubble_flexibility, local_flexibility
 
 Array = NDArray[np.float64]
 
@@ -120,3 +121,24 @@ def point_load(line: Discretised, row: int, position: float) -> Array:
         share[unknown(line, row, e + i, 0)] = n[2 * i]
         share[unknown(line, row, e + i, 1)] = n[2 * i + 1]
     return share
+
+
+def contact_stiffness(line: Discretised, row: int, position: float, penalty: float) -> float:
+    """Penalty and local flexibility of the element under a place, in series: what a step written out plainly needs.
+
+    Parameters
+    ----------
+    line : the discretised line
+    row : of a contact wire
+    position : [m]
+    penalty : stiffness of the contact [N/m]
+
+    Returns
+    -------
+    [N/m]
+    """
+    x, beams = line.mesh.position, line.beams
+    e = int(np.clip(np.searchsorted(x, position) - 1, 0, x.size - 2))
+    h = float(x[e + 1] - x[e])
+    bubble = bubble_flexibility(h, float(beams.tension[row, e]), float(beams.bending_stiffness[row, e]))
+    return 1 / (1 / penalty + local_flexibility(bubble, (position - float(x[e])) / h))

@@ -14,6 +14,8 @@ def verify(
     Says `consistent` and exits with 0 if every verdict and margin follows from the numbers; lists the discrepancies and
     exits with 1 if not; exits with 2 if the file is no certificate.
 
+    This shows that a certificate agrees with itself, not who made it, nor that its limits are those of the library.
+
     Example: pantocheck verify report/certificate.pdf
     """
     # The PDF parser is loaded only when it is needed, so that other commands start fast.

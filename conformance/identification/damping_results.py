@@ -133,7 +133,7 @@ def damping_toml(results: dict[str, Any], modal: Sequence[dict[str, float]] = ()
     modal : bands with a ratio of their own, `results["modal"]` for Rayleigh + modal damping
     """
     tables: dict[str, Any] = {
-        "trust": "secondary",
+        "trust": "provisional",
         "source": f"fitted to {results['modes_file']} by pantocheck fit-damping"[:500],
         "note": f"residual {100 * results['residual']:.2g} % of the measured damping ratios",
     }

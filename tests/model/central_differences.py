@@ -7,11 +7,11 @@ correction, no iteration. Damping is taken with the velocity of the last half st
 import numpy as np
 import scipy.sparse as sp
 from pantocheck.model import Discretised, Passage
-from pantocheck.model.assembly import assemble, connector_directions, order, point_load
+from pantocheck.model.assembly import assemble, connector_directions, contact_stiffness, order, point_load
 from pantocheck.model.equilibrium import Statics
 from scipy.sparse.linalg import splu
 
-from .lines import Array, contact_stiffness, without_connectors
+from .lines import Array, without_connectors
 
 
 def contact_force(line: Discretised, passage: Passage) -> Array:

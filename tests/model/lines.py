@@ -14,7 +14,6 @@ from pantocheck.model import (
     SteadyArm,
     Wire,
 )
-from pantocheck.model.local_flexibility import bubble_flexibility, local_flexibility
 
 Array = NDArray[np.float64]
 
@@ -65,15 +64,6 @@ def without_connectors(line: Discretised) -> Discretised:
     """The same rows of beams with every dropper and clamp taken out of the matrices."""
     nothing = np.zeros_like(line.connectors.stiffness)
     return replace(line, connectors=line.connectors._replace(stiffness=nothing, damping=nothing))
-
-
-def contact_stiffness(line: Discretised, row: int, position: float, penalty: float) -> float:
-    """Penalty and local flexibility of the element under a place, in series [N/m]."""
-    x, beams = line.mesh.position, line.beams
-    e = int(np.clip(np.searchsorted(x, position) - 1, 0, x.size - 2))
-    h = x[e + 1] - x[e]
-    bubble = bubble_flexibility(float(h), float(beams.tension[row, e]), float(beams.bending_stiffness[row, e]))
-    return float(1 / (1 / penalty + local_flexibility(bubble, (position - x[e]) / h)))
 
 
 DAMPED = {

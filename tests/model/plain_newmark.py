@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from pantocheck.model.assembly import assemble, connector_directions, order, point_load
+from pantocheck.model.assembly import assemble, connector_directions, contact_stiffness, order, point_load
 from pantocheck.model.line import Discretised
 from pantocheck.model.simulation import Passage
 from pantocheck.model.state import Motion, Train
 from scipy.linalg import solve
 
-from .lines import Array, contact_stiffness, without_connectors
+from .lines import Array, without_connectors
 
 
 @dataclass
