@@ -1,6 +1,7 @@
 """Running cases on a system: side by side, in the order their requirements allow, one failure at a time."""
 
 import multiprocessing
+import os
 import signal
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
@@ -169,8 +170,19 @@ def _kept(future: Future[CaseResult], keep: Progress) -> bool:
     return True
 
 
+def _one_thread_each() -> None:
+    """Processes side by side that each let linear algebra use every core slow each other down more than twofold.
+
+    The libraries read this when they are loaded, so that it holds for the processes started from now on; what a user
+    has set stays.
+    """
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+        os.environ.setdefault(name, "1")
+
+
 def _pool(jobs: int) -> Executor:
     # A fresh interpreter each: threads of a compiled kernel do not survive a fork.
+    _one_thread_each()
     return ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn"), _die_quietly)
 
 
