@@ -41,7 +41,7 @@ class Beams(NamedTuple):
 
 
 def build_beams(catenary: Catenary, mesh: Mesh) -> Beams:
-    """Wires, clamps, supports and vertically acting steady arms of a line as rows of beams.
+    """The wires of a line as rows of beams.
 
     Parameters
     ----------

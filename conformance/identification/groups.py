@@ -42,11 +42,6 @@ def group_numbers(certain: Real, all_modes: Real, spans: int | None, hint: float
     return np.asarray(numbers, dtype=np.int64)
 
 
-def string_frequency(spans: tuple[float, ...], tension: float, mass_per_length: float) -> float:
-    """First frequency of a string over the mean span [Hz]; tension [N] and mass [kg/m] of all wires together."""
-    return float(np.sqrt(tension / mass_per_length) / (2 * np.mean(spans)))
-
-
 def outliers(values: Real) -> NDArray[np.bool_]:
     """Values beyond 1.5 quartile ranges outside the quartiles (Tukey's rule), (n,); none of fewer than four."""
     if values.size < 4:
