@@ -16,7 +16,7 @@ import scipy.sparse as sp
 from exudyn.itemInterface import NodeGenericODE2, ObjectGenericODE2
 from numpy.typing import NDArray
 from pantocheck.model import Discretised, Passage
-from pantocheck.model.assembly import assemble, connector_directions, order, point_load
+from pantocheck.model.assembly import assemble, connector_directions, order, point_load, stepping_mass
 from pantocheck.model.local_flexibility import local_flexibility
 from pantocheck.model.simulation import start
 from pantocheck.model.stepping import time_stepping
@@ -47,7 +47,7 @@ class DroppersAndContact:
         self.mass, self.damping, self.stiffness = (
             sp.csr_matrix(sp.block_diag([of_line, *of_pantographs]))
             for of_line, of_pantographs in (
-                (matrices.mass, [p.mass for p in passage.pantographs]),
+                (stepping_mass(line, passage.time_step), [p.mass for p in passage.pantographs]),
                 (matrices.damping, [p.damping for p in passage.pantographs]),
                 (matrices.stiffness, [p.stiffness for p in passage.pantographs]),
             )

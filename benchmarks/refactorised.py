@@ -7,7 +7,14 @@ from itertools import pairwise
 import numpy as np
 import scipy.sparse as sp
 from pantocheck.model import Discretised, Passage
-from pantocheck.model.assembly import assemble, connector_directions, contact_stiffness, order, point_load
+from pantocheck.model.assembly import (
+    assemble,
+    connector_directions,
+    contact_stiffness,
+    order,
+    point_load,
+    stepping_mass,
+)
 from pantocheck.model.simulation import start
 from pantocheck.model.stepping import time_stepping
 from scipy.sparse.linalg import splu
@@ -30,7 +37,7 @@ def run_refactorised(line: Discretised, passage: Passage) -> tuple[np.ndarray, f
     )
     bare_k = matrices.stiffness - (bars[:n] @ sp.diags_array(connectors.stiffness) @ bars[:n].T)
     bare_c = matrices.damping - (bars[:n] @ sp.diags_array(connectors.damping) @ bars[:n].T)
-    mass = sp.block_diag([matrices.mass, *(p.mass for p in passage.pantographs)], format="csc")
+    mass = sp.block_diag([stepping_mass(line, dt), *(p.mass for p in passage.pantographs)], format="csc")
     damping = sp.block_diag([bare_c, *(p.damping for p in passage.pantographs)], format="csc")
     stiffness = sp.block_diag([bare_k, *(p.stiffness for p in passage.pantographs)], format="csc")
     place = order(line)[matrices.free]

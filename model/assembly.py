@@ -9,7 +9,8 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 from pantocheck.model import beam
-from pantocheck.model.beams import wire_matrices
+from pantocheck.model.beams import by_station, wire_matrices
+from pantocheck.model.dispersion import compensation
 from pantocheck.model.line import Discretised
 from pantocheck.model.local_flexibility import bubble_flexibility, local_flexibility
 
@@ -88,6 +89,24 @@ def assemble(line: Discretised) -> Matrices:
         stiffness=keep(stiffness, beams.lumped_stiffness, line.connectors.stiffness),
         free=free,
     )
+
+
+def stepping_mass(line: Discretised, time_step: float) -> sp.csc_array:
+    """Mass of the line that a time step works with, see `dispersion`; for steps that are written out plainly.
+
+    Parameters
+    ----------
+    line : the discretised line
+    time_step : [s]
+
+    Returns
+    -------
+    (n, n) for the free unknowns [kg]
+    """
+    rows = range(line.mesh.rows)
+    taken = sp.block_diag([by_station(compensation(line.beams, row, time_step)) for row in rows], format="csr")
+    matrices, place = assemble(line), order(line)
+    return sp.csc_array(matrices.mass - taken[place][:, place][matrices.free][:, matrices.free])
 
 
 def connector_directions(line: Discretised) -> sp.csr_array:

@@ -97,15 +97,17 @@ def wire_matrices(beams: Beams, row: int) -> tuple[sp.csr_array, sp.csr_array]:
     -------
     stiffness, mass : (2 S, 2 S)
     """
-    at = 2 * np.arange(beams.length.size)[:, None] + np.arange(4)
-    shape = (beams.free.shape[1] * 2,) * 2
+    mass = beam.mass(beams.length, beams.mass_per_length[row])
+    return by_station(element_stiffness(beams, row)), by_station(mass)
+
+
+def by_station(elements: Array) -> sp.csr_array:
+    """Matrices of a row's elements, (S-1, 4, 4), added up to one of its unknowns (w, r) by station, (2 S, 2 S)."""
+    at = 2 * np.arange(len(elements))[:, None] + np.arange(4)
     place = (np.repeat(at, 4, axis=1).ravel(), np.tile(at, (1, 4)).ravel())
-    # An element without a wire has neither stiffness nor mass.
-    stiffness = sp.csr_array((element_stiffness(beams, row).ravel(), place), shape=shape)
-    mass = sp.csr_array((beam.mass(beams.length, beams.mass_per_length[row]).ravel(), place), shape=shape)
-    stiffness.eliminate_zeros()
-    mass.eliminate_zeros()
-    return stiffness, mass
+    matrix = sp.csr_array((elements.ravel(), place), shape=(2 * len(elements) + 2,) * 2)
+    matrix.eliminate_zeros()  # an element without a wire has neither stiffness nor mass
+    return matrix
 
 
 def element_stiffness(beams: Beams, row: int) -> Array:

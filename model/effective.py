@@ -1,7 +1,7 @@
 """The effective matrix of a Newmark step, factored once per run, and the local columns of its inverse.
 
-The step solves A a = f for the accelerations of the rows of beams, A = M + dt/2 C + dt^2/4 K. Each row is block
-tridiagonal with 2 x 2 blocks (w, r). Within one step a force is felt over a few times sqrt(T / m) dt / 2 only (0.1 m at
+The step solves A a = f for the accelerations of the rows of beams, A = M + dt/2 C + dt^2/4 K with the mass M of
+`dispersion`. Each row is block tridiagonal with 2 x 2 blocks (w, r). Within one step a force is felt over a few times sqrt(T / m) dt / 2 only (0.1 m at
 1 ms): the columns of the inverse are short, so that a connector or a contact is a correction of a few stations.
 """
 
@@ -12,6 +12,7 @@ from numba import njit
 from numpy.typing import NDArray
 from pantocheck.model import beam
 from pantocheck.model.beams import Beams, element_stiffness
+from pantocheck.model.dispersion import compensation
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -55,7 +56,7 @@ def effective_blocks(beams: Beams, time_step: float) -> tuple[Array, Array]:
         on_mass = 1 + half * beams.mass_coefficient[row]
         on_stiffness = quarter + half * beams.stiffness_coefficient[row]
         element = on_mass * beam.mass(beams.length, beams.mass_per_length[row])
-        element += on_stiffness * element_stiffness(beams, row)
+        element += on_stiffness * element_stiffness(beams, row) - compensation(beams, row, time_step)
         diagonal[row, :-1] += element[:, :2, :2]
         diagonal[row, 1:] += element[:, 2:, 2:]
         below[row, 1:] = element[:, 2:, :2]

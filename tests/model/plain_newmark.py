@@ -1,6 +1,6 @@
 """The time step written out plainly: full matrices, solved anew for every guess of what is slack or open.
 
-Newmark average acceleration. Unknown are the accelerations a of the whole line and of the pantographs; displacement and
+Newmark average acceleration with the mass that keeps waves from running late. Unknown are the accelerations a of the whole line and of the pantographs; displacement and
 velocity follow from them. The balance of forces is smooth but for the kinks where a dropper goes slack or a head leaves
 the wire, so Newton's method with the active set of the last guess ends exactly after a few solves.
 """
@@ -9,7 +9,14 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from pantocheck.model.assembly import assemble, connector_directions, contact_stiffness, order, point_load
+from pantocheck.model.assembly import (
+    assemble,
+    connector_directions,
+    contact_stiffness,
+    order,
+    point_load,
+    stepping_mass,
+)
 from pantocheck.model.line import Discretised
 from pantocheck.model.simulation import Passage
 from pantocheck.model.state import Motion, Train
@@ -49,7 +56,7 @@ class PlainNewmark:
         self.of_pantograph = [slice(first, last) for first, last in pairwise(at)]
         self.M, self.C, self.K = (np.zeros((at[-1], at[-1])) for _ in range(3))
         inner = slice(0, self.free.size)
-        self.M[inner, inner] = matrices.mass.toarray()
+        self.M[inner, inner] = stepping_mass(line, passage.time_step).toarray()
         self.C[inner, inner] = matrices.damping.toarray()
         self.K[inner, inner] = matrices.stiffness.toarray()
         self.force = np.zeros(at[-1])

@@ -16,7 +16,11 @@ from .lines import Array, bare_wire, simple_line
 
 
 def test_free_vibration_converges_with_the_second_order() -> None:
-    """A taut line (no dropper slack) in its own modes 3, 7 and 12, against their exact cosines: order 2 within 0.05."""
+    """A taut line (no dropper slack) in its own modes 3, 7 and 12, against their exact cosines.
+
+    Order 2 within 0.15: the waves themselves are of order 4, bending and what hangs between the wires is of order 2.
+    Average acceleration with the plain mass would be late by w t (w dt)^2 / 12; a twentieth of that is left.
+    """
     line = discretise(simple_line(spans=2), 2.0)
     matrices = assemble(line)
     w2, shapes = eigh(matrices.stiffness.toarray(), matrices.mass.toarray())
@@ -41,7 +45,10 @@ def test_free_vibration_converges_with_the_second_order() -> None:
         exact, _ = spread(np.array([amplitude @ np.cos(omega * duration)] * 3))
         errors.append(np.abs(motion.w[0] - exact[0]).max())
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
-    np.testing.assert_allclose(orders, 2.0, atol=0.05)
+    np.testing.assert_allclose(orders, 2.0, atol=0.15)
+    late = omega * duration * (omega * time_step) ** 2 / 12
+    plain, _ = spread(np.array([amplitude @ (late * np.sin(omega * duration))] * 3))
+    assert errors[-1] < np.abs(plain[0]).max() / 20
 
 
 # Without a base spring the pantograph rests at any height with exactly its uplift: the start is an equilibrium.

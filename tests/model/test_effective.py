@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from pantocheck.model.assembly import assemble, order
+from pantocheck.model.assembly import assemble, order, stepping_mass
 from pantocheck.model.effective import factorise, half_width, inverse_columns, solve
 from pantocheck.model.line import Discretised, discretise
 from scipy.sparse.linalg import splu
@@ -20,7 +20,7 @@ def line_and_step(request: pytest.FixtureRequest) -> tuple[Discretised, float]:
 def inverse_of_assembled(line: Discretised, time_step: float) -> Array:
     """Inverse of M + dt/2 C + dt^2/4 K of the rows alone, over (rows, stations, 2) twice; zero for what is held."""
     matrices = assemble(without_connectors(line))
-    effective = matrices.mass + time_step / 2 * matrices.damping + time_step**2 / 4 * matrices.stiffness
+    effective = stepping_mass(line, time_step) + time_step / 2 * matrices.damping + time_step**2 / 4 * matrices.stiffness
     kept = order(line)[matrices.free]
     inverse = np.zeros((line.beams.free.size,) * 2)
     inverse[np.ix_(kept, kept)] = splu(effective.tocsc()).solve(np.eye(kept.size))

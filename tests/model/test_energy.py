@@ -4,7 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from pantocheck.model.assembly import assemble, connector_directions, order, point_load
+from pantocheck.model.assembly import (
+    assemble,
+    connector_directions,
+    free_unknowns,
+    order,
+    point_load,
+    stepping_mass,
+)
 from pantocheck.model.catenary import Kind, Rayleigh
 from pantocheck.model.equilibrium import Statics
 from pantocheck.model.line import Discretised, discretise
@@ -27,11 +34,11 @@ def free_decay(line: Discretised, time_step: float, steps: int) -> tuple[Array, 
     preload does is potential energy, too: it was in balance with the weights.
     """
     rows, taken = without_connectors(line), point_load(line, 0, 20.0)
-    matrices = assemble(rows)
+    matrices, mass = assemble(rows), stepping_mass(line, time_step)
     place, bars = order(line)[matrices.free], csc_array(connector_directions(line)[matrices.free])
     stiffness, preload = line.connectors.stiffness, line.connectors.preload
     motion = still(Statics(line).deflection(-600.0 * taken))
-    _accelerate(line, motion, taken)
+    _accelerate(line, time_step, motion, taken)
     stepping, train = time_stepping(line, time_step), no_train(1)
     work = workspace(stepping, train)
     energy, tensions = [], np.zeros((steps, stiffness.size))
@@ -41,17 +48,17 @@ def free_decay(line: Discretised, time_step: float, steps: int) -> tuple[Array, 
             tension = preload + stiffness * (bars.T @ q)
             tension = np.where(line.connectors.unilateral, np.maximum(0.0, tension), tension)
             bars_store = (tension**2 - preload**2) / (2 * stiffness) - preload * (bars.T @ q)
-            energy.append(v @ matrices.mass @ v / 2 + q @ matrices.stiffness @ q / 2 + bars_store.sum())
+            energy.append(v @ mass @ v / 2 + q @ matrices.stiffness @ q / 2 + bars_store.sum())
         assert step(stepping, motion, train, work)
         tensions[n] = motion.tension
     return np.array(energy), tensions
 
 
-def _accelerate(line: Discretised, motion: Motion, taken: Array) -> None:
+def _accelerate(line: Discretised, time_step: float, motion: Motion, taken: Array) -> None:
     """Give the line the acceleration with which it starts when the weight is gone: A(0) = M^-1 of the weight."""
-    matrices = assemble(line)
+    mass, free = stepping_mass(line, time_step).toarray(), free_unknowns(line)
     acceleration = np.zeros(line.beams.free.size)
-    acceleration[order(line)[matrices.free]] = np.linalg.solve(matrices.mass.toarray(), 600.0 * taken[matrices.free])
+    acceleration[order(line)[free]] = np.linalg.solve(mass, 600.0 * taken[free])
     shaped = acceleration.reshape(line.beams.free.shape)
     motion.w[2], motion.r[2] = shaped[..., 0], shaped[..., 1]
 
