@@ -39,14 +39,11 @@ def add_column(w: Array, r: Array, column: Array, station: int, value: float, li
     half = column.shape[1] // 2
     first, last = max(limits[0], station - half), min(limits[1] + 1, station + half)
     shift = half - station
-    _add_scaled(w[first:last], column[0, first + shift : last + shift], value)
-    _add_scaled(r[first:last], column[1, first + shift : last + shift], value)
-
-
-@njit(cache=True)
-def _add_scaled(target: Array, source: Array, value: float) -> None:
-    for i in range(target.size):
-        target[i] += value * source[i]
+    of_w, of_r = column[0, first + shift : last + shift], column[1, first + shift : last + shift]
+    w, r = w[first:last], r[first:last]
+    for i in range(w.size):
+        w[i] += value * of_w[i]
+        r[i] += value * of_r[i]
 
 
 @njit(cache=True)

@@ -15,6 +15,7 @@ def predict_train(line: Line, motion: Motion, train: Train, work: Workspace) -> 
     """Move the pantographs on, predict them, and press with the contact forces of the last step to begin with."""
     dt = line.time_step
     unknowns = train.z.shape[2]
+    train.elapsed[0] += dt
     for p in range(train.position.size):
         train.position[p] += dt * train.speed[0]
         for i in range(unknowns):

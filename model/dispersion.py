@@ -1,10 +1,10 @@
 """The mass that a time step works with, so that waves on the wires do not run late.
 
-Average acceleration slows an oscillation of circular frequency w down by the share (w dt)^2 / 12: waves of 20 Hz and more
-come back from droppers and supports late, and the smallest contact force, which they make, suffers first. The step
-takes w for (2 / dt) tan(w dt / 2), whose square is w^2 (1 + (w dt)^2 / 6 + ...), so that M - dt^2/6 K in place of M
-leaves an error of fourth order. Taken is only the string's share of K, with linear shape functions: bending matters to
-waves too short to matter, and the mass must stay positive definite, for then the method is stable at any time step.
+Average acceleration slows an oscillation of circular frequency w down by the share (w dt)^2 / 12: waves of 20 Hz and
+more come back from droppers and supports late, and the smallest contact force, which they make, suffers first. The
+step takes w for (2 / dt) tan(w dt / 2), whose square is w^2 (1 + (w dt)^2 / 6 + ...), so that M - dt^2/6 K in place of
+M leaves an error of fourth order. Taken is only the string's share of K, with linear shape functions: bending matters
+to waves too short to matter, and the mass must stay positive definite, for then the method is stable at any time step.
 """
 
 import numpy as np

@@ -1,8 +1,9 @@
 """The effective matrix of a Newmark step, factored once per run, and the local columns of its inverse.
 
 The step solves A a = f for the accelerations of the rows of beams, A = M + dt/2 C + dt^2/4 K with the mass M of
-`dispersion`. Each row is block tridiagonal with 2 x 2 blocks (w, r). Within one step a force is felt over a few times sqrt(T / m) dt / 2 only (0.1 m at
-1 ms): the columns of the inverse are short, so that a connector or a contact is a correction of a few stations.
+`dispersion`. Each row is block tridiagonal with 2 x 2 blocks (w, r). Within one step a force is felt over a few times
+sqrt(T / m) dt / 2 only (0.1 m at 1 ms): the columns of the inverse are short, so that a connector or a contact is a
+correction of a few stations.
 """
 
 from typing import NamedTuple
@@ -22,18 +23,21 @@ NEGLIGIBLE = 1e-12
 
 
 class Factor(NamedTuple):
-    """Block factors of the rows, eliminated from both ends towards the middle station.
+    """Block factors of the rows, eliminated from the left and from the right.
 
-    Two eliminations that do not wait for each other keep the processor twice as busy as one from end to end.
+    Two eliminations that do not wait for each other, from the ends of a stretch towards its middle, keep the processor
+    twice as busy as one from end to end; with both at hand they can meet at any station.
 
     Parameters
     ----------
-    inverse : (B, S, 3) entries ww, wr, rr of the inverse of the diagonal block; zero for what cannot move
-    link : (B, S, 4) entries ww, wr, rw, rr of the block that takes a station's share to its inward neighbour
+    inverse : (2, B, S, 3) entries ww, wr, rr of the inverse of the diagonal block; zero for what cannot move
+    link : (2, B, S, 4) entries ww, wr, rw, rr of the block that takes a station's share on to its neighbour
+    meeting : (B, S, 3) inverse of the diagonal block where both eliminations have arrived
     """
 
     inverse: Array
     link: Array
+    meeting: Array
 
 
 def effective_blocks(beams: Beams, time_step: float) -> tuple[Array, Array]:
@@ -85,99 +89,93 @@ def factorise(beams: Beams, time_step: float) -> Factor:
     """
     diagonal, below = effective_blocks(beams, time_step)
     rows, stations = diagonal.shape[:2]
-    inverse, link = np.zeros((rows, stations, 3)), np.zeros((rows, stations, 4))
+    inverse, link = np.zeros((2, rows, stations, 3)), np.zeros((2, rows, stations, 4))
+    meeting = np.zeros((rows, stations, 3))
     for row in range(rows):
-        _eliminate(diagonal[row], below[row], beams.free[row], inverse[row], link[row])
-    return Factor(inverse, link)
+        from_left, from_right = diagonal[row].copy(), diagonal[row, ::-1].copy()
+        _eliminate(from_left, below[row, 1:], beams.free[row], inverse[0, row], link[0, row])
+        coupling = below[row, :0:-1].transpose(0, 2, 1)
+        _eliminate(from_right, coupling, beams.free[row, ::-1], inverse[1, row, ::-1], link[1, row, ::-1])
+        _invert(from_left + from_right[::-1] - diagonal[row], beams.free[row], meeting[row])
+    return Factor(inverse, link, meeting)
 
 
 @njit(cache=True)
-def _eliminate(diagonal: Array, below: Array, free: NDArray[np.bool_], inverse: Array, link: Array) -> None:
-    stations = diagonal.shape[0]
-    middle = stations // 2
-    for i in range(stations):
-        # Left half forwards, right half backwards, the middle last.
-        s = i if i < middle else stations - 1 - (i - middle)
-        block = diagonal[s]
+def _eliminate(diagonal: Array, coupling: Array, free: NDArray[np.bool_], inverse: Array, link: Array) -> None:
+    """Eliminate station by station, coupling s leading on to s + 1; the diagonal blocks become those that are left."""
+    _invert(diagonal[:1], free[:1], inverse[:1])
+    for s in range(diagonal.shape[0] - 1):
+        ww, wr, rr = inverse[s]
+        a, g = coupling[s], link[s]
+        for p in range(2):
+            g[2 * p] = a[p, 0] * ww + a[p, 1] * wr
+            g[2 * p + 1] = a[p, 0] * wr + a[p, 1] * rr
+        for p in range(2):
+            for q in range(2):
+                diagonal[s + 1, p, q] -= g[2 * p] * a[q, 0] + g[2 * p + 1] * a[q, 1]
+        _invert(diagonal[s + 1 : s + 2], free[s + 1 : s + 2], inverse[s + 1 : s + 2])
+
+
+@njit(cache=True)
+def _invert(blocks: Array, free: NDArray[np.bool_], inverse: Array) -> None:
+    """Inverse of symmetric 2 x 2 blocks, zero for what cannot move: the blocks are the identity there."""
+    for s in range(blocks.shape[0]):
+        block = blocks[s]
         determinant = block[0, 0] * block[1, 1] - block[0, 1] * block[1, 0]
-        ww, wr, rr = block[1, 1] / determinant, -block[0, 1] / determinant, block[0, 0] / determinant
-        if s != middle:
-            inwards = s + 1 if s < middle else s - 1
-            a = below[s + 1] if s < middle else below[s].T  # couples the inward neighbour to this station
-            g = link[s]
-            for p in range(2):
-                g[2 * p] = a[p, 0] * ww + a[p, 1] * wr
-                g[2 * p + 1] = a[p, 0] * wr + a[p, 1] * rr
-            for p in range(2):
-                for q in range(2):
-                    diagonal[inwards, p, q] -= g[2 * p] * a[q, 0] + g[2 * p + 1] * a[q, 1]
-        inverse[s, 0] = ww if free[s, 0] else 0.0
-        inverse[s, 1] = wr if free[s, 0] and free[s, 1] else 0.0
-        inverse[s, 2] = rr if free[s, 1] else 0.0
+        inverse[s, 0] = block[1, 1] / determinant if free[s, 0] else 0.0
+        inverse[s, 1] = -block[0, 1] / determinant if free[s, 0] and free[s, 1] else 0.0
+        inverse[s, 2] = block[0, 0] / determinant if free[s, 1] else 0.0
 
 
 @njit(cache=True)
-def solve(inverse: Array, link: Array, first: int, w: Array, r: Array) -> None:
-    """Solve A x = f for a stretch of some rows, in place; f is zero and x negligible outside it.
+def solve(factor: Factor, first: int, last: int, w: Array, r: Array) -> None:
+    """Solve A x = f for a stretch of all rows, in place; f is zero and x negligible outside it.
 
     Parameters
     ----------
-    inverse, link : (B, S, 3), (B, S, 4) of the factor
-    first : station where the stretch begins
-    w, r : (B, n) on entry forces and moments, on return accelerations of deflection and slope
+    factor : Factor
+    first, last : stations where the stretch begins and ends
+    w, r : (B, S) on entry forces and moments, on return accelerations of deflection and slope
     """
-    n = w.shape[1]
-    middle = min(max(inverse.shape[1] // 2 - first, 0), n - 1)
     for b in range(w.shape[0]):
-        _solve_row(inverse[b, first : first + n], link[b, first : first + n], middle, w[b], r[b])
+        solve_row(factor, b, first, w[b, first : last + 1], r[b, first : last + 1])
 
 
 @njit(cache=True)
-def _solve_row(inverse: Array, link: Array, middle: int, w: Array, r: Array) -> None:
-    """Eliminate from both ends to the middle, and go back; two chains that do not wait for each other, in registers."""
-    last = w.size - 1
-    left, right = middle, last - middle
-    together = max(min(left, right) - 1, 0)
-    f, m = _inwards(link, 0, max(left - 1 - together, 0), 1, w, r)
-    g, k = _inwards(link, last, max(right - 1 - together, 0), -1, w, r)
-    s, t = max(left - 1 - together, 0), last - max(right - 1 - together, 0)
-    for _ in range(together):
-        p, q = _passed_on(link, s, f, m)
-        u, v = _passed_on(link, t, g, k)
-        s, t = s + 1, t - 1
-        f, m = w[s] - p, r[s] - q
-        g, k = w[t] - u, r[t] - v
-        w[s], r[s] = f, m
-        w[t], r[t] = g, k
+def solve_row(factor: Factor, row: int, first: int, w: Array, r: Array) -> None:
+    """As `solve` for one row: eliminate from both ends to the middle, and go back.
+
+    Counting both halves from the ends inwards gives two chains in registers that do not wait for each other.
+    """
+    n = w.size
+    middle = n // 2
+    pairs, at = n - 1 - middle, slice(first, first + n)
+    # An even number of stations leaves one more on the left; it goes first on the way in, and last on the way back.
+    one_more = middle - pairs
+    inverse, link = factor.inverse[0, row, at][one_more:middle], factor.link[0, row, at][one_more:middle]
+    inverse_, link_ = factor.inverse[1, row, at][:middle:-1], factor.link[1, row, at][:middle:-1]
+    w0, r0, w1, r1 = w[one_more:middle], r[one_more:middle], w[:middle:-1], r[:middle:-1]
     p, q, u, v = 0.0, 0.0, 0.0, 0.0
-    if left > 0:
+    if one_more > 0:
+        p, q = _passed_on(factor.link[0, row, at], 0, w[0], r[0])
+    for s in range(pairs):
+        f, m = w0[s] - p, r0[s] - q
+        g, k = w1[s] - u, r1[s] - v
+        w0[s], r0[s] = f, m
+        w1[s], r1[s] = g, k
         p, q = _passed_on(link, s, f, m)
-    if right > 0:
-        u, v = _passed_on(link, t, g, k)
-    x, y = _times(inverse, middle, w[middle] - p - u, r[middle] - q - v)
+        u, v = _passed_on(link_, s, g, k)
+    x, y = _times(factor.meeting[row, at], middle, w[middle] - p - u, r[middle] - q - v)
     w[middle], r[middle] = x, y
     u, v = x, y
-    both = min(left, right)
-    for i in range(1, both + 1):
-        x, y = _back(inverse, link, middle - i, w, r, x, y)
-        u, v = _back(inverse, link, middle + i, w, r, u, v)
-    for i in range(both + 1, left + 1):
-        x, y = _back(inverse, link, middle - i, w, r, x, y)
-    for i in range(both + 1, right + 1):
-        u, v = _back(inverse, link, middle + i, w, r, u, v)
-
-
-@njit(cache=True)
-def _inwards(link: Array, start: int, count: int, step: int, w: Array, r: Array) -> tuple[float, float]:
-    """Eliminate `count` stations in a row; returns force and moment at the station that is reached."""
-    f, m = w[start], r[start]
-    s = start
-    for _ in range(count):
-        p, q = _passed_on(link, s, f, m)
-        s += step
-        f, m = w[s] - p, r[s] - q
-        w[s], r[s] = f, m
-    return f, m
+    for back in range(pairs):
+        s = pairs - 1 - back
+        x, y = _back(inverse, link, s, w0[s], r0[s], x, y)
+        u, v = _back(inverse_, link_, s, w1[s], r1[s], u, v)
+        w0[s], r0[s] = x, y
+        w1[s], r1[s] = u, v
+    if one_more > 0:
+        w[0], r[0] = _back(factor.inverse[0, row, at], factor.link[0, row, at], 0, w[0], r[0], x, y)
 
 
 @njit(cache=True)
@@ -191,13 +189,10 @@ def _times(inverse: Array, s: int, f: float, m: float) -> tuple[float, float]:
 
 
 @njit(cache=True)
-def _back(inverse: Array, link: Array, s: int, w: Array, r: Array, x: float, y: float) -> tuple[float, float]:
-    """Solution at a station from the one at its inward neighbour."""
-    p, q = _times(inverse, s, w[s], r[s])
-    p -= link[s, 0] * x + link[s, 2] * y
-    q -= link[s, 1] * x + link[s, 3] * y
-    w[s], r[s] = p, q
-    return p, q
+def _back(inverse: Array, link: Array, s: int, f: float, m: float, x: float, y: float) -> tuple[float, float]:
+    """Solution at a station from what was left there and the solution at its inward neighbour."""
+    p, q = _times(inverse, s, f, m)
+    return p - (link[s, 0] * x + link[s, 2] * y), q - (link[s, 1] * x + link[s, 3] * y)
 
 
 @njit(cache=True)
@@ -212,7 +207,7 @@ def inverse_column(factor: Factor, row: int, station: int, slope: int, half_widt
     half_width : stations kept before the loaded one, and one less behind it
     w, r : (2 half_width,) the column, the loaded station at half_width; zero beyond the ends of the line
     """
-    stations = factor.inverse.shape[1]
+    stations = factor.meeting.shape[1]
     w[:] = 0.0
     r[:] = 0.0
     if slope == 0:
@@ -221,8 +216,7 @@ def inverse_column(factor: Factor, row: int, station: int, slope: int, half_widt
         r[half_width] = 1.0
     first, last = max(0, station - half_width), min(stations, station + half_width)
     there = slice(first + half_width - station, last + half_width - station)
-    middle = min(max(stations // 2 - first, 0), last - first - 1)
-    _solve_row(factor.inverse[row, first:last], factor.link[row, first:last], middle, w[there], r[there])
+    solve_row(factor, row, first, w[there], r[there])
     size = np.abs(w) + np.abs(r)
     tail = 0.0
     if first == station - half_width:
@@ -246,7 +240,7 @@ def half_width(factor: Factor, loads: list[tuple[int, int]]) -> int:
     stations on either side
     """
     width = 8
-    while width < factor.inverse.shape[1]:
+    while width < factor.meeting.shape[1]:
         w, r = np.zeros(2 * width), np.zeros(2 * width)
         if all(inverse_column(factor, row, s, slope, width, w, r) < NEGLIGIBLE for row, s in loads for slope in (0, 1)):
             break
@@ -290,6 +284,6 @@ def solve_rows(factor: Factor, force: Array) -> Array:
     solved = np.empty_like(force)
     for n in range(force.shape[0]):
         w, r = force[n, :, :, 0].copy(), force[n, :, :, 1].copy()
-        solve(factor.inverse, factor.link, 0, w, r)
+        solve(factor, 0, w.shape[1] - 1, w, r)
         solved[n, :, :, 0], solved[n, :, :, 1] = w, r
     return solved

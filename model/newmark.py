@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from pantocheck.model.connector_step import larger, predict_connectors, turn_connectors
 from pantocheck.model.contact_step import correct_train, predict_train, turn_contacts
 from pantocheck.model.effective import solve
+from pantocheck.model.far_field import hold, moving_part
 from pantocheck.model.modal_step import add_mode, turn_modes
 from pantocheck.model.state import Line, Motion, Train, Workspace
 from pantocheck.model.wires import correct_wires, predict_wires, wire_forces
@@ -22,16 +23,6 @@ FORCE_TOLERANCE = 1e-9
 """A step has converged when no force changed by more than this in a turn [N]; forces are of the order of 100 N."""
 MOST_TURNS = 200
 """After so many turns a step is given up."""
-
-
-@njit(cache=True)
-def moving_part(line: Line, train: Train) -> tuple[int, int]:
-    """First and last of the stations that move: those within reach of a pantograph, or all without one."""
-    first, last = 0, line.position.size - 1
-    if train.position.size > 0:
-        first = max(first, np.searchsorted(line.position, train.position.min() - line.reach))
-        last = min(last, np.searchsorted(line.position, train.position.max() + line.reach))
-    return first, last
 
 
 @njit(cache=True)
@@ -53,14 +44,14 @@ def step(line: Line, motion: Motion, train: Train, work: Workspace) -> int:
     w, r = motion.w[2], motion.r[2]
     first, last = moving_part(line, train)
     predict_wires(dt, motion, first, last)
-    # One station more on either side stands still and holds the moving part.
-    wire_forces(line, motion, work, max(first - 1, 0), min(last + 1, line.position.size - 1))
+    wire_forces(line, motion, work, first, last)
+    hold(motion, first, last)
     predict_connectors(line, motion, work, first, last)
     predict_train(line, motion, train, work)
     w[line.load_row, line.load_station] += motion.load[0]
     for j in range(line.modal_damping.size):
         add_mode(w, r, line.modal_weight[j], motion.modal[j])
-    solve(line.factor.inverse, line.factor.link, first, w[:, first : last + 1], r[:, first : last + 1])
+    solve(line.factor, first, last, w, r)
     turns = 0
     while turns < MOST_TURNS:
         turns += 1

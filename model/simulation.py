@@ -42,7 +42,8 @@ class Passage:
     duration : [s]
     time_step : [s]
     watched : wire and place of the stations whose vertical motion is recorded [-, m]
-    reach : what lies farther than this from every pantograph is left standing still [m]
+    reach : what lies farther than this from every pantograph, or no wave has come to yet, is left standing still; all
+        moves where it is infinite [m]
     """
 
     pantographs: tuple[Pantograph, ...]
@@ -72,28 +73,6 @@ class History:
     force: Array
     height: Array
     motion: Array
-
-
-def causal_reach(line: Discretised, speed: float, duration: float) -> float:
-    """How far from the pantographs the line can stand still without them ever feeling it.
-
-    A wave of speed c needs R / (c - v) to get R ahead of a pantograph of speed v, and R / (c + v) to come back from
-    there; behind it the other way round. It cannot be back before the end of the run if R > duration (c^2 - v^2) / 2c.
-
-    Parameters
-    ----------
-    line : the discretised line
-    speed : of the pantographs [m/s]
-    duration : of the run [s]
-
-    Returns
-    -------
-    the distance; infinite for a train faster than the waves [m]
-    """
-    fastest = max(wire.tension / wire.mass_per_length for wire in line.catenary.wires) ** 0.5
-    # Bending makes short waves faster: 10 % holds up to about 60 Hz on a contact wire.
-    c = 1.1 * fastest
-    return duration * (c * c - speed * speed) / (2 * c) if speed < c else math.inf
 
 
 def run(line: Discretised, passage: Passage, progress: Callable[[float], None] | None = None) -> History:
@@ -190,6 +169,7 @@ def no_train(contact_wires: int) -> Train:
     return Train(
         position=np.zeros(0),
         speed=np.zeros(1),
+        elapsed=np.zeros(1),
         inverse=np.zeros((0, 1, 1)),
         damping=np.zeros((0, 1, 1)),
         stiffness=np.zeros((0, 1, 1)),
@@ -222,6 +202,7 @@ def _train(line: Discretised, stepping: Line, passage: Passage, at_rest: Deflect
     return Train(
         position=np.array(passage.start),
         speed=np.array([passage.speed]),
+        elapsed=np.zeros(1),
         inverse=inverse,
         damping=damping,
         stiffness=stiffness,
@@ -257,7 +238,7 @@ def workspace(line: Line, train: Train) -> Workspace:
     pantographs, wires = train.contact.shape
     return Workspace(
         seen=np.zeros((2, PIECE + 1)),
-        shear=np.zeros(PIECE),
+        forces=np.zeros((4, PIECE + 1)),
         tension=np.zeros(line.station.size),
         shape=np.zeros((pantographs, wires, 4)),
         element=np.zeros(pantographs, dtype=np.int64),

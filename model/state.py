@@ -20,12 +20,15 @@ class Line(NamedTuple):
     ----------
     time_step : [s]
     reach : what lies farther than this from every pantograph stands still [m]
+    front : speed that no wave exceeds; what none can have come to yet stands still, too [m/s]
     position : (S,) [m]
     length : (S-1,) of the elements [m]
-    stiffness_entries : (B, 4, S-1) entries 11, 12, 22, 24 of each element's stiffness [N/m, N, N m, N m]
-    mass_scale : (B, S-1) mass per length times length over 420 of each element [kg]
+    stiffness_entries : (B, 4, S-1) entries 11, 12, (22 + 24) / 2, (22 - 24) / 2 of each element's stiffness
+        [N/m, N, N m, N m]
+    damping_mass : (B, S-1) mass of each element times its damping coefficient, over 420 [kg/s]
     mass_coefficient, stiffness_coefficient : (B,) damping of the wires [1/s, s]
-    lumped_stiffness, lumped_damping : (B, S) [N/m, N s/m]
+    lumped_row, lumped_station : (Q,) where a spring or a damper holds a single row
+    lumped_stiffness, lumped_damping : (Q,) [N/m, N s/m]
     factor : of the effective matrix
     columns : (L, 2, 2H) its inverse around the ends of the connectors
     station : (N,) of the connectors
@@ -48,12 +51,15 @@ class Line(NamedTuple):
 
     time_step: float
     reach: float
+    front: float
     position: Array
     length: Array
     stiffness_entries: Array
-    mass_scale: Array
+    damping_mass: Array
     mass_coefficient: Array
     stiffness_coefficient: Array
+    lumped_row: Indices
+    lumped_station: Indices
     lumped_stiffness: Array
     lumped_damping: Array
     factor: Factor
@@ -105,6 +111,7 @@ class Train(NamedTuple):
     ----------
     position : (P,) [m]
     speed : (1,) [m/s]
+    elapsed : (1,) since the start [s]
     inverse : (P, n, n) inverse of each pantograph's effective matrix [1/kg]
     damping, stiffness : (P, n, n) [N s/m, N/m]
     head : (P, n) picks the head's displacement [-]
@@ -116,6 +123,7 @@ class Train(NamedTuple):
 
     position: Array
     speed: Array
+    elapsed: Array
     inverse: Array
     damping: Array
     stiffness: Array
@@ -132,7 +140,7 @@ class Workspace(NamedTuple):
     Parameters
     ----------
     seen : (2, PIECE + 1) deflection and slope that the stiffness of a piece of wire sees
-    shear : (PIECE,) of its elements [N]
+    forces : (4, PIECE + 1) shear, drag, tilt and bend of its elements, after those of the last one before it [N, N m]
     tension : (N,) of the connectors in the predicted state, as if all could push [N]
     shape : (P, W, 4) Hermite functions at the contacts
     element : (P,) element over each pantograph
@@ -142,7 +150,7 @@ class Workspace(NamedTuple):
     """
 
     seen: Array
-    shear: Array
+    forces: Array
     tension: Array
     shape: Array
     element: Indices

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pantocheck.model.beams import Beams, element_stiffness
 from pantocheck.model.effective import factorise, half_width, inverse_columns, solve_rows
+from pantocheck.model.far_field import fastest_wave
 from pantocheck.model.line import Discretised
 from pantocheck.model.local_flexibility import bubble_flexibility
 from pantocheck.model.modal_damping import modal_terms
@@ -34,7 +35,8 @@ def time_stepping(line: Discretised, time_step: float, reach: float = math.inf, 
     ----------
     line : the discretised line
     time_step : [s]
-    reach : what lies farther than this from every pantograph is left standing still [m]
+    reach : what lies farther than this from every pantograph, or no wave has come to yet, is left standing still; all
+        moves where it is infinite [m]
     load : where the external load acts, if there is one
 
     Returns
@@ -61,6 +63,7 @@ def time_stepping(line: Discretised, time_step: float, reach: float = math.inf, 
     width = half_width(factor, loads + contact_loads[:: max(1, stations // 200)])
     rows_, stations_ = (np.array([load[i] for load in loads], dtype=np.int64) for i in range(2))
     columns = inverse_columns(factor, rows_, stations_, np.zeros_like(rows_), width)
+    lumped = np.nonzero((beams.lumped_stiffness != 0) | (beams.lumped_damping != 0))
     gain = time_step**2 / 4 * connectors.stiffness + time_step / 2 * connectors.damping
     contact = np.repeat(np.array(contact_loads, dtype=np.int64).reshape(-1, 2), 2, axis=0)
     slopes = np.tile(np.arange(2), len(contact_loads))
@@ -68,14 +71,17 @@ def time_stepping(line: Discretised, time_step: float, reach: float = math.inf, 
     return Line(
         time_step=time_step,
         reach=reach,
+        front=fastest_wave(line) if math.isfinite(reach) else math.inf,
         position=line.mesh.position,
         length=beams.length,
         stiffness_entries=_stiffness_entries(beams),
-        mass_scale=beams.mass_per_length * beams.length / 420,
+        damping_mass=beams.mass_coefficient[:, None] * beams.mass_per_length * beams.length / 420,
         mass_coefficient=beams.mass_coefficient,
         stiffness_coefficient=beams.stiffness_coefficient,
-        lumped_stiffness=beams.lumped_stiffness,
-        lumped_damping=beams.lumped_damping,
+        lumped_row=lumped[0],
+        lumped_station=lumped[1],
+        lumped_stiffness=beams.lumped_stiffness[lumped],
+        lumped_damping=beams.lumped_damping[lumped],
         factor=factor,
         columns=columns,
         station=connectors.station,
@@ -102,9 +108,10 @@ def time_stepping(line: Discretised, time_step: float, reach: float = math.inf, 
 
 
 def _stiffness_entries(beams: Beams) -> Array:
-    """The four distinct entries 11, 12, 22, 24 of every element's stiffness."""
+    """What every element's stiffness is made of: entries 11, 12, half the sum and half the difference of 22 and 24."""
     matrices = np.array([element_stiffness(beams, row) for row in range(len(beams.mass_per_length))])
-    return np.stack([matrices[:, :, i, j] for i, j in ((0, 0), (0, 1), (1, 1), (1, 3))], axis=1)
+    k11, k12, k22, k24 = (matrices[:, :, i, j] for i, j in ((0, 0), (0, 1), (1, 1), (1, 3)))
+    return np.stack([k11, k12, (k22 + k24) / 2, (k22 - k24) / 2], axis=1)
 
 
 def _bubbles(beams: Beams, rows: list[int]) -> Array:

@@ -36,63 +36,93 @@ def correct_wires(dt: float, motion: Motion, first: int, last: int) -> None:
 def wire_forces(line: Line, motion: Motion, work: Workspace, first: int, last: int) -> None:
     """Forces and moments that wires and lumped parts exert on the stations, in place of their accelerations.
 
-    The loops are cut so that each fills one array from a few others, in which form they compile to vector instructions,
-    and the line into pieces that stay in the fastest cache from loop to loop.
+    Each element pushes its ends alike (drag) and apart (shear), and turns them alike (tilt) and apart (bend). The line
+    is cut into pieces that stay in the fastest cache, and every loop fills one or two arrays from a few others: in that
+    form they compile to vector instructions. One station more on either side stands still and holds the moving part.
     """
+    lo, hi = max(first - 1, 0), min(last + 1, line.position.size - 1)
     for b in range(motion.w.shape[1]):
-        for now in (motion.w, motion.r):
-            now[2, b, first : last + 1] = 0.0
-        for start in range(first, last, PIECE):
-            end = min(start + PIECE, last)
-            k = line.stiffness_entries[b]
-            q, v, f = motion.w[0, b, start : end + 1], motion.w[1, b, start : end + 1], motion.w[2, b, start : end + 1]
-            t, u, m = motion.r[0, b, start : end + 1], motion.r[1, b, start : end + 1], motion.r[2, b, start : end + 1]
-            c, seen_q, seen_t = line.stiffness_coefficient[b], work.seen[0, : q.size], work.seen[1, : q.size]
-            for s in range(q.size):
-                seen_q[s] = q[s] + c * v[s]
-            for s in range(q.size):
-                seen_t[s] = t[s] + c * u[s]
-            shear = work.shear[: end - start]
-            k11, k12, k22, k24 = k[0, start:end], k[1, start:end], k[2, start:end], k[3, start:end]
-            _add_stiffness_forces(k11, k12, k22, k24, seen_q, seen_t, shear, f, m)
-            c = line.mass_coefficient[b]
-            if c != 0.0:
-                _add_mass_damping(c, line.mass_scale[b, start:end], line.length[start:end], v, u, f, m)
-        q, v, f = motion.w[0, b, first : last + 1], motion.w[1, b, first : last + 1], motion.w[2, b, first : last + 1]
-        spring, damper = line.lumped_stiffness[b, first : last + 1], line.lumped_damping[b, first : last + 1]
-        for s in range(f.size):
-            f[s] -= spring[s] * q[s] + damper[s] * v[s]
+        work.forces[:, 0] = 0.0  # there is no element before the first
+        for start in range(lo, hi, PIECE):
+            end = min(start + PIECE, hi)
+            n = end - start
+            v, u = motion.w[1, b, start : end + 1], motion.r[1, b, start : end + 1]
+            seen_w, seen_r = work.seen[0, : n + 1], work.seen[1, : n + 1]
+            shear, drag, tilt, bend = (
+                work.forces[0, : n + 1],
+                work.forces[1, : n + 1],
+                work.forces[2, : n + 1],
+                work.forces[3, : n + 1],
+            )
+            _add_rate(motion.w[0, b, start : end + 1], v, line.stiffness_coefficient[b], seen_w)
+            _add_rate(motion.r[0, b, start : end + 1], u, line.stiffness_coefficient[b], seen_r)
+            # Not cut from one slice of all four: their entries must be known to lie side by side.
+            k11, k12 = line.stiffness_entries[b, 0, start:end], line.stiffness_entries[b, 1, start:end]
+            alike, apart = line.stiffness_entries[b, 2, start:end], line.stiffness_entries[b, 3, start:end]
+            _stiffness_forces(k11, k12, alike, apart, seen_w, seen_r, shear[1:], tilt[1:], bend[1:])
+            if line.mass_coefficient[b] == 0.0:
+                drag[1:] = 0.0
+            else:
+                mass, length = line.damping_mass[b, start:end], line.length[start:end]
+                _add_apart(mass, length, v, u, shear[1:], tilt[1:])
+                _add_alike(mass, length, v, u, drag[1:], bend[1:])
+            _gather(shear, drag, motion.w[2, b, start:end])
+            _gather(bend, tilt, motion.r[2, b, start:end])
+            for i in range(4):
+                work.forces[i, 0] = work.forces[i, n]
+        motion.w[2, b, hi] = work.forces[0, 0] - work.forces[1, 0]
+        motion.r[2, b, hi] = work.forces[3, 0] - work.forces[2, 0]
+    for n in range(line.lumped_row.size):
+        b, s = line.lumped_row[n], line.lumped_station[n]
+        if first <= s <= last:
+            held = line.lumped_stiffness[n] * motion.w[0, b, s] + line.lumped_damping[n] * motion.w[1, b, s]
+            motion.w[2, b, s] -= held
 
 
 @njit(cache=True)
-def _add_stiffness_forces(
-    k11: Array, k12: Array, k22: Array, k24: Array, p: Array, t: Array, shear: Array, w: Array, r: Array
+def _add_rate(q: Array, v: Array, c: float, seen: Array) -> None:
+    """What a stiffness with damping in proportion sees."""
+    for s in range(seen.size):
+        seen[s] = q[s] + c * v[s]
+
+
+@njit(cache=True)
+def _stiffness_forces(
+    k11: Array, k12: Array, alike: Array, apart: Array, w: Array, r: Array, shear: Array, tilt: Array, bend: Array
 ) -> None:
-    """Forces of beam elements in deflections p and slopes t."""
-    p0, p1, t0, t1 = p[:-1], p[1:], t[:-1], t[1:]
+    """Forces of beam elements in deflections w and slopes r."""
     w0, w1, r0, r1 = w[:-1], w[1:], r[:-1], r[1:]
     for e in range(shear.size):
-        shear[e] = k11[e] * (p0[e] - p1[e]) + k12[e] * (t0[e] + t1[e])
+        d, s = w0[e] - w1[e], r0[e] + r1[e]
+        shear[e] = k11[e] * d + k12[e] * s
+        tilt[e] = k12[e] * d + alike[e] * s
     for e in range(shear.size):
-        w0[e] -= shear[e]
-    for e in range(shear.size):
-        w1[e] += shear[e]
-    for e in range(shear.size):
-        r0[e] -= k12[e] * (p0[e] - p1[e]) + k22[e] * t0[e] + k24[e] * t1[e]
-    for e in range(shear.size):
-        r1[e] -= k12[e] * (p0[e] - p1[e]) + k24[e] * t0[e] + k22[e] * t1[e]
+        bend[e] = apart[e] * (r0[e] - r1[e])
 
 
 @njit(cache=True)
-def _add_mass_damping(c: float, scale: Array, length: Array, v: Array, u: Array, w: Array, r: Array) -> None:
-    """Damping proportional to the consistent mass of beam elements, in velocities v and u of deflection and slope."""
+def _add_apart(mass: Array, length: Array, v: Array, u: Array, shear: Array, tilt: Array) -> None:
+    """Damping by the consistent mass of elements whose ends move apart with velocities v and turn alike with u."""
     v0, v1, u0, u1 = v[:-1], v[1:], u[:-1], u[1:]
-    w0, w1, r0, r1 = w[:-1], w[1:], r[:-1], r[1:]
-    for e in range(scale.size):
-        w0[e] -= c * scale[e] * (156 * v0[e] + 54 * v1[e] + length[e] * (22 * u0[e] - 13 * u1[e]))
-    for e in range(scale.size):
-        w1[e] -= c * scale[e] * (54 * v0[e] + 156 * v1[e] + length[e] * (13 * u0[e] - 22 * u1[e]))
-    for e in range(scale.size):
-        r0[e] -= c * scale[e] * length[e] * (22 * v0[e] + 13 * v1[e] + length[e] * (4 * u0[e] - 3 * u1[e]))
-    for e in range(scale.size):
-        r1[e] += c * scale[e] * length[e] * (13 * v0[e] + 22 * v1[e] + length[e] * (3 * u0[e] - 4 * u1[e]))
+    for e in range(shear.size):
+        d, s = v0[e] - v1[e], length[e] * (u0[e] + u1[e])
+        shear[e] += mass[e] * (51.0 * d + 4.5 * s)
+        tilt[e] += mass[e] * length[e] * (4.5 * d + 0.5 * s)
+
+
+@njit(cache=True)
+def _add_alike(mass: Array, length: Array, v: Array, u: Array, drag: Array, bend: Array) -> None:
+    """The same of elements whose ends move alike and turn apart."""
+    v0, v1, u0, u1 = v[:-1], v[1:], u[:-1], u[1:]
+    for e in range(drag.size):
+        s, d = v0[e] + v1[e], length[e] * (u0[e] - u1[e])
+        drag[e] = mass[e] * (105.0 * s + 17.5 * d)
+        bend[e] += mass[e] * length[e] * (17.5 * s + 3.5 * d)
+
+
+@njit(cache=True)
+def _gather(apart: Array, alike: Array, force: Array) -> None:
+    """Forces on stations from those of the elements before and after them, which resist."""
+    a0, a1, b0, b1 = apart[:-1], apart[1:], alike[:-1], alike[1:]
+    for s in range(force.size):
+        force[s] = (a0[s] - a1[s]) - (b0[s] + b1[s])

@@ -15,7 +15,7 @@ from pantocheck.conformance.systems.passage import pantograph, starts, watched_s
 from pantocheck.conformance.systems.static_check import along_span, static_quantities
 from pantocheck.conformance.systems.tuning import tuned
 from pantocheck.model import Discretised, History, Passage, discretise, run
-from pantocheck.model.simulation import causal_reach
+from pantocheck.model.far_field import causal_reach
 from pantocheck.model.statics import static_uplift
 
 

@@ -1,8 +1,9 @@
 """The time step written out plainly: full matrices, solved anew for every guess of what is slack or open.
 
-Newmark average acceleration with the mass that keeps waves from running late. Unknown are the accelerations a of the whole line and of the pantographs; displacement and
-velocity follow from them. The balance of forces is smooth but for the kinks where a dropper goes slack or a head leaves
-the wire, so Newton's method with the active set of the last guess ends exactly after a few solves.
+Newmark average acceleration with the mass that keeps waves from running late. Unknown are the accelerations a of the
+whole line and of the pantographs; displacement and velocity follow from them. The balance of forces is smooth but for
+the kinks where a dropper goes slack or a head leaves the wire, so Newton's method with the active set of the last guess
+ends exactly after a few solves.
 """
 
 from dataclasses import dataclass

@@ -22,8 +22,8 @@ def test_waves_on_a_wire_run_in_time_up_to_50_hz() -> None:
     """A pinned wire of 40 m at the default setting of 0.5 m and 1 ms, against the closed form.
 
     Plain average acceleration is late by (w dt)^2 / 12, 8.5e-3 at 52 Hz. Of that linear shape functions leave
-    (k h)^2 / 12, an eighth there, and bending, which is not compensated, EI k^2 / T, a seventeenth: less than a fifth in
-    all. Both fade with the square of the frequency: 4e-5 at 20 Hz, in place of 1.3e-3.
+    (k h)^2 / 12, an eighth there, and bending, which is not compensated, EI k^2 / T, a seventeenth: less than a fifth
+    in all. Both fade with the square of the frequency: 4e-5 at 20 Hz, in place of 1.3e-3.
     """
     line, time_step, count = discretise(bare_wire(40.0), 0.5), 1e-3, 33
     stiffness, exact = assemble(line).stiffness, 2 * np.pi * beam.pinned_frequencies(count, 40.0, 20e3, 195.0, 1.35)

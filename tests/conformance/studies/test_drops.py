@@ -73,7 +73,7 @@ def test_record_is_the_decay_at_its_own_rate(own_case):
     assert record.signals.shape == (1100, 4)
     # The mass hangs still before the release, up to what the static solve leaves: as little as the noise of a sensor.
     # The filter rings for half its length, 0.1 s.
-    assert np.abs(record.signals[:480]).max() < 0.004
+    assert np.abs(record.signals[:480]).max() < 0.005
     # Below 40 Hz the record is the simulated acceleration; what lies above is the release's first moments.
     later = decay.time > 2.0
     rms = np.sqrt(np.mean(decay.motion[:, later, 2] ** 2, axis=1))
