@@ -14,7 +14,7 @@ def values(case: Case) -> dict:
     return evaluate(record, case.file.filter.low_pass).values[1]
 
 
-@pytest.mark.parametrize(("speed", "deviation"), [(250, 33.0), (300, 38.2)])
+@pytest.mark.parametrize(("speed", "deviation"), [(250, 33.0), (300, 38.4)])
 def test_an_arm_that_carries_nothing_raises_the_deviation(speed, deviation):
     """Printed to a tenth in the note; above the limit of 31 N at 250 km/h."""
     (case,) = select([f"en50318-2002/{speed}"])
