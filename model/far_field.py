@@ -1,5 +1,7 @@
 """Which part of a line moves: what no wave has reached yet, or can come back from in time, is left standing still."""
 
+import math
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -17,7 +19,7 @@ def fastest_wave(line: Discretised) -> float:
 
     Bending makes short waves faster: 10 % above sqrt(T / m) holds up to about 60 Hz on a contact wire.
     """
-    return 1.1 * max(wire.tension / wire.mass_per_length for wire in line.catenary.wires) ** 0.5
+    return 1.1 * math.sqrt(max(wire.tension / wire.mass_per_length for wire in line.catenary.wires))
 
 
 def causal_reach(line: Discretised, speed: float, duration: float) -> float:
@@ -37,7 +39,7 @@ def causal_reach(line: Discretised, speed: float, duration: float) -> float:
     the distance; infinite for a train faster than the waves [m]
     """
     c = fastest_wave(line)
-    return duration * (c * c - speed * speed) / (2 * c) if speed < c else np.inf
+    return duration * (c * c - speed * speed) / (2 * c) if speed < c else math.inf
 
 
 @njit(cache=True)
