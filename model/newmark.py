@@ -12,7 +12,7 @@ from pantocheck.model.connector_step import larger, predict_connectors, turn_con
 from pantocheck.model.contact_step import correct_train, predict_train, turn_contacts
 from pantocheck.model.effective import solve
 from pantocheck.model.far_field import hold, moving_part
-from pantocheck.model.modal_step import add_mode, turn_modes
+from pantocheck.model.modal_step import predict_modes, turn_modes
 from pantocheck.model.state import Line, Motion, Train, Workspace
 from pantocheck.model.wires import correct_wires, predict_wires, wire_forces
 
@@ -49,15 +49,14 @@ def step(line: Line, motion: Motion, train: Train, work: Workspace) -> int:
     predict_connectors(line, motion, work, first, last)
     predict_train(line, motion, train, work)
     w[line.load_row, line.load_station] += motion.load[0]
-    for j in range(line.modal_damping.size):
-        add_mode(w, r, line.modal_weight[j], motion.modal[j])
+    predict_modes(line, motion, work)
     solve(line.factor, first, last, w, r)
     turns = 0
     while turns < MOST_TURNS:
         turns += 1
         largest = turn_contacts(line, train, work, w, r, first, last)
         largest = larger(largest, turn_connectors(line, motion, work, w, r, first, last))
-        largest = larger(largest, turn_modes(line, motion, w, r))
+        largest = larger(largest, turn_modes(line, motion, work, w, r))
         if largest < FORCE_TOLERANCE:
             break
     correct_wires(dt, motion, first, last)

@@ -245,4 +245,5 @@ def workspace(line: Line, train: Train) -> Workspace:
         stiffness=np.zeros((pantographs, wires)),
         closing=np.zeros((pantographs, wires)),
         compliance=np.zeros((pantographs, wires)),
+        modal_velocity=np.zeros(line.modal_damping.size),
     )

@@ -42,8 +42,8 @@ class Line(NamedTuple):
     bubble : (W, S-1, 6) what a point force bends an element between its stations, see `local_flexibility` [m/N]
     contact_columns : (W, S, 2, 2, 2H) the inverse around every station, for a force and for a moment
     modal_damping : (J,) of the modes whose damping is set one by one [1/s]
-    modal_weight : (J, B, S, 2) M phi of these modes [kg^1/2]
-    modal_response : (J, B, S, 2) the inverse applied to it [kg^-1/2]
+    modal_weight : (J, 2, B, S) M phi of these modes, deflections and slopes [kg^1/2]
+    modal_response : (J, 2, B, S) the inverse applied to it [kg^-1/2]
     modal_compliance : (J,) weight times response [-]
     load_row, load_station : where the external load acts
     rest : (W, S, 2) height and slope of the contact wires at rest [m, -]
@@ -147,6 +147,7 @@ class Workspace(NamedTuple):
     stiffness : (P, W) of penalty and local flexibility of the wire in series [N/m]
     closing : (P, W) predicted overlap of head and wire [m]
     compliance : (P, W) relative acceleration that a newton of contact force causes [1/kg]
+    modal_velocity : (J,) predicted, of the modes whose damping is set one by one [m kg^1/2 / s]
     """
 
     seen: Array
@@ -157,3 +158,4 @@ class Workspace(NamedTuple):
     stiffness: Array
     closing: Array
     compliance: Array
+    modal_velocity: Array

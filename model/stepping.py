@@ -98,13 +98,18 @@ def time_stepping(line: Discretised, time_step: float, reach: float = math.inf, 
         bubble=_bubbles(beams, line.contact_rows),
         contact_columns=contact_columns.reshape(contact_row.size, stations, 2, 2, 2 * width),
         modal_damping=modal.damping,
-        modal_weight=modal.weight,
-        modal_response=response,
+        modal_weight=_fields_first(modal.weight),
+        modal_response=_fields_first(response),
         modal_compliance=np.einsum("jbsi,jbsi->j", modal.weight, response),
         load_row=0 if load is None else load.row,
         load_station=0 if load is None else load.station,
         rest=np.ascontiguousarray(line.state.deflection[line.contact_rows]),
     )
+
+
+def _fields_first(shapes: Array) -> Array:
+    """(n, rows, stations, 2) as (n, 2, rows, stations), along which the time step runs."""
+    return np.ascontiguousarray(np.moveaxis(shapes, -1, 1))
 
 
 def _stiffness_entries(beams: Beams) -> Array:
