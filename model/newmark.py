@@ -1,4 +1,4 @@
-"""The time step: Newmark average acceleration with unilateral droppers and contact.
+"""The time step: Newmark average acceleration, waves kept in time (`dispersion`), unilateral droppers and contact.
 
 The rows of beams are factored once. Connectors, contacts and modal dampers are scalar forces whose effect within the
 step is known in closed form, so each is solved exactly in turn, and the turns are repeated until no force changes any
