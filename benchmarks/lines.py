@@ -5,12 +5,24 @@ from dataclasses import replace
 import numpy as np
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select
+from pantocheck.conformance.evaluation import evaluate
+from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.record import Record
 from pantocheck.conformance.systems.line_model import catenary
 from pantocheck.conformance.systems.passage import pantograph
-from pantocheck.model import Catenary, Discretised, Passage
+from pantocheck.model import Catenary, Discretised, History, Passage
 from pantocheck.model.connectors import arm_direction
 from pantocheck.model.initial_state import InitialState
 
+QUANTITIES = (
+    "std_force_N",
+    "rms_0_5_N",
+    "rms_5_20_N",
+    "rms_20_50_N",
+    "max_force_N",
+    "min_force_N",
+    "max_uplift_at_support_mm",
+)
 UPLIFT_FORCE = 172.7
 """Constant uplift force, with which the mean contact force is about 169 N [N]."""
 SPACING = 200.0
@@ -80,3 +92,18 @@ def passage(
         ),
         reach=reach,
     )
+
+
+def figures(way: Passage, history: History, evaluated: tuple[float, float]) -> dict[str, float]:
+    """The quantities of a run with one pantograph over a stretch [m]."""
+    record = Record(
+        time=history.time,
+        speed=way.speed,
+        position=history.position,
+        force=history.force,
+        evaluated=evaluated,
+        support_position=np.array([x for _, x in way.watched]),
+        support_uplift=history.motion[:, :, 0],
+    )
+    values = evaluate(record, LowPass("butterworth", 6, 20.0, "zero")).values
+    return {name: float({**values[0], **values[1]}[name]) for name in QUANTITIES}

@@ -6,11 +6,7 @@ python benchmarks/run_in.py [--spans 72]
 import argparse
 
 import numpy as np
-from convergence import QUANTITIES
-from lines import ac_simple, passage, staggered
-from pantocheck.conformance.evaluation import evaluate
-from pantocheck.conformance.quantities.filters import LowPass
-from pantocheck.conformance.record import Record
+from lines import QUANTITIES, ac_simple, figures, passage, staggered
 from pantocheck.model import discretise, run
 
 EVALUATED = 10
@@ -30,27 +26,18 @@ def table(speed: int, spans: int) -> None:
     way = passage(case, line, 1e-3, 1, (spans - RESERVE + 1) * span, 660.0, use.uplift_force_N)
     history = run(line, way)
 
-    def figures(first: int) -> np.ndarray:
-        record = Record(
-            time=history.time,
-            speed=way.speed,
-            position=history.position,
-            force=history.force,
-            evaluated=(first * span, (first + EVALUATED) * span),
-            support_position=np.array([x for _, x in way.watched]),
-            support_uplift=history.motion[:, :, 0],
-        )
-        values = evaluate(record, LowPass("butterworth", 6, 20.0, "zero")).values
-        return np.array([float({**values[0], **values[1]}[name]) for name in QUANTITIES])
+    def after(first: int) -> np.ndarray:
+        """The quantities over the ten spans after the first so many."""
+        return np.array(list(figures(way, history, (first * span, (first + EVALUATED) * span)).values()))
 
     print(f"\n### {speed} km/h\n\n| run-in [spans] | {' | '.join(QUANTITIES)} |")
     print(f"| --: |{' --: |' * len(QUANTITIES)}")
     for first in FIRST:
         if first + EVALUATED <= spans - RESERVE:
-            print(f"| {first - 1} | {' | '.join(f'{value:.2f}' for value in figures(first))} |")
+            print(f"| {first - 1} | {' | '.join(f'{value:.2f}' for value in after(first))} |")
     chosen = CHOSEN[speed]
     twice = min(2 * chosen - 1, spans - RESERVE - EVALUATED)
-    moved = 100 * (figures(twice) / figures(chosen) - 1)
+    moved = 100 * (after(twice) / after(chosen) - 1)
     print(f"| from {chosen - 1} to {twice - 1}: moves by [%] | {' | '.join(f'{value:+.2f}' for value in moved)} |")
 
 

@@ -72,6 +72,21 @@ def mass(h: float | Array, mass_per_length: float | Array) -> Array:
     return _by_element(mass_per_length * h / 420 * shares)
 
 
+def springs(stiffness: Array) -> Array:
+    """Elements that only pull their ends together, as strings with linear shape functions do; slopes are free.
+
+    Parameters
+    ----------
+    stiffness : (n,) of each element, T / h for a string [N/m]
+
+    Returns
+    -------
+    (n, 4, 4) symmetric matrices [N/m]
+    """
+    apart = np.array([1.0, 0.0, -1.0, 0.0])
+    return np.asarray(stiffness[:, None, None] * np.outer(apart, apart))
+
+
 def _by_element(matrices: Array) -> Array:
     """The indices of the matrix last."""
     return np.moveaxis(matrices, (0, 1), (-2, -1))

@@ -9,6 +9,7 @@ to waves too short to matter, and the mass must stay positive definite, for then
 
 import numpy as np
 from numpy.typing import NDArray
+from pantocheck.model import beam
 from pantocheck.model.beams import Beams
 
 Array = NDArray[np.float64]
@@ -32,9 +33,5 @@ def compensation(beams: Beams, row: int, time_step: float) -> Array:
     (S-1, 4, 4) matrices [kg]; less than dt^2/6 K where an element is shorter than 2.6 times the way of a wave in a step
     """
     h, tension, mass_per_length = beams.length, beams.tension[row], beams.mass_per_length[row]
-    # T / h times the factor; an element without a wire has neither tension nor mass.
-    taken = np.minimum(time_step**2 / 6 * tension / h, STABLE_SHARE * mass_per_length * h)
-    matrices = np.zeros((h.size, 4, 4))
-    matrices[:, 0, 0] = matrices[:, 2, 2] = taken
-    matrices[:, 0, 2] = matrices[:, 2, 0] = -taken
-    return matrices
+    # An element without a wire has neither tension nor mass.
+    return beam.springs(np.minimum(time_step**2 / 6 * tension / h, STABLE_SHARE * mass_per_length * h))

@@ -10,7 +10,8 @@ from dataclasses import replace
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from pantocheck.model.beams import Beams, build_beams
+from pantocheck.model import beam
+from pantocheck.model.beams import Beams, build_beams, by_station
 from pantocheck.model.catenary import Catenary
 from pantocheck.model.initial_state import InitialState, initial_state
 from pantocheck.model.mesh import build_mesh
@@ -55,10 +56,4 @@ def string_stiffness(beams: Beams, row: int) -> sp.csr_array:
     -------
     (2 S, 2 S) with unknowns (w, r) by station [N/m]
     """
-    present = np.flatnonzero(beams.mass_per_length[row])
-    k = beams.tension[row, present] / beams.length[present]
-    left, right = 2 * present, 2 * present + 2
-    values = np.concatenate([k, k, -k, -k])
-    place = (np.concatenate([left, right, left, right]), np.concatenate([left, right, right, left]))
-    size = 2 * beams.free.shape[1]
-    return sp.csr_array((values, place), shape=(size, size))
+    return by_station(beam.springs(beams.tension[row] / beams.length))

@@ -18,9 +18,9 @@ from pantocheck.conformance.identification.damping_model import (
 from pantocheck.conformance.identification.observability import PLAUSIBLE, observability
 from pantocheck.conformance.identification.pairing import Pair, pair
 from pantocheck.conformance.identification.result_files import ModeRow, rounded
-from pantocheck.model import Catenary, Kind, discretise
+from pantocheck.model import Catenary, Discretised, Kind, discretise
 from pantocheck.model.modal_damping import modes_below
-from pantocheck.model.modes import component_energies, damping_ratios, deflection_at
+from pantocheck.model.modes import Modes, component_energies, damping_ratios, deflection_at
 
 Real = NDArray[np.float64]
 
@@ -46,25 +46,11 @@ def damping_results(rows: tuple[ModeRow, ...], line: Catenary, element: float, s
     usable = [row for row in rows if row.certain and not row.lateral and row.group is not None]
     if not usable:
         raise InputError(source, "holds no certain mode that belongs to a group", "Identify longer or more records.")
-    sensors = {(shape.wire, shape.position_m) for row in usable for shape in row.sensor_shape}
-    placed = {(wire, x) for wire, x in sensors if x is not None and wire in KIND_OF_WIRE}
-    end = max(wire.end for wire in line.wires)
-    outside = sorted(x for _, x in placed if not 0 <= x <= end)
-    if outside:
-        raise InputError(
-            source, f"a sensor at {outside[0]:g} m, the line ends at {end:g} m", "Name the case of the line measured."
-        )
+    placed = _places_of_sensors(usable, line, source)
     mesh = discretise(line, element, tuple(sorted(x for _, x in placed)))
     shapes = modes_below(mesh, 1.1 * max(row.frequency_Hz for row in usable))
     energies = component_energies(mesh, shapes)
-    rows_of = {name: mesh.mesh.row_of[_wire(line, KIND_OF_WIRE[name]), "z"] for name, _ in placed}
-    at = {(wire, x): deflection_at(mesh, shapes, rows_of[wire], x) for wire, x in placed if x is not None}
-    measured_shapes, computed_shapes = [], []
-    for row in usable:
-        known = [s for s in row.sensor_shape if (s.wire, s.position_m) in at]
-        measured_shapes.append(np.array([complex(s.re, s.im) for s in known]))
-        columns = [at[s.wire, s.position_m] for s in known if s.position_m is not None]
-        computed_shapes.append(np.array(columns).T if columns else np.zeros((shapes.frequency.size, 0)))
+    measured_shapes, computed_shapes = _shapes_at_sensors(usable, mesh, shapes, placed)
     pairs = pair(np.array([row.frequency_Hz for row in usable]), measured_shapes, shapes.frequency, computed_shapes)
     computed = np.array([p.computed for p in pairs], dtype=np.int64)
     paired = [usable[p.measured] for p in pairs]
@@ -75,12 +61,7 @@ def damping_results(rows: tuple[ModeRow, ...], line: Catenary, element: float, s
             "Name the case of the line measured; its tensions and spans decide the frequencies.",
         )
     kinds = tuple(str(kind) for kind in energies.kinds)
-    measured = Measured(
-        np.array([row.frequency_Hz for row in paired]),
-        np.array([row.damping_ratio for row in paired]),
-        np.array([row.damping_ratio_std for row in paired]),
-        np.array([row.group or 0 for row in paired], dtype=np.int64),
-    )
+    measured = _measured(paired)
     everything = ModalEnergies(shapes.frequency, kinds, energies.stiffness, energies.mass)
     own = ModalEnergies(shapes.frequency[computed], kinds, energies.stiffness[computed], energies.mass[computed])
     fit = fit_damping(own, measured)
@@ -122,6 +103,43 @@ def damping_results(rows: tuple[ModeRow, ...], line: Catenary, element: float, s
         },
         "unpaired": [row.frequency_Hz for i, row in enumerate(usable) if i not in {p.measured for p in pairs}],
     }
+
+
+def _places_of_sensors(usable: list[ModeRow], line: Catenary, source: str) -> set[tuple[str, float]]:
+    """Wire and place of every sensor that has a counterpart on the line; one off the line is an error."""
+    sensors = {(shape.wire, shape.position_m) for row in usable for shape in row.sensor_shape}
+    placed = {(wire, x) for wire, x in sensors if x is not None and wire in KIND_OF_WIRE}
+    end = max(wire.end for wire in line.wires)
+    outside = sorted(x for _, x in placed if not 0 <= x <= end)
+    if outside:
+        raise InputError(
+            source, f"a sensor at {outside[0]:g} m, the line ends at {end:g} m", "Name the case of the line measured."
+        )
+    return placed
+
+
+def _shapes_at_sensors(
+    usable: list[ModeRow], mesh: Discretised, shapes: Modes, placed: set[tuple[str, float]]
+) -> tuple[list[NDArray[np.complex128]], list[Real]]:
+    """Measured and computed mode shapes at the sensors of each identified mode."""
+    rows_of = {name: mesh.mesh.row_of[_wire(mesh.catenary, KIND_OF_WIRE[name]), "z"] for name, _ in placed}
+    at = {(wire, x): deflection_at(mesh, shapes, rows_of[wire], x) for wire, x in placed}
+    measured, computed = [], []
+    for row in usable:
+        known = [s for s in row.sensor_shape if (s.wire, s.position_m) in at]
+        measured.append(np.array([complex(s.re, s.im) for s in known]))
+        columns = [at[s.wire, s.position_m] for s in known if s.position_m is not None]
+        computed.append(np.array(columns).T if columns else np.zeros((shapes.frequency.size, 0)))
+    return measured, computed
+
+
+def _measured(paired: list[ModeRow]) -> Measured:
+    return Measured(
+        np.array([row.frequency_Hz for row in paired]),
+        np.array([row.damping_ratio for row in paired]),
+        np.array([row.damping_ratio_std for row in paired]),
+        np.array([row.group or 0 for row in paired], dtype=np.int64),
+    )
 
 
 def damping_toml(results: dict[str, Any], modal: Sequence[dict[str, float]] = ()) -> str:

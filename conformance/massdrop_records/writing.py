@@ -119,6 +119,7 @@ def write_hdf5(records: tuple[DropRecord, ...], path: Path) -> None:
             raise InputError(str(path), "the runs are of different tests", "Write one file per test.")
 
     def produce(temporary: Path) -> None:
+        """Write the file under a temporary name."""
         with h5py.File(temporary, "w") as file:
             for name, value in _facts(first).items():
                 file.attrs[name] = value

@@ -6,9 +6,8 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from pantocheck.conformance.reports.figures import FULL, GREY, HALF, INK, LINES, drawn
+from pantocheck.conformance.reports.figures import FULL, HALF, INK, LINES, SHADES, box, drawn
 
-SHADES = (INK, "#6b747e", "#9aa3ac", "#c3cad2")
 MARKERS = "os^Dv"
 FILLS = ("#3a424a", "#aab3bc", "white", "white")
 HATCHES = ("", "", "////", "....")
@@ -73,17 +72,7 @@ def _boxes(axes: Axes, series: dict[str, Any], at: int) -> None:
     x, y = np.array(series["x"]), np.array(series["y"])
     for place in np.unique(x):
         values = y[x == place]
-        axes.boxplot(
-            values,
-            positions=[place],
-            widths=0.5,
-            showfliers=False,
-            boxprops={"color": INK},
-            medianprops={"color": INK, "linewidth": 1.6},
-            whiskerprops={"color": GREY},
-            capprops={"color": GREY},
-            manage_ticks=False,
-        )
+        box(axes, values, place)
         axes.plot(np.full(values.size, place + 0.36), values, "o", color=INK, markersize=3, markerfacecolor="white")
     axes.set_xlim(x.min() - 0.6, x.max() + 0.6)
     axes.set_xticks(np.unique(x))

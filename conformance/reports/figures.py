@@ -7,13 +7,16 @@ from importlib.resources import as_file
 from typing import Any, ParamSpec
 
 import matplotlib
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 from pantocheck.conformance.reports.text import number
 from pantocheck.conformance.reports.words import TEMPLATES
 
 INK, GREY, PALE = "#1a1d21", "#8a929b", "#e9edf1"
+SHADES = (INK, "#6b747e", "#9aa3ac", "#c3cad2")
 FULL, HALF = 6.9, 3.4  # widths of a figure [in]: across an A4 page's text, and two beside each other
 BANDS_Hz = ((0, 5, "rms_0_5_N"), (5, 20, "rms_5_20_N"), (20, 50, "rms_20_50_N"))
 # Force limits drawn beside the force, in this order, under short names.
@@ -207,3 +210,18 @@ def _many_supports(axes: Axes, supports: list[dict[str, Any]]) -> None:
 def _legend(axes: Axes) -> None:
     """Names above the axes, so that they never cover the data."""
     axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=5, borderaxespad=0.2, columnspacing=1.4)
+
+
+def box(axes: Axes, values: NDArray[np.float64], at: float) -> None:
+    """Quartiles and median of some values as a box at a place of the other axis, which keeps its ticks."""
+    axes.boxplot(
+        values,
+        positions=[at],
+        widths=0.5,
+        showfliers=False,
+        boxprops={"color": INK},
+        medianprops={"color": INK, "linewidth": 1.6},
+        whiskerprops={"color": GREY},
+        capprops={"color": GREY},
+        manage_ticks=False,
+    )

@@ -5,9 +5,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from pantocheck.conformance.reports.figures import FULL, GREY, INK, LINES, drawn
-
-SHADES = ("#1a1d21", "#6b747e", "#9aa3ac", "#c3cad2")
+from pantocheck.conformance.reports.figures import FULL, GREY, INK, LINES, SHADES, box, drawn
 
 
 @drawn
@@ -91,16 +89,7 @@ def boxes(modes: list[dict[str, Any]]) -> Figure:
         values = np.array([100 * mode["damping_ratio"] for mode in members])
         if not values.size:
             continue
-        axes.boxplot(
-            values,
-            positions=[number],
-            widths=0.5,
-            showfliers=False,
-            boxprops={"color": INK},
-            medianprops={"color": INK, "linewidth": 1.6},
-            whiskerprops={"color": GREY},
-            capprops={"color": GREY},
-        )
+        box(axes, values, number)
         for mode, value in zip(members, values, strict=True):
             axes.plot(
                 number + 0.36, value, "x" if mode["outlier"] else "o", color=INK, markersize=4, markerfacecolor="white"
