@@ -1,5 +1,6 @@
 """Writing files so that nobody ever sees half of one."""
 
+import hashlib
 import os
 import tempfile
 from collections.abc import Callable
@@ -66,3 +67,9 @@ def check_writable(folder: Path) -> None:
         raise InputError(
             str(folder), f"cannot be written ({error.strerror})", "Name a folder that you may write to, with --out."
         ) from None
+
+
+def digest_of(path: Path) -> str:
+    """SHA-256 of a file, in hexadecimal."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

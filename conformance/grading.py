@@ -33,14 +33,14 @@ def graded(case: Case, outcome: Outcome, lowest_trust: Trust) -> CaseResult:
         return ungraded(case, "skip", outcome.skipped, outcome)
     if (mismatch := _mismatch(case, outcome)) is not None:
         return ungraded(case, "error", mismatch, outcome)
-    evaluation = _evaluated(case, outcome)
+    evaluation, refined = _evaluated(case, outcome), _refined(case, outcome)
     record = outcome.record
     shifted = {} if record is None else spread(record, case.shifted, case.file.filter.low_pass, evaluation.values)
     found = findings(case, record) if record is not None else []
     contradiction = next((finding for finding in found if finding.kind == "contradiction"), None)
     # Numbers of a record that contradicts itself are shown, but not held against limits: some would pass.
-    graded_limits = [] if contradiction is not None else criteria_of(case, outcome, lowest_trust)
-    criteria = [_with_spread(item, shifted) for item in graded_limits]
+    limits = case.limits if contradiction is None else ()
+    criteria = [_with_spread(criterion(limit, evaluation, lowest_trust, refined), shifted) for limit in limits]
     span, spans = case.line.geometry.span_m, case.line.geometry.spans
     supports = [i * span for i in range(spans + 1)]
     return _result(
@@ -53,7 +53,7 @@ def graded(case: Case, outcome: Outcome, lowest_trust: Trust) -> CaseResult:
             *(finding.text for finding in found if finding.kind == "doubt"),
             *_close_calls(criteria),
             *_edge_warnings(case, outcome),
-            *extended_band_warnings(outcome, evaluation, _refined(case, outcome)),
+            *extended_band_warnings(outcome, evaluation, refined),
         ],
         notes=[f"not checked, {finding.text}" for finding in found if finding.kind == "unchecked"],
         criteria=criteria,
@@ -69,8 +69,7 @@ def graded(case: Case, outcome: Outcome, lowest_trust: Trust) -> CaseResult:
 
 def criteria_of(case: Case, outcome: Outcome, lowest_trust: Trust) -> list[Criterion]:
     """Every limit of a case against what was delivered; parameters as in `graded`."""
-    evaluation = _evaluated(case, outcome)
-    refined = _refined(case, outcome)
+    evaluation, refined = _evaluated(case, outcome), _refined(case, outcome)
     return [criterion(limit, evaluation, lowest_trust, refined) for limit in case.limits]
 
 
@@ -82,6 +81,11 @@ def _refined(case: Case, outcome: Outcome) -> Evaluation | None:
 def _mismatch(case: Case, outcome: Outcome) -> str | None:
     """Why a record is not one of this case: graded all the same, its numbers would be believed."""
     record = outcome.record
+    for name in sorted(outcome.static):
+        if name not in QUANTITIES:
+            return f"the system delivered an unknown quantity {name!r}"
+        if QUANTITIES[name].scope != "static":
+            return f"the system delivered {name!r} as one of the line at rest, but it follows from the record"
     if case.is_static:
         return None
     if record is None:
@@ -93,8 +97,7 @@ def _mismatch(case: Case, outcome: Outcome) -> str | None:
     if any(abs(a - b) > 0.01 for a, b in zip(record.evaluated, case.evaluated, strict=True)):
         (start, end), (first, last) = record.evaluated, case.evaluated
         return f"the record evaluates {start:g} m to {end:g} m, the case {first:g} m to {last:g} m"
-    unknown = sorted(set(outcome.static) - set(QUANTITIES))
-    return f"the system delivered an unknown quantity {unknown[0]!r}" if unknown else None
+    return None
 
 
 def ungraded(case: Case, verdict: Verdict, reason: str, outcome: Outcome | None = None) -> CaseResult:
@@ -194,6 +197,12 @@ def criterion(
     )
 
 
+def name_of(item: Criterion) -> str:
+    """What a criterion is about: the quantity, which of several, and whose."""
+    name = f"{item.quantity}[{item.item}]" if item.item else item.quantity
+    return f"{name} of pantograph {item.pantograph}" if item.pantograph else f"{name} of the line"
+
+
 def _with_spread(item: Criterion, shifted: dict[int, dict[str, float]]) -> Criterion:
     found = shifted.get(item.pantograph, {}).get(item.quantity)
     return item if found is None or item.value is None else item.model_copy(update={"spread": found})
@@ -227,7 +236,7 @@ def _close_calls(criteria: list[Criterion]) -> list[str]:
         ):
             if error is not None and distance < error:
                 close.append(
-                    f"{item.quantity} of pantograph {item.pantograph} lies {distance:.2g} {item.unit} from a limit, "
+                    f"{name_of(item)} lies {distance:.2g} {item.unit} from a limit, "
                     f"less than its {name} of {error:.2g} {item.unit}"
                 )
     return close

@@ -136,7 +136,7 @@ def bounds(
 
     Raises
     ------
-    NoBound : the speed is out of the formula's range, or what the bound refers to is not known
+    NoBound : the speed is out of the formula's range, what the bound refers to is not known, or nothing lies between
     """
     if rule.compares:
         if measured is None:
@@ -144,6 +144,8 @@ def bounds(
         reach = rule.tolerance or abs(measured) * (rule.tolerance_pct or 0.0) / 100
         return measured - reach, measured + reach
     lower, upper = (_resolved(bound, speed_km_h, given) for bound in (rule.lower, rule.upper))
+    if lower is not None and upper is not None and lower > upper:
+        raise NoBound(f"its lower bound of {lower:g} lies above its upper bound of {upper:g}")
     return lower, upper
 
 

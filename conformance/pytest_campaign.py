@@ -18,6 +18,7 @@ from pantocheck.conformance.reports.writers import checked_formats
 from pantocheck.conformance.results import CaseResult, Results, SystemIdentity
 from pantocheck.conformance.results_file import read_results
 from pantocheck.conformance.runner import run_when_ready
+from pantocheck.conformance.studies.damping_sensitivity import with_damping_study
 from pantocheck.conformance.systems import System
 from pantocheck.conformance.systems.choice import system_named
 from pantocheck.conformance.trust import Trust
@@ -57,6 +58,8 @@ class Campaign:
         cases = select(plan.cases)
         if plan.limits is not None:
             cases = overlaid(cases, read_limits(Path(plan.limits)))
+        if plan.damping_study:
+            cases = [with_damping_study(case) for case in cases]
         checked_formats(plan.formats)
         check_writable(Path(plan.out))
         return cls(path, plan, cases, shared / _key(str(path.resolve())))

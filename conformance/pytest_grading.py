@@ -9,7 +9,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select
 from pantocheck.conformance.criteria import Verdict
 from pantocheck.conformance.errors import InputError
-from pantocheck.conformance.grading import graded
+from pantocheck.conformance.grading import graded, name_of
 from pantocheck.conformance.record import Record, RecordInvalid
 from pantocheck.conformance.record_files import read_record
 from pantocheck.conformance.results import CaseResult, Criterion
@@ -64,8 +64,7 @@ class Graded:
 
 def line(item: Criterion) -> str:
     """A criterion on one line: what, its value, its limits, and why it is not met."""
-    name = f"{item.quantity}[{item.item}]" if item.item else item.quantity
-    of = f"{name} of pantograph {item.pantograph}" if item.pantograph else f"{name} of the line"
+    of = name_of(item)
     if item.value is None:
         return f"{of}: {item.verdict}, {item.reason}"
     bounds = " to ".join("any" if bound is None else f"{bound:g}" for bound in (item.lower, item.upper))
@@ -125,7 +124,7 @@ def assess(
     """
     asked = _one(case)
     if isinstance(record, str | Path):
-        record, _ = read_record(Path(record))
+        record, _ = read_record(Path(record), None if asked.is_static else asked.evaluated)
     if record is None:
         if time_s is None or position_m is None or force_N is None:
             raise InputError("pantocheck_assess", "no record", "Give a record, or time_s, position_m and force_N.")

@@ -15,7 +15,7 @@ from pantocheck.conformance.criteria import Verdict, worst
 from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.evaluation import LINE
 from pantocheck.conformance.extended_band import not_validated
-from pantocheck.conformance.grading import criterion, plain
+from pantocheck.conformance.grading import criterion, name_of, plain
 from pantocheck.conformance.profiles import NoBound, Profile, Rule, bounds
 from pantocheck.conformance.quantities.bands import amplitude_spectrum
 from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE
@@ -202,12 +202,12 @@ def _turning(criteria: Sequence[Criterion], measured: Subject | None) -> list[st
     for item in criteria:
         theirs = measured.uncertainty.get(item.pantograph, {}).get(item.quantity, 0.0) if measured is not None else 0.0
         reach = math.hypot(item.uncertainty or 0.0, theirs)
-        if item.value is None or reach == 0:
+        if item.value is None or reach == 0 or item.lower is item.upper is None:
             continue
         distance = min(abs(item.value - bound) for bound in (item.lower, item.upper) if bound is not None)
         if distance < reach:
             found.append(
-                f"{item.quantity} of pantograph {item.pantograph} lies {distance:.2g} {item.unit} from a limit, less "
+                f"{name_of(item)} lies {distance:.2g} {item.unit} from a limit, less "
                 f"than its uncertainty of {reach:.2g} {item.unit}: a longer record could turn the verdict"
             )
     return found

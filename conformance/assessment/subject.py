@@ -9,13 +9,14 @@ import numpy as np
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.evaluation import LINE, Evaluation, Value, evaluated
+from pantocheck.conformance.files import digest_of
 from pantocheck.conformance.measured.preparation import Prepared, prepared
 from pantocheck.conformance.measured.uncertainty import FEWEST_BLOCKS, uncertainties
 from pantocheck.conformance.profiles import Profile
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.record import RecordInvalid
 from pantocheck.conformance.record_files.kinds import read_either
-from pantocheck.conformance.record_files.reading import digest_of, invalid, read_samples
+from pantocheck.conformance.record_files.reading import invalid, read_samples
 from pantocheck.conformance.record_files.sidecar import LineTable, Sidecar, SystemTable
 from pantocheck.conformance.record_files.summary import Summary
 from pantocheck.conformance.results import InputGroup

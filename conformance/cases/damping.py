@@ -6,7 +6,7 @@ The names say what is multiplied, because papers disagree on which of alpha and 
 from itertools import pairwise
 from typing import Annotated
 
-from pantocheck.conformance.cases.base import Sourced, Table, problem
+from pantocheck.conformance.cases.base import PROVENANCE, Sourced, Table, problem
 from pantocheck.conformance.trust import LEVELS
 from pydantic import Field, model_validator
 
@@ -69,10 +69,10 @@ class DampingFile(Table):
 
 def overlaid(damping: Damping, over: Damping) -> Damping:
     """Damping of a line with another laid over it: the kinds and modal bands of `over` replace its own."""
-    said = over.model_fields_set - {"trust", "source", "provisional", "note"}
+    said = over.model_fields_set - PROVENANCE
     kinds = {"contact_wire", "messenger_wire", "stitch_wire", "droppers", "steady_arms"}
     kept = kinds & damping.model_fields_set - said
-    changes: dict[str, object] = {key: getattr(over, key) for key in (*said, "trust", "source", "provisional", "note")}
+    changes: dict[str, object] = {key: getattr(over, key) for key in (*said, *PROVENANCE)}
     if kept:
         changes["trust"] = max(damping.trust, over.trust, key=LEVELS.index)
         changes["source"] = list(dict.fromkeys((*_listed(over.source), *_listed(damping.source))))

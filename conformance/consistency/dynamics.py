@@ -29,6 +29,7 @@ SMALLEST_MOTION_M = 0.001
 LONGEST_S, LONGEST_LAG_S = 30.0, 0.5
 CAUSAL_DELAY_PERIODS = 0.75
 """Delay of a causal Butterworth filter of order 6, in periods of its cut-off: 0.62 at low frequencies."""
+TINY = float(np.finfo(float).tiny)
 SAMPLES_PER_PERIOD = 20
 """At the cut-off: the force is then met by straight lines within a percent."""
 
@@ -59,6 +60,7 @@ def dynamics(case: Case, record: Record) -> list[Finding]:
     cutoff = case.file.filter.cutoff_Hz
     if cutoff > HIGHEST_SHARE_OF_RATE * record.rate:
         return [Finding("dynamics", "unchecked", f"force against motion: a rate of {record.rate:g} Hz is too low")]
+    still = False
     for number, file in enumerate(case.pantographs, 1):
         step = max(1, int(record.rate / (SAMPLES_PER_PERIOD * cutoff)))
         window = _window(record, number)
@@ -66,11 +68,12 @@ def dynamics(case: Case, record: Record) -> list[Finding]:
         channels = (record.force, record.contact_height)
         force, height = (low_pass(channel[number - 1], record.rate)[window][::step] for channel in channels)
         fit = fitted(file, force, height, step / record.rate)
+        still = still or fit is None
         if fit is None:
-            return [Finding("dynamics", "unchecked", "force against motion: the contact point hardly moves")]
+            continue
         if fit.misfit > LARGEST_MISFIT or abs(1 / fit.gain - 1) > LARGEST_GAIN_ERROR:
             return [_diagnosis(number, fit, step / record.rate, record.filter_applied_Hz)]
-    return []
+    return [Finding("dynamics", "unchecked", "force against motion: the contact point hardly moves")] if still else []
 
 
 def fitted(file: PantographFile, force: Array, height: Array, step: float) -> Fit | None:
@@ -84,25 +87,25 @@ def fitted(file: PantographFile, force: Array, height: Array, step: float) -> Fi
 
     Returns
     -------
-    the fit; None if the head would hardly move
+    the fit; None if the head hardly moves, and would hardly move
     """
     response, free = _responses(file, force, step)
-    response = _without(response, free)
-    if response.std() < SMALLEST_MOTION_M:
+    response, motion = _without(response, free), _without(height, free)
+    if max(response.std(), motion.std()) < SMALLEST_MOTION_M:
         return None
     # The contact point is the head itself, or the wire, into which the head has sunk by force over contact stiffness.
-    head = _fit(_without(height, free), response)
+    head = _fit(motion, response)
     wire = _fit(_without(height + force / file.contact.stiffness_N_m, free), response)
     return wire if wire.unexplained < head.unexplained / 2 else head
 
 
 def _fit(motion: Array, response: Array) -> Fit:
-    scale = float(motion @ response / (response @ response))
+    scale = float(motion @ response / max(float(response @ response), TINY))
     left = motion - scale * response
     return Fit(
-        misfit=float((motion - response).std() / response.std()),
+        misfit=float((motion - response).std() / max(float(response.std()), TINY)),
         gain=1 / scale if scale else np.inf,
-        unexplained=float(left.std() / max(motion.std(), np.finfo(float).tiny)),
+        unexplained=float(left.std() / max(motion.std(), TINY)),
         motion=motion,
         response=response,
     )
@@ -132,7 +135,7 @@ def _responses(file: PantographFile, force: Array, step: float) -> tuple[Array, 
 
 def _without(signal: Array, free: Array) -> Array:
     """A signal without what free motions explain of it."""
-    scaled = free / np.maximum(np.abs(free).max(axis=0), np.finfo(float).tiny)
+    scaled = free / np.maximum(np.abs(free).max(axis=0), TINY)
     return np.asarray(signal - scaled @ np.linalg.lstsq(scaled, signal, rcond=1e-9)[0])
 
 
@@ -148,7 +151,7 @@ def _diagnosis(number: int, fit: Fit, step: float, filter_applied_Hz: float | No
         return Finding("dynamics", "contradiction", text)
     samples, likeness = _lag(fit, round(LONGEST_LAG_S / step))
     late = -samples * step
-    if not samples or likeness < 1 - CLEAR:
+    if not samples or not likeness >= 1 - CLEAR:  # also of a force without any change, which is like nothing
         share = 100 * max(0.0, 1 - fit.unexplained)
         return Finding("dynamics", "contradiction", f"{said}: the force explains {share:.0f} % of the motion")
     side = "later" if late > 0 else "earlier"
@@ -164,6 +167,7 @@ def _lag(fit: Fit, most: int) -> tuple[int, float]:
     likeness = {}
     for lag in range(-min(most, n // 3), min(most, n // 3) + 1):
         motion, response = fit.motion[max(0, lag) : n + min(0, lag)], fit.response[max(0, -lag) : n - max(0, lag)]
-        likeness[lag] = float(np.corrcoef(motion, response)[0, 1])
+        with np.errstate(invalid="ignore"):
+            likeness[lag] = float(np.corrcoef(motion, response)[0, 1])
     best = max(likeness, key=lambda lag: likeness[lag])
     return best, likeness[best]

@@ -1,11 +1,12 @@
 """Reading a record from a stranger: everything is checked before it becomes samples or a `Record`."""
 
-import hashlib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from pantocheck.conformance.cases.toml_file import read_model
 from pantocheck.conformance.errors import InputError
+from pantocheck.conformance.files import digest_of
 from pantocheck.conformance.record import LARGEST_NUMBER, Array, Record, RecordInvalid
 from pantocheck.conformance.record_files.channels import CHANNELS, column_name
 from pantocheck.conformance.record_files.samples import Samples, record_of
@@ -16,8 +17,13 @@ from pantocheck.conformance.record_files.writing import HDF5_SUFFIXES
 LARGEST_FILE = 2_000_000_000
 
 
-def read_record(path: Path) -> tuple[Record, Sidecar]:
+def read_record(path: Path, evaluated: tuple[float, float] | None = None) -> tuple[Record, Sidecar]:
     """Read a record by its sidecar, or by its table with the sidecar beside it.
+
+    Parameters
+    ----------
+    path : of either
+    evaluated : stretch of the case it is read for, which holds where the sidecar names none [m]
 
     Raises
     ------
@@ -25,9 +31,12 @@ def read_record(path: Path) -> tuple[Record, Sidecar]:
     """
     samples, sidecar, table = read_samples(path)
     try:
-        return record_of(samples, sidecar), sidecar
+        record = record_of(samples, sidecar)
     except RecordInvalid as error:
         raise invalid(table, error) from None
+    if sidecar.evaluated_m is None and evaluated is not None:
+        record = replace(record, evaluated=evaluated)
+    return record, sidecar
 
 
 def read_samples(path: Path) -> tuple[Samples, Sidecar, Path]:
@@ -58,12 +67,6 @@ def read_samples(path: Path) -> tuple[Samples, Sidecar, Path]:
         raise InputError(where, f"cannot be read ({error.strerror})", "The table lies beside its sidecar.") from None
     check_complete(rows, where)
     return _samples(rows, sidecar, where), sidecar, table
-
-
-def digest_of(path: Path) -> str:
-    """SHA-256 of a file, in hexadecimal."""
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def invalid(table: Path, error: RecordInvalid) -> InputError:

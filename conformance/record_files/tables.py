@@ -43,6 +43,10 @@ def read_csv(path: Path, sidecar: Sidecar, where: str) -> Rows:
         raise
     except ValueError as error:
         raise InputError(where, _telling(str(error)), "Separate columns by commas and decimals by points.") from None
+    if samples.size > MAX_SAMPLES:
+        raise InputError(
+            where, f"more than {MAX_SAMPLES} numbers", "Cut the record into several, or leave channels out."
+        )
     if samples.size == 0 or samples.shape[1] != len(names):
         raise InputError(
             where,

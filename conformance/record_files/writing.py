@@ -1,6 +1,5 @@
 """Writing a record: the table first, the sidecar last, so that a sidecar never names a table that is not there."""
 
-import hashlib
 from pathlib import Path
 from typing import Any
 
@@ -8,7 +7,7 @@ import numpy as np
 import tomli_w
 from pantocheck.conformance.cases.toml_file import read_toml
 from pantocheck.conformance.errors import InputError
-from pantocheck.conformance.files import produce_in_place, write_in_place
+from pantocheck.conformance.files import digest_of, produce_in_place, write_in_place
 from pantocheck.conformance.record import Array, Record
 from pantocheck.conformance.record_files.channels import column_name
 from pantocheck.conformance.record_files.sidecar import SCHEMA, Sidecar
@@ -51,7 +50,7 @@ def write_record(
         "schema": SCHEMA,
         "case": case,
         "file": path.name,
-        "sha256": hashlib.sha256(path.read_bytes()).hexdigest(),
+        "sha256": digest_of(path),
         "speed_km_h": float(f"{3.6 * record.speed:.12g}"),
         "pantographs": record.pantographs,
         "evaluated_m": [float(x) for x in record.evaluated],

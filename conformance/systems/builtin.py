@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.evaluation import pantograph_signals
 from pantocheck.conformance.record import Record
 from pantocheck.conformance.systems import Outcome
 from pantocheck.conformance.systems.line_model import catenary
@@ -85,7 +86,7 @@ def run_line(
     run(line, replace(passage_of(case, line, step, begin), duration=0.0))  # compiles the kernels, not part of the run
     made, forces = tuned(
         lambda forces: _run(case, line, step, forces),
-        _means,
+        lambda made: _means(case, made),
         begin,
         [None if uplift_forces else use.target_mean_force_N for use in uses],
     )
@@ -99,11 +100,10 @@ def _run(case: Case, line: Discretised, step: float, uplift_forces: tuple[float,
     return Run(record_of(case, passage, history), passage.duration, time.perf_counter() - begin)
 
 
-def _means(made: Run) -> NDArray[np.float64]:
-    """Mean contact force of every pantograph over the evaluated stretch [N]."""
-    record = made.record
-    inside = (record.position >= record.evaluated[0]) & (record.position <= record.evaluated[1])
-    return np.array([force[here].mean() for force, here in zip(record.force, inside, strict=True)])
+def _means(case: Case, made: Run) -> NDArray[np.float64]:
+    """Mean contact force of every pantograph over the samples that are graded [N]."""
+    low_pass, numbers = case.file.filter.low_pass, range(1, made.record.pantographs + 1)
+    return np.array([pantograph_signals(made.record, i, low_pass).delivered.mean() for i in numbers])
 
 
 def passage_of(case: Case, line: Discretised, step: float, uplift_forces: tuple[float, ...]) -> Passage:

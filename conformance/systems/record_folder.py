@@ -1,6 +1,6 @@
 """A folder of records as a system: every record that names a case is graded as that case's run."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
@@ -36,9 +36,7 @@ class RecordFolder:
         said = read_either(path)
         if isinstance(said, Summary):
             return _of_summary(said, case)
-        record, sidecar = read_record(path)
-        if sidecar.evaluated_m is None and not case.is_static:
-            record = replace(record, evaluated=case.evaluated)
+        record, sidecar = read_record(path, None if case.is_static else case.evaluated)
         run = sidecar.run
         return Outcome(record, {}, run.simulated_s, run.wall_s, run.dt_s, run.element_m)
 

@@ -50,10 +50,12 @@ def tuned(
     slope = np.ones(forces.size)
     made = run(tuple(map(float, forces)))
     found = means(made)
-    for _ in range(MOST_RUNS - 1):
+    for made_runs in range(1, MOST_RUNS + 1):
         missing = np.where(aimed, wanted - found, 0.0)
         if np.abs(missing).max(initial=0.0) <= TOLERANCE:
             return made, tuple(map(float, forces))
+        if made_runs == MOST_RUNS:
+            break
         change = missing / slope
         forces = forces + change
         made = run(tuple(map(float, forces)))

@@ -7,6 +7,7 @@ import sys
 import pytest
 from pantocheck.conformance import pytest_collection  # noqa: F401 - once here, or anew in every session below
 from pantocheck.conformance.cases.library import select
+from pantocheck.conformance.pytest_campaign import Campaign
 from pantocheck.conformance.record_files import write_record
 
 pytest_plugins = ["pytester"]
@@ -90,6 +91,13 @@ def test_items_are_chosen_by_id_and_options_go_before_the_plan(pytester, plan):
     assert results["trust"] == "primary"
     assert results["cases"][1]["reason"] == "not run in this session of pytest"
     assert [path.name for path in (pytester.path / "asked").iterdir()] == ["results.json"]
+
+
+def test_plan_with_a_damping_study_runs_it(tmp_path):
+    path = tmp_path / "conformance.toml"
+    path.write_text("cases = ['en50318-2002/250']\ndamping_study = true\n")
+    campaign = Campaign.of_plan(path, tmp_path, str(tmp_path / "out"), None, None)
+    assert campaign.cases[0].file.study is not None
 
 
 @pytest.mark.parametrize("workers", [(), ("-n2",)])

@@ -130,6 +130,7 @@ def test_skipped_errored_and_foreign_outcomes(cases, wave):
         (Outcome(wave().record(cases[1])), "error", "made at 300 km/h, the case runs at 250 km/h"),
         (Outcome(replace(wave().record(case), evaluated=(180.0, 300.0))), "error", "evaluates 180 m to 300 m"),
         (Outcome(wave().record(case), {"beauty": 1.0}), "error", "unknown quantity 'beauty'"),
+        (Outcome(wave().record(case), {"max_uplift_at_support_mm": 52.0}), "error", "it follows from the record"),
     ):
         (result,) = run([case], Scripted({case.id: outcome})).cases
         assert result.verdict == verdict
@@ -183,6 +184,25 @@ def test_list_valued_static_quantity_is_graded_item_by_item(case_250, wave):
     (result,) = run([replace(case_250, limits=limits)], Scripted({case_250.id: outcome})).cases
     assert [item.verdict for item in result.criteria] == ["pass", "fail", "pass", "skip"]
     assert result.quantities["0"]["dropper_length_m"] == list(lengths)
+
+
+def test_unknown_quantity_of_a_line_at_rest_is_an_error():
+    """Passed over, a misspelt name would end as a case without values, which is skipped."""
+    (case,) = select(["en50318-2018/ac-simple/static"])
+    (result,) = run([case], Scripted({case.id: Outcome(static={"dropper_lenght_m": (1.0,)})})).cases
+    assert (result.verdict, result.reason) == ("error", "the system delivered an unknown quantity 'dropper_lenght_m'")
+
+
+def test_close_call_of_the_line_is_not_called_a_pantograph(case_250, wave):
+    """A dropper 0.4 mm from its limit with a discretisation error of 1 mm: which one, and whose."""
+    limit = Limit(quantity="dropper_length_m", item=2, lower=0.8956, upper=1.0, trust="secondary", source="test")
+    outcome = Outcome(
+        wave().record(case_250),
+        {"dropper_length_m": (1.017, 0.896)},
+        refined=Outcome(wave().record(case_250), {"dropper_length_m": (1.017, 0.897)}),
+    )
+    (result,) = run([replace(case_250, limits=(limit,))], Scripted({case_250.id: outcome})).cases
+    assert any(text.startswith("dropper_length_m[2] of the line lies 0.0004 m") for text in result.warnings)
 
 
 def test_failed_precondition_skips_what_builds_on_it(cases, wave):

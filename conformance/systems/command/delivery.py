@@ -1,10 +1,10 @@
 """The files that a program says it wrote: inside its folder, unchanged, and of the case that was asked."""
 
-import hashlib
 from pathlib import Path
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.errors import InputError
+from pantocheck.conformance.files import digest_of
 from pantocheck.conformance.record_files.reading import LARGEST_FILE, read_record
 from pantocheck.conformance.systems import Outcome
 from pantocheck.conformance.systems.command.messages import Delivered, File
@@ -32,7 +32,7 @@ def outcome_of(case: Case, answer: Delivered, folder: Path, wall: float) -> Outc
     if answer.record is None:
         return Outcome(static=dict(answer.static), wall_s=wall, notes=answer.notes)
     sidecar_path, table_path = (_checked(file, folder) for file in (answer.record.sidecar, answer.record.table))
-    record, sidecar = read_record(sidecar_path)
+    record, sidecar = read_record(sidecar_path, None if case.is_static else case.evaluated)
     if sidecar_path.parent / sidecar.file != table_path:
         raise DeliveryRefused(f"the sidecar is of {sidecar.file!r}, the answer names {answer.record.table.file!r}")
     if sidecar.case != case.id:
@@ -59,8 +59,7 @@ def _checked(file: File, folder: Path) -> Path:
             raise DeliveryRefused(f"there is no file {file.file!r} in the folder of the run")
         if path.stat().st_size > LARGEST_FILE:
             raise InputError(f"record '{path.name}'", "too large", f"A record has at most {LARGEST_FILE} bytes.")
-        with path.open("rb") as content:
-            digest = hashlib.file_digest(content, "sha256").hexdigest()
+        digest = digest_of(path)
     except (OSError, ValueError) as error:
         if isinstance(error, DeliveryRefused | InputError):
             raise

@@ -11,7 +11,7 @@ from pantocheck.conformance.cases.library import library_folder
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.errors import InputError
-from pantocheck.conformance.profiles import profile_named
+from pantocheck.conformance.profiles import NoBound, SpeedFormula, bounds, profile_named
 from pantocheck.conformance.record_files.sidecar import LineTable
 from pantocheck.conformance.reports.recomputation import discrepancies
 from pantocheck.conformance.schemas import schema_of
@@ -170,6 +170,23 @@ def test_line_test_compares_with_the_measured_record(train, tmp_path):
     assert any("contact_height_range_mm is not graded" in text for text in results.cases[0].warnings)
     worse = subject_of(train(mean=119.0, sigma=34.0), profile, LineTable())
     assert assess(worse, profile, "provisional", measured).verdict == "fail"
+
+
+def test_rule_without_a_bound_for_this_speed_goes_with_a_comparison(train):
+    """One rule compares, so that the measured record's uncertainty is there; the other holds above 260 km/h only."""
+    profile = profile_named("line-test")
+    rule = next(rule for rule in profile_named("acceptance-ac").rule if isinstance(rule.upper, SpeedFormula))
+    above = rule.model_copy(update={"upper": rule.upper.model_copy(update={"above_km_h": 260.0}), "lower": None})
+    mixed = profile.model_copy(update={"rule": (*profile.rule, above)})
+    subject = subject_of(train(), mixed, LineTable())
+    rows = assess(subject, mixed, "provisional", subject).cases[0].criteria
+    assert any(row.verdict == "skip" and "above 260 km/h" in (row.reason or "") for row in rows)
+
+
+def test_bounds_in_the_wrong_order_are_no_bounds():
+    rule = profile_named("acceptance-ac").rule[0].model_copy(update={"lower": 10.0, "upper": 5.0})
+    with pytest.raises(NoBound, match="its lower bound of 10 lies above its upper bound of 5"):
+        bounds(rule, 250.0, {}, None)
 
 
 def test_line_test_needs_a_fitting_pair(train):

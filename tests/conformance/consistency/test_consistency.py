@@ -41,11 +41,17 @@ def test_right_record_rounded_or_given_at_the_wire_raises_nothing(case_250, reco
     assert findings(case_250, replace(record, contact_height=wire + 5.5)) == []
 
 
-@pytest.mark.parametrize("gain", [0.9, 1.05, 1000.0, -1.0])
+@pytest.mark.parametrize("gain", [1e-3, 0.05, 0.9, 1.05, 1000.0, -1.0])
 def test_gain_of_the_force_is_seen_and_named(case_250, record, gain):
     (finding,) = findings(case_250, replace(record, force=gain * record.force))
     assert (finding.check, finding.kind) == ("dynamics", "contradiction")
     assert f"follows from {1 / gain:.3g} times the force" in finding.text
+
+
+def test_force_that_does_not_move_what_moves_is_seen(case_250, record):
+    """A dead channel: 119 N throughout, while the contact point goes up and down."""
+    (finding,) = findings(case_250, replace(record, force=np.full_like(record.force, 119.0)))
+    assert (finding.check, finding.kind) == ("dynamics", "contradiction")
 
 
 @pytest.mark.parametrize("gain", [0.98, 1.02])

@@ -97,6 +97,25 @@ def test_missing_channel_empty_table_and_gap(written):
         read_record(damaged_csv(written, lambda lines: lines.__delitem__(slice(100, 200))))
 
 
+def test_csv_with_more_numbers_than_a_record_may_have_is_refused_not_cut(written, record, monkeypatch):
+    """The limit lowered to half of what is there: read up to it, the rest would be missing without a word."""
+    path = written("a.csv")
+    monkeypatch.setattr("pantocheck.conformance.record_files.tables.MAX_SAMPLES", record.time.size)
+    with pytest.raises(InputError, match=f"more than {record.time.size} numbers"):
+        read_record(path)
+
+
+def test_stretch_of_the_case_holds_where_the_sidecar_names_none(written, record):
+    sidecar = written("a.csv").with_suffix(".toml")
+    assert read_record(sidecar, (200.0, 300.0))[0].evaluated == record.evaluated
+    lines = sidecar.read_text().splitlines(keepends=True)
+    start = next(i for i, line in enumerate(lines) if line.startswith("evaluated_m"))
+    end = start if "]" in lines[start] else next(i for i in range(start, len(lines)) if lines[i].startswith("]"))
+    sidecar.write_text("".join(lines[:start] + lines[end + 1 :]))
+    assert read_record(sidecar, (200.0, 300.0))[0].evaluated == (200.0, 300.0)
+    assert read_record(sidecar)[0].evaluated != record.evaluated
+
+
 def test_truncated_or_foreign_hdf5(written, tmp_path):
     path = without_digest(written("a.h5"))
     path.write_bytes(path.read_bytes()[:3000])

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from pantocheck.conformance.systems.tuning import TOLERANCE, NotTuned, tuned
+from pantocheck.conformance.systems.tuning import MOST_RUNS, TOLERANCE, NotTuned, tuned
 
 
 class Line:
@@ -30,6 +30,18 @@ def test_force_without_a_target_stays_and_needs_one_run():
     _, forces = tuned(line, lambda run: run, (120.0, 130.0), (None, None))
     assert forces == (120.0, 130.0)
     assert line.runs == 1
+
+
+def test_last_run_counts():
+    """A mean that stands still until the last run allowed, and then meets its target."""
+    runs = []
+
+    def run(forces: tuple[float, ...]) -> np.ndarray:
+        runs.append(forces)
+        return np.array([144.0 if len(runs) == MOST_RUNS else 50.0])
+
+    made, _ = tuned(run, lambda made: made, (120.0,), (144.0,))
+    assert (made[0], len(runs)) == (144.0, MOST_RUNS)
 
 
 def test_mean_that_does_not_follow_is_refused():
