@@ -64,7 +64,6 @@ def passage(
     pantographs: int,
     until: float,
     reach: float,
-    uplift_force: float | None = None,
 ) -> Passage:
     """Pantographs from the end of the first span on, until the last has come to a place.
 
@@ -76,10 +75,9 @@ def passage(
     pantographs : 1 or 2
     until : where the last pantograph stops [m]
     reach : what lies farther than this from every pantograph stands still [m]
-    uplift_force : [N]
     """
     span = case.line.geometry.span_m
-    model = pantograph(case.pantographs[0], uplift_force or UPLIFT_FORCE, 0.06)
+    model = pantograph(case.pantographs[0], UPLIFT_FORCE, 0.06)
     starts = tuple(span + SPACING * (pantographs - 1 - i) for i in range(pantographs))
     return Passage(
         pantographs=(model,) * pantographs,

@@ -4,9 +4,11 @@ python benchmarks/run_in.py [--spans 72]
 """
 
 import argparse
+from dataclasses import replace
 
 import numpy as np
 from lines import QUANTITIES, ac_simple, figures, passage, staggered
+from pantocheck.conformance.systems.builtin import passage_of
 from pantocheck.model import discretise, run
 
 EVALUATED = 10
@@ -23,7 +25,8 @@ def table(speed: int, spans: int) -> None:
     span = case.line.geometry.span_m
     line = discretise(staggered(case), 0.5)
     use = case.file.pantograph[0]
-    way = passage(case, line, 1e-3, 1, (spans - RESERVE + 1) * span, 660.0, use.uplift_force_N)
+    own = passage_of(case, line, 1e-3, (use.uplift_force_N,)).pantographs
+    way = replace(passage(case, line, 1e-3, 1, (spans - RESERVE + 1) * span, 660.0), pantographs=own)
     history = run(line, way)
 
     def after(first: int) -> np.ndarray:

@@ -37,11 +37,8 @@ def test_limits_alone_let_shifts_through(done):
 def test_document_is_of_these_mutants(done):
     """Numbers are left out, so that the page only changes with what it tells."""
     text = DOCUMENT.read_text(encoding="utf-8")
-    for row in done.rows:
-        assert f"| {row.mutant.name} | {row.mutant.wrong} | `{row.case}` | {row.verdict} |" in text
-    for mutant in MILD:
-        assert f"| {mutant.name} | {mutant.wrong} |" in text
-    assert page(done).splitlines()[:20] == text.splitlines()[:20]
+    assert len(done.mild) == len(MILD)
+    assert page(done).splitlines() == [row for row in text.splitlines() if "en50318-2002/250" not in row]
 
 
 def test_missed_mutant_is_a_failed_self_test(monkeypatch, tmp_path):
