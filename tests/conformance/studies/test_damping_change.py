@@ -69,6 +69,12 @@ def test_changes_of_the_printed_table(case):
     assert_allclose(found[0]["rear_over_front_change_20_50_pct"], 14.95, atol=0.01)
 
 
+def test_changes_of_the_rear_pantograph_alone():
+    """Where a paper prints those of one pantograph, there is nothing to compare it with."""
+    values = [{2: {"rms_20_50_N": value}} for value in (32.0, 40.0)]
+    assert changes(*values) == {2: {"change_rms_20_50_pct": 25.0}}
+
+
 def test_the_printed_values_meet_every_limit(case):
     """The limits are those of the paper's own findings."""
     printed = {(one.model, one.pantograph): dict(one.values) for one in case.file.study.printed}
