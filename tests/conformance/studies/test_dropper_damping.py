@@ -31,6 +31,12 @@ def test_levels_of_a_known_curve():
     assert_allclose(found["dropper_locked_force_pct"], 100 / (1 + 50**2), rtol=1e-3)
 
 
+def test_a_dropper_that_never_slackens_has_no_transition():
+    """There is no force whose share could be told."""
+    with np.errstate(all="raise"):
+        assert transition(COEFFICIENTS, np.zeros(COEFFICIENTS.size)) == {}
+
+
 def graded(force):
     (case,) = select(["vovan2015/dropper-damping"])
     rows = verdicts(case, {LINE: transition(COEFFICIENTS, force)})
