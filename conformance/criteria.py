@@ -32,7 +32,7 @@ def margin(value: float, lower: float | None, upper: float | None) -> float:
     if lower is not None and upper is not None:
         if lower == upper:
             return 0.0 if value == lower else -abs(value - lower) / max(abs(lower), 1.0)
-        return min(value - lower, upper - value) / ((upper - lower) / 2)
+        return 2 * (min(value - lower, upper - value) / (upper - lower))
     if lower is not None:
         return (value - lower) / (abs(lower) or 1.0)
     if upper is not None:

@@ -1,7 +1,7 @@
 """From the outcome of a case to its result: quantities, criteria, warnings, traces."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import source_text
@@ -167,8 +167,8 @@ def criterion(
     lowest_trust : lowest trust of the limits that carry a verdict
     refined : the same with element and time step halved, for the discretisation error
     """
-    value = _value(limit, evaluation)
-    fine = _value(limit, refined) if refined is not None else None
+    value = value_of(limit, evaluation.values)
+    fine = value_of(limit, refined.values) if refined is not None else None
     verdict: Verdict = "skip"
     reason: str | None = None
     if value is None:
@@ -208,8 +208,15 @@ def _with_spread(item: Criterion, shifted: dict[int, dict[str, float]]) -> Crite
     return item if found is None or item.value is None else item.model_copy(update={"spread": found})
 
 
-def _value(limit: Limit, evaluation: Evaluation) -> float | None:
-    value = evaluation.values.get(limit.of, {}).get(limit.quantity)
+def value_of(limit: Limit, values: Mapping[int, Mapping[str, Value]]) -> float | None:
+    """The value that a limit is for; None if there is none, or no finite one.
+
+    Parameters
+    ----------
+    limit : of one quantity, or of one item of it
+    values : by pantograph (0: the line) and name
+    """
+    value = values.get(limit.of, {}).get(limit.quantity)
     if isinstance(value, tuple):
         at = (limit.item or 1) - 1
         value = value[at] if at < len(value) else None

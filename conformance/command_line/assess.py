@@ -4,12 +4,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from pantocheck.conformance.command_line.options import Baseline, names, options_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from pantocheck.conformance.cases.limits import Limit
-    from pantocheck.conformance.plan import Plan
     from pantocheck.conformance.record_files.sidecar import LineTable
 
 
@@ -38,9 +38,7 @@ def assess(
     uplift_space_mm: Annotated[
         float | None, typer.Option(help="Space for uplift at the supports, if the record does not say it.")
     ] = None,
-    baseline: Annotated[
-        Path | None, typer.Option(help="Earlier results.json; a value that drifts from it fails, limits apart.")
-    ] = None,
+    baseline: Baseline = None,
     drift: Annotated[float, typer.Option(help="How far a value may drift from the baseline, in percent.")] = 1.0,
 ) -> None:
     """Assess a record, simulated or measured, by a profile: acceptance of a line, or a line test.
@@ -61,12 +59,7 @@ def assess(
     from pantocheck.conformance.reports.writers import checked_formats, write_all
     from pantocheck.conformance.results_file import read_results
 
-    options = _options(
-        out=str(out),
-        formats=tuple(name.strip() for name in formats.split(",") if name.strip()),
-        trust=trust,
-        drift_pct=drift,
-    )
+    options = options_of(out=str(out), formats=names(formats), trust=trust, drift_pct=drift)
     written = checked_formats(options.formats)
     rules = profile_named(profile)
     own = () if limits is None else _limits(limits)
@@ -81,18 +74,6 @@ def assess(
         results = against_baseline(results, earlier, options.drift_pct, baseline.name)
     print_results(results, write_all(results, out, written))
     raise typer.Exit(EXIT_CODES[results.verdict])
-
-
-def _options(**given: object) -> "Plan":
-    """Options that mean the same as those of a run, checked in the same way."""
-    from pantocheck.conformance.cases.messages import input_error
-    from pantocheck.conformance.plan import Plan
-    from pydantic import ValidationError
-
-    try:
-        return Plan.model_validate(given)
-    except ValidationError as error:
-        raise input_error(error, Plan, "command line") from None
 
 
 def _line(**given: float | None) -> "LineTable":

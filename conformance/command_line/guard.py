@@ -1,4 +1,4 @@
-"""What every command does with a wrong input and with Ctrl-C."""
+"""What every command does with a wrong input, with a line that has no solution, and with Ctrl-C."""
 
 import functools
 from collections.abc import Callable
@@ -15,7 +15,10 @@ R = TypeVar("R")
 
 
 def guarded(command: Callable[P, R]) -> Callable[P, R]:
-    """The command, with an input error printed as its message (exit code 2) and Ctrl-C ending quietly (130)."""
+    """The command, with an input error printed as its message (exit code 2) and Ctrl-C ending quietly (130).
+
+    A line whose equations have no solution is an input error, too.
+    """
 
     @functools.wraps(command)
     def run(*args: P.args, **kwargs: P.kwargs) -> R:
@@ -24,11 +27,25 @@ def guarded(command: Callable[P, R]) -> Callable[P, R]:
         except InputError as error:
             typer.echo(printable(str(error)), err=True)
             raise typer.Exit(BAD_INPUT) from None
+        except (ArithmeticError, ValueError) as error:
+            if not _unsolvable(error):
+                raise
+            typer.echo(printable(f"{error}\n  Check the line's data."), err=True)
+            raise typer.Exit(BAD_INPUT) from None
         except KeyboardInterrupt:
             typer.echo("Interrupted.", err=True)
             raise typer.Exit(INTERRUPTED) from None
 
     return run
+
+
+def _unsolvable(error: Exception) -> bool:
+    # Imported where something failed: the simulator is too slow to load for a command that only prints its help.
+    from pantocheck.model.equilibrium import NoEquilibrium
+    from pantocheck.model.initial_state import NoInitialState
+    from pantocheck.model.simulation import DidNotConverge
+
+    return isinstance(error, NoInitialState | NoEquilibrium | DidNotConverge)
 
 
 def printable(text: str) -> str:

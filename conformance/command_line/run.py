@@ -1,12 +1,10 @@
 """`pantocheck run`: cases on a system, graded, with a certificate."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
-
-if TYPE_CHECKING:
-    from pantocheck.conformance.plan import Plan
+from pantocheck.conformance.command_line.options import Baseline, names, options_of
 
 
 def run(
@@ -31,9 +29,7 @@ def run(
         ),
     ] = None,
     limits: Annotated[Path | None, typer.Option(help="TOML file of your own limits, laid over the cases.")] = None,
-    baseline: Annotated[
-        Path | None, typer.Option(help="Earlier results.json; a value that drifts from it fails, limits apart.")
-    ] = None,
+    baseline: Baseline = None,
     drift: Annotated[
         float | None, typer.Option(help="How far a value may drift from the baseline, in percent.  [default: 1]")
     ] = None,
@@ -75,12 +71,12 @@ def run(
     from pantocheck.conformance.runner import run as run_cases
     from pantocheck.conformance.systems.choice import system_named
 
-    options = _options(
+    options = options_of(
         plan,
         cases=tuple(case) if case else None,
         system=system,
         out=None if out is None else str(out),
-        formats=None if formats is None else tuple(name.strip() for name in formats.split(",") if name.strip()),
+        formats=names(formats),
         trust=trust,
         limits=None if limits is None else str(limits),
         baseline=None if baseline is None else str(baseline),
@@ -111,16 +107,3 @@ def run(
         results = against_baseline(results, earlier, options.drift_pct, Path(options.baseline).name)
     print_results(results, write_all(results, folder, written))
     raise typer.Exit(INTERRUPTED if interrupted else EXIT_CODES[results.verdict])
-
-
-def _options(plan: Path | None, **given: object) -> "Plan":
-    """The plan with the options of the command line laid over it."""
-    from pantocheck.conformance.cases.messages import input_error
-    from pantocheck.conformance.plan import Plan, read_plan
-    from pydantic import ValidationError
-
-    base = read_plan(plan).model_dump() if plan is not None else {}
-    try:
-        return Plan.model_validate(base | {key: value for key, value in given.items() if value is not None})
-    except ValidationError as error:
-        raise input_error(error, Plan, "command line") from None

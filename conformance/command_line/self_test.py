@@ -21,19 +21,24 @@ def self_test(
     Example: pantocheck self-test --markdown self-test.md
     """
     from pantocheck.conformance.cases.library import select
-    from pantocheck.conformance.command_line.console import console
-    from pantocheck.conformance.files import write_in_place
+    from pantocheck.conformance.command_line.console import console, plain
+    from pantocheck.conformance.errors import InputError
+    from pantocheck.conformance.files import check_writable, write_in_place
     from pantocheck.conformance.self_test import self_test as test_suite
     from pantocheck.conformance.self_test.page import page
 
     cases = [one for one in select(case or ["en50318-2002/250", "en50318-2002/300"]) if not one.is_static]
+    if not cases:
+        raise InputError("case", "none of these is a run", "Name cases with a train, e.g. en50318-2002/250.")
+    if markdown is not None:
+        check_writable(markdown.parent)
     output = console()
     with output.status("testing the suite") as status:
         done = test_suite(cases, lambda name: status.update(f"testing the suite: {name}"))
     _print(done)
     if markdown is not None:
         write_in_place(markdown, page(done).encode())
-        output.print(str(markdown), soft_wrap=True)
+        output.print(plain(str(markdown)), soft_wrap=True)
     raise typer.Exit(0 if done.passed else 1)
 
 

@@ -36,7 +36,7 @@ def show(
     output = console()
     chosen = _named(case, select([case]))
     if drawing is not None:
-        if len({one.file.line for one in chosen}) > 1:
+        if any(one.line != chosen[0].line for one in chosen):
             raise InputError(f"case '{case}'", "these cases have several lines", "Draw one case at a time.")
         _draw(chosen[0], drawing)
     for one in chosen:

@@ -46,12 +46,11 @@ def opened(path: Path) -> PdfReader:
         raise InputError(str(path), "not a PDF", "Name the certificate.pdf that 'pantocheck run' wrote.")
     try:
         reader = PdfReader(path, strict=True)
-        if len(reader.pages) == 0:
-            raise InputError(str(path), "a PDF without pages", "Ask for the certificate once more.")
+        pages = len(reader.pages)
     except DAMAGED as error:
-        if isinstance(error, InputError):
-            raise
         raise _damaged(path, error) from None
+    if pages == 0:
+        raise InputError(str(path), "a PDF without pages", "Ask for the certificate once more.")
     return reader
 
 

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from pantocheck.conformance.identification.observability import RATIO_NEEDED, SHARE_NEEDED
 from pantocheck.conformance.reports import massdrop_figures as figures
 from pantocheck.conformance.reports.document import Document, Grid, Picture, Section
 from pantocheck.conformance.reports.text import number
@@ -43,9 +44,9 @@ RESULT = (
 )
 COMPARISON = "Line as it is: with the damping its file has now."
 OBSERVABILITY = (
-    "A coefficient is observable if its plausible value would make up at least 5 % of some mode's damping and is at "
-    "least three times the standard deviation with which the modes determine it, the wires' coefficients being "
-    "unknown too."
+    f"A coefficient is observable if its plausible value would make up at least {100 * SHARE_NEEDED:g} % of some "
+    f"mode's damping and is at least {RATIO_NEEDED:g} times the standard deviation with which the modes determine it, "
+    "the wires' coefficients being unknown too."
 )
 
 

@@ -6,11 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import typst
-from jinja2 import Environment, FunctionLoader, StrictUndefined
-from markupsafe import Markup
 from pantocheck.conformance.files import write_in_place
-from pantocheck.conformance.reports.html import data_uri
-from pantocheck.conformance.reports.pdf import FONTS, moment, showable
+from pantocheck.conformance.reports.html import environment
+from pantocheck.conformance.reports.pdf import FONTS, showable
 from pantocheck.conformance.reports.text import cleaned
 from pantocheck.conformance.reports.words import TEMPLATES
 
@@ -69,21 +67,12 @@ def write_html(document: Document, path: Path) -> None:
     ------
     InputError : it cannot be written
     """
-    environment = Environment(
-        loader=FunctionLoader(lambda name: (TEMPLATES / name).read_text("utf-8")),
-        autoescape=True,
-        undefined=StrictUndefined,
-        keep_trailing_newline=True,
-    )
-    environment.filters["data_uri"] = data_uri
-    text = environment.get_template("document.html").render(
-        document=_plain(document), stylesheet=Markup((TEMPLATES / "certificate.css").read_text("utf-8"))
-    )
+    text = environment().get_template("document.html").render(document=_plain(document))
     write_in_place(path, text.encode("utf-8"))
 
 
 def write_pdf(document: Document, path: Path) -> None:
-    """Write a report as PDF; with `SOURCE_DATE_EPOCH` set, the same report gives the same bytes.
+    """Write a report as PDF; it bears no date, so that the same report gives the same bytes.
 
     Raises
     ------
@@ -94,7 +83,7 @@ def write_pdf(document: Document, path: Path) -> None:
         "main.typ": (TEMPLATES / "document.typ").read_bytes(),
         "document.json": json.dumps(showable(_plain(document))).encode("ascii"),
     }
-    made = typst.compile(sources, ignore_system_fonts=True, font_paths=[str(FONTS)], timestamp=moment({}))
+    made = typst.compile(sources, ignore_system_fonts=True, font_paths=[str(FONTS)])
     write_in_place(path, bytes(made))
 
 

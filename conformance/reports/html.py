@@ -28,21 +28,25 @@ def write(results: dict[str, Any], path: Path) -> None:
 
 def render(results: dict[str, Any]) -> str:
     """The certificate's HTML text."""
-    environment = Environment(
+    made = environment()
+    # The bars are made here from numbers alone, so they may enter the page as markup; nothing else may.
+    made.filters["inline_svg"] = Markup
+    return made.get_template("certificate.html").render(
+        page=page(results), verdicts=words()["verdict"], trusts=words()["trust"]
+    )
+
+
+def environment() -> Environment:
+    """The template engine of every page: it escapes all texts, and knows the stylesheet and pictures as addresses."""
+    made = Environment(
         loader=FunctionLoader(lambda name: (TEMPLATES / name).read_text("utf-8")),
         autoescape=True,
         undefined=StrictUndefined,
         keep_trailing_newline=True,
     )
-    environment.filters["data_uri"] = data_uri
-    # The bars are made here from numbers alone, so they may enter the page as markup; nothing else may.
-    environment.filters["inline_svg"] = Markup
-    return environment.get_template("certificate.html").render(
-        page=page(results),
-        verdicts=words()["verdict"],
-        trusts=words()["trust"],
-        stylesheet=Markup((TEMPLATES / "certificate.css").read_text("utf-8")),
-    )
+    made.filters["data_uri"] = data_uri
+    made.globals["stylesheet"] = Markup((TEMPLATES / "certificate.css").read_text("utf-8"))
+    return made
 
 
 def data_uri(svg: str) -> str:

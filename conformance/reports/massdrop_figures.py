@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from pantocheck.conformance.identification.observability import RATIO_NEEDED, SHARE_NEEDED
 from pantocheck.conformance.reports.figures import FULL, GREY, INK, LINES, SHADES, box, drawn
 
 
@@ -145,12 +146,12 @@ def observability(rows: list[dict[str, Any]]) -> Figure:
     left, right = figure.subplots(1, 2, sharey=True)
     fills = ["#6b747e" if row["observable"] else "white" for row in rows]
     left.barh(places, [100 * row["largest_share"] for row in rows], color=fills, edgecolor=INK, linewidth=0.7)
-    left.axvline(5, color=INK, linestyle="--", linewidth=0.9)
+    left.axvline(100 * SHARE_NEEDED, color=INK, linestyle="--", linewidth=0.9)
     left.set_xlabel("largest share of a mode's damping [%]")
     left.set_yticks(places, names)
     left.invert_yaxis()
     right.barh(places, [row["plausible_over_std"] for row in rows], color=fills, edgecolor=INK, linewidth=0.7)
-    right.axvline(3, color=INK, linestyle="--", linewidth=0.9)
+    right.axvline(RATIO_NEEDED, color=INK, linestyle="--", linewidth=0.9)
     right.set_xscale("symlog", linthresh=0.1)
     right.set_xlim(left=0)
     right.set_xlabel("plausible value / standard deviation [-]")

@@ -65,8 +65,9 @@ def changes(before: Values, after: Values) -> dict[int, dict[str, Value]]:
             if isinstance(old, float) and isinstance(new, float) and old > 0:
                 found[pantograph][f"change_{band.removesuffix('_N')}_pct"] = 100 * (new / old - 1)
     last, high = max(found, default=1), "change_rms_20_50_pct"
-    if last > 1 and high in found[1] and high in found[last]:
-        rear, front = found[last][high], found[1][high]
+    front_of = found.get(1, {})
+    if last > 1 and high in front_of and high in found[last]:
+        rear, front = found[last][high], front_of[high]
         if isinstance(rear, float) and isinstance(front, float):
             found[LINE] = {"rear_over_front_change_20_50_pct": rear - front}
     return found

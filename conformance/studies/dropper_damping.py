@@ -111,8 +111,10 @@ def transition(coefficient: Array, force: Array) -> dict[str, Value]:
 
     Returns
     -------
-    values by name of quantity; a level that is never reached is left out
+    values by name of quantity; a level that is never reached is left out, and all of them if there is no force at first
     """
+    if force[0] == 0:
+        return {}
     share = force / force[0]
     found: dict[str, Value] = {"dropper_locked_force_pct": float(100 * share[-1])}
     off = np.abs(share - 1)

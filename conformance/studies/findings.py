@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.criteria import verdict_of
 from pantocheck.conformance.evaluation import Value
+from pantocheck.conformance.grading import value_of
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results import TextTable
 
@@ -21,20 +22,12 @@ def findings_table(limits: Sequence[Limit], computed: Values, printed: Values) -
     """
     rows = []
     for limit in limits:
-        value = _one(computed, limit)
+        value = value_of(limit, computed)
         verdict = "not evaluated" if value is None else verdict_of(value, limit.lower, limit.upper)
         said = {"pass": "reproduced", "fail": "not reproduced"}.get(verdict, verdict)
         unit = QUANTITIES[limit.quantity].unit
-        rows.append([limit.note or limit.quantity, _text(_one(printed, limit), unit), _text(value, unit), said])
+        rows.append([limit.note or limit.quantity, _text(value_of(limit, printed), unit), _text(value, unit), said])
     return TextTable(caption="Findings", columns=["Finding", "Printed", "Computed", "Verdict"], rows=rows)
-
-
-def _one(values: Values, limit: Limit) -> float | None:
-    value = values.get(limit.of, {}).get(limit.quantity)
-    if isinstance(value, tuple):
-        at = (limit.item or 1) - 1
-        return value[at] if at < len(value) else None
-    return value
 
 
 def _text(value: float | None, unit: str) -> str:

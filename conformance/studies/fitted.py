@@ -6,13 +6,14 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.identification.damping_results import damping_results
 from pantocheck.conformance.identification.identify import Identification
+from pantocheck.conformance.identification.observability import RATIO_NEEDED, SHARE_NEEDED
 from pantocheck.conformance.identification.result_files import ModeRow, mode_row
 from pantocheck.conformance.results import Chart, Mark, Series, TextTable
 from pantocheck.conformance.systems.line_model import catenary
 from pantocheck.model import Catenary, Kind
 
-OBSERVABLE = 3.0
-"""A coefficient is observable if its plausible value is this many standard deviations."""
+LEAST_DRAWN = 1e-3
+"""Ratio at which smaller ones, nought among them, are drawn on a logarithmic scale [-]."""
 
 
 def fit_report(case: Case, found: Identification) -> tuple[tuple[TextTable, ...], tuple[Chart, ...]]:
@@ -67,8 +68,13 @@ def _observability(results: dict[str, Any]) -> Chart:
     rows = results["observability"]
     return Chart(
         caption="Observability of every coefficient: its plausible value over the standard deviation with which the "
-        "modes determine it; above the dashed line it is observable.",
-        alternative="; ".join(f"{row['kind']} {row['matrix']}: {row['plausible_over_std']:.3g}" for row in rows),
+        f"modes determine it. To be observable a coefficient must reach the dashed line, and make up at least "
+        f"{100 * SHARE_NEEDED:g} % of some mode's damping; what is below {LEAST_DRAWN:g} is drawn there.",
+        alternative="; ".join(
+            f"{row['kind']} {row['matrix']}: {row['plausible_over_std']:.3g}, "
+            f"{'observable' if row['observable'] else 'not observable'}"
+            for row in rows
+        ),
         x_label="coefficient",
         y_label="plausible value / std [-]",
         y_scale="log",
@@ -78,8 +84,8 @@ def _observability(results: dict[str, Any]) -> Chart:
                 label="all modes together",
                 style="bars",
                 x=[float(i) for i in range(len(rows))],
-                y=[max(row["plausible_over_std"], 1e-3) for row in rows],
+                y=[max(row["plausible_over_std"], LEAST_DRAWN) for row in rows],
             )
         ],
-        marks=[Mark(label="observable above", axis="y", low=OBSERVABLE)],
+        marks=[Mark(label="needed", axis="y", low=RATIO_NEEDED)],
     )

@@ -25,17 +25,19 @@ def bars(
     Parameters
     ----------
     values : computed, by damping model, pantograph and name
-    printed : by damping model and pantograph, and name
+    printed : by damping model and pantograph, and name; may be empty
     bands : names of the quantities
     """
+    how = "computed on the assumed line and printed" if printed else "computed under each damping model"
+    table = "computed beside printed values" if printed else "the same run under several damping models"
     charts = []
     for p in sorted({p for of in values.values() for p in of if p != LINE}):
         series = [_bars(f"computed, {model}", of.get(p, {}), bands) for model, of in values.items()]
         series += [_bars(f"printed, {model}", printed[model, p], bands) for model in values if (model, p) in printed]
         charts.append(
             Chart(
-                caption=f"Pantograph {p}: RMS of the contact force by band, computed on the assumed line and printed.",
-                alternative="Bars of the numbers in the table of computed beside printed values.",
+                caption=f"Pantograph {p}: RMS of the contact force by band, {how}.",
+                alternative=f"Bars of the numbers in the table of {table}.",
                 x_label="band [Hz]",
                 y_label="RMS [N]",
                 ticks=[band.removeprefix("rms_").removesuffix("_N").replace("_", "–") for band in bands],

@@ -1,9 +1,12 @@
 """Line by line: what the study's paper prints, what is assumed, and what is computed."""
 
+from collections.abc import Sequence
+
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results import TextTable
+from pantocheck.conformance.trust import Trust
 
 PAPER = "vovan2015"
 """Key of the study's paper in the bibliography."""
@@ -20,19 +23,14 @@ def origins(case: Case) -> TextTable:
     """
     rows = []
     for given in case.inputs:
-        if any(source.startswith(FITTED) for source in given.source):
-            whose = "computed"
-        elif given.trust == "provisional":
-            whose = "assumed"
-        else:
-            whose = "the paper's" if PAPER in given.source else "published elsewhere"
+        fitted = any(source.startswith(FITTED) for source in given.source)
+        whose = "computed" if fitted else _whose(given.trust, given.source)
         rows.append([f"input {given.group}", whose, source_text(given.source)])
     for limit in case.limits:
         item = f" {limit.item}" if limit.item else ""
         text = limit.note or source_text(limit.source)
-        rows.append(
-            [f"limit of {limit.quantity}{item}", "the paper's" if limit.trust == "primary" else "assumed", text]
-        )
+        keys = [limit.source] if isinstance(limit.source, str) else limit.source
+        rows.append([f"limit of {limit.quantity}{item}", _whose(limit.trust, keys), text])
     named = dict.fromkeys(limit.quantity for limit in case.limits)
     rows += [[name, "computed", QUANTITIES[name].definition] for name in named]
     return TextTable(
@@ -40,3 +38,9 @@ def origins(case: Case) -> TextTable:
         columns=["What", "Origin", "Source"],
         rows=rows,
     )
+
+
+def _whose(trust: Trust, keys: Sequence[str]) -> str:
+    if trust == "provisional":
+        return "assumed"
+    return "the paper's" if PAPER in keys else "published elsewhere"

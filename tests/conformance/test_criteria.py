@@ -34,6 +34,9 @@ def test_margin_of_two_limits_lies_between_nought_and_one(a, width, share):
     ("value", "lower", "upper", "expected"),
     [
         (28.5, 26, 31, 1.0),
+        (0.0, 0, 5e-324, 0.0),  # half of the smallest distance there is would be nought
+        (5e-324, 0, 5e-324, 0.0),
+        (-1e308, 0, 1e12, -2e296),  # twice the value would not be finite
         (26.0, 26, 31, 0.0),
         (33.5, 26, 31, -1.0),
         (28.4, 26, 31, 0.96),

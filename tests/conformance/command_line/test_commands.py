@@ -2,16 +2,22 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import jsonschema
 import pytest
+import typer
 from pantocheck.conformance.cases.library import library_folder, select
 from pantocheck.conformance.command_line.app import app
+from pantocheck.conformance.command_line.guard import guarded
 from pantocheck.conformance.record_files import read_record, write_record
 from pantocheck.conformance.schemas import NAMES, schema_of
+from pantocheck.model.equilibrium import NoEquilibrium
+from pantocheck.model.initial_state import NoInitialState
+from pantocheck.model.simulation import DidNotConverge
 from typer.testing import CliRunner
 
 
@@ -85,6 +91,10 @@ def test_plan_holds_the_options_and_the_command_line_goes_before_it(records, len
         (["run", "en50318-2002/251"], "there is no such case.\n  Did you mean en50318-2002/250"),
         (["run", "--trust", "absolute"], "key trust: found 'absolute', expected 'primary'"),
         (["run", "--formats", "pdff"], "format 'pdff': there is no such format.\n  Did you mean pdf ?"),
+        (["run", "--drift", "0"], "command line, key drift_pct"),
+        (["assess", "a.csv", "--profile", "acceptance-ac", "--drift", "0"], "command line, key drift_pct"),
+        (["assess", "a.csv", "--profile", "acceptance-ac", "--trust", "absolute"], "key trust: found 'absolute'"),
+        (["assess", "a.csv", "--profile", "acceptance-ac", "--formats", "json, pdff"], "format 'pdff'"),
         (["run", "--jobs", "0"], "key jobs: 0 must be at least 1"),
         (["run", "--system", "magic"], "system 'magic': there is no such system"),
         (["run", "--plan", "none.toml"], "plan 'none.toml': cannot be read"),
@@ -102,6 +112,67 @@ def test_bad_input_ends_with_one_message_and_exit_code_2(arguments, message, tmp
     assert message in done.stderr
     assert done.stdout == ""
     assert list(tmp_path.iterdir()) == []
+
+
+def test_self_test_of_no_run_at_all_is_not_passed():
+    """A static case gives no mutants: 0 of 0 caught says nothing."""
+    done = pantocheck("self-test", "en50318-2018/ac-simple/static")
+    assert done.exit_code == 2
+    assert "none of these is a run" in done.output
+
+
+def test_self_test_notices_a_folder_that_cannot_be_written_before_it_computes(tmp_path, monkeypatch):
+    from pantocheck.conformance import self_test
+
+    monkeypatch.setattr(self_test, "self_test", lambda *_: pytest.fail("computed"))
+    (tmp_path / "file").write_text("")
+    done = pantocheck("self-test", "--markdown", tmp_path / "file" / "page.md")
+    assert done.exit_code == 2
+    assert "cannot be written" in done.output
+
+
+def test_self_test_prints_no_control_characters_of_a_path(tmp_path, monkeypatch):
+    from pantocheck.conformance import self_test
+
+    monkeypatch.setattr(self_test, "self_test", lambda *_: self_test.SelfTest({}, (), ()))
+    done = pantocheck("self-test", "--markdown", tmp_path / "[red]page\x1b.md")
+    assert "[red]page?.md" in done.output
+
+
+@pytest.mark.parametrize("command", [("show", "--at-rest"), ("show", "--drawing"), ("simulate", "--out")])
+def test_line_without_an_equilibrium_ends_with_one_message_and_exit_code_2(command, tmp_path):
+    """A contact wire that is to hang 2 m low in every span would have droppers that push."""
+    for name in ("line.toml", "250.toml", "pantograph.toml"):
+        text = (library_folder() / "en50318-2002" / name).read_text()
+        (tmp_path / name).write_text(re.sub(r"presag_m *= .*", f"presag_m = {[2.0] * 9}", text))
+    name, option = command
+    file = () if option == "--at-rest" else (tmp_path / ("line.svg" if name == "show" else "out.csv"),)
+    done = pantocheck(name, tmp_path / "250.toml", option, *file)
+    assert done.exit_code == 2
+    assert "Check the line's data." in done.output
+
+
+def test_error_of_the_program_itself_is_not_taken_for_one_of_the_input():
+    def broken():
+        raise ValueError("a mistake of the program")
+
+    with pytest.raises(ValueError, match="a mistake of the program"):
+        guarded(broken)()
+
+
+@pytest.mark.parametrize(
+    "error",
+    [NoInitialState("no state"), NoEquilibrium("no state"), DidNotConverge("no state")],
+    ids=lambda error: type(error).__name__,
+)
+def test_every_failure_of_the_simulation_is_a_message(error, capsys):
+    def fails():
+        raise error
+
+    with pytest.raises(typer.Exit) as ended:
+        guarded(fails)()
+    assert ended.value.exit_code == 2
+    assert capsys.readouterr().err == "no state\n  Check the line's data.\n"
 
 
 def test_folder_that_cannot_be_written_is_noticed_before_anything_is_computed(records, tmp_path, monkeypatch):

@@ -33,3 +33,12 @@ def test_required_cases_are_not_shown():
     result = CliRunner().invoke(app, ["show", "en50318-2018/ac-simple/275"])
     assert result.exit_code == 0
     assert "ac-simple/static" not in result.output.split("Inputs")[0]
+
+
+def test_two_lines_are_not_drawn_as_one(tmp_path):
+    """Their cases name their lines by files of the same name, each in its own folder."""
+    file = tmp_path / "line.svg"
+    result = CliRunner().invoke(app, ["show", "en50318-2018/*/static", "--drawing", str(file)])
+    assert result.exit_code == 2
+    assert "these cases have several lines" in result.output
+    assert not file.exists()

@@ -1,6 +1,7 @@
 """Charts and tables of studies on the pages: drawn with what is printed, and in both formats."""
 
 import pytest
+from numpy.testing import assert_allclose
 from pantocheck.conformance.reports.charts import chart
 from pantocheck.conformance.reports.composition import page
 from pantocheck.conformance.reports.html import render
@@ -9,9 +10,22 @@ from pantocheck.conformance.results import Chart, Mark, Series, TextTable
 LINE = Series(label="computed", style="line", x=[1e-6, 1e-3, 1.0], y=[3.0, 2.0, 1.0])
 
 
-def drawn(**parts):
+POINTS = LINE.model_copy(update={"style": "points"})
+
+
+def data(**parts):
     given = {"caption": "c", "alternative": "a", "x_label": "x [s]", "y_label": "y [N]", "series": [LINE]}
-    return chart(Chart.model_validate(given | parts).model_dump())
+    return Chart.model_validate(given | parts).model_dump()
+
+
+def drawn(**parts):
+    return chart(data(**parts))
+
+
+def axes_of(**parts):
+    """The axes before they are made a picture."""
+    (axes,) = chart.__wrapped__(data(**parts)).axes
+    return axes
 
 
 def test_same_data_same_bytes():
@@ -24,7 +38,7 @@ def test_same_data_same_bytes():
         {"marks": [Mark(label="printed", axis="y", low=2.5)]},
         {"marks": [Mark(label="printed", axis="x", low=1e-4, high=1e-2)]},
         {"x_scale": "log"},
-        {"series": [LINE.model_copy(update={"style": "points", "error": [0.1, 0.1, 0.1]})]},
+        {"series": [POINTS]},
         {"series": [LINE.model_copy(update={"style": "boxes", "x": [1.0, 1.0, 2.0]})]},
         {
             "series": [LINE.model_copy(update={"style": "bars", "x": [0.0, 1.0, 2.0]})],
@@ -38,8 +52,17 @@ def test_everything_a_chart_can_hold_changes_the_drawing(change):
 
 
 def test_negative_values_are_not_cut_off():
-    """An axis that starts at zero would hide half of a velocity."""
-    assert drawn(series=[LINE.model_copy(update={"y": [-3.0, 2.0, 1.0]})]) != drawn()
+    """An axis that starts at zero would hide half of a velocity; positive values start there."""
+    assert axes_of().get_ylim()[0] == 0
+    assert axes_of(series=[LINE.model_copy(update={"y": [-3.0, 2.0, 1.0]})]).get_ylim()[0] < -3
+
+
+def test_errors_of_points_are_drawn_in_their_length():
+    (container,) = axes_of(series=[POINTS.model_copy(update={"error": [0.1, 0.2, 0.3]})]).containers
+    (bars,) = container.lines[2]
+    lengths = [upper - lower for (_, lower), (_, upper) in bars.get_segments()]
+    assert_allclose(lengths, [0.2, 0.4, 0.6], rtol=1e-12)
+    assert drawn(series=[POINTS.model_copy(update={"error": [0.1, 0.2, 0.3]})]) != drawn(series=[POINTS])
 
 
 def test_tables_and_charts_stand_on_the_page_escaped(results):

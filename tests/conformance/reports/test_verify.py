@@ -113,11 +113,18 @@ def changed(results, change):
     return json.dumps(results).encode()
 
 
+def without_pages():
+    buffer = io.BytesIO()
+    PdfWriter().write(buffer)
+    return buffer.getvalue()
+
+
 @pytest.mark.parametrize(
     ("content", "found"),
     [
         (b"", "not a PDF"),
         (b"%PDF-1.7\ngarbage", "damaged PDF"),
+        (without_pages(), "a PDF without pages"),
         (pdf_with(), "no attachment named results.json"),
         (pdf_with(("other.json", b"{}")), "no attachment named results.json"),
         (pdf_with(("results.json", b"{}"), ("results.json", b"{}")), "2 attachments? named results.json"),

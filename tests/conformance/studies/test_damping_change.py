@@ -10,6 +10,7 @@ from pantocheck.conformance.cases.library import select
 from pantocheck.conformance.grading import graded
 from pantocheck.conformance.studies.damping_change import changes
 from pantocheck.conformance.studies.dispatch import run_study
+from pantocheck.conformance.studies.force_charts import bars
 from pantocheck.conformance.systems import Outcome
 from pantocheck.conformance.systems.builtin import ReferenceSimulator
 
@@ -68,6 +69,12 @@ def test_changes_of_the_printed_table(case):
     assert_allclose(found[0]["rear_over_front_change_20_50_pct"], 14.95, atol=0.01)
 
 
+def test_changes_of_the_rear_pantograph_alone():
+    """Where a paper prints those of one pantograph, there is nothing to compare it with."""
+    values = [{2: {"rms_20_50_N": value}} for value in (32.0, 40.0)]
+    assert changes(*values) == {2: {"change_rms_20_50_pct": 25.0}}
+
+
 def test_the_printed_values_meet_every_limit(case):
     """The limits are those of the paper's own findings."""
     printed = {(one.model, one.pantograph): dict(one.values) for one in case.file.study.printed}
@@ -82,6 +89,16 @@ def test_the_updated_damping_brings_more_above_20_hz(case):
     assert all(row.margin is not None for row in found.values())
     assert result.tables[0].caption == "Findings"
     assert any("span 8" in chart.caption for chart in result.charts)
+
+
+def test_charts_say_what_is_drawn_beside_the_computed_bars():
+    """Without printed values there are no printed bars, and no table of computed beside printed ones."""
+    values = {"one": {1: {"rms_0_5_N": 30.0}}}
+    (alone,), (beside,) = (bars(values, printed, ["rms_0_5_N"]) for printed in ({}, {("one", 1): {"rms_0_5_N": 34.0}}))
+    assert "printed" in beside.caption
+    assert "printed" in beside.alternative
+    assert "computed under each damping model" in alone.caption
+    assert "printed" not in alone.caption + alone.alternative
 
 
 def test_damping_that_grows_with_frequency_takes_the_extended_band_away(case):

@@ -74,10 +74,11 @@ def test_record_is_the_decay_at_its_own_rate(own_case):
     # The mass hangs still before the release, up to what the static solve leaves: as little as the noise of a sensor.
     # The filter rings for half its length, 0.1 s.
     assert np.abs(record.signals[:480]).max() < 0.005
-    # Below 40 Hz the record is the simulated acceleration; what lies above is the release's first moments.
+    # Below 40 Hz the record is the simulated acceleration; what lies above has gone with the release's first moments.
+    # It makes 7e-4 of the RMS at most.
     later = decay.time > 2.0
     rms = np.sqrt(np.mean(decay.motion[:, later, 2] ** 2, axis=1))
-    assert_allclose(np.sqrt(np.mean(record.signals[700:] ** 2, axis=0)), rms, rtol=0.3)
+    assert_allclose(np.sqrt(np.mean(record.signals[700:] ** 2, axis=0)), rms, rtol=0.005)
 
 
 def test_noise_is_the_same_every_time_and_another_for_every_drop(own_case):

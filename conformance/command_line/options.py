@@ -1,0 +1,41 @@
+"""Options that commands which grade have in common, checked in one way."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from pantocheck.conformance.plan import Plan
+
+Baseline = Annotated[
+    Path | None, typer.Option(help="Earlier results.json; a value that drifts from it fails, limits apart.")
+]
+
+
+def options_of(plan: Path | None = None, **given: object) -> "Plan":
+    """The options of the command line, laid over those of a plan.
+
+    Parameters
+    ----------
+    plan : its file, if there is one
+    given : by key of a plan; what is None was not given
+
+    Raises
+    ------
+    InputError : the plan cannot be read or is wrong, or an option is wrong
+    """
+    from pantocheck.conformance.cases.messages import input_error
+    from pantocheck.conformance.plan import Plan, read_plan
+    from pydantic import ValidationError
+
+    base = read_plan(plan).model_dump() if plan is not None else {}
+    try:
+        return Plan.model_validate(base | {key: value for key, value in given.items() if value is not None})
+    except ValidationError as error:
+        raise input_error(error, Plan, "command line") from None
+
+
+def names(listed: str | None) -> tuple[str, ...] | None:
+    """Names that an option lists with commas between them; None if it was not given."""
+    return None if listed is None else tuple(name.strip() for name in listed.split(",") if name.strip())
