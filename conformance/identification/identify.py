@@ -88,7 +88,7 @@ def identify(
 def _line_key(record: DropRecord) -> object:
     line = record.line
     # Records that say nothing of their line are taken to be of one only if they come from the same file.
-    return line if line.spans else (line, record.source)
+    return line if line.spans else (line, record.file or record.source)
 
 
 def _identify_line(
@@ -226,7 +226,7 @@ def _mode(
         frequency_std=float(omega_std / (2 * np.pi)),
         damping_ratio=damping,
         damping_ratio_std=damping_std,
-        sensors=tuple(one.record.channels[c].sensor for c in one.columns),
+        channels=tuple(one.record.channels[c] for c in one.columns),
         shape=normalised(residues),
         shape_std=np.asarray(spread / np.abs(scale)),
         amplitude=float(2 * np.abs(scale / gain * np.exp(-pole * since))),

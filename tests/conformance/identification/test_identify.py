@@ -1,13 +1,16 @@
 """Blind identification of made-up records: accuracy against the Cramer-Rao bound, honest doubt, clear refusals."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.identification.groups import group_numbers, outliers
 from pantocheck.conformance.identification.identify import identify
 from pantocheck.conformance.identification.refine import refine
+from pantocheck.conformance.identification.result_files import summary
 from pantocheck.conformance.identification.structure import whitened
-from pantocheck.conformance.massdrop_records import Channel, Drop, DropRecord, Line
+from pantocheck.conformance.massdrop_records import Channel, Drop, DropRecord, Line, read_records, write_csv
 from scipy.optimize import linear_sum_assignment
 from synthetic_drops import drop, span_modes
 
@@ -107,6 +110,33 @@ def test_repeats_of_different_length_are_used_together_and_said():
     poles = complex_poles(found.modes)
     for pole in true:
         assert np.abs(poles - pole).min() < 0.05 * -pole.real
+
+
+@pytest.mark.parametrize("sensors", [2, 4])
+def test_drops_of_one_name_keep_their_own_sensors(sensors):
+    """Ten times the noise and half the sensors or other places in the first: every mode is seen best in the second."""
+    random = np.random.default_rng(41)
+    true = span_modes(random, 6)
+    noisy = drop(random, true, sensors=sensors, duration=60.0, rate=50.0, noise=0.03, weak=0.0)
+    quiet = record_of(drop(random, true, duration=60.0, rate=50.0, noise=0.003, weak=0.0), "one name")
+    away = replace(quiet, channels=tuple(replace(c, position=c.position + 200.0) for c in quiet.channels))
+    (found,) = identify((record_of(noisy, "one name"), away), highest=4.0)
+    rows = summary(found)["modes"]
+    assert len(rows) >= 6
+    for row in rows:
+        assert [part["position_m"] for part in row["sensor_shape"]] == [220.0, 240.0, 260.0, 280.0]
+
+
+def test_files_of_one_name_that_do_not_tell_their_line_are_of_two(tmp_path):
+    random = np.random.default_rng(42)
+    records = []
+    for folder in ("a", "b"):
+        (tmp_path / folder).mkdir()
+        record = record_of(drop(random, span_modes(random, 6), duration=40.0, rate=50.0, weak=0.0))
+        write_csv(replace(record, line=Line()), tmp_path / folder / "T1.csv")
+        records += read_records(tmp_path / folder / "T1.csv")
+    assert [record.source for record in records] == ["T1.csv", "T1.csv"]
+    assert len(identify(tuple(records), highest=4.0)) == 2
 
 
 def test_hand_placed_poles_are_refined_and_kept():
