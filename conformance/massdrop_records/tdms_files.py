@@ -28,7 +28,12 @@ def read(path: Path, sidecar: Sidecar | None) -> list[Table]:
         raise InputError(source, "holds no samples", "Export the record again.")
     if len({vector.size for _, vector in kept}) > 1:
         raise InputError(source, "its channels differ in length", "The channels of a record must be sampled together.")
-    step = kept[0][0].properties.get("wf_increment")
+    steps = {channel.properties.get("wf_increment") for channel, _ in kept}
+    if len(steps) > 1:
+        raise InputError(
+            source, "its channels differ in sampling interval", "The channels of a record must be sampled together."
+        )
+    (step,) = steps
     columns = tuple(Column(channel.name, _unit(channel.properties.get("unit_string"))) for channel, _ in kept)
     rate = 1 / float(step) if step else None
     return [Table(np.column_stack([vector for _, vector in kept]), columns, rate=rate)]

@@ -1,6 +1,7 @@
 """Records: round trips, both decimal dialects, units and directions, and a clear message for every damage."""
 
 import sys
+from types import SimpleNamespace
 
 import h5py
 import numpy as np
@@ -123,6 +124,80 @@ def test_mdf(tmp_path, record):
     file.save(tmp_path / "r.mf4", overwrite=True)
     file.close()
     same(read_records(tmp_path / "r.mf4")[0], record, 0.0)
+
+
+def test_tdms_with_channels_of_two_rates_is_refused(tmp_path, record):
+    nptdms = pytest.importorskip("nptdms", reason="extra tdms")
+    write_csv(record, tmp_path / "r.csv")
+    with nptdms.TdmsWriter(str(tmp_path / "r.tdms")) as writer:
+        writer.write_segment(
+            [
+                nptdms.ChannelObject("group", one.name, record.signals[:, c], {"wf_increment": (1 + (c == 2)) / RATE})
+                for c, one in enumerate(record.channels)
+            ]
+        )
+    with pytest.raises(InputError, match="differ in sampling interval"):
+        read_records(tmp_path / "r.tdms")
+
+
+def test_mdf_with_channels_of_two_rates_is_refused(tmp_path, record, monkeypatch):
+    """The package in the clothes of what is asked of it: the check is ours and must not wait for the extra."""
+    signals = {
+        channel.name: SimpleNamespace(
+            name=channel.name, unit="m/s2", samples=record.signals[:, c], timestamps=(1 + (c == 2)) * record.time
+        )
+        for c, channel in enumerate(record.channels)
+    }
+
+    class File:
+        channels_db = signals
+
+        def __init__(self, path):
+            self.get = signals.__getitem__
+
+        def __enter__(self):
+            return self
+
+        def __exit__(self, *error):
+            pass
+
+    monkeypatch.setitem(sys.modules, "asammdf", SimpleNamespace(MDF=File))
+    monkeypatch.setitem(sys.modules, "asammdf.blocks", SimpleNamespace())
+    monkeypatch.setitem(sys.modules, "asammdf.blocks.utils", SimpleNamespace(MdfException=RuntimeError))
+    write_csv(record, tmp_path / "r.csv")
+    (tmp_path / "r.mf4").write_bytes(b"x")
+    with pytest.raises(InputError, match="differ in sampling interval"):
+        read_records(tmp_path / "r.mf4")
+    signals[record.channels[2].name].timestamps = record.time
+    same(read_records(tmp_path / "r.mf4")[0], record, 0.0)
+
+
+@pytest.mark.parametrize("name", ["Time", "T", "TIME_S"])
+def test_matlab_time_is_no_signal_however_it_is_written(tmp_path, record, name):
+    write_csv(record, tmp_path / "r.csv")
+    scipy.io.savemat(tmp_path / "r.mat", {name: record.time, "acceleration": record.signals})
+    same(read_records(tmp_path / "r.mat")[0], record, 1e-12)
+    scipy.io.savemat(tmp_path / "r.mat", {name: 2 * record.time, "acceleration": record.signals})
+    with pytest.raises(InputError, match="the time column says 50"):
+        read_records(tmp_path / "r.mat")
+
+
+@pytest.mark.parametrize("form", ["matrix", "vectors"])
+def test_matlab_time_of_another_length_is_refused(tmp_path, record, form):
+    write_csv(record, tmp_path / "r.csv")
+    vectors = {channel.name: record.signals[:, c] for c, channel in enumerate(record.channels)}
+    data = vectors if form == "vectors" else {"acceleration": record.signals}
+    scipy.io.savemat(tmp_path / "r.mat", {"t": record.time[:-7], **data})
+    with pytest.raises(InputError, match=f"{N - 7} times for {N} samples"):
+        read_records(tmp_path / "r.mat")
+
+
+def test_matlab_tables_of_one_size_are_refused(tmp_path, record):
+    """One vector per channel under other names than the sidecar's, or raw and filtered side by side: no one is it."""
+    write_csv(record, tmp_path / "r.csv")
+    scipy.io.savemat(tmp_path / "r.mat", {"raw": record.signals, "filtered": 0.5 * record.signals, "fs": RATE})
+    with pytest.raises(InputError, match=r"filtered, raw.*several tables of one size"):
+        read_records(tmp_path / "r.mat")
 
 
 @pytest.mark.parametrize(("suffix", "package", "extra"), [(".tdms", "nptdms", "tdms"), (".mf4", "asammdf", "mdf")])
