@@ -94,7 +94,14 @@ def _line_key(record: DropRecord) -> object:
 def _identify_line(
     records: tuple[DropRecord, ...], highest: float, given: Complex | None, progress: Callable[[str], None]
 ) -> Identification:
-    band = Band.up_to(highest, min(record.rate for record in records))
+    slowest = min(records, key=lambda record: record.rate)
+    band = Band.up_to(highest, slowest.rate)
+    if band.high < min(2 * band.low, highest):
+        raise InputError(
+            slowest.name,
+            f"its sampling rate of {slowest.rate:g} Hz is too low: modes could be told up to {band.high:.2g} Hz",
+            "Export the record at its original rate; 50 Hz and more are usual.",
+        )
     prepared = []
     for record in records:
         progress(f"{record.name}: release and linear stretch")

@@ -74,7 +74,8 @@ def prepare(record: DropRecord, band: Band) -> Prepared:
         raise InputError(name, "every vertical channel is clipped", "Repeat the drop with a larger range.")
     if len(columns) == 1:
         warnings.append(f"{name}: a single sensor; modes with a node there cannot be seen, and no shape can be told")
-    stretch = find_stretch(record.signals[:, columns], record.rate, release, band, name, clipped_until)
+    names = tuple(record.channels[c].name for c in columns)
+    stretch = find_stretch(record.signals[:, columns], record.rate, release, band, name, names, clipped_until)
     return Prepared(record, tuple(columns), release, stretch, _lateral(record, stretch), (*warnings, *stretch.warnings))
 
 

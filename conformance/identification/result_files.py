@@ -220,7 +220,8 @@ def _overlays(found: Identification) -> list[dict[str, Any]]:
         repeats = [one for one in found.prepared if one.test == test]
         if len(repeats) < 2:
             continue
-        curves = [aligned(one) for one in repeats]
+        lowest_rate = min(one.record.rate for one in repeats)
+        curves = [aligned(one, lowest_rate) for one in repeats]
         channel = int(np.argmax(curves[0][1].std(axis=0)))
         runs = []
         for one, (time, samples) in zip(repeats, curves, strict=True):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.identification.groups import group_numbers, outliers
+from pantocheck.conformance.identification.hand_placed import read_poles
 from pantocheck.conformance.identification.identify import identify
 from pantocheck.conformance.identification.refine import refine
 from pantocheck.conformance.identification.result_files import summary
@@ -181,6 +182,51 @@ def test_short_records_are_refused(duration, message):
     made = drop(random, span_modes(random, 6), duration=duration, rate=50.0)
     with pytest.raises(InputError, match=message):
         identify((record_of(made),))
+
+
+def test_sampling_rate_too_low_for_any_mode_is_refused():
+    """At 1 Hz nothing above 0.32 Hz is left after the filters, and a band begins at 0.3 Hz."""
+    made = record_of(drop(np.random.default_rng(64), span_modes(np.random.default_rng(64), 6), rate=50.0))
+    for rate in (0.5, 1.0):
+        with pytest.raises(InputError, match=r"sampling rate of .* is too low"):
+            identify((replace(made, rate=rate),))
+
+
+def test_low_wanted_frequency_is_no_fault_of_the_rate():
+    random = np.random.default_rng(65)
+    made = drop(random, 2 * np.pi * np.array([0.4 * (-0.004 + 1j), 0.8 * (-0.004 + 1j)]), rate=50.0, weak=0.0)
+    (found,) = identify((record_of(made),), highest=0.5)
+    assert [mode.frequency for mode in found.modes] == pytest.approx([0.4], abs=0.002)
+
+
+def test_repeats_at_a_low_rate_are_compared():
+    """At 12 Hz the usual low-pass of 6 Hz would lie on half the rate."""
+    random = np.random.default_rng(66)
+    made = drop(random, span_modes(random, 6), duration=60.0, rate=12.0, weak=0.0)
+    (found,) = identify((record_of(made, "first"), record_of(made, "second")), highest=2.0)
+    (repeats,) = summary(found)["repeatability"]
+    assert repeats["verdict"] == "repeatable"
+
+
+def test_channel_lost_at_the_release_is_named():
+    random = np.random.default_rng(67)
+    made = drop(random, span_modes(random, 6), duration=40.0, rate=50.0)
+    made.samples[int(made.release * made.rate) + 10 :, 2] = 0.0
+    with pytest.raises(InputError, match=r"channel 'S3_z'.*never changes after the release"):
+        identify((record_of(made),))
+
+
+def test_record_shorter_than_a_window_of_rest_is_refused():
+    signals = np.random.default_rng(68).standard_normal((60, 1))
+    short = DropRecord("short", "short", 200.0, signals, (Channel("S1_z", 1, "z"),))
+    with pytest.raises(InputError, match="has no rest before the release"):
+        identify((short,))
+
+
+def test_list_of_no_modes_places_no_poles(tmp_path):
+    (tmp_path / "modes.json").write_text("[]")
+    with pytest.raises(InputError, match="holds no mode"):
+        read_poles(tmp_path / "modes.json")
 
 
 def test_record_without_vertical_channel_is_refused():
