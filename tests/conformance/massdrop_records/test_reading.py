@@ -21,6 +21,7 @@ from pantocheck.conformance.massdrop_records import (
 )
 
 RATE, N = 100.0, 400
+FLIPS = 400  # files; on fewer some of the errors that the libraries raise do not show
 
 
 @pytest.fixture
@@ -304,6 +305,59 @@ def test_garbage_is_refused(tmp_path, record, suffix):
     path.write_bytes(bytes(np.random.default_rng(1).integers(0, 256, 5000, dtype=np.uint8)))
     with pytest.raises(InputError):
         read_records(path)
+
+
+def test_hdf5_group_in_place_of_a_table_is_refused(tmp_path, record):
+    write_hdf5((record,), tmp_path / "r.h5")
+    with h5py.File(tmp_path / "r.h5", "r+") as file:
+        del file["run_1/acceleration"]
+        file.create_group("run_1/acceleration")
+    with pytest.raises(InputError, match="holds no table of samples"):
+        read_records(tmp_path / "r.h5")
+
+
+def whole_file(kind, folder, record):
+    if kind == "h5":
+        write_hdf5((record,), folder / "r.h5")
+        return folder / "r.h5"
+    write_csv(record, folder / "r.csv")
+    if kind == "tdms":
+        nptdms = pytest.importorskip("nptdms", reason="extra tdms")
+        with nptdms.TdmsWriter(str(folder / "r.tdms")) as writer:
+            for c, channel in enumerate(record.channels):
+                writer.write_segment([nptdms.ChannelObject("g", channel.name, record.signals[:, c])])
+        return folder / "r.tdms"
+    vectors = {channel.name: record.signals[:, c] for c, channel in enumerate(record.channels)}
+    if kind == "mat 5":
+        # Compressed, as MATLAB saves: scipy itself crashes on some uncompressed files with a false size.
+        scipy.io.savemat(folder / "r.mat", {**vectors, "fs": RATE}, do_compression=True)
+    else:
+        with h5py.File(folder / "r.mat", "w") as file:
+            for name, vector in vectors.items():
+                file.create_dataset(name, data=vector[None, :], compression="gzip")
+            file["fs"] = np.array([[RATE]])
+    return folder / "r.mat"
+
+
+@pytest.mark.filterwarnings("ignore")  # what the libraries have to say of damaged files
+@pytest.mark.parametrize("kind", ["h5", "mat 5", "mat 7.3", "tdms"])
+def test_flipped_bytes_are_read_or_refused(tmp_path, record, kind):
+    """Three bytes anew, half of them in the first 3000, where heads and directories are; samples may well survive."""
+    path = whole_file(kind, tmp_path, record)
+    content = path.read_bytes()
+    random = np.random.default_rng(20)
+    refused = 0
+    for _ in range(FLIPS):
+        damaged = bytearray(content)
+        for _ in range(3):
+            end = min(len(content), 3000) if random.random() < 0.5 else len(content)
+            damaged[random.integers(end)] = random.integers(256)
+        path.write_bytes(damaged)
+        try:
+            read_records(path)
+        except InputError:
+            refused += 1
+    assert refused > 0
 
 
 def test_clipping_is_marked(tmp_path, record):
