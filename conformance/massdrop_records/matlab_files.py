@@ -14,6 +14,18 @@ from pantocheck.conformance.massdrop_records.sidecar import Sidecar
 
 TIME_NAMES = ("time", "time_s", "t")
 RATE_NAMES = ("sampling_rate_hz", "fs", "rate")
+DAMAGE = (
+    ValueError,
+    TypeError,
+    KeyError,
+    IndexError,
+    EOFError,
+    OSError,
+    NotImplementedError,
+    struct.error,
+    zlib.error,
+)
+"""What scipy raises for files that are damaged."""
 
 Real = NDArray[np.float64]
 
@@ -68,7 +80,7 @@ def _largest_table(data: dict[str, Real], source: str) -> Real:
 def _version_5(path: Path, source: str) -> dict[str, Real]:
     try:
         content = scipy.io.loadmat(path, struct_as_record=True)
-    except (ValueError, TypeError, KeyError, EOFError, struct.error, zlib.error, OSError, NotImplementedError) as error:
+    except DAMAGE as error:
         raise InputError(source, f"is damaged or not a MATLAB file ({str(error)[:100]})", "Export it again.") from None
     return {
         name: np.asarray(value, dtype=np.float64)
@@ -84,7 +96,8 @@ def _version_7_3(path: Path, source: str) -> dict[str, Real]:
                 # MATLAB stores by columns, so its matrices come out transposed.
                 name: np.asarray(item[()], dtype=np.float64).T
                 for name, item in file.items()
-                if isinstance(item, h5py.Dataset) and item.dtype.kind in "fiu"
+                # h5py gives a name that is no UTF-8 as bytes; no sidecar can mean it.
+                if isinstance(name, str) and isinstance(item, h5py.Dataset) and item.dtype.kind in "fiu"
             }
-    except (OSError, KeyError, TypeError, ValueError) as error:
+    except (OSError, KeyError, TypeError, ValueError, RuntimeError) as error:
         raise InputError(source, f"is damaged ({str(error)[:100]})", "Export it again.") from None
