@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.massdrop_records.assembly import Column, Table
 from pantocheck.conformance.massdrop_records.sidecar import Sidecar
+from scipy.io.matlab import MatReadError
 
 TIME_NAMES = ("time", "time_s", "t")
 RATE_NAMES = ("sampling_rate_hz", "fs", "rate")
@@ -22,6 +23,7 @@ DAMAGE = (
     EOFError,
     OSError,
     NotImplementedError,
+    MatReadError,
     struct.error,
     zlib.error,
 )
