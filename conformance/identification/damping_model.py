@@ -113,7 +113,6 @@ def fit_damping(
     energies: ModalEnergies,
     measured: Measured,
     kinds: tuple[str, ...] = WIRES,
-    fixed: dict[tuple[str, str], float] | None = None,
 ) -> DampingFit:
     """Coefficients of the chosen kinds by non-negative least squares.
 
@@ -125,7 +124,6 @@ def fit_damping(
     energies : of the computed counterparts of the measured modes
     measured : the measured modes
     kinds : component kinds to fit
-    fixed : coefficients taken as known, by (kind, matrix): their part is subtracted first
 
     Raises
     ------
@@ -133,26 +131,22 @@ def fit_damping(
     """
     names, columns = energies.columns()
     chosen = [i for i, (kind, _) in enumerate(names) if kind in kinds]
-    known = sum(
-        (value * columns[:, names.index(name)] for name, value in (fixed or {}).items() if name in names),
-        np.zeros(energies.frequency.size),
-    )
     if measured.frequency.size <= len(chosen):
         raise InputError(
             "modes",
             f"{measured.frequency.size} modes for {len(chosen)} coefficients",
             "Identify more modes, or check that the line of the case is the one measured.",
         )
-    target, std = measured.damping_ratio - known, _std(measured)
+    target, std = measured.damping_ratio, deviation(measured)
     used = np.ones(target.size, dtype=np.bool_)
-    values = np.zeros(len(chosen))
     for _ in range(3):
-        weight = _weights(std, measured.group, used)
-        values = _solve(columns[:, chosen], target, weight)
+        values = solve_weighted(columns[:, chosen], target, weights(std, measured.group, used))
         used = _near_their_group(target - columns[:, chosen] @ values, std, measured.group)
-    predicted = columns[:, chosen] @ values + known
+    # The values are those of the modes said to be used.
+    values = solve_weighted(columns[:, chosen], target, weights(std, measured.group, used))
+    predicted = columns[:, chosen] @ values
     low, high = _interval(columns[:, chosen], target, std, measured.std, measured.group, used)
-    relative = (measured.damping_ratio - predicted) / measured.damping_ratio
+    relative = (target - predicted) / target
     return DampingFit(
         tuple(
             Coefficient(*names[i], value=float(values[n]), low=float(low[n]), high=float(high[n]))
@@ -164,17 +158,33 @@ def fit_damping(
     )
 
 
-def _std(measured: Measured) -> Real:
+def deviation(measured: Measured) -> Real:
+    """Standard deviation of measured less computed damping ratios, (m,): that of the measurement and of the model."""
     return np.hypot(measured.std, MODEL_ERROR * measured.damping_ratio)
 
 
-def _weights(std: Real, group: NDArray[np.int64], used: NDArray[np.bool_]) -> Real:
-    """Square roots of the weights: 1 / std, over the root of the number of modes used in the mode's group."""
+def weights(std: Real, group: NDArray[np.int64], used: NDArray[np.bool_]) -> Real:
+    """Square roots of the weights: 1 / std, over the root of the number of modes used in the mode's group.
+
+    Parameters
+    ----------
+    std : (m,) standard deviation of each mode
+    group : (m,) its group
+    used : (m,) whether it enters; others have no weight
+    """
     count = np.array([max(int(np.sum(used & (group == number))), 1) for number in group])
     return np.where(used, 1 / (std * np.sqrt(count)), 0.0)
 
 
-def _solve(columns: Real, target: Real, weight: Real) -> Real:
+def solve_weighted(columns: Real, target: Real, weight: Real) -> Real:
+    """Non-negative coefficients of weighted least squares, (e,).
+
+    Parameters
+    ----------
+    columns : (m, e) what a unit of each coefficient adds to the target
+    target : (m,)
+    weight : (m,) square roots of the weights
+    """
     scale = np.maximum(np.linalg.norm(columns * weight[:, None], axis=0), np.finfo(float).tiny)
     solution, _ = scipy.optimize.nnls(columns * weight[:, None] / scale, target * weight)
     return np.asarray(solution / scale)
@@ -202,7 +212,7 @@ def _interval(
         rows = np.concatenate([random.choice(members, members.size) for members in numbers])
         noisy = target[rows] + noise[rows] * random.standard_normal(rows.size)
         everything = np.ones(rows.size, dtype=np.bool_)
-        drawn[r] = _solve(columns[rows], noisy, _weights(std[rows], group[rows], everything))
+        drawn[r] = solve_weighted(columns[rows], noisy, weights(std[rows], group[rows], everything))
     return np.percentile(drawn, 2.5, axis=0), np.percentile(drawn, 97.5, axis=0)
 
 

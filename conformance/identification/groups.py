@@ -16,7 +16,7 @@ LAST_GROUP = 8  # beyond, bending of the spans and bending between droppers mix
 CLEARANCE = 0.06  # how near a mode may come to a place between groups, over the first group's mean
 
 
-def group_numbers(certain: Real, all_modes: Real, spans: int | None, hint: float | None = None) -> Numbers:
+def group_numbers(certain: Real, all_modes: Real, spans: int | None) -> Numbers:
     """Number of the group of each mode, from 1; 0 beyond `LAST_GROUP`.
 
     Parameters
@@ -24,7 +24,6 @@ def group_numbers(certain: Real, all_modes: Real, spans: int | None, hint: float
     certain : (n,) frequencies of well identified vertical modes, from which the pattern is found [Hz]
     all_modes : (m,) frequencies to number [Hz]
     spans : number of spans, None if not known
-    hint : rough mean frequency of the first group [Hz]; without it the lowest modes give it
 
     Returns
     -------
@@ -33,7 +32,7 @@ def group_numbers(certain: Real, all_modes: Real, spans: int | None, hint: float
     if certain.size < 3:
         return np.zeros(all_modes.size, dtype=np.int64)
     ordered = np.sort(certain)
-    guess = hint if hint is not None else float(np.mean(ordered[ordered < 1.45 * ordered[0]]))
+    guess = float(np.mean(ordered[ordered < 1.45 * ordered[0]]))
     used = ordered[ordered < (LAST_GROUP + 0.5) * guess]
     trials = [(mean, stretch) for mean in guess * np.linspace(0.85, 1.15, 61) for stretch in np.linspace(0, 0.02, 11)]
     mean, stretch = min(trials, key=lambda t: _misfit(used, t[0], t[1], spans) + ((t[0] / guess - 1) / 0.1) ** 2)

@@ -6,6 +6,7 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import NDArray
 from pantocheck.conformance.cases.toml_file import read_model
+from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.identification.result_files import read_modes
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -41,6 +42,8 @@ def read_poles(path: Path) -> NDArray[np.complex128]:
     rows: list[tuple[float, float]]
     if path.suffix == ".json":
         rows = [(row.frequency_Hz, row.damping_ratio) for row in read_modes(path)]
+        if not rows:
+            raise InputError(f"modes '{path.name}'", "holds no mode", "Give at least one start pole.")
     else:
         rows = [(row.frequency_Hz, row.damping_ratio) for row in read_model(path, _Poles, "poles").pole]
     frequency, damping = np.array(rows).T

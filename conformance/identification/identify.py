@@ -88,13 +88,20 @@ def identify(
 def _line_key(record: DropRecord) -> object:
     line = record.line
     # Records that say nothing of their line are taken to be of one only if they come from the same file.
-    return line if line.spans else (line, record.source)
+    return line if line.spans else (line, record.file or record.source)
 
 
 def _identify_line(
     records: tuple[DropRecord, ...], highest: float, given: Complex | None, progress: Callable[[str], None]
 ) -> Identification:
-    band = Band.up_to(highest, min(record.rate for record in records))
+    slowest = min(records, key=lambda record: record.rate)
+    band = Band.up_to(highest, slowest.rate)
+    if band.high < min(2 * band.low, highest):
+        raise InputError(
+            slowest.name,
+            f"its sampling rate of {slowest.rate:g} Hz is too low: modes could be told up to {band.high:.2g} Hz",
+            "Export the record at its original rate; 50 Hz and more are usual.",
+        )
     prepared = []
     for record in records:
         progress(f"{record.name}: release and linear stretch")
@@ -213,7 +220,7 @@ def _mode(
     best = max(range(len(whole.prepared)), key=lambda r: _signal_to_noise(whole, r, j))
     one = whole.prepared[best]
     same = [r for r, other in enumerate(whole.prepared) if other.test == one.test]
-    residues, spread = _shared_shape(whole, same, j, spreads)
+    residues, spread = _shared_shape(whole, same, same.index(best), j, spreads)
     scale = residues[np.argmax(np.abs(residues))]
     frequency, damping = float(np.abs(pole)) / (2 * np.pi), float(-pole.real / np.abs(pole))
     damping_std = float(decay_std / np.abs(pole))
@@ -226,7 +233,7 @@ def _mode(
         frequency_std=float(omega_std / (2 * np.pi)),
         damping_ratio=damping,
         damping_ratio_std=damping_std,
-        sensors=tuple(one.record.channels[c].sensor for c in one.columns),
+        channels=tuple(one.record.channels[c] for c in one.columns),
         shape=normalised(residues),
         shape_std=np.asarray(spread / np.abs(scale)),
         amplitude=float(2 * np.abs(scale / gain * np.exp(-pole * since))),
@@ -244,14 +251,18 @@ def _signal_to_noise(whole: Identification, r: int, j: int) -> float:
     return float(np.sum(np.abs(whole.fits[b].residues[j, at] / whole.noise[b][at]) ** 2))
 
 
-def _shared_shape(whole: Identification, repeats: list[int], j: int, spreads: list[Real]) -> tuple[Complex, Real]:
-    """Residues over the sensors that repeats of a drop agree on best, and the standard deviation of their parts."""
+def _shared_shape(
+    whole: Identification, repeats: list[int], which: int, j: int, spreads: list[Real]
+) -> tuple[Complex, Real]:
+    """Residues over the sensors that repeats of a drop agree on best, and the standard deviation of their parts.
+
+    They are scaled to the repeat `which`: residues belong to the first sample, and stretches begin at their own times.
+    """
     table = np.array([whole.fits[whole.block_of[r]].residues[j, whole.columns[r]] for r in repeats]).T
     left, values, right = np.linalg.svd(table, full_matrices=False)
     noise = [whole.noise[whole.block_of[r]][whole.columns[r]] * spreads[whole.block_of[r]][j] for r in repeats]
-    largest = int(np.argmax(np.abs(right[0])))
-    residues = left[:, 0] * values[0] * right[0, largest]
-    return residues, np.asarray(np.mean(noise, axis=0) * np.abs(right[0, largest]))
+    residues = left[:, 0] * values[0] * right[0, which]
+    return residues, np.asarray(np.mean(noise, axis=0) * np.abs(right[0, which]))
 
 
 def _error(whole: Identification, pole: complex) -> float:

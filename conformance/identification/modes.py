@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from pantocheck.conformance.massdrop_records.record import Channel
 
 Complex = NDArray[np.complex128]
 
@@ -23,7 +24,7 @@ class Mode:
     frequency_std : its standard deviation [Hz]
     damping_ratio : share of critical damping
     damping_ratio_std : its standard deviation
-    sensors : (s,) numbers of the sensors of the record that shows the mode best
+    channels : (s,) of the record that shows the mode best
     shape : (s,) complex shape at them, the largest 1
     shape_std : (s,) standard deviation of its real and of its imaginary part
     amplitude : largest amplitude of any sensor at the release [unit of the record]
@@ -41,7 +42,7 @@ class Mode:
     frequency_std: float
     damping_ratio: float
     damping_ratio_std: float
-    sensors: tuple[int, ...]
+    channels: tuple[Channel, ...]
     shape: Complex
     shape_std: NDArray[np.float64]
     amplitude: float

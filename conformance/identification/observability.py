@@ -4,8 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from pantocheck.conformance.identification.damping_model import MODEL_ERROR, DampingFit, Measured, ModalEnergies
-from scipy.optimize import nnls
+from pantocheck.conformance.identification.damping_model import (
+    DampingFit,
+    Measured,
+    ModalEnergies,
+    deviation,
+    solve_weighted,
+    weights,
+)
 
 Real = NDArray[np.float64]
 
@@ -46,7 +52,7 @@ def observability(energies: ModalEnergies, measured: Measured, fit: DampingFit) 
     fit : with all fitted kinds
     """
     names, columns = energies.columns()
-    weighted = columns / np.hypot(measured.std, MODEL_ERROR * measured.damping_ratio)[:, None]
+    weighted = columns / deviation(measured)[:, None]
     fitted = {(c.kind, c.matrix) for c in fit.coefficients}
     found = []
     for i, (kind, matrix) in enumerate(names):
@@ -74,10 +80,9 @@ def residual_without(energies: ModalEnergies, measured: Measured, fit: DampingFi
     """Root mean square of the relative residual of a fit without one coefficient, over the modes used."""
     names, columns = energies.columns()
     kept = [names.index((c.kind, c.matrix)) for c in fit.coefficients if (c.kind, c.matrix) != left_out]
-    relative = columns[fit.used][:, kept] / measured.damping_ratio[fit.used, None]
-    scale = np.maximum(np.linalg.norm(relative, axis=0), np.finfo(float).tiny)
-    ones = np.ones(int(fit.used.sum()))
-    return float(nnls(relative / scale, ones)[1] / np.sqrt(ones.size))
+    target, weight = measured.damping_ratio, weights(deviation(measured), measured.group, fit.used)
+    relative = (target - columns[:, kept] @ solve_weighted(columns[:, kept], target, weight)) / target
+    return float(np.sqrt(np.mean(relative[fit.used] ** 2)))
 
 
 def _projected(columns: Real, vector: Real) -> Real:

@@ -8,7 +8,7 @@ from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.identification.filters import complete_overlap
 from pantocheck.conformance.identification.release import Release, find_release
 from pantocheck.conformance.identification.stretch import Band, Stretch, find_stretch
-from pantocheck.conformance.massdrop_records.assembly import flat_tops
+from pantocheck.conformance.massdrop_records.assembly import clipped
 from pantocheck.conformance.massdrop_records.record import DropRecord
 
 Real = NDArray[np.float64]
@@ -60,11 +60,7 @@ def prepare(record: DropRecord, band: Band) -> Prepared:
     columns, clipped_until = [], 0.0
     for c in vertical:
         signal = record.signals[:, c]
-        spread = float(np.ptp(signal))
-        last = max(
-            (end for start, end in flat_tops(signal) if abs(signal[start] - np.median(signal)) > 0.2 * spread),
-            default=0,
-        )
+        last = max((end for _, end in clipped(signal)), default=0)
         if last / record.rate > release.time + CLIPPED_EARLY * (record.duration - release.time):
             warnings.append(f"{name}: channel '{record.channels[c].name}' is clipped far into the decay and left out")
             continue
@@ -74,7 +70,8 @@ def prepare(record: DropRecord, band: Band) -> Prepared:
         raise InputError(name, "every vertical channel is clipped", "Repeat the drop with a larger range.")
     if len(columns) == 1:
         warnings.append(f"{name}: a single sensor; modes with a node there cannot be seen, and no shape can be told")
-    stretch = find_stretch(record.signals[:, columns], record.rate, release, band, name, clipped_until)
+    names = tuple(record.channels[c].name for c in columns)
+    stretch = find_stretch(record.signals[:, columns], record.rate, release, band, name, names, clipped_until)
     return Prepared(record, tuple(columns), release, stretch, _lateral(record, stretch), (*warnings, *stretch.warnings))
 
 

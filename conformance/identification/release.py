@@ -76,10 +76,9 @@ def find_release(signals: Real, rate: float, nominal: float | None, name: str) -
 def _quiet_start(signals: Real, rate: float, name: str) -> int:
     """Samples of rest at the beginning, where no trigger time is known: until half-second windows first leap."""
     width = max(int(0.5 * rate), 4)
-    windows = signals[: signals.shape[0] // width * width].reshape(-1, width, signals.shape[1])
-    spread = windows.std(axis=1)
-    floor = np.maximum(spread.min(axis=0), np.finfo(float).tiny)
-    leap = np.any(spread > 4 * np.maximum(floor, 1e-6 * spread.max(axis=0)), axis=1)
+    spread = signals[: signals.shape[0] // width * width].reshape(-1, width, signals.shape[1]).std(axis=1)
+    floor = np.maximum(spread.min(axis=0, initial=np.inf), np.finfo(float).tiny)
+    leap = np.any(spread > 4 * np.maximum(floor, 1e-6 * spread.max(axis=0, initial=0.0)), axis=1)
     if not leap.any() or int(np.argmax(leap)) * width < LEAST_REST * rate:
         raise InputError(
             name,

@@ -80,18 +80,25 @@ def _repeats(c: Comparison) -> bool:
     return early and late
 
 
-def aligned(one: Prepared) -> tuple[Real, Real]:
-    """Time from the release [s], (n,), and the vertical channels below `HIGHEST`, (n, c)."""
-    rate = one.record.rate
-    taps = lowpass(rate, HIGHEST, HIGHEST * 1.5, 50.0)
+def aligned(one: Prepared, lowest_rate: float) -> tuple[Real, Real]:
+    """Time from the release [s], (n,), and the vertical channels below `HIGHEST`, (n, c).
+
+    Parameters
+    ----------
+    one : a record
+    lowest_rate : samples per second of the slowest record it is compared with [Hz]; it may not reach `HIGHEST`
+    """
+    rate, passes = one.record.rate, min(HIGHEST, 0.28 * lowest_rate)
+    taps = lowpass(rate, passes, 1.5 * passes, 50.0)
     samples = complete_overlap(one.record.signals[:, list(one.columns)], taps)
     time = (np.arange(samples.shape[0]) + (taps.size - 1) / 2) / rate - one.release.time
     return np.asarray(time, dtype=np.float64), samples
 
 
 def _compared(first: Prepared, second: Prepared) -> list[Comparison]:
-    t1, x1 = aligned(first)
-    t2, x2 = aligned(second)
+    lowest_rate = min(first.record.rate, second.record.rate)
+    t1, x1 = aligned(first, lowest_rate)
+    t2, x2 = aligned(second, lowest_rate)
     rate = first.record.rate
     start = 1.5  # the first second differs by how the droppers slacken
     shift = _shift(t1, x1, t2, x2, start, rate)

@@ -48,10 +48,8 @@ class ModeRow(BaseModel):
     lateral: bool = False
 
 
-def mode_row(mode: Mode, found: Identification) -> dict[str, Any]:
+def mode_row(mode: Mode) -> dict[str, Any]:
     """A mode as modes.json has it."""
-    record = next(one for one in found.prepared if one.record.name == mode.record)
-    channels = [record.record.channels[c] for c in record.columns]
     shape = [
         {
             "sensor": channel.sensor,
@@ -61,7 +59,7 @@ def mode_row(mode: Mode, found: Identification) -> dict[str, Any]:
             "im": rounded(value.imag),
             "std": rounded(std),
         }
-        for channel, value, std in zip(channels, mode.shape, mode.shape_std, strict=True)
+        for channel, value, std in zip(mode.channels, mode.shape, mode.shape_std, strict=True)
     ]
     return {
         "frequency_Hz": rounded(mode.frequency),
@@ -93,7 +91,7 @@ def summary(found: Identification) -> dict[str, Any]:
         "warnings": list(found.warnings),
         "records": [_record(found, r) for r in range(len(found.prepared))],
         "groups": _groups(found),
-        "modes": [mode_row(mode, found) for mode in found.modes],
+        "modes": [mode_row(mode) for mode in found.modes],
         "repeatability": [_repeatability(one) for one in repeats],
         "overlays": _overlays(found),
         "spectra": [_spectra(found, r) for r in range(len(found.prepared))],
@@ -110,7 +108,7 @@ def write_modes(path: Path, all_found: tuple[Identification, ...]) -> None:
     ------
     InputError : it cannot be written
     """
-    write_json(path, [mode_row(mode, found) for found in all_found for mode in found.modes])
+    write_json(path, [mode_row(mode) for found in all_found for mode in found.modes])
 
 
 def write_json(path: Path, value: Any) -> None:
@@ -222,7 +220,8 @@ def _overlays(found: Identification) -> list[dict[str, Any]]:
         repeats = [one for one in found.prepared if one.test == test]
         if len(repeats) < 2:
             continue
-        curves = [aligned(one) for one in repeats]
+        lowest_rate = min(one.record.rate for one in repeats)
+        curves = [aligned(one, lowest_rate) for one in repeats]
         channel = int(np.argmax(curves[0][1].std(axis=0)))
         runs = []
         for one, (time, samples) in zip(repeats, curves, strict=True):

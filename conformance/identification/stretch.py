@@ -84,7 +84,13 @@ class Stretch:
 
 
 def find_stretch(
-    signals: Real, rate: float, release: Release, band: Band, name: str, clipped_until: float = 0.0
+    signals: Real,
+    rate: float,
+    release: Release,
+    band: Band,
+    name: str,
+    channels: tuple[str, ...],
+    clipped_until: float = 0.0,
 ) -> Stretch:
     """The longest stretch after the release that a sum of decays explains down to the noise.
 
@@ -95,11 +101,12 @@ def find_stretch(
     release : when the mass was released
     band : what is identified
     name : of the record, for messages
+    channels : (c,) names, for messages
     clipped_until : last clipped sample [s]
 
     Raises
     ------
-    InputError : less than `SHORTEST` is left
+    InputError : less than `SHORTEST` is left, or a channel is dead there
     """
     begin = int(release.time * rate)
     taps = lowpass(rate, band.fitted, band.stop, 80.0)
@@ -117,6 +124,13 @@ def find_stretch(
     guard = max(int(GUARD / dt), int(np.ceil((clipped_until - release.time) / dt)) + 1)
     if (total - guard) * dt < SHORTEST - taps.size / rate:
         raise InputError(name, "is clipped or disturbed almost to its end", "Repeat the drop with a larger range.")
+    dead = np.flatnonzero(np.ptp(signals[begin + guard * step :], axis=0) == 0)
+    if dead.size:
+        raise InputError(
+            f"{name}, channel '{channels[dead[0]]}'",
+            "never changes after the release",
+            "The sensor was lost: leave this channel out of the sidecar.",
+        )
     start, end, poles = _search(samples, guard, dt, band)
     if clipped_until > release.time:
         start = max(start, guard)

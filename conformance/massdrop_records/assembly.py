@@ -102,7 +102,7 @@ def assemble(table: Table, sidecar: Sidecar | None, source: str) -> DropRecord:
 
 
 def flat_tops(signal: Real) -> list[tuple[int, int]]:
-    """Stretches [start, end) where a signal stays on its own maximum or minimum: a saturated amplifier.
+    """Stretches [start, end) where a signal stays on its own maximum or minimum.
 
     A signal that never moves is not clipped but dead, and is reported as one stretch.
     """
@@ -111,6 +111,15 @@ def flat_tops(signal: Real) -> list[tuple[int, int]]:
         edges = np.flatnonzero(np.diff(np.concatenate([[False], signal == extreme, [False]]).astype(np.int8)))
         found += [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True) if b - a >= SAME_EXTREMES]
     return sorted(found)
+
+
+def clipped(signal: Real) -> list[tuple[int, int]]:
+    """Flat tops [start, end) of a saturated amplifier: those far from the signal's middle.
+
+    A converter's quiet floor also repeats its smallest value; it lies near the median.
+    """
+    middle, reach = np.median(signal), 0.2 * np.ptp(signal)
+    return [top for top in flat_tops(signal) if abs(signal[top[0]] - middle) > reach]
 
 
 def _described(table: Table, sidecar: Sidecar | None, source: str) -> tuple[ChannelTable, ...]:
@@ -218,12 +227,10 @@ def _check_finite(values: Real, rate: float, where: str) -> None:
 
 
 def _doubts(signal: Real, quantity: Quantity, rate: float, where: str) -> list[str]:
-    spread = float(np.ptp(signal))
-    if spread == 0:
+    if np.ptp(signal) == 0:
         raise InputError(where, "never changes", "The sensor was dead: leave this channel out of the sidecar.")
     found = []
-    # A converter's quiet floor also repeats its smallest value; a saturated amplifier sits far from the middle.
-    tops = [top for top in flat_tops(signal) if abs(signal[top[0]] - np.median(signal)) > 0.2 * spread]
+    tops = clipped(signal)
     if tops:
         found.append(
             f"{where}: clipped, {len(tops)} times between {tops[0][0] / rate:.2f} s and {tops[-1][1] / rate:.2f} s"

@@ -23,7 +23,7 @@ def read(path: Path, sidecar: Sidecar | None) -> list[Table]:
                 raise InputError(source, "holds no group run_1", "Store each run as run_<k>/acceleration.")
             columns = _columns(file, sidecar is not None, source)
             return [_run(file, name, k if len(runs) > 1 else 0, columns, source) for k, name in enumerate(runs, 1)]
-    except (OSError, KeyError, TypeError, ValueError) as error:
+    except (OSError, KeyError, TypeError, ValueError, RuntimeError, OverflowError) as error:
         if isinstance(error, InputError):
             raise
         raise InputError(source, f"is damaged or not HDF5 ({str(error)[:120]})", "Export the record again.") from None
@@ -70,7 +70,7 @@ def _columns(file: h5py.File, described: bool, source: str) -> tuple[Column, ...
 
 def _run(file: h5py.File, name: str, run: int, columns: tuple[Column, ...] | None, source: str) -> Table:
     data = next((file[name][quantity] for quantity in QUANTITIES if quantity in file[name]), None)
-    if data is None or data.ndim != 2:
+    if not isinstance(data, h5py.Dataset) or data.ndim != 2:
         raise InputError(
             f"{source}, {name}", "holds no table of samples", f"Store {name}/acceleration (channel, sample)."
         )

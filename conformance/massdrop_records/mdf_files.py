@@ -7,6 +7,8 @@ from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.massdrop_records.assembly import Column, Table
 from pantocheck.conformance.massdrop_records.sidecar import Sidecar
 
+SAME_TIME = 1e-6  # between the samples of two channels; a hundredth of an interval at 10 kHz [s]
+
 
 def read(path: Path, sidecar: Sidecar | None) -> list[Table]:
     """The one run of an MDF file; errors as in `read_records`."""
@@ -37,6 +39,11 @@ def read(path: Path, sidecar: Sidecar | None) -> list[Table]:
         raise InputError(source, f"is damaged or not MDF ({str(error)[:100]})", "Export it again.") from None
     if len({signal.samples.size for signal in signals}) > 1:
         raise InputError(source, "its channels differ in length", "The channels of a record must be sampled together.")
+    time = np.asarray(signals[0].timestamps, dtype=np.float64)
+    if any(not np.allclose(signal.timestamps, time, rtol=0, atol=SAME_TIME) for signal in signals[1:]):
+        raise InputError(
+            source, "its channels differ in sampling interval", "The channels of a record must be sampled together."
+        )
     values = np.column_stack([np.asarray(signal.samples, dtype=np.float64) for signal in signals])
     columns = tuple(Column(signal.name, str(signal.unit) or None) for signal in signals)
-    return [Table(values, columns, time=np.asarray(signals[0].timestamps, dtype=np.float64))]
+    return [Table(values, columns, time=time)]

@@ -1,6 +1,7 @@
 """One door for all formats of mass-drop records."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 from pantocheck.conformance.errors import InputError
@@ -35,7 +36,8 @@ def read_records(path: Path) -> tuple[DropRecord, ...]:
     if size > LARGEST_FILE:
         raise InputError(source, f"has {size} bytes", f"A record has at most {LARGEST_FILE} bytes.")
     sidecar = read_sidecar(path)
-    return tuple(assemble(table, sidecar, source) for table in reader(path, sidecar))
+    file = str(path.resolve())
+    return tuple(replace(assemble(table, sidecar, source), file=file) for table in reader(path, sidecar))
 
 
 Reader = Callable[[Path, Sidecar | None], list[Table]]

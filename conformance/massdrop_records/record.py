@@ -71,13 +71,14 @@ class DropRecord:
     Parameters
     ----------
     name : test and run
-    source : name of the file
+    source : name of the file, for messages
     rate : samples per second [Hz]
     signals : (n, c) [m/s2], [m/s] or [m] after `quantity`; read-only
     channels : (c,) what each column is
     quantity : what the sensors measure
     drop, line : the test
     warnings : what is doubtful about the record
+    file : where it was read from, which tells files of one name apart; empty if it was not read
     """
 
     name: str
@@ -89,6 +90,7 @@ class DropRecord:
     drop: Drop = Drop()
     line: Line = Line()
     warnings: tuple[str, ...] = ()
+    file: str = ""
 
     def __post_init__(self) -> None:
         self.signals.flags.writeable = False

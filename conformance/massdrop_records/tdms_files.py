@@ -1,11 +1,15 @@
 """TDMS records (LabVIEW), with a sidecar; needs the extra `tdms`."""
 
+import struct
 from pathlib import Path
 
 import numpy as np
 from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.massdrop_records.assembly import Column, Table
 from pantocheck.conformance.massdrop_records.sidecar import Sidecar
+
+DAMAGE = (ValueError, KeyError, TypeError, EOFError, OSError, IndexError, NotImplementedError, struct.error)
+"""What nptdms raises for files that are damaged."""
 
 
 def read(path: Path, sidecar: Sidecar | None) -> list[Table]:
@@ -21,14 +25,19 @@ def read(path: Path, sidecar: Sidecar | None) -> list[Table]:
     try:
         channels = [channel for group in TdmsFile.read(path).groups() for channel in group.channels()]
         vectors = [np.asarray(channel[:], dtype=np.float64) for channel in channels]
-    except (ValueError, KeyError, TypeError, EOFError, OSError, IndexError) as error:
+    except DAMAGE as error:
         raise InputError(source, f"is damaged or not TDMS ({str(error)[:100]})", "Export it again.") from None
     kept = [(channel, vector) for channel, vector in zip(channels, vectors, strict=True) if vector.size]
     if not kept:
         raise InputError(source, "holds no samples", "Export the record again.")
     if len({vector.size for _, vector in kept}) > 1:
         raise InputError(source, "its channels differ in length", "The channels of a record must be sampled together.")
-    step = kept[0][0].properties.get("wf_increment")
+    steps = {channel.properties.get("wf_increment") for channel, _ in kept}
+    if len(steps) > 1:
+        raise InputError(
+            source, "its channels differ in sampling interval", "The channels of a record must be sampled together."
+        )
+    (step,) = steps
     columns = tuple(Column(channel.name, _unit(channel.properties.get("unit_string"))) for channel, _ in kept)
     rate = 1 / float(step) if step else None
     return [Table(np.column_stack([vector for _, vector in kept]), columns, rate=rate)]

@@ -16,6 +16,8 @@ from pantocheck.conformance.massdrop_records.sidecar import sidecar_of
 SI_UNIT = {"acceleration": "m/s2", "velocity": "m/s", "displacement": "m"}
 DATA_TYPE = {"acceleration": 12, "velocity": 11, "displacement": 8}
 
+UNWRITABLE = ",;\t\"'"  # in the head line of a CSV file, which is read without quoting
+
 
 def write_csv(record: DropRecord, path: Path) -> None:
     """Write a record as CSV (decimal point, commas) and its sidecar beside it.
@@ -27,8 +29,15 @@ def write_csv(record: DropRecord, path: Path) -> None:
 
     Raises
     ------
-    InputError : it cannot be written
+    InputError : it cannot be written, or a channel has a name that a head line cannot hold
     """
+    for channel in record.channels:
+        if set(channel.name) & set(UNWRITABLE) or channel.name.strip().splitlines() != [channel.name]:
+            raise InputError(
+                f"{path.name}, channel {channel.name!r}",
+                "has a name that a head line cannot hold",
+                "Leave out commas, semicolons, tabs, quotes and line breaks, or write HDF5.",
+            )
     head = ",".join(["time_s", *(channel.name for channel in record.channels)])
     table = np.column_stack([record.time, record.signals])
     body = "\n".join(",".join(f"{value:.9g}" for value in row) for row in table)
@@ -62,7 +71,8 @@ def _set_58(record: DropRecord, c: int, form: Literal["ascii", "binary"]) -> dic
         told = f"{drop.mass:g} kg on {drop.wire} at {drop.position:g} m"
         told += f", trigger at {drop.trigger_nominal:g} s" if drop.trigger_nominal is not None else ""
     named = "NONE"
-    if channel.position is not None and channel.wire and " " not in channel.name:
+    # A name that the line would change is left to the sidecar.
+    if channel.position is not None and channel.wire and " " not in channel.name and channel.name.isascii():
         named = f"{channel.name} {channel.wire} at {channel.position:g} m dir +{channel.axis}"
     data = pyuff.prepare_58(
         binary=int(form == "binary"),

@@ -39,7 +39,7 @@ def fitted_damping(case: Case, found: Identification) -> dict[str, Any]:
     ------
     InputError : too few modes
     """
-    rows = tuple(ModeRow.model_validate(mode_row(mode, found)) for mode in found.modes)
+    rows = tuple(ModeRow.model_validate(mode_row(mode)) for mode in found.modes)
     element = case.file.discretisation.element_m
     return damping_results(rows, catenary(case.line), element, f"the modes of {case.id}")
 

@@ -5,6 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import scipy.linalg
+import scipy.optimize
 from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.identification.damping_model import (
     Measured,
@@ -109,6 +110,44 @@ def test_only_the_wires_are_observable(line):
     assert seen == {(kind, matrix) for kind in WIRES for matrix in ("stiffness", "mass")}
     for name in seen:
         assert residual_without(line[0], measured, fit, name) > 2 * fit.residual
+
+
+def test_coefficients_are_those_of_the_modes_used(line):
+    """Outliers of all sizes, some of which show only once larger ones are gone: the last to go must leave no trace.
+
+    Fitted anew to the modes used alone, each with its group's weight, the coefficients are the same to rounding.
+    """
+    for seed in range(10):
+        random = np.random.default_rng(seed)
+        measured = measured_of(line, 0.003, random)
+        measured.damping_ratio[random.choice(36, 8, replace=False)] *= 1 + 10 ** random.uniform(-2, -0.5, 8)
+        fit = fit_damping(line[0], measured)
+        names, columns = line[0].columns()
+        at = [names.index((c.kind, c.matrix)) for c in fit.coefficients]
+        count = np.array([np.sum(fit.used & (measured.group == number)) for number in measured.group])[fit.used]
+        std = np.hypot(measured.std, 0.01 * measured.damping_ratio)[fit.used]
+        weight = 1 / (std * np.sqrt(count))
+        scale = columns[:, at].max(axis=0)
+        anew = scipy.optimize.nnls(
+            columns[fit.used][:, at] / scale * weight[:, None], measured.damping_ratio[fit.used] * weight
+        )
+        assert [c.value for c in fit.coefficients] == pytest.approx(anew[0] / scale, rel=1e-8, abs=1e-15)
+
+
+def test_leaving_out_what_the_fit_puts_to_zero_changes_nothing(line):
+    """A negative coefficient cannot be fitted and becomes 0; groups of unlike certainty make the weights matter."""
+    energies, _, group = line
+    names, columns = energies.columns()
+    true = {("contact_wire", "stiffness"): 5e-5, ("contact_wire", "mass"): -0.01, ("messenger_wire", "mass"): 0.1}
+    ratio = columns @ [true.get(name, 0.0) for name in names]
+    random = np.random.default_rng(6)
+    std = ratio * np.array([0.001, 0.05])[group % 2]
+    measured = Measured(energies.frequency, ratio + std * random.standard_normal(ratio.size), std, group)
+    fit = fit_damping(energies, measured)
+    assert fit.value("contact_wire", "mass") == 0.0
+    growth = {(one.kind, one.matrix): one.growth for one in observability(energies, measured, fit)}
+    assert growth["contact_wire", "mass"] == pytest.approx(1.0, rel=1e-9)
+    assert growth["contact_wire", "stiffness"] > 1.0
 
 
 def test_modal_bands_give_the_first_groups_their_medians(line):

@@ -1,13 +1,19 @@
 """Blind identification of made-up records: accuracy against the Cramer-Rao bound, honest doubt, clear refusals."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from pantocheck.conformance.errors import InputError
 from pantocheck.conformance.identification.groups import group_numbers, outliers
+from pantocheck.conformance.identification.hand_placed import read_poles
 from pantocheck.conformance.identification.identify import identify
 from pantocheck.conformance.identification.refine import refine
+from pantocheck.conformance.identification.release import find_release
+from pantocheck.conformance.identification.result_files import summary
+from pantocheck.conformance.identification.stretch import Band, find_stretch
 from pantocheck.conformance.identification.structure import whitened
-from pantocheck.conformance.massdrop_records import Channel, Drop, DropRecord, Line
+from pantocheck.conformance.massdrop_records import Channel, Drop, DropRecord, Line, read_records, write_csv
 from scipy.optimize import linear_sum_assignment
 from synthetic_drops import drop, span_modes
 
@@ -109,6 +115,58 @@ def test_repeats_of_different_length_are_used_together_and_said():
         assert np.abs(poles - pole).min() < 0.05 * -pole.real
 
 
+@pytest.mark.parametrize("sensors", [2, 4])
+def test_drops_of_one_name_keep_their_own_sensors(sensors):
+    """Ten times the noise and half the sensors or other places in the first: every mode is seen best in the second."""
+    random = np.random.default_rng(41)
+    true = span_modes(random, 6)
+    noisy = drop(random, true, sensors=sensors, duration=60.0, rate=50.0, noise=0.03, weak=0.0)
+    quiet = record_of(drop(random, true, duration=60.0, rate=50.0, noise=0.003, weak=0.0), "one name")
+    away = replace(quiet, channels=tuple(replace(c, position=c.position + 200.0) for c in quiet.channels))
+    (found,) = identify((record_of(noisy, "one name"), away), highest=4.0)
+    rows = summary(found)["modes"]
+    assert len(rows) >= 6
+    for row in rows:
+        assert [part["position_m"] for part in row["sensor_shape"]] == [220.0, 240.0, 260.0, 280.0]
+
+
+def test_amplitude_at_release_is_that_of_one_record_where_stretches_begin_apart():
+    """A gust in the quieter repeat's first 8 s: it shows the modes best, the noisier one has the largest residues.
+
+    The noisier one alone gives amplitudes to some parts in a thousand; residues carried back from the wrong start would
+    be wrong by the decay over the gust, more than 10 %.
+    """
+    random = np.random.default_rng(43)
+    true = span_modes(random, 6)
+    made = drop(random, true, duration=80.0, rate=50.0, noise=0.002, weak=0.0)
+    noisy = record_of(replace(made, samples=made.samples + 0.02 * random.standard_normal(made.samples.shape)), "noisy")
+    t = np.arange(made.samples.shape[0]) / made.rate
+    gust = (t > made.release) & (t < made.release + 8.0)
+    made.samples[gust] += 0.5 * random.standard_normal((int(gust.sum()), 4))
+    gusty = record_of(made, "gusty")
+    (alone,) = identify((noisy,), highest=4.0)
+    (both,) = identify((noisy, gusty), highest=4.0)
+    assert both.prepared[1].stretch.start > both.prepared[0].stretch.start + 3.0
+    expected = {mode.frequency: mode.amplitude for mode in alone.modes if mode.certain}
+    strong = [mode for mode in both.modes if mode.certain and mode.record == "gusty"]
+    assert len(strong) >= 3
+    for mode in strong:
+        nearest = min(expected, key=lambda f: abs(f - mode.frequency))
+        assert mode.amplitude == pytest.approx(expected[nearest], rel=0.01)
+
+
+def test_files_of_one_name_that_do_not_tell_their_line_are_of_two(tmp_path):
+    random = np.random.default_rng(42)
+    records = []
+    for folder in ("a", "b"):
+        (tmp_path / folder).mkdir()
+        record = record_of(drop(random, span_modes(random, 6), duration=40.0, rate=50.0, weak=0.0))
+        write_csv(replace(record, line=Line()), tmp_path / folder / "T1.csv")
+        records += read_records(tmp_path / folder / "T1.csv")
+    assert [record.source for record in records] == ["T1.csv", "T1.csv"]
+    assert len(identify(tuple(records), highest=4.0)) == 2
+
+
 def test_hand_placed_poles_are_refined_and_kept():
     random = np.random.default_rng(50)
     true = span_modes(random, 6)
@@ -128,6 +186,51 @@ def test_short_records_are_refused(duration, message):
         identify((record_of(made),))
 
 
+def test_sampling_rate_too_low_for_any_mode_is_refused():
+    """At 1 Hz nothing above 0.32 Hz is left after the filters, and a band begins at 0.3 Hz."""
+    made = record_of(drop(np.random.default_rng(64), span_modes(np.random.default_rng(64), 6), rate=50.0))
+    for rate in (0.5, 1.0):
+        with pytest.raises(InputError, match=r"sampling rate of .* is too low"):
+            identify((replace(made, rate=rate),))
+
+
+def test_low_wanted_frequency_is_no_fault_of_the_rate():
+    random = np.random.default_rng(65)
+    made = drop(random, 2 * np.pi * np.array([0.4 * (-0.004 + 1j), 0.8 * (-0.004 + 1j)]), rate=50.0, weak=0.0)
+    (found,) = identify((record_of(made),), highest=0.5)
+    assert [mode.frequency for mode in found.modes] == pytest.approx([0.4], abs=0.002)
+
+
+def test_repeats_at_a_low_rate_are_compared():
+    """At 12 Hz the usual low-pass of 6 Hz would lie on half the rate."""
+    random = np.random.default_rng(66)
+    made = drop(random, span_modes(random, 6), duration=60.0, rate=12.0, weak=0.0)
+    (found,) = identify((record_of(made, "first"), record_of(made, "second")), highest=2.0)
+    (repeats,) = summary(found)["repeatability"]
+    assert repeats["verdict"] == "repeatable"
+
+
+def test_channel_lost_at_the_release_is_named():
+    random = np.random.default_rng(67)
+    made = drop(random, span_modes(random, 6), duration=40.0, rate=50.0)
+    made.samples[int(made.release * made.rate) + 10 :, 2] = 0.0
+    with pytest.raises(InputError, match=r"channel 'S3_z'.*never changes after the release"):
+        identify((record_of(made),))
+
+
+def test_record_shorter_than_a_window_of_rest_is_refused():
+    signals = np.random.default_rng(68).standard_normal((60, 1))
+    short = DropRecord("short", "short", 200.0, signals, (Channel("S1_z", 1, "z"),))
+    with pytest.raises(InputError, match="has no rest before the release"):
+        identify((short,))
+
+
+def test_list_of_no_modes_places_no_poles(tmp_path):
+    (tmp_path / "modes.json").write_text("[]")
+    with pytest.raises(InputError, match="holds no mode"):
+        read_poles(tmp_path / "modes.json")
+
+
 def test_record_without_vertical_channel_is_refused():
     random = np.random.default_rng(61)
     made = drop(random, span_modes(random, 6), duration=40.0, rate=50.0, sensors=1)
@@ -145,6 +248,20 @@ def test_clipped_start_is_left_out():
     clipped = np.flatnonzero((np.abs(made.samples) >= top).any(axis=1))
     assert found.prepared[0].stretch.start * made.rate > clipped[0]
     assert found.misfit < 1.3
+
+
+def test_stretch_begins_after_the_last_clipped_sample():
+    """A clean decay, of which only the clipping told to the search is wrong: without it the stretch begins at 1-2 s."""
+    random = np.random.default_rng(62)
+    made = record_of(drop(random, span_modes(random, 6), duration=60.0, rate=50.0, weak=0.0))
+    band = Band.up_to(4.0, made.rate)
+    release = find_release(made.signals, made.rate, 5.0, "clean")
+    names = tuple(channel.name for channel in made.channels)
+    last = release.time + 4.0
+    free = find_stretch(made.signals, made.rate, release, band, "clean", names)
+    late = find_stretch(made.signals, made.rate, release, band, "clean", names, last)
+    assert free.start < release.time + 2.1
+    assert late.start >= last
 
 
 def test_single_sensor_is_marked():

@@ -47,7 +47,7 @@ def test_start_poles_of_a_clean_decay_are_exact():
     found = start_poles([decays(random, true, 120, 2, 1e-7)], 1 / DT, 0.3, 4.3)
     for pole in true:
         nearest = found[np.argmin(np.abs(found - pole))]
-        assert abs(nearest - pole) < 0.02 * abs(pole.real)
+        assert abs(nearest - pole) < 1e-3 * abs(pole.real)
 
 
 @pytest.mark.parametrize("distance", [0.003, 0.006])

@@ -6,6 +6,7 @@ import numpy as np
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.grading import graded
 from pantocheck.conformance.identification.modes import Mode
+from pantocheck.conformance.massdrop_records import Channel
 from pantocheck.conformance.results import Criterion
 from pantocheck.conformance.studies.models import model_ratios
 from pantocheck.conformance.systems import Outcome
@@ -25,7 +26,7 @@ def computed_modes(line: Catenary, spans: int, highest: float) -> list[Mode]:
             frequency_std=1e-5,
             damping_ratio=float(z),
             damping_ratio_std=1e-6,
-            sensors=(1,),
+            channels=(Channel("S1_z", 1, "z"),),
             shape=np.ones(1, dtype=complex),
             shape_std=np.zeros(1),
             amplitude=1.0,
