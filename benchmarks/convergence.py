@@ -8,6 +8,7 @@ import math
 import time
 
 from lines import QUANTITIES, ac_simple, figures, passage, staggered, vertical
+
 from pantocheck.conformance.cases.case import Case
 from pantocheck.model import Catenary, discretise, run
 

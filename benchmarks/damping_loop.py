@@ -10,16 +10,17 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
-from pantocheck.conformance.cases.library import select
-from pantocheck.conformance.identification.damping_results import damping_results
-from pantocheck.conformance.identification.identify import identify
-from pantocheck.conformance.identification.result_files import read_modes, write_modes
-from pantocheck.conformance.massdrop_records import Channel, Drop, DropRecord, Line
-from pantocheck.conformance.systems.line_model import catenary
-from pantocheck.model import Kind, Rayleigh
-from pantocheck.model.drop import Drop as SimulatedDrop
-from pantocheck.model.drop import drop
 from scipy.signal import resample_poly
+
+from pantocheck.conformance.cases.library import select
+from pantocheck.conformance.identification.damping.damping_results import damping_results
+from pantocheck.conformance.identification.identification_files import read_modes, write_modes
+from pantocheck.conformance.identification.identify import identify
+from pantocheck.conformance.mass_drops.drop_record import Channel, Drop, DropRecord, Line
+from pantocheck.conformance.simulation.catenary_model import catenary
+from pantocheck.model import Kind, Rayleigh
+from pantocheck.model.dynamics.mass_drop import Drop as SimulatedDrop
+from pantocheck.model.dynamics.mass_drop import drop
 
 PUT_IN = {
     Kind.CONTACT_WIRE: Rayleigh(0.06, 6e-5),

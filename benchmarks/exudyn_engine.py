@@ -15,11 +15,12 @@ import numpy as np
 import scipy.sparse as sp
 from exudyn.itemInterface import NodeGenericODE2, ObjectGenericODE2
 from numpy.typing import NDArray
+
 from pantocheck.model import Discretised, Passage
-from pantocheck.model.assembly import assemble, connector_directions, order, point_load, stepping_mass
-from pantocheck.model.local_flexibility import local_flexibility
-from pantocheck.model.simulation import start
-from pantocheck.model.stepping import time_stepping
+from pantocheck.model.dynamics.kernel_arrays import time_stepping
+from pantocheck.model.dynamics.simulation import start
+from pantocheck.model.fem.assembly import assemble, connector_directions, order, point_load, stepping_mass
+from pantocheck.model.fem.residual_flexibility import local_flexibility
 
 Array = NDArray[np.float64]
 

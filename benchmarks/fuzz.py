@@ -29,20 +29,22 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from pantocheck.conformance.assessment import assess, subject_of
-from pantocheck.conformance.baseline import against_baseline
+
+from pantocheck.conformance.authenticity.recomputation import discrepancies
+from pantocheck.conformance.authenticity.verification import verify
 from pantocheck.conformance.cases.library import library_folder, load, overlaid, read_limits, select
-from pantocheck.conformance.errors import InputError
+from pantocheck.conformance.cases.profile_file import profile_named
+from pantocheck.conformance.grading.assessed_record import subject_of
+from pantocheck.conformance.grading.baseline import against_baseline
+from pantocheck.conformance.grading.profile_grading import assess
+from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.plan import read_plan
-from pantocheck.conformance.profiles import profile_named
-from pantocheck.conformance.record import Record
-from pantocheck.conformance.record_files import write_record
-from pantocheck.conformance.record_files.sidecar import LineTable
-from pantocheck.conformance.reports import pdf
-from pantocheck.conformance.reports.recomputation import discrepancies
-from pantocheck.conformance.reports.verify import verify
-from pantocheck.conformance.results import Results
-from pantocheck.conformance.results_file import read_results
+from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.records.record_sidecar import LineTable
+from pantocheck.conformance.records.record_writing import write_record
+from pantocheck.conformance.reports.formats import pdf
+from pantocheck.conformance.results.results_format import Results
+from pantocheck.conformance.results.results_reading import read_results
 from pantocheck.conformance.runner import run
 from pantocheck.conformance.systems.record_folder import record_folder
 

@@ -18,11 +18,13 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pantocheck.conformance.identification.identify import Identification, identify
-from pantocheck.conformance.identification.refine import refine
-from pantocheck.conformance.identification.structure import whitened
-from pantocheck.conformance.massdrop_records import Channel, Drop, DropRecord, Line, read_records
 from scipy.optimize import linear_sum_assignment
+
+from pantocheck.conformance.identification.identify import Identification, identify
+from pantocheck.conformance.identification.model_order import whitened
+from pantocheck.conformance.identification.pole_refinement import refine
+from pantocheck.conformance.mass_drops.drop_reading import read_records
+from pantocheck.conformance.mass_drops.drop_record import Channel, Drop, DropRecord, Line
 
 Real = NDArray[np.float64]
 SSI_ROWS, SSI_ORDER, SSI_RATE = 60, 160, 25.0  # block rows, largest model order, rate of the decimated record [Hz]
@@ -53,7 +55,7 @@ def main() -> None:
 def made_up(seed: int, peers: bool) -> None:
     """Score one random record."""
     sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
-    from synthetic_drops import drop, span_modes
+    from helpers.synthetic_drops import drop, span_modes
 
     random = np.random.default_rng(1000 + seed)
     poles = span_modes(random, int(random.integers(40, 80)), pairs=int(random.integers(0, 8)))

@@ -3,16 +3,17 @@
 from dataclasses import replace
 
 import numpy as np
+
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select
-from pantocheck.conformance.evaluation import evaluate
 from pantocheck.conformance.quantities.filters import LowPass
-from pantocheck.conformance.record import Record
-from pantocheck.conformance.systems.line_model import catenary
-from pantocheck.conformance.systems.passage import pantograph
+from pantocheck.conformance.records.evaluation import evaluate
+from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.simulation.catenary_model import catenary
+from pantocheck.conformance.simulation.pantograph_model import pantograph
 from pantocheck.model import Catenary, Discretised, History, Passage
-from pantocheck.model.connectors import arm_direction
-from pantocheck.model.initial_state import InitialState
+from pantocheck.model.fem.connectors import arm_direction
+from pantocheck.model.statics.initial_state import InitialState
 
 QUANTITIES = (
     "std_force_N",

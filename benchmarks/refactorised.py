@@ -6,8 +6,12 @@ from itertools import pairwise
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.sparse.linalg import splu
+
 from pantocheck.model import Discretised, Passage
-from pantocheck.model.assembly import (
+from pantocheck.model.dynamics.kernel_arrays import time_stepping
+from pantocheck.model.dynamics.simulation import start
+from pantocheck.model.fem.assembly import (
     assemble,
     connector_directions,
     contact_stiffness,
@@ -15,9 +19,6 @@ from pantocheck.model.assembly import (
     point_load,
     stepping_mass,
 )
-from pantocheck.model.simulation import start
-from pantocheck.model.stepping import time_stepping
-from scipy.sparse.linalg import splu
 
 
 def run_refactorised(line: Discretised, passage: Passage) -> tuple[np.ndarray, float]:

@@ -8,7 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 from lines import QUANTITIES, ac_simple, figures, passage, staggered
-from pantocheck.conformance.systems.builtin import passage_of
+
+from pantocheck.conformance.systems.reference_simulator import passage_of
 from pantocheck.model import discretise, run
 
 EVALUATED = 10

@@ -20,8 +20,9 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
 from lines import ac_simple, passage, staggered, vertical
+
 from pantocheck.model import Discretised, Passage, discretise, run
-from pantocheck.model.far_field import causal_reach
+from pantocheck.model.dynamics.active_window import causal_reach
 
 STEP, ELEMENT = 1e-3, 0.5
 SPANS = (10, 20, 30, 40, 60)

@@ -4,12 +4,13 @@ import shlex
 from pathlib import Path
 from typing import Annotated
 
-from pantocheck.conformance.cases.base import Table
-from pantocheck.conformance.cases.library import library_folder
-from pantocheck.conformance.cases.toml_file import read_model
-from pantocheck.conformance.systems.command.arguments import arguments
-from pantocheck.conformance.trust import Trust
 from pydantic import Field
+
+from pantocheck.conformance.cases.library import library_folder
+from pantocheck.conformance.input_files.sourced_table import Table
+from pantocheck.conformance.input_files.toml_file import read_model
+from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.systems.command.program_arguments import arguments
 
 Names = Annotated[tuple[str, ...], Field(strict=False, max_length=1000)]
 

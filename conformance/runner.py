@@ -8,13 +8,13 @@ from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExe
 from concurrent.futures.process import BrokenProcessPool
 from types import FrameType
 
-from pantocheck.conformance.assembly import assembled, now
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.grading import graded, ungraded
-from pantocheck.conformance.results import CaseResult, Results, SystemIdentity
-from pantocheck.conformance.studies.dispatch import run_study
-from pantocheck.conformance.systems import System
-from pantocheck.conformance.trust import Trust
+from pantocheck.conformance.grading.case_grading import graded, ungraded
+from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.results.results_building import assembled, now
+from pantocheck.conformance.results.results_format import CaseResult, Results, SystemIdentity
+from pantocheck.conformance.studies.study_dispatch import run_study
+from pantocheck.conformance.systems.system import System
 
 Progress = Callable[[CaseResult], None]
 

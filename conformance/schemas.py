@@ -3,19 +3,20 @@
 from collections.abc import Callable
 from typing import Any
 
-from pantocheck.conformance.cases.case_file import CaseFile
-from pantocheck.conformance.cases.damping import DampingFile
-from pantocheck.conformance.cases.limits import LimitsFile
-from pantocheck.conformance.cases.line import Line
-from pantocheck.conformance.cases.pantograph import Pantograph
-from pantocheck.conformance.massdrop_records.sidecar import Sidecar as MassDropSidecar
-from pantocheck.conformance.plan import Plan
-from pantocheck.conformance.profiles import Profile
-from pantocheck.conformance.record_files.sidecar import Sidecar
-from pantocheck.conformance.record_files.summary import Summary
-from pantocheck.conformance.results import results_schema
-from pantocheck.conformance.systems.command.messages import answer_schema, request_schema
 from pydantic import BaseModel
+
+from pantocheck.conformance.cases.case_file import CaseFile
+from pantocheck.conformance.cases.damping_file import DampingFile
+from pantocheck.conformance.cases.limits import LimitsFile
+from pantocheck.conformance.cases.line_file import Line
+from pantocheck.conformance.cases.pantograph_file import Pantograph
+from pantocheck.conformance.cases.profile_file import Profile
+from pantocheck.conformance.mass_drops.drop_sidecar import Sidecar as MassDropSidecar
+from pantocheck.conformance.plan import Plan
+from pantocheck.conformance.records.record_sidecar import Sidecar
+from pantocheck.conformance.records.record_summary import Summary
+from pantocheck.conformance.results.results_format import results_schema
+from pantocheck.conformance.systems.command.protocol_messages import answer_schema, request_schema
 
 _MODELS: dict[str, type[BaseModel]] = {
     "case": CaseFile,

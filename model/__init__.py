@@ -12,9 +12,9 @@ from pantocheck.model.catenary import (
     TensionChange,
     Wire,
 )
-from pantocheck.model.line import Discretised, discretise, never_slack
+from pantocheck.model.discretised_line import Discretised, discretise, never_slack
+from pantocheck.model.dynamics.simulation import History, Passage, run
 from pantocheck.model.pantograph import Pantograph, chain
-from pantocheck.model.simulation import History, Passage, run
 
 __all__ = [
     "Catenary",

@@ -5,3 +5,5 @@ import os
 # On matrices of a few hundred unknowns, the threads of a linear algebra library wait for each other.
 for _library in ("OMP", "OPENBLAS", "MKL"):
     os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
+
+pytest_plugins = ["helpers.example_results"]

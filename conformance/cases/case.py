@@ -6,14 +6,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from pantocheck.conformance.cases.base import PROVENANCE, Sourced
 from pantocheck.conformance.cases.case_file import CaseFile
-from pantocheck.conformance.cases.damping import Damping, overlaid
+from pantocheck.conformance.cases.damping_file import Damping, overlaid
 from pantocheck.conformance.cases.limits import Limit
-from pantocheck.conformance.cases.line import Line
-from pantocheck.conformance.cases.pantograph import Pantograph
-from pantocheck.conformance.cases.study import DampingSensitivity
-from pantocheck.conformance.trust import Trust
+from pantocheck.conformance.cases.line_file import Line
+from pantocheck.conformance.cases.pantograph_file import Pantograph
+from pantocheck.conformance.cases.study_tables import DampingSensitivity
+from pantocheck.conformance.input_files.sourced_table import PROVENANCE, Sourced
+from pantocheck.conformance.input_files.trust import Trust
 
 
 @dataclass(frozen=True)

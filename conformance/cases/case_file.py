@@ -2,13 +2,14 @@
 
 from typing import Annotated, Literal
 
-from pantocheck.conformance.cases.base import PositiveList, Sourced, Table, problem
-from pantocheck.conformance.cases.damping import Damping
-from pantocheck.conformance.cases.limits import Limit
-from pantocheck.conformance.cases.mass_drop import MassDrop
-from pantocheck.conformance.cases.study import Study
-from pantocheck.conformance.quantities.filters import LowPass
 from pydantic import Field, model_validator
+
+from pantocheck.conformance.cases.damping_file import Damping
+from pantocheck.conformance.cases.drop_test import MassDrop
+from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.cases.study_tables import Study
+from pantocheck.conformance.input_files.sourced_table import PositiveList, Sourced, Table, problem
+from pantocheck.conformance.quantities.filters import LowPass
 
 FileName = Annotated[str, Field(min_length=1, max_length=500)]
 

@@ -9,14 +9,14 @@ from pathlib import Path
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import CaseFile
-from pantocheck.conformance.cases.damping import Damping, DampingFile
-from pantocheck.conformance.cases.damping import overlaid as overlaid_damping
+from pantocheck.conformance.cases.damping_file import Damping, DampingFile
+from pantocheck.conformance.cases.damping_file import overlaid as overlaid_damping
 from pantocheck.conformance.cases.limits import LimitOverride, LimitsFile
-from pantocheck.conformance.cases.line import Line
-from pantocheck.conformance.cases.pantograph import Pantograph
-from pantocheck.conformance.cases.toml_file import read_model, read_toml
-from pantocheck.conformance.errors import InputError
-from pantocheck.conformance.suggestions import nearest
+from pantocheck.conformance.cases.line_file import Line
+from pantocheck.conformance.cases.pantograph_file import Pantograph
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.suggestions import nearest
+from pantocheck.conformance.input_files.toml_file import read_model, read_toml
 
 _ID = re.compile(r"^id\s*=", re.MULTILINE)
 

@@ -2,11 +2,12 @@
 
 from typing import Annotated
 
-from pantocheck.conformance.cases.base import Table, problem
-from pantocheck.conformance.quantities.registry import QUANTITIES
-from pantocheck.conformance.suggestions import nearest
-from pantocheck.conformance.trust import Trust
 from pydantic import Field, field_validator, model_validator
+
+from pantocheck.conformance.input_files.sourced_table import Table, problem
+from pantocheck.conformance.input_files.suggestions import nearest
+from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.quantities.registry import QUANTITIES
 
 Bound = Annotated[float, Field(ge=-1e12, le=1e12)]
 

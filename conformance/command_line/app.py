@@ -3,18 +3,19 @@
 from typing import Annotated
 
 import typer
-from pantocheck.conformance.command_line.assess import assess
-from pantocheck.conformance.command_line.cases import cases
-from pantocheck.conformance.command_line.drop import drop
-from pantocheck.conformance.command_line.fit_damping import fit_damping
+
+from pantocheck.conformance.command_line.assess_command import assess
+from pantocheck.conformance.command_line.cases_command import cases
+from pantocheck.conformance.command_line.drop_command import drop
+from pantocheck.conformance.command_line.fit_damping_command import fit_damping
 from pantocheck.conformance.command_line.guard import guarded
-from pantocheck.conformance.command_line.identify import identify
-from pantocheck.conformance.command_line.run import run
-from pantocheck.conformance.command_line.schema import schema
-from pantocheck.conformance.command_line.self_test import self_test
-from pantocheck.conformance.command_line.show import show
-from pantocheck.conformance.command_line.simulate import simulate
-from pantocheck.conformance.command_line.verify import verify
+from pantocheck.conformance.command_line.identify_command import identify
+from pantocheck.conformance.command_line.run_command import run
+from pantocheck.conformance.command_line.schema_command import schema
+from pantocheck.conformance.command_line.self_test_command import self_test
+from pantocheck.conformance.command_line.show_command import show
+from pantocheck.conformance.command_line.simulate_command import simulate
+from pantocheck.conformance.command_line.verify_command import verify
 
 app = typer.Typer(
     name="pantocheck",

@@ -1,9 +1,10 @@
 """Terminal output: where it goes and how verdicts look."""
 
-from pantocheck.conformance.command_line.guard import printable
-from pantocheck.conformance.criteria import Verdict
 from rich.console import Console
 from rich.text import Text
+
+from pantocheck.conformance.command_line.guard import printable
+from pantocheck.conformance.grading.verdicts import Verdict
 
 _STYLES: dict[Verdict, str] = {
     "pass": "bold green",

@@ -5,7 +5,8 @@ from collections.abc import Callable
 from typing import ParamSpec, TypeVar
 
 import typer
-from pantocheck.conformance.errors import InputError
+
+from pantocheck.conformance.input_files.input_error import InputError
 
 BAD_INPUT = 2
 INTERRUPTED = 130
@@ -41,9 +42,9 @@ def guarded(command: Callable[P, R]) -> Callable[P, R]:
 
 def _unsolvable(error: Exception) -> bool:
     # Imported where something failed: the simulator is too slow to load for a command that only prints its help.
-    from pantocheck.model.equilibrium import NoEquilibrium
-    from pantocheck.model.initial_state import NoInitialState
-    from pantocheck.model.simulation import DidNotConverge
+    from pantocheck.model.dynamics.simulation import DidNotConverge
+    from pantocheck.model.statics.initial_state import NoInitialState
+    from pantocheck.model.statics.static_solver import NoEquilibrium
 
     return isinstance(error, NoInitialState | NoEquilibrium | DidNotConverge)
 

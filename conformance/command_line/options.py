@@ -25,9 +25,10 @@ def options_of(plan: Path | None = None, **given: object) -> "Plan":
     ------
     InputError : the plan cannot be read or is wrong, or an option is wrong
     """
-    from pantocheck.conformance.cases.messages import input_error
-    from pantocheck.conformance.plan import Plan, read_plan
     from pydantic import ValidationError
+
+    from pantocheck.conformance.input_files.validation_messages import input_error
+    from pantocheck.conformance.plan import Plan, read_plan
 
     base = read_plan(plan).model_dump() if plan is not None else {}
     try:

@@ -13,8 +13,3 @@ roll-off         a force said to be filtered falls off above the cut-off as that
 dynamics         the pantograph of the case, driven by the force, moves as the contact height says
 ===============  ======================================================================================================
 """
-
-from pantocheck.conformance.consistency.findings import Finding
-from pantocheck.conformance.consistency.record_checks import findings
-
-__all__ = ["Finding", "findings"]

@@ -1,11 +1,11 @@
 """All checks of a record, in the order in which they make sense of it."""
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.consistency.dynamics import dynamics
-from pantocheck.conformance.consistency.findings import Finding
-from pantocheck.conformance.consistency.passage import coverage, motion, support_passing
+from pantocheck.conformance.consistency.finding import Finding
+from pantocheck.conformance.consistency.force_dynamics import dynamics
+from pantocheck.conformance.consistency.record_positions import coverage, motion, support_passing
 from pantocheck.conformance.consistency.roll_off import roll_off
-from pantocheck.conformance.record import Record
+from pantocheck.conformance.records.record import Record
 
 
 def findings(case: Case, record: Record) -> list[Finding]:

@@ -1,10 +1,11 @@
 """Does a force that is said to be filtered fall off as its filter makes it fall?"""
 
 import numpy as np
+
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.consistency.findings import Finding
+from pantocheck.conformance.consistency.finding import Finding
 from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE
-from pantocheck.conformance.record import Record
+from pantocheck.conformance.records.record import Record
 
 BAND = (2.0, 2.5)
 """Band that is looked at, in cut-offs: far enough above for orders to differ, near enough to be clear of rounding."""

@@ -9,9 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from pantocheck.conformance.identification.filters import gain_at
+
+from pantocheck.conformance.identification.decay_filters import gain_at
 from pantocheck.conformance.identification.identify import Identification
-from pantocheck.conformance.massdrop_records.units import STANDARD_GRAVITY
+from pantocheck.conformance.input_files.channel_units import STANDARD_GRAVITY
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -5,17 +5,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from pantocheck.conformance.errors import InputError
-from pantocheck.conformance.identification.filters import gain_at
-from pantocheck.conformance.identification.groups import group_numbers, outliers
-from pantocheck.conformance.identification.modes import Mode, normalised, phase_collinearity, remarks
-from pantocheck.conformance.identification.preparation import Prepared, prepare
+
+from pantocheck.conformance.identification.decay_filters import gain_at
+from pantocheck.conformance.identification.decay_preparation import Prepared, prepare
+from pantocheck.conformance.identification.linear_decay import Band
+from pantocheck.conformance.identification.mode import Mode, normalised, phase_collinearity, remarks
+from pantocheck.conformance.identification.mode_groups import group_numbers, outliers
+from pantocheck.conformance.identification.model_order import complete, noise_of, settle, whitened
+from pantocheck.conformance.identification.pole_refinement import refine
 from pantocheck.conformance.identification.projection import Block, Fit, block, residue_spread, solve
-from pantocheck.conformance.identification.refine import refine
 from pantocheck.conformance.identification.start_poles import start_poles
-from pantocheck.conformance.identification.stretch import Band
-from pantocheck.conformance.identification.structure import complete, noise_of, settle, whitened
-from pantocheck.conformance.massdrop_records.record import DropRecord
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.mass_drops.drop_record import DropRecord
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -17,7 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
-from pantocheck.conformance.identification.kernel import (
+
+from pantocheck.conformance.identification.decay_kernel import (
     drift_columns,
     far_pole_columns,
     kernel,

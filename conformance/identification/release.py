@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from pantocheck.conformance.errors import InputError
+
+from pantocheck.conformance.input_files.input_error import InputError
 
 Real = NDArray[np.float64]
 

@@ -5,8 +5,9 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pantocheck.conformance.identification.filters import complete_overlap, lowpass
-from pantocheck.conformance.identification.preparation import Prepared
+
+from pantocheck.conformance.identification.decay_filters import complete_overlap, lowpass
+from pantocheck.conformance.identification.decay_preparation import Prepared
 
 Real = NDArray[np.float64]
 

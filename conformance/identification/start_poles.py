@@ -15,7 +15,8 @@ from itertools import pairwise
 import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
-from pantocheck.conformance.identification.filters import complete_overlap, lowpass
+
+from pantocheck.conformance.identification.decay_filters import complete_overlap, lowpass
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -2,6 +2,7 @@
 
 import numpy as np
 from numpy.typing import NDArray
+
 from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandNotObservable
 

@@ -8,8 +8,9 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandNotObservable
 from scipy.signal import butter, sosfilt, sosfilt_zi, sosfiltfilt, sosfreqz
+
+from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandNotObservable
 
 Array = NDArray[np.float64]
 

@@ -4,10 +4,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from pantocheck.conformance.quantities.kinds import Quantity
+
+from pantocheck.conformance.quantities.paper_quantities import STUDY_QUANTITIES
+from pantocheck.conformance.quantities.quantity import Quantity
 from pantocheck.conformance.quantities.signals import ForceSignals, LineSignals
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, contact_loss, statistical_extremes
-from pantocheck.conformance.quantities.study import STUDY_QUANTITIES
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+
 from pantocheck.conformance.quantities.bands import band_rms
 from pantocheck.conformance.quantities.filters import LowPass, low_passed
 from pantocheck.conformance.quantities.unavailable import BandNotObservable, ChannelMissing, StretchNotCovered

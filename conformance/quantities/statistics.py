@@ -2,6 +2,7 @@
 
 import numpy as np
 from numpy.typing import NDArray
+
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, NoMeanForce
 
 Array = NDArray[np.float64]

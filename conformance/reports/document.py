@@ -6,10 +6,11 @@ from pathlib import Path
 from typing import Any
 
 import typst
-from pantocheck.conformance.files import write_in_place
-from pantocheck.conformance.reports.html import environment
-from pantocheck.conformance.reports.pdf import FONTS, showable
-from pantocheck.conformance.reports.text import cleaned
+
+from pantocheck.conformance.input_files.atomic_writing import write_in_place
+from pantocheck.conformance.reports.formats.html import environment
+from pantocheck.conformance.reports.formats.pdf import FONTS, showable
+from pantocheck.conformance.reports.page_text import cleaned
 from pantocheck.conformance.reports.words import TEMPLATES
 
 

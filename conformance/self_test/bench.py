@@ -5,15 +5,15 @@ from dataclasses import dataclass
 from typing import Final
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.consistency import findings
-from pantocheck.conformance.criteria import Verdict, worst
-from pantocheck.conformance.errors import InputError
-from pantocheck.conformance.extended_band import ABOUT
-from pantocheck.conformance.grading import criteria_of, graded
-from pantocheck.conformance.results import CaseResult
+from pantocheck.conformance.consistency.record_checks import findings
+from pantocheck.conformance.grading.case_grading import criteria_of, graded
+from pantocheck.conformance.grading.extended_band import ABOUT
+from pantocheck.conformance.grading.verdicts import Verdict, worst
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.results.results_format import CaseResult
 from pantocheck.conformance.self_test.mutants import MILD, MUTANTS, Mutant
-from pantocheck.conformance.systems import Outcome
-from pantocheck.conformance.systems.builtin import ReferenceSimulator
+from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
 
 TRUST: Final = "secondary"
 

@@ -7,13 +7,14 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
+
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.record import Record
-from pantocheck.conformance.record_files import write_record
-from pantocheck.conformance.systems import Outcome
-from pantocheck.conformance.systems.builtin import ReferenceSimulator, run_line
-from pantocheck.conformance.systems.line_model import catenary
+from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.records.record_writing import write_record
+from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.simulation.catenary_model import catenary
 from pantocheck.conformance.systems.record_folder import record_folder
+from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator, run_line
 from pantocheck.model import discretise, never_slack
 
 Make = Callable[[Case, Record], Outcome]

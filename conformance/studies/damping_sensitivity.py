@@ -4,14 +4,15 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.damping import DampingFile
+from pantocheck.conformance.cases.damping_file import DampingFile
 from pantocheck.conformance.cases.library import library_folder
-from pantocheck.conformance.cases.study import DampingSensitivity
-from pantocheck.conformance.cases.toml_file import read_model
-from pantocheck.conformance.evaluation import LINE, Value, evaluate
-from pantocheck.conformance.results import TextTable
+from pantocheck.conformance.cases.study_tables import DampingSensitivity
+from pantocheck.conformance.input_files.toml_file import read_model
+from pantocheck.conformance.records.evaluation import LINE, Value, evaluate
+from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.results.results_format import TextTable
 from pantocheck.conformance.studies.force_charts import bars
-from pantocheck.conformance.systems import Outcome, System
+from pantocheck.conformance.systems.system import System
 
 MODELS = {name: f"vovan2015/damping/{name}.toml" for name in ("benchmark", "initial", "updated")}
 """Damping files of the library that a study of any line uses."""
@@ -79,7 +80,7 @@ def damping_sensitivity(case: Case, system: System) -> Outcome:
 
 def _once(system: System, case: Case) -> Outcome:
     """A run without its refinement pair, where the system can be asked for one."""
-    from pantocheck.conformance.systems.builtin import ReferenceSimulator
+    from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
 
     return system.run_unrefined(case) if isinstance(system, ReferenceSimulator) else system.run(case)
 

@@ -4,15 +4,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
+
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.study import DampingChange
-from pantocheck.conformance.evaluation import LINE, Value
+from pantocheck.conformance.cases.study_tables import DampingChange
 from pantocheck.conformance.quantities.filters import low_passed
 from pantocheck.conformance.quantities.signals import EXTENDED_CUTOFF_HZ
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
-from pantocheck.conformance.results import Chart, Series
-from pantocheck.conformance.systems import Outcome
-from pantocheck.conformance.traces import thinned
+from pantocheck.conformance.records.evaluation import LINE, Value
+from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.results.results_format import Chart, Series
+from pantocheck.conformance.results.traces import thinned
 
 
 def bars(

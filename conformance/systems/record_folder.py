@@ -6,11 +6,13 @@ from typing import Literal
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import library_folder, source_text
-from pantocheck.conformance.cases.toml_file import read_toml
-from pantocheck.conformance.errors import InputError
-from pantocheck.conformance.record_files import Sidecar, Summary, read_record
-from pantocheck.conformance.record_files.kinds import SCHEMAS, read_either
-from pantocheck.conformance.systems import Outcome
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.toml_file import read_toml
+from pantocheck.conformance.records.record_opening import SCHEMAS, read_either
+from pantocheck.conformance.records.record_reading import read_record
+from pantocheck.conformance.records.record_sidecar import Sidecar
+from pantocheck.conformance.records.record_summary import Summary
+from pantocheck.conformance.results.outcome import Outcome
 
 
 @dataclass(frozen=True)

@@ -7,12 +7,13 @@ from typing import Literal
 
 import numpy as np
 import pytest
+
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import library_folder, load
-from pantocheck.conformance.cases.pantograph import Pantograph
-from pantocheck.conformance.record import Record
-from pantocheck.conformance.systems import Outcome
-from pantocheck.conformance.systems.passage import pantograph
+from pantocheck.conformance.cases.pantograph_file import Pantograph
+from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.simulation.pantograph_model import pantograph
 
 MEAN, SIGMA, UPLIFT_MM = 119.0, 28.0, 50.0
 

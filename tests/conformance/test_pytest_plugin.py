@@ -5,10 +5,11 @@ import subprocess
 import sys
 
 import pytest
-from pantocheck.conformance import pytest_collection  # noqa: F401 - once here, or anew in every session below
+
 from pantocheck.conformance.cases.library import select
-from pantocheck.conformance.pytest_campaign import Campaign
-from pantocheck.conformance.record_files import write_record
+from pantocheck.conformance.pytest_plugin import collection  # noqa: F401 - once here, or anew in every session below
+from pantocheck.conformance.pytest_plugin.campaign import Campaign
+from pantocheck.conformance.records.record_writing import write_record
 
 pytest_plugins = ["pytester"]
 
@@ -193,7 +194,7 @@ def test_fixtures_grade_records_and_arrays(pytester, plan):
         """
         import numpy as np
         import pytest
-        from pantocheck.conformance.errors import InputError
+        from pantocheck.conformance.input_files.input_error import InputError
 
         def test_record(pantocheck_assess):
             graded = pantocheck_assess("en50318-2002/250", "records/250.csv")

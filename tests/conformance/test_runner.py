@@ -9,13 +9,14 @@ import jsonschema
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+
 from pantocheck.conformance.cases.library import select, source_text
 from pantocheck.conformance.cases.limits import Limit
-from pantocheck.conformance.record_files import write_record
-from pantocheck.conformance.results import Results
+from pantocheck.conformance.records.record_writing import write_record
+from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.runner import RunInterrupted, run
 from pantocheck.conformance.schemas import schema_of
-from pantocheck.conformance.systems import Outcome
 from pantocheck.conformance.systems.record_folder import record_folder
 
 

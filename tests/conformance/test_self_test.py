@@ -3,12 +3,13 @@
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
+
 from pantocheck.conformance.cases.library import select
 from pantocheck.conformance.command_line.app import app
-from pantocheck.conformance.self_test import self_test
+from pantocheck.conformance.self_test.bench import self_test
 from pantocheck.conformance.self_test.mutants import MILD, MUTANTS
-from pantocheck.conformance.self_test.page import page
-from typer.testing import CliRunner
+from pantocheck.conformance.self_test.self_test_page import page
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "self-test.md"
 
@@ -43,9 +44,9 @@ def test_document_is_of_these_mutants(done):
 
 def test_missed_mutant_is_a_failed_self_test(monkeypatch, tmp_path):
     """A mutant that is not one: the self-test must be able to fail as well."""
+    from pantocheck.conformance.results.outcome import Outcome
     from pantocheck.conformance.self_test import bench
     from pantocheck.conformance.self_test.mutants import Mutant
-    from pantocheck.conformance.systems import Outcome
 
     harmless = Mutant("harmless", "Nothing.", lambda case, record: Outcome(record), "limits")
     monkeypatch.setattr(bench, "MUTANTS", (harmless,))

@@ -8,9 +8,10 @@ from pathlib import Path
 
 import pytest
 import yaml
+from typer.testing import CliRunner
+
 from pantocheck.conformance.cases.library import library_folder
 from pantocheck.conformance.command_line.app import app
-from typer.testing import CliRunner
 
 CI = Path(__file__).parents[2] / "docs" / "ci"
 PASSING = library_folder() / "en50318-2002" / "known-passing-code"

@@ -5,7 +5,8 @@ import tomllib
 from pathlib import Path
 
 from jsonschema import validate
-from pantocheck.conformance.massdrop_records.sidecar import read_sidecar
+
+from pantocheck.conformance.mass_drops.drop_sidecar import read_sidecar
 from pantocheck.conformance.schemas import schema_of
 
 PAGE = Path(__file__).parents[2] / "docs" / "identification.md"

@@ -7,10 +7,12 @@ import sys
 from pathlib import Path
 
 import pytest
-from pantocheck.conformance.command_line.app import app
-from pantocheck.conformance.errors import InputError
-from pantocheck.conformance.record_files import read_record, read_summary
 from typer.testing import CliRunner
+
+from pantocheck.conformance.command_line.app import app
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.records.record_reading import read_record
+from pantocheck.conformance.records.record_summary import read_summary
 
 PAGE = (Path(__file__).parents[2] / "docs" / "records.md").read_text(encoding="utf-8")
 
@@ -77,7 +79,7 @@ def test_messages_of_the_page_are_those_that_are_printed(written):
 
 
 def test_tables_name_every_key_of_the_sidecar():
-    from pantocheck.conformance.record_files.sidecar import Sidecar
+    from pantocheck.conformance.records.record_sidecar import Sidecar
 
     for name, field in Sidecar.model_fields.items():
         assert f"`{field.alias or name}`" in PAGE or f"`[{name}]`" in PAGE

@@ -4,9 +4,10 @@ import json
 from pathlib import Path
 
 import jsonschema
+
 from pantocheck.conformance.cases.library import select
 from pantocheck.conformance.schemas import schema_of
-from pantocheck.conformance.systems.command.given import given
+from pantocheck.conformance.systems.command.case_message import given
 
 PAGE = Path(__file__).parents[2] / "docs" / "systems.md"
 

@@ -4,14 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from pantocheck.model import Dropper, MessengerSupport, Passage, SteadyArm, chain, run
-from pantocheck.model.initial_state import NoInitialState
-from pantocheck.model.line import discretise
-from pantocheck.model.newmark import step
-from pantocheck.model.simulation import DidNotConverge, start, workspace
-from pantocheck.model.stepping import time_stepping
 
-from .lines import simple_line
+from helpers.lines import simple_line
+from pantocheck.model import Dropper, MessengerSupport, Passage, SteadyArm, chain, run
+from pantocheck.model.discretised_line import discretise
+from pantocheck.model.dynamics.kernel_arrays import time_stepping
+from pantocheck.model.dynamics.newmark import step
+from pantocheck.model.dynamics.simulation import DidNotConverge, start, workspace
+from pantocheck.model.statics.initial_state import NoInitialState
 
 PANTOGRAPH = chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.array([90.0, 10.0]), 120.0, 0, 50e3)
 PASSAGE = Passage((PANTOGRAPH,), (20.0,), 50.0, 0.05, 1e-3)

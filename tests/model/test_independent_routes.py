@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from pantocheck.model import Catenary, Kind, Passage, Rayleigh, Wire, chain, discretise, run
-from pantocheck.model.beam import pinned_frequencies
-from pantocheck.model.modes import modes
 
-from .central_differences import contact_force
-from .lines import Array, simple_line
+from helpers.central_differences import contact_force
+from helpers.lines import Array, simple_line
+from pantocheck.model import Catenary, Kind, Passage, Rayleigh, Wire, chain, discretise, run
+from pantocheck.model.fem.beam import pinned_frequencies
+from pantocheck.model.modal.modes import modes
 
 PANTOGRAPH = chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.array([90.0, 10.0]), 120.0, 0, 50e3, 0.06)
 RATE = 500.0

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-from pantocheck.model.pantograph import Pantograph, apparent_mass, chain, frequencies, from_modes
 from scipy.linalg import eigh
+
+from pantocheck.model.pantograph import Pantograph, apparent_mass, chain, frequencies, from_modes
 
 MASSES, STIFFNESS, DAMPING = (np.array(v) for v in ([6.0, 9.0, 7.5], [160.0, 15500.0, 7000.0], [100.0, 0.1, 45.0]))
 

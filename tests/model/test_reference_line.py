@@ -4,12 +4,12 @@ from functools import cache
 
 import numpy as np
 import pytest
-from pantocheck.model import History, Kind, Passage, Rayleigh, chain, run
-from pantocheck.model.far_field import causal_reach
-from pantocheck.model.line import discretise
 from scipy.signal import butter, sosfiltfilt
 
-from .lines import Array, simple_line
+from helpers.lines import Array, simple_line
+from pantocheck.model import History, Kind, Passage, Rayleigh, chain, run
+from pantocheck.model.discretised_line import discretise
+from pantocheck.model.dynamics.active_window import causal_reach
 
 # Data of the pantograph, damping and limits: published_values.toml, en50318_2002.
 PANTOGRAPH = chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.array([90.0, 10.0]), 120.0, 0, 50e3)

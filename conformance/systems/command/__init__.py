@@ -13,7 +13,3 @@ to the program         answer of the program
 The case holds every number that a simulation needs and none of its limits. Standard error is free for the program's
 own log. JSON Schemas: `pantocheck schema command-request` and `pantocheck schema command-answer`.
 """
-
-from pantocheck.conformance.systems.command.system import Command, command
-
-__all__ = ["Command", "command"]

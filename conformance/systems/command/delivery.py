@@ -3,11 +3,11 @@
 from pathlib import Path
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.errors import InputError
-from pantocheck.conformance.files import digest_of
-from pantocheck.conformance.record_files.reading import LARGEST_FILE, read_record
-from pantocheck.conformance.systems import Outcome
-from pantocheck.conformance.systems.command.messages import Delivered, File
+from pantocheck.conformance.input_files.atomic_writing import digest_of
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.records.record_reading import LARGEST_FILE, read_record
+from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.systems.command.protocol_messages import Delivered, File
 
 
 class DeliveryRefused(ValueError):

@@ -1,6 +1,7 @@
 """The library: what is in it is what was published, and it is found by id, glob, path or a near miss."""
 
 import pytest
+
 from pantocheck.conformance.cases.library import (
     bibliography,
     library_folder,
@@ -10,7 +11,7 @@ from pantocheck.conformance.cases.library import (
     read_limits,
     select,
 )
-from pantocheck.conformance.errors import InputError
+from pantocheck.conformance.input_files.input_error import InputError
 
 LIMITS = {  # Wang et al., Table III
     "en50318-2002/250": {

@@ -2,15 +2,16 @@
 
 import numpy as np
 import pytest
+from scipy.linalg import eigh
+
 from pantocheck.conformance.cases.library import library_folder
-from pantocheck.conformance.cases.pantograph import Pantograph
-from pantocheck.conformance.cases.toml_file import read_model
-from pantocheck.conformance.errors import InputError
-from pantocheck.conformance.systems.line_model import catenary
-from pantocheck.conformance.systems.passage import pantograph
+from pantocheck.conformance.cases.pantograph_file import Pantograph
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.toml_file import read_model
+from pantocheck.conformance.simulation.catenary_model import catenary
+from pantocheck.conformance.simulation.pantograph_model import pantograph
 from pantocheck.model import Passage, discretise, run
 from pantocheck.model.pantograph import apparent_mass
-from scipy.linalg import eigh
 
 HEAD = 'title = "measured"\n[contact]\nstiffness_N_m = 5e4\ntrust = "primary"\nsource = "rig"\n'
 SAID = 'trust = "primary"\nsource = "rig"\n'

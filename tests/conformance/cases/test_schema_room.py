@@ -1,10 +1,11 @@
 """The line schema takes the published data of the other reference lines."""
 
 import pytest
-from pantocheck.conformance.cases.damping import Damping
-from pantocheck.conformance.cases.line import Line
-from pantocheck.conformance.cases.pantograph import Pantograph
 from pydantic import ValidationError
+
+from pantocheck.conformance.cases.damping_file import Damping
+from pantocheck.conformance.cases.line_file import Line
+from pantocheck.conformance.cases.pantograph_file import Pantograph
 
 PROVENANCE = {"trust": "secondary", "source": "pcmui"}
 

@@ -10,15 +10,17 @@ from pathlib import Path
 import jsonschema
 import pytest
 import typer
+from typer.testing import CliRunner
+
 from pantocheck.conformance.cases.library import library_folder, select
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.command_line.guard import guarded
-from pantocheck.conformance.record_files import read_record, write_record
+from pantocheck.conformance.records.record_reading import read_record
+from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.schemas import NAMES, schema_of
-from pantocheck.model.equilibrium import NoEquilibrium
-from pantocheck.model.initial_state import NoInitialState
-from pantocheck.model.simulation import DidNotConverge
-from typer.testing import CliRunner
+from pantocheck.model.dynamics.simulation import DidNotConverge
+from pantocheck.model.statics.initial_state import NoInitialState
+from pantocheck.model.statics.static_solver import NoEquilibrium
 
 
 def pantocheck(*arguments: object):
@@ -122,7 +124,7 @@ def test_self_test_of_no_run_at_all_is_not_passed():
 
 
 def test_self_test_notices_a_folder_that_cannot_be_written_before_it_computes(tmp_path, monkeypatch):
-    from pantocheck.conformance import self_test
+    from pantocheck.conformance.self_test import bench as self_test
 
     monkeypatch.setattr(self_test, "self_test", lambda *_: pytest.fail("computed"))
     (tmp_path / "file").write_text("")
@@ -132,7 +134,7 @@ def test_self_test_notices_a_folder_that_cannot_be_written_before_it_computes(tm
 
 
 def test_self_test_prints_no_control_characters_of_a_path(tmp_path, monkeypatch):
-    from pantocheck.conformance import self_test
+    from pantocheck.conformance.self_test import bench as self_test
 
     monkeypatch.setattr(self_test, "self_test", lambda *_: self_test.SelfTest({}, (), ()))
     done = pantocheck("self-test", "--markdown", tmp_path / "[red]page\x1b.md")

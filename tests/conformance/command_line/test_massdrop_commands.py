@@ -5,14 +5,16 @@ import tomllib
 
 import numpy as np
 import pytest
-from pantocheck.conformance.cases.damping import Damping
+from typer.testing import CliRunner
+
+from pantocheck.conformance.cases.damping_file import Damping
 from pantocheck.conformance.cases.library import select
 from pantocheck.conformance.command_line.app import app
-from pantocheck.conformance.massdrop_records import Channel, Drop, DropRecord, Line, write_csv
-from pantocheck.conformance.systems.line_model import catenary
+from pantocheck.conformance.mass_drops.drop_record import Channel, Drop, DropRecord, Line
+from pantocheck.conformance.mass_drops.drop_writing import write_csv
+from pantocheck.conformance.simulation.catenary_model import catenary
 from pantocheck.model import discretise
-from pantocheck.model.modes import damping_ratios, deflection_at, modes
-from typer.testing import CliRunner
+from pantocheck.model.modal.modes import damping_ratios, deflection_at, modes
 
 CASE = "en50318-2002/250"
 SENSORS = (("contact wire", "CW", 130.0), ("contact wire", "CW", 205.5), ("messenger wire", "MW", 77.0))

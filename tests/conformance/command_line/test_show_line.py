@@ -2,8 +2,9 @@
 
 from xml.etree import ElementTree
 
-from pantocheck.conformance.command_line.app import app
 from typer.testing import CliRunner
+
+from pantocheck.conformance.command_line.app import app
 
 
 def test_drawing_is_a_valid_svg_and_the_same_every_time(tmp_path):

@@ -5,12 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from pantocheck.conformance.consistency import findings
-from pantocheck.conformance.consistency.dynamics import fitted
-from pantocheck.conformance.grading import graded
-from pantocheck.conformance.quantities.filters import LowPass
-from pantocheck.conformance.systems import Outcome
 from scipy.signal import lsim
+
+from pantocheck.conformance.consistency.force_dynamics import fitted
+from pantocheck.conformance.consistency.record_checks import findings
+from pantocheck.conformance.grading.case_grading import graded
+from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.results.outcome import Outcome
 
 
 @pytest.fixture

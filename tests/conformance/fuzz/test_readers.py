@@ -9,10 +9,11 @@ import pytest
 import tomli_w
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+
 from pantocheck.conformance.cases.library import library_folder, select
-from pantocheck.conformance.errors import InputError
-from pantocheck.conformance.record_files.kinds import read_either
-from pantocheck.conformance.record_files.reading import read_samples
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.records.record_opening import read_either
+from pantocheck.conformance.records.record_reading import read_samples
 from pantocheck.conformance.runner import run
 from pantocheck.conformance.systems.record_folder import record_folder
 

@@ -4,18 +4,21 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from pantocheck.conformance.errors import InputError
-from pantocheck.conformance.identification.groups import group_numbers, outliers
-from pantocheck.conformance.identification.hand_placed import read_poles
-from pantocheck.conformance.identification.identify import identify
-from pantocheck.conformance.identification.refine import refine
-from pantocheck.conformance.identification.release import find_release
-from pantocheck.conformance.identification.result_files import summary
-from pantocheck.conformance.identification.stretch import Band, find_stretch
-from pantocheck.conformance.identification.structure import whitened
-from pantocheck.conformance.massdrop_records import Channel, Drop, DropRecord, Line, read_records, write_csv
 from scipy.optimize import linear_sum_assignment
-from synthetic_drops import drop, span_modes
+
+from helpers.synthetic_drops import drop, span_modes
+from pantocheck.conformance.identification.hand_placed_poles import read_poles
+from pantocheck.conformance.identification.identification_files import summary
+from pantocheck.conformance.identification.identify import identify
+from pantocheck.conformance.identification.linear_decay import Band, find_stretch
+from pantocheck.conformance.identification.mode_groups import group_numbers, outliers
+from pantocheck.conformance.identification.model_order import whitened
+from pantocheck.conformance.identification.pole_refinement import refine
+from pantocheck.conformance.identification.release import find_release
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.mass_drops.drop_reading import read_records
+from pantocheck.conformance.mass_drops.drop_record import Channel, Drop, DropRecord, Line
+from pantocheck.conformance.mass_drops.drop_writing import write_csv
 
 SPANS = (60.0,) * 6
 

@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+
+from pantocheck.conformance.identification.model_order import noise_of, settle, whitened
+from pantocheck.conformance.identification.pole_refinement import refine
 from pantocheck.conformance.identification.projection import block, normal_equations, solve
-from pantocheck.conformance.identification.refine import refine
 from pantocheck.conformance.identification.start_poles import start_poles
-from pantocheck.conformance.identification.structure import noise_of, settle, whitened
 
 DT = 0.05
 

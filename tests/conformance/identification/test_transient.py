@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+
 from pantocheck.conformance.identification.frequency_response import frequency_response
 from pantocheck.conformance.identification.identify import identify
 from pantocheck.conformance.identification.repeatability import repeatability
-from pantocheck.conformance.massdrop_records import Channel, Drop, DropRecord, Line
-from pantocheck.conformance.massdrop_records.units import STANDARD_GRAVITY
+from pantocheck.conformance.input_files.channel_units import STANDARD_GRAVITY
+from pantocheck.conformance.mass_drops.drop_record import Channel, Drop, DropRecord, Line
 
 RATE, RELEASE, MASS = 50.0, 5.0, 20.0
 MODAL_MASS = 100.0  # [kg]

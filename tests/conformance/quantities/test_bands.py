@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
+
 from pantocheck.conformance.quantities.bands import amplitude_spectrum, band_rms
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandNotObservable

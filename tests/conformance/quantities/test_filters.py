@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from scipy.signal import butter, freqz
+
 from pantocheck.conformance.quantities.filters import LowPass, low_passed
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandNotObservable
-from scipy.signal import butter, freqz
 
 RATE = 1000.0
 

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
+
 from pantocheck.conformance.quantities.statistics import (
     coefficient_of_variation,
     contact_loss,

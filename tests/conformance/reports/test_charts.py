@@ -2,10 +2,11 @@
 
 import pytest
 from numpy.testing import assert_allclose
-from pantocheck.conformance.reports.charts import chart
-from pantocheck.conformance.reports.composition import page
-from pantocheck.conformance.reports.html import render
-from pantocheck.conformance.results import Chart, Mark, Series, TextTable
+
+from pantocheck.conformance.reports.certificate.certificate_page import page
+from pantocheck.conformance.reports.figures.charts import chart
+from pantocheck.conformance.reports.formats.html import render
+from pantocheck.conformance.results.results_format import Chart, Mark, Series, TextTable
 
 LINE = Series(label="computed", style="line", x=[1e-6, 1e-3, 1.0], y=[3.0, 2.0, 1.0])
 

@@ -4,8 +4,9 @@ import re
 import time
 
 import pytest
-from pantocheck.conformance.reports.document import Document, Grid, Picture, Section, write_html, write_pdf
 from pypdf import PdfReader
+
+from pantocheck.conformance.reports.document import Document, Grid, Picture, Section, write_html, write_pdf
 
 SECTION = Section(
     "Modes",

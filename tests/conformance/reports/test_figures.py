@@ -1,6 +1,6 @@
 """What the figures of a certificate show."""
 
-from pantocheck.conformance.reports.figures import limited_rows, uplift
+from pantocheck.conformance.reports.figures.force_figures import limited_rows, uplift
 
 
 def test_of_many_supports_only_the_largest_uplift_is_named():

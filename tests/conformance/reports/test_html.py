@@ -5,7 +5,8 @@ from html.parser import HTMLParser
 from itertools import pairwise
 
 import pytest
-from pantocheck.conformance.reports import html
+
+from pantocheck.conformance.reports.formats import html
 from pantocheck.conformance.reports.words import TEMPLATES
 
 VOID = {"meta", "img", "line", "rect", "path", "circle", "link", "br"}

@@ -5,8 +5,10 @@ import re
 from xml.etree import ElementTree
 
 import pytest
-from pantocheck.conformance.reports import badge, junit, summary
-from pantocheck.conformance.reports.writers import FILES, writer
+
+from pantocheck.conformance.reports.formats import badge, junit
+from pantocheck.conformance.reports.formats import markdown as summary
+from pantocheck.conformance.reports.formats.report_writers import FILES, writer
 
 
 def test_junit_counts_what_the_results_say(results):

@@ -10,11 +10,12 @@ import sys
 from pathlib import Path
 
 import pytest
-from pantocheck.conformance.errors import InputError
-from pantocheck.conformance.reports import html, pdf
-from pantocheck.conformance.reports.criteria_rows import criterion
-from pantocheck.conformance.reports.embedding import timeless
 from pypdf import PdfReader
+
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.reports.certificate.criteria_rows import criterion
+from pantocheck.conformance.reports.formats import html, pdf
+from pantocheck.conformance.reports.formats.embedding import timeless
 
 
 def words_of(content: bytes) -> str:
@@ -37,7 +38,7 @@ def test_bytes_do_not_depend_on_the_process(passing, tmp_path):
     source = tmp_path / "results.json"
     source.write_text(json.dumps(passing))
     program = (
-        "import hashlib, json, sys; from pantocheck.conformance.reports import html, pdf;"
+        "import hashlib, json, sys; from pantocheck.conformance.reports.formats import html, pdf;"
         "r = json.load(open(sys.argv[1]));"
         "print(hashlib.sha256(html.render(r).encode() + pdf.render(r, 1)).hexdigest())"
     )

@@ -6,16 +6,18 @@ from xml.etree import ElementTree
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from pantocheck.conformance.quantities.registry import QUANTITIES
-from pantocheck.conformance.reports import figures, text
-from pantocheck.conformance.reports.composition import page
-from pantocheck.conformance.reports.criteria_rows import criterion, signed
-from pantocheck.conformance.reports.facts import of_case
-from pantocheck.conformance.reports.margin_bar import WIDTH, margin_bar
-from pantocheck.conformance.reports.reasons import reasons
-from pantocheck.conformance.reports.tables import bands
+from pantocheck.conformance.reports import page_text as text
+from pantocheck.conformance.reports.certificate.case_facts import of_case
+from pantocheck.conformance.reports.certificate.certificate_page import page
+from pantocheck.conformance.reports.certificate.criteria_rows import criterion, signed
+from pantocheck.conformance.reports.certificate.quantity_tables import bands
+from pantocheck.conformance.reports.certificate.verdict_reasons import reasons
+from pantocheck.conformance.reports.figures import force_figures as figures
+from pantocheck.conformance.reports.figures.margin_bar import WIDTH, margin_bar
 from pantocheck.conformance.reports.words import words
-from pantocheck.conformance.results import Results
+from pantocheck.conformance.results.results_format import Results
 
 numbers = st.floats(-1e6, 1e6)
 

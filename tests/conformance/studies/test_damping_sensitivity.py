@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 from pantocheck.conformance.cases.library import select
+from pantocheck.conformance.results.outcome import Outcome
 from pantocheck.conformance.runner import run
 from pantocheck.conformance.studies.damping_sensitivity import MODELS, OWN, with_damping_study
-from pantocheck.conformance.systems import Outcome
 
 
 def told_apart(wave):

@@ -9,15 +9,16 @@ from pathlib import Path
 import jsonschema
 import pytest
 from numpy.testing import assert_allclose
+
 from pantocheck.conformance.cases.library import select
-from pantocheck.conformance.errors import InputError
+from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.plan import read_plan
-from pantocheck.conformance.record_files import write_record
+from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.runner import run
 from pantocheck.conformance.schemas import schema_of
-from pantocheck.conformance.systems.choice import system_named
-from pantocheck.conformance.systems.command.arguments import arguments
-from pantocheck.conformance.systems.command.messages import AnswerRefused, parsed
+from pantocheck.conformance.systems.command.program_arguments import arguments
+from pantocheck.conformance.systems.command.protocol_messages import AnswerRefused, parsed
+from pantocheck.conformance.systems.system_choice import system_named
 
 # A program that behaves but for one thing, which its first argument names.
 PROGRAM = """

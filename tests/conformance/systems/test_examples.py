@@ -6,10 +6,11 @@ from pathlib import Path
 
 import pytest
 from numpy.testing import assert_allclose
+
 from pantocheck.conformance.cases.library import library_folder, load
-from pantocheck.conformance.evaluation import evaluate
-from pantocheck.conformance.systems.builtin import ReferenceSimulator
-from pantocheck.conformance.systems.choice import system_named
+from pantocheck.conformance.records.evaluation import evaluate
+from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
+from pantocheck.conformance.systems.system_choice import system_named
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 

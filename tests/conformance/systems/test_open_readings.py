@@ -3,10 +3,11 @@
 from dataclasses import replace
 
 import pytest
+
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select
-from pantocheck.conformance.evaluation import evaluate
-from pantocheck.conformance.systems.builtin import ReferenceSimulator
+from pantocheck.conformance.records.evaluation import evaluate
+from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
 
 
 def values(case: Case) -> dict:

@@ -1,10 +1,11 @@
 """A folder of records as a system."""
 
 import pytest
-from pantocheck.conformance.errors import InputError
-from pantocheck.conformance.record_files import write_record
-from pantocheck.conformance.systems.choice import system_named
+
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.systems.record_folder import record_folder
+from pantocheck.conformance.systems.system_choice import system_named
 
 
 def test_record_is_found_by_its_case(case_250, wave, tmp_path):

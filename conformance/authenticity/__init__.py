@@ -1,0 +1,1 @@
+"""Verification of documents: attachments and recomputation of verdicts."""

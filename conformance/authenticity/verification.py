@@ -1,0 +1,65 @@
+"""Verifying a certificate: its results are taken out of it and graded once more."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from pantocheck.conformance.authenticity.attachment import embedded_results, opened, title_and_first_page
+from pantocheck.conformance.authenticity.recomputation import discrepancies
+from pantocheck.conformance.grading.verdicts import Verdict
+from pantocheck.conformance.reports.certificate.certificate_page import TITLE
+from pantocheck.conformance.reports.page_text import clean
+from pantocheck.conformance.reports.words import words
+
+
+@dataclass(frozen=True)
+class Verification:
+    """What came out of verifying a certificate.
+
+    Parameters
+    ----------
+    verdict : as the embedded results state it
+    cases, criteria : how many there are
+    discrepancies : one line each; none if the certificate is consistent
+    """
+
+    verdict: Verdict
+    cases: int
+    criteria: int
+    discrepancies: tuple[str, ...]
+
+    @property
+    def consistent(self) -> bool:
+        """Whether every verdict follows from the numbers."""
+        return not self.discrepancies
+
+
+def verify(path: Path) -> Verification:
+    """Grade the results embedded in a certificate once more and compare.
+
+    This shows that the verdicts follow from the numbers; that the numbers come from the system they name, only a new
+    run shows.
+
+    Parameters
+    ----------
+    path : a certificate.pdf
+
+    Raises
+    ------
+    InputError : not a PDF, damaged, or without valid results
+    """
+    reader = opened(path)
+    results = embedded_results(path, reader)
+    found = discrepancies(results)
+    word = words()["verdict"][results["verdict"]]["word"]
+    title, first_page = title_and_first_page(path, reader)
+    if not title.startswith(word):
+        found.append(f"the document's title does not begin with the verdict {word}: '{title}'")
+    heading = next((line for line in first_page.splitlines() if line.startswith(TITLE)), "")
+    if word not in heading.split():
+        found.append(f"the first page does not print the verdict {word} in its heading: '{heading}'")
+    return Verification(
+        verdict=results["verdict"],
+        cases=len(results["cases"]),
+        criteria=sum(len(case["criteria"]) for case in results["cases"]),
+        discrepancies=tuple(clean(text) for text in found),
+    )

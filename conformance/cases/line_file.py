@@ -1,0 +1,187 @@
+"""Line files: geometry, wires, connectors and damping of a catenary whose spans are all alike."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from pantocheck.conformance.cases.damping_file import Damping
+from pantocheck.conformance.input_files.sourced_table import (
+    NonNegative,
+    NumberList,
+    Positive,
+    PositiveList,
+    Sourced,
+    Table,
+    problem,
+)
+
+Tension = Annotated[float, Field(gt=0, le=200e3, description="axial tension, one wire [N]")]
+MassPerLength = Annotated[float, Field(gt=0, le=20, description="mass per length, one wire [kg/m]")]
+BendingStiffness = Annotated[float, Field(ge=0, le=1e5, description="bending stiffness EI, one wire [N m2]")]
+Area = Annotated[float | None, Field(gt=0, le=1000, description="cross-section [mm2]")]
+ClampMass = Annotated[float, Field(ge=0, le=20, description="mass of a clamp [kg]")]
+
+
+class Geometry(Sourced):
+    """Spans and heights."""
+
+    span_m: Annotated[float, Field(ge=10, le=120, description="length of every span [m]")]
+    spans: Annotated[int, Field(ge=1, le=1000, description="number of spans")]
+    encumbrance_m: Annotated[
+        float, Field(gt=0, le=5, description="height of the messenger wire above the contact wire at a support [m]")
+    ]
+    stagger_contact_wire_m: Annotated[
+        float, Field(ge=-1, le=1, description="lateral offset at supports, its sign alternating [m]")
+    ] = 0.0
+    stagger_messenger_m: Annotated[
+        float, Field(ge=-1, le=1, description="lateral offset at supports, its sign alternating [m]")
+    ] = 0.0
+
+
+class Wire(Sourced):
+    """Contact wire or messenger wire; two of them run side by side, each with these numbers."""
+
+    number: Annotated[Literal[1, 2], Field(description="how many run in parallel")] = 1
+    spacing_m: Annotated[float | None, Field(gt=0, le=1, description="lateral distance of two parallel wires [m]")] = (
+        None
+    )
+    tension_N: Tension
+    mass_kg_m: MassPerLength
+    bending_stiffness_N_m2: BendingStiffness = 0.0
+    area_mm2: Area = None
+
+
+class StitchWire(Sourced):
+    """A wire clamped to the messenger on both sides of a support, from which the nearest droppers hang."""
+
+    length_m: Annotated[Positive, Field(description="distance between its clamps, the support in the middle [m]")]
+    tension_N: Tension
+    mass_kg_m: MassPerLength
+    bending_stiffness_N_m2: BendingStiffness = 0.0
+    clamp_kg: ClampMass = 0.0
+
+
+class Droppers(Sourced):
+    """Droppers of a span: tension-only bars, the same in every span."""
+
+    x_m: Annotated[PositiveList, Field(description="positions along the span, increasing [m]")]
+    presag_m: Annotated[
+        NumberList | None,
+        Field(description="sag of the contact wire at the droppers, one value each [m]; left out: none"),
+    ] = None
+    length_m: Annotated[
+        PositiveList | None, Field(description="published lengths, one value each, for comparison [m]")
+    ] = None
+    stiffness_N_m: Annotated[float | None, Field(gt=0, description="stiffness of a taut dropper [N/m]")] = None
+    axial_stiffness_EA_N: Annotated[
+        float | None, Field(gt=0, description="axial stiffness EA; the stiffness is then EA over the length [N]")
+    ] = None
+    mass_kg: Annotated[float | None, Field(ge=0, le=20, description="mass of one dropper [kg]")] = None
+    mass_kg_m: Annotated[float | None, Field(ge=0, le=20, description="mass per length of a dropper [kg/m]")] = None
+    clamp_on_messenger_kg: ClampMass = 0.0
+    clamp_on_contact_kg: ClampMass = 0.0
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Droppers":
+        n = len(self.x_m)
+        for i in range(1, n):
+            if self.x_m[i] <= self.x_m[i - 1]:
+                raise problem(
+                    f"x_m[{i + 1}]",
+                    f"{self.x_m[i]:g} m does not follow {self.x_m[i - 1]:g} m",
+                    "List the droppers in the direction of travel, each at its own place.",
+                )
+        for key in ("presag_m", "length_m"):
+            value = getattr(self, key)
+            if value is not None and len(value) != n:
+                raise problem(key, f"{len(value)} values for {n} droppers", "Give one value per dropper of x_m.")
+        if (self.stiffness_N_m is None) == (self.axial_stiffness_EA_N is None):
+            raise problem(
+                "stiffness_N_m",
+                "the stiffness of a dropper must be said once",
+                "Give either stiffness_N_m or axial_stiffness_EA_N.",
+            )
+        if self.mass_kg is not None and self.mass_kg_m is not None:
+            raise problem("mass_kg", "the mass of a dropper is said twice", "Give either mass_kg or mass_kg_m.")
+        return self
+
+
+class SteadyArm(Sourced):
+    """Arm that holds the contact wire at a support."""
+
+    vertical_stiffness_N_m: Annotated[
+        float | None,
+        Field(ge=0, le=1e7, description="vertical stiffness at the wire [N/m]; left out: from its force and length"),
+    ] = None
+    static_share: Annotated[
+        Literal["level", "none"],
+        Field(
+            description="level: the arm carries its share of the wire, so that the wire is level at the support; "
+            "none: the arm carries nothing of it"
+        ),
+    ]
+    length_m: Annotated[float | None, Field(gt=0, le=5, description="length of the arm [m]")] = None
+    mass_kg_m: Annotated[float, Field(ge=0, le=20, description="mass per length of the arm [kg/m]")] = 0.0
+    clamp_kg: ClampMass = 0.0
+    vertical_damper_N_s_m: Annotated[
+        NonNegative, Field(le=1e6, description="vertical damper between claw and ground [N s/m]")
+    ] = 0.0
+    acts: Annotated[
+        Literal["pull", "push"], Field(description="which way the arm holds the wire against its stagger")
+    ] = "pull"
+
+    @model_validator(mode="after")
+    def _stiffness_can_be_had(self) -> "SteadyArm":
+        if self.vertical_stiffness_N_m is None and self.length_m is None:
+            raise problem(
+                "vertical_stiffness_N_m",
+                "neither a stiffness nor a length is given",
+                "Give vertical_stiffness_N_m, or length_m from which it follows.",
+            )
+        return self
+
+
+class MessengerSupport(Sourced):
+    """Spring and damper under the messenger wire at a support."""
+
+    stiffness_N_m: Annotated[Positive, Field(le=1e10, description="vertical stiffness [N/m]")]
+    damping_N_s_m: Annotated[NonNegative, Field(description="vertical damper [N s/m]")] = 0.0
+
+
+class Line(Table):
+    """A catenary."""
+
+    title: Annotated[str, Field(description="what it is", max_length=200)]
+    geometry: Geometry
+    contact_wire: Wire
+    messenger_wire: Wire
+    stitch_wire: StitchWire | None = None
+    droppers: Droppers
+    steady_arm: SteadyArm
+    messenger_support: MessengerSupport
+    damping: Damping
+    note: Annotated[str | None, Field(description="what a reader should know about it", max_length=4000)] = None
+
+    @model_validator(mode="after")
+    def _fits_together(self) -> "Line":
+        span = self.geometry.span_m
+        for i, x in enumerate(self.droppers.x_m, 1):
+            if x >= span:
+                raise problem(
+                    f"droppers.x_m[{i}]",
+                    f"the dropper at {x:g} m lies outside its span of {span:g} m",
+                    f"Positions are between 0 and {span:g} m, measured from the support before.",
+                )
+        if self.stitch_wire is not None and self.stitch_wire.length_m >= span:
+            raise problem(
+                "stitch_wire.length_m",
+                f"{self.stitch_wire.length_m:g} m in a span of {span:g} m",
+                "Two neighbouring stitch wires would overlap.",
+            )
+        if self.messenger_wire.number > self.contact_wire.number:
+            raise problem(
+                "messenger_wire.number",
+                "two messenger wires above one contact wire",
+                "One or two messenger wires carry two contact wires; one carries one.",
+            )
+        return self

@@ -1,0 +1,85 @@
+"""Studies: cases that compare several runs, and grade what the comparison shows."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from pantocheck.conformance.cases.drop_test import DampingModels, Place
+from pantocheck.conformance.input_files.sourced_table import Positive, PositiveList, Sourced, Table, problem
+
+Interval = Annotated[tuple[float, float], Field(strict=False, description="from and to")]
+
+
+class Printed(Table):
+    """Values that a publication prints for one pantograph under one damping model, laid beside the computed ones."""
+
+    model: Annotated[str, Field(max_length=100, description="name of the damping model")]
+    pantograph: Annotated[int, Field(ge=1, le=20, description="number in running order")]
+    values: Annotated[dict[str, float], Field(min_length=1, max_length=50, description="by name of quantity")]
+
+
+class DampingChange(Sourced):
+    """The same passage with the damping before and with the damping of the case: what changes."""
+
+    kind: Literal["damping-change"]
+    before: Annotated[DampingModels, Field(min_length=1, max_length=1, description="damping file of the run before")]
+    after: Annotated[str, Field(max_length=100, description="what the damping of the case is called")]
+    span: Annotated[int, Field(ge=1, description="span over which the force is drawn, from 1")]
+    printed: Annotated[tuple[Printed, ...], Field(strict=False, max_length=40)] = ()
+
+
+class ReleaseVelocity(Sourced):
+    """Velocity of one sensor after one release under several damping models, in windows of time."""
+
+    kind: Literal["release-velocity"]
+    models: Annotated[DampingModels, Field(min_length=2)]
+    windows_s: Annotated[
+        tuple[Interval, ...],
+        Field(strict=False, min_length=1, max_length=6, description="from and to, after the release [s]"),
+    ]
+    sensor: Annotated[int, Field(ge=1, description="number of the sensor, from 1")] = 1
+
+    @model_validator(mode="after")
+    def _ordered(self) -> "ReleaseVelocity":
+        for i, (start, end) in enumerate(self.windows_s, 1):
+            if not 0 <= start < end:
+                raise problem(f"windows_s[{i}]", f"{start:g} s to {end:g} s is not a window", "Give [from, to].")
+        return self
+
+
+class DropperDamping(Sourced):
+    """The passage of the case with the droppers' stiffness coefficient going through many orders of magnitude."""
+
+    kind: Literal["dropper-damping"]
+    coefficients_s: Annotated[PositiveList, Field(min_length=4, description="stiffness coefficients, ascending [s]")]
+    x_m: Place
+
+    @model_validator(mode="after")
+    def _ascending(self) -> "DropperDamping":
+        if list(self.coefficients_s) != sorted(set(self.coefficients_s)):
+            raise problem("coefficients_s", "not in ascending order", "List each once, from small to large.")
+        return self
+
+
+class SteadyArmDamper(Sourced):
+    """Identified damping with and without a vertical damper at every steady arm's claw, band by band."""
+
+    kind: Literal["steady-arm-damper"]
+    damper_N_s_m: Annotated[Positive, Field(le=1e6, description="vertical damper between claw and ground [N s/m]")]
+    bands_Hz: Annotated[
+        tuple[Interval, ...],
+        Field(strict=False, min_length=1, max_length=40, description="from and to of each band [Hz]"),
+    ]
+
+
+class DampingSensitivity(Sourced):
+    """The same passage under several damping models, side by side; nothing of it is graded."""
+
+    kind: Literal["damping-sensitivity"]
+    models: Annotated[DampingModels, Field(min_length=1)]
+
+
+Study = Annotated[
+    DampingChange | DampingSensitivity | ReleaseVelocity | DropperDamping | SteadyArmDamper,
+    Field(discriminator="kind", description="what is compared"),
+]

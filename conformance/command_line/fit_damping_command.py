@@ -1,0 +1,60 @@
+"""`pantocheck fit-damping`: a damping model from identified modes."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from pantocheck.conformance.cases.line_file import Line
+
+
+def fit_damping(
+    modes: Annotated[Path, typer.Argument(help="modes.json of `pantocheck identify`")],
+    line: Annotated[str, typer.Option(help="The line measured: id of a case, or path of a case or line file")],
+    out: Annotated[
+        Path, typer.Option(help="Folder for damping.toml, damping_with_modal.toml, damping.json, .html and .pdf")
+    ],
+    element: Annotated[float, typer.Option(help="Element length [m]", min=0.05, max=5.0)] = 0.5,
+) -> None:
+    """Fit Rayleigh damping per component to measured damping ratios, and say what they can tell.
+
+    Example: pantocheck fit-damping T1/modes.json --line my-line.toml --out T1
+    """
+    from pantocheck.conformance.command_line.console import console, plain
+    from pantocheck.conformance.identification.damping.damping_results import damping_results, damping_toml
+    from pantocheck.conformance.identification.identification_files import read_modes, write_json
+    from pantocheck.conformance.input_files.atomic_writing import check_writable, write_in_place
+    from pantocheck.conformance.reports.document import write_html, write_pdf
+    from pantocheck.conformance.reports.mass_drop.damping_report import damping_document
+    from pantocheck.conformance.simulation.catenary_model import catenary
+
+    check_writable(out)
+    output = console()
+    with output.status("modes of the line"):
+        results = damping_results(read_modes(modes), catenary(_line(line)), element, modes.name)
+        block = damping_toml(results)
+        document = damping_document(results, block)
+        write_in_place(out / "damping.toml", block.encode("utf-8"))
+        with_modal = damping_toml(results, results["modal"])
+        write_in_place(out / "damping_with_modal.toml", with_modal.encode("utf-8"))
+        write_json(out / "damping.json", {"schema": "pantocheck.damping/1", **results})
+        write_html(document, out / "damping.html")
+        write_pdf(document, out / "damping.pdf")
+    output.print(plain(document.headline))
+    output.print(plain(block))
+    output.print(plain(f"{out}: damping.toml, damping_with_modal.toml, damping.json, damping.html, damping.pdf"))
+
+
+def _line(name: str) -> "Line":
+    from pantocheck.conformance.cases.library import select
+    from pantocheck.conformance.cases.line_file import Line
+    from pantocheck.conformance.input_files.input_error import InputError
+    from pantocheck.conformance.input_files.toml_file import read_model, read_toml
+
+    if name.endswith(".toml") and "geometry" in read_toml(Path(name), "line"):
+        return read_model(Path(name), Line, "line")
+    found = select([name])
+    if any(one.line != found[0].line for one in found):
+        raise InputError(f"line '{name}'", f"{len(found)} cases with different lines", "Name one case.")
+    return found[0].line

@@ -1,0 +1,67 @@
+"""`pantocheck identify`: modes of a line from the records of mass drops."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def identify(
+    records: Annotated[
+        list[Path],
+        typer.Argument(
+            help="Records: .csv, .uff, .mat, .h5, .tdms or .mf4; a sidecar .toml of the same name is found."
+        ),
+    ],
+    out: Annotated[Path, typer.Option(help="Folder for modes.json, identification.json, .html and .pdf")],
+    poles: Annotated[
+        Path | None,
+        typer.Option(
+            help="Start poles placed by hand: TOML with [[pole]] frequency_Hz and damping_ratio, or a modes.json"
+        ),
+    ] = None,
+    highest: Annotated[float, typer.Option(help="Modes up to here [Hz]", min=0.5, max=200.0)] = 10.0,
+) -> None:
+    """Identify frequencies, damping ratios and shapes from mass drops.
+
+    Several records of one line (same spans and tensions) share their poles; repeats of one drop are compared.
+
+    Examples: pantocheck identify T1.h5 --out T1
+              pantocheck identify T1.h5 T2.csv --out both --highest 6
+    """
+    from pantocheck.conformance.command_line.console import console, number, plain
+    from pantocheck.conformance.identification.hand_placed_poles import read_poles
+    from pantocheck.conformance.identification.identification_files import summary, write_json, write_modes
+    from pantocheck.conformance.identification.identify import identify as run
+    from pantocheck.conformance.input_files.atomic_writing import check_writable
+    from pantocheck.conformance.mass_drops.drop_reading import read_records
+    from pantocheck.conformance.reports.document import write_html, write_pdf
+    from pantocheck.conformance.reports.mass_drop.identification_report import identification_document
+
+    check_writable(out)
+    output = console()
+    placed = read_poles(poles) if poles is not None else None
+    read = tuple(run for path in records for run in read_records(path))
+    with output.status("reading") as status:
+        found = run(read, highest, placed, progress=lambda text: status.update(plain(text)))
+        status.update("writing the report")
+        lines = [summary(one) for one in found]
+        write_modes(out / "modes.json", found)
+        write_json(out / "identification.json", {"schema": "pantocheck.identification/1", "lines": lines})
+        document = identification_document(lines)
+        write_html(document, out / "identification.html")
+        write_pdf(document, out / "identification.pdf")
+    output.print(plain(document.headline))
+    for line in lines:
+        for group in line["groups"]:
+            median = group["median_damping_ratio"]
+            output.print(
+                plain(
+                    f"group {group['group']}: {group['certain']} of {group['modes']} modes certain, "
+                    f"{group['from_Hz']:.3f}-{group['to_Hz']:.3f} Hz, "
+                    f"median damping ratio {number(None if median is None else 100 * median)} %"
+                )
+            )
+    for text in document.warnings:
+        output.print(plain(f"warning: {text}"))
+    output.print(plain(f"{out}: modes.json, identification.json, identification.html, identification.pdf"))

@@ -1,0 +1,110 @@
+"""`pantocheck run`: cases on a system, graded, with a certificate."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pantocheck.conformance.command_line.options import Baseline, names, options_of
+
+
+def run(
+    case: Annotated[
+        list[str] | None, typer.Argument(help="Ids, globs or paths of cases; none: every case that has limits.")
+    ] = None,
+    plan: Annotated[
+        Path | None, typer.Option(help="TOML file with the options of a run; see `pantocheck schema plan`.")
+    ] = None,
+    system: Annotated[
+        str | None,
+        typer.Option(help="System under test: builtin, record:DIR or command:PROGRAM.", show_default="builtin"),
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for the results.", show_default="report")] = None,
+    formats: Annotated[
+        str | None, typer.Option(help="What is written, e.g. html,json.", show_default="html,pdf,json,junit,md")
+    ] = None,
+    trust: Annotated[
+        str | None,
+        typer.Option(
+            help="Lowest trust of limits that count: primary, secondary or provisional.", show_default="secondary"
+        ),
+    ] = None,
+    limits: Annotated[Path | None, typer.Option(help="TOML file of your own limits, laid over the cases.")] = None,
+    baseline: Baseline = None,
+    drift: Annotated[
+        float | None, typer.Option(help="How far a value may drift from the baseline, in percent.  [default: 1]")
+    ] = None,
+    jobs: Annotated[int | None, typer.Option(help="Cases run side by side.", show_default="1")] = None,
+    damping_study: Annotated[
+        bool,
+        typer.Option("--damping-study", help="Run every case also with benchmark, initial and updated damping."),
+    ] = False,
+    timeout: Annotated[
+        float | None, typer.Option(help="Seconds that a program may take for a case.", show_default="600")
+    ] = None,
+) -> None:
+    """Run cases on a system, grade them, and write the results and the certificate.
+
+    Examples:
+
+    pantocheck run 'en50318-2002/*' --out report
+
+    pantocheck run en50318-2002/250 --damping-study
+
+    pantocheck run my-case.toml --system record:records --formats html,json
+
+    pantocheck run 'en50318-2002/*' --system 'command:python3 my_adapter.py' --timeout 300
+
+    pantocheck run --plan conformance.toml --baseline baseline/results.json --drift 2
+    """
+    from pantocheck.conformance.cases.library import overlaid, read_limits, select
+    from pantocheck.conformance.command_line.guard import INTERRUPTED
+    from pantocheck.conformance.command_line.results_output import (
+        EXIT_CODES,
+        print_results,
+        reported_progress,
+    )
+    from pantocheck.conformance.grading.baseline import against_baseline
+    from pantocheck.conformance.input_files.atomic_writing import check_writable
+    from pantocheck.conformance.reports.formats.report_writers import checked_formats, write_all
+    from pantocheck.conformance.results.results_reading import read_results
+    from pantocheck.conformance.runner import RunInterrupted
+    from pantocheck.conformance.runner import run as run_cases
+    from pantocheck.conformance.systems.system_choice import system_named
+
+    options = options_of(
+        plan,
+        cases=tuple(case) if case else None,
+        system=system,
+        out=None if out is None else str(out),
+        formats=names(formats),
+        trust=trust,
+        limits=None if limits is None else str(limits),
+        baseline=None if baseline is None else str(baseline),
+        drift_pct=drift,
+        jobs=jobs,
+        damping_study=damping_study or None,
+        timeout_s=timeout,
+    )
+    chosen = select(options.cases)
+    if options.limits is not None:
+        chosen = overlaid(chosen, read_limits(Path(options.limits)))
+    if options.damping_study:
+        from pantocheck.conformance.studies.damping_sensitivity import with_damping_study
+
+        chosen = [with_damping_study(case) for case in chosen]
+    written = checked_formats(options.formats)
+    earlier = None if options.baseline is None else read_results(Path(options.baseline))
+    tested, folder = system_named(options.system, options.timeout_s), Path(options.out)
+    check_writable(folder)
+    interrupted = False
+    try:
+        with reported_progress(len(chosen)) as progress:
+            results = run_cases(chosen, tested, options.trust, min(options.jobs, len(chosen)), progress)
+    except RunInterrupted as stopped:
+        results, interrupted = stopped.results, True
+        typer.echo("Interrupted: what was finished is kept.", err=True)
+    if earlier is not None and options.baseline is not None:
+        results = against_baseline(results, earlier, options.drift_pct, Path(options.baseline).name)
+    print_results(results, write_all(results, folder, written))
+    raise typer.Exit(INTERRUPTED if interrupted else EXIT_CODES[results.verdict])

@@ -1,0 +1,42 @@
+"""How much the figures of a run depend on where the evaluated stretch lies."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.records.evaluation import Value, evaluate
+from pantocheck.conformance.records.record import Record
+
+FEWEST_STRETCHES = 3
+
+
+def spread(
+    record: Record, stretches: Sequence[tuple[float, float]], low_pass: LowPass, values: dict[int, dict[str, Value]]
+) -> dict[int, dict[str, float]]:
+    """Largest departure of each quantity from its value when the evaluated stretch is shifted.
+
+    A train of constant speed on a line of equal spans has figures that settle; until they have, and at high shares of
+    the wave speed that takes tens of spans, they depend on where they are taken. This is an uncertainty of its own,
+    which no refinement of the mesh makes smaller.
+
+    Parameters
+    ----------
+    record : of the run
+    stretches : start and end of every stretch of the same length [m, m]
+    low_pass : filter of the graded force
+    values : on the evaluated stretch, by pantograph and name
+
+    Returns
+    -------
+    in the units of the quantities, by pantograph and name; without what fewer than three stretches give
+    """
+    shifted = [evaluate(replace(record, evaluated=stretch), low_pass).values for stretch in stretches]
+    found: dict[int, dict[str, float]] = {}
+    for of, quantities in values.items():
+        found[of] = {}
+        for name, value in quantities.items():
+            others = [one.get(of, {}).get(name) for one in shifted]
+            numbers = [other for other in others if isinstance(other, float | int)]
+            if isinstance(value, float | int) and len(numbers) >= FEWEST_STRETCHES:
+                found[of][name] = float(max(abs(other - value) for other in numbers))
+    return {of: quantities for of, quantities in found.items() if quantities}

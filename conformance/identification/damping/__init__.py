@@ -1,0 +1,1 @@
+"""From identified modes to a damping model."""

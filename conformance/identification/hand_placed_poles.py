@@ -1,0 +1,52 @@
+"""Start poles placed by hand."""
+
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field
+
+from pantocheck.conformance.identification.identification_files import read_modes
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.toml_file import read_model
+
+
+class _Pole(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+    frequency_Hz: Annotated[float, Field(gt=0, le=1000, description="undamped frequency [Hz]")]
+    damping_ratio: Annotated[float, Field(gt=0, lt=1, description="share of critical damping")] = 0.002
+
+
+class _Poles(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+    pole: Annotated[tuple[_Pole, ...], Field(strict=False, min_length=1, max_length=1000, description="start poles")]
+
+
+def read_poles(path: Path) -> NDArray[np.complex128]:
+    """Poles of a TOML file with tables `[[pole]]`, or of a modes.json.
+
+    Parameters
+    ----------
+    path : the file
+
+    Returns
+    -------
+    (m,) lambda [1/s]
+
+    Raises
+    ------
+    InputError : it cannot be read or is wrong
+    """
+    rows: list[tuple[float, float]]
+    if path.suffix == ".json":
+        rows = [(row.frequency_Hz, row.damping_ratio) for row in read_modes(path)]
+        if not rows:
+            raise InputError(f"modes '{path.name}'", "holds no mode", "Give at least one start pole.")
+    else:
+        rows = [(row.frequency_Hz, row.damping_ratio) for row in read_model(path, _Poles, "poles").pole]
+    frequency, damping = np.array(rows).T
+    omega = 2 * np.pi * frequency
+    return np.asarray(-damping * omega + 1j * omega * np.sqrt(1 - damping**2))

@@ -1,0 +1,81 @@
+"""Levenberg-Marquardt refinement of poles."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from pantocheck.conformance.identification.projection import Block, normal_equations
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+SMALLEST_DAMPING_RATIO = 1e-6  # a decay slower than this is not a decay in a record of minutes
+
+
+@dataclass(frozen=True)
+class Refined:
+    """Poles at the least output error.
+
+    Parameters
+    ----------
+    poles : (m,) [1/s], by frequency
+    cost : sum of squares
+    covariance : (2 m, 2 m) of (decay rates [1/s], angular frequencies [rad/s]) for channels in units of their noise
+    """
+
+    poles: Complex
+    cost: float
+    covariance: Real
+
+
+def refine(poles: Complex, blocks: list[Block], iterations: int = 30, tolerance: float = 1e-3) -> Refined:
+    """Minimise the output error over the poles.
+
+    Parameters
+    ----------
+    poles : (m,) start values [1/s]
+    blocks : data, each channel in units of its noise
+    iterations : at most so many steps
+    tolerance : stop when a step lowers the cost (a sum of squares in units of the noise) by less
+    """
+    poles = poles[np.argsort(poles.imag)]
+    if not poles.size:
+        return Refined(poles, normal_equations(poles, blocks).cost, np.zeros((0, 0)))
+    current = normal_equations(poles, blocks)
+    damping = 1e-3
+    for _ in range(iterations):
+        trial_poles = _step(poles, current.matrix, current.gradient, damping)
+        trial = normal_equations(trial_poles, blocks)
+        gain = current.cost - trial.cost
+        if gain > 0:
+            poles, current, damping = trial_poles, trial, max(damping / 10, 1e-9)
+            if gain < tolerance:
+                break
+        elif damping > 1e6 or -gain < tolerance * 1e-3:
+            break
+        else:
+            damping *= 10
+    order = np.argsort(poles.imag)
+    both = np.concatenate([order, order + poles.size])
+    return Refined(poles[order], current.cost, _inverse(current.matrix)[np.ix_(both, both)])
+
+
+def _step(poles: Complex, matrix: Real, gradient: Real, damping: float) -> Complex:
+    scale = np.sqrt(np.maximum(np.diag(matrix), np.finfo(float).tiny))
+    normalised = matrix / np.outer(scale, scale)
+    normalised[np.diag_indices_from(normalised)] += damping
+    change = np.linalg.lstsq(normalised, gradient / scale, rcond=1e-14)[0] / scale
+    m = poles.size
+    decay = -poles.real
+    # A decay rate may change threefold in a step, a frequency by a few bandwidths: beyond, the model is not linear.
+    decay_new = np.clip(decay + change[:m], decay / 3, decay * 3)
+    reach = 3 * np.maximum(decay, 0.02)
+    omega = np.maximum(poles.imag + np.clip(change[m:], -reach, reach), 1e-3)
+    return np.asarray(-np.maximum(decay_new, SMALLEST_DAMPING_RATIO * omega) + 1j * omega)
+
+
+def _inverse(matrix: Real) -> Real:
+    scale = np.sqrt(np.maximum(np.diag(matrix), np.finfo(float).tiny))
+    return np.asarray(scipy.linalg.pinvh(matrix / np.outer(scale, scale)) / np.outer(scale, scale))

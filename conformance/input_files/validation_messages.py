@@ -1,0 +1,122 @@
+"""From a validation error to one message: the file, the key, what was found, and what to do."""
+
+import math
+import typing
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+from pydantic.fields import FieldInfo
+from pydantic_core import ErrorDetails
+
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.key_units import converted
+from pantocheck.conformance.input_files.suggestions import nearest
+
+_BOUNDS = {
+    "greater_than": ("must be greater than", "gt"),
+    "greater_than_equal": ("must be at least", "ge"),
+    "less_than": ("must be less than", "lt"),
+    "less_than_equal": ("must be at most", "le"),
+}
+
+LONGEST_KEY = 80
+"""Characters of a key that a message shows; no key of a schema has as many."""
+
+_KINDS = {
+    "float_type": "a number",
+    "int_type": "a whole number",
+    "int_from_float": "a whole number",
+    "string_type": "text in quotes",
+    "bool_type": "true or false",
+    "tuple_type": "a list",
+    "list_type": "a list",
+    "model_type": "a table",
+    "model_attributes_type": "a table",
+    "dict_type": "a table",
+}
+
+
+def input_error(error: ValidationError, model: type[BaseModel], where: str) -> InputError:
+    """The first and most telling problem of a file as an `InputError`.
+
+    Parameters
+    ----------
+    error : what pydantic found
+    model : the model that was validated
+    where : the file, e.g. `reference line 'my-line.toml'`
+    """
+    # A key in the wrong unit is unknown and the right one missing: the unknown one tells what to do.
+    detail = min(error.errors(include_url=False), key=lambda item: item["type"] != "extra_forbidden")
+    table, field, key = _walk(model, detail["loc"])
+    if detail["type"] == "inconsistent":
+        context = detail["ctx"]
+        return InputError(
+            _at(where, ".".join(part for part in (key, context["key"]) if part)), context["found"], context["hint"]
+        )
+    found, hint = _explained(detail, table, field)
+    return InputError(_at(where, key), found, hint)
+
+
+def _at(where: str, key: str) -> str:
+    return f"{where}, key {key}" if key else where
+
+
+def _explained(detail: ErrorDetails, table: type[BaseModel], field: FieldInfo | None) -> tuple[str, str]:
+    kind, value = detail["type"], detail["input"]
+    name = str(detail["loc"][-1]) if detail["loc"] else ""
+    known = list(table.model_fields)
+    about = f"It is: {field.description}." if field is not None and field.description else "See `pantocheck schema`."
+    if kind == "extra_forbidden":
+        return "unknown key", converted(name, value, known) or nearest(name, known)
+    if kind == "missing":
+        return "missing", about
+    if kind == "finite_number":
+        return f"{value} is not a finite number", about
+    if kind in _BOUNDS:
+        words, bound = _BOUNDS[kind]
+        return f"{_shown(value)} {words} {detail['ctx'][bound]}", about
+    if kind in _KINDS:
+        return f"found {_shown(value)}, expected {_KINDS[kind]}", about
+    if kind == "literal_error":
+        return f"found {_shown(value)}, expected {detail['ctx']['expected']}", about
+    return f"found {_shown(value)}: {detail['msg'][:1].lower()}{detail['msg'][1:]}", about
+
+
+def _shown(value: object) -> str:
+    if isinstance(value, float) and math.isfinite(value):
+        return f"{value:g}"
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def _walk(model: type[BaseModel], location: tuple[int | str, ...]) -> tuple[type[BaseModel], FieldInfo | None, str]:
+    """Table that holds a location, the field there if it exists, and the location as a dotted key, lists from 1."""
+    table, field, key = model, None, ""
+    inner: Any = model
+    for part in location:
+        if isinstance(part, int):
+            key += f"[{part + 1}]"
+            continue
+        member = next((model for model in _models_in(inner) if part in _names_in_unions(model)), None)
+        holder = next(iter(_models_in(inner)), None)
+        if member is not None or holder is None:
+            inner = member or inner
+            continue  # the name of a member of a union, not a key
+        table, field = holder, holder.model_fields.get(part)
+        name = part if len(part) <= LONGEST_KEY else part[:LONGEST_KEY] + "..."
+        key += f".{name}" if key else name
+        inner = field.annotation if field is not None else None
+    return table, field, key
+
+
+def _names_in_unions(model: type[BaseModel]) -> tuple[str, ...]:
+    """What a place inside a member of a union is called after: the model, or the tag in its key `kind`."""
+    kind = model.model_fields.get("kind")
+    return (model.__name__, *(typing.get_args(kind.annotation) if kind is not None else ()))
+
+
+def _models_in(annotation: Any) -> list[type[BaseModel]]:
+    """Models that an annotation names, in its order."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    return [model for argument in typing.get_args(annotation) for model in _models_in(argument)]

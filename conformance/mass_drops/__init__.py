@@ -1,0 +1,1 @@
+"""Records of mass drops: read and written in the formats of measuring systems."""

@@ -1,0 +1,78 @@
+"""Several stretches of a record evaluated as one."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from pantocheck.conformance.quantities.signals import PantographSignals
+from pantocheck.conformance.quantities.unavailable import StretchNotCovered
+from pantocheck.conformance.records.record import Array
+
+
+class NothingLeft(StretchNotCovered):
+    """No stretch of the record can be evaluated: there is no number that would describe it."""
+
+
+@dataclass(frozen=True)
+class PooledSignals:
+    """Signals of one pantograph over several stretches, each filtered on its own and cut to what is evaluated.
+
+    Parameters
+    ----------
+    parts : the stretches, in running order
+    why_none : what a reader is told if there are none
+    """
+
+    parts: tuple[PantographSignals, ...]
+    why_none: str
+
+    @property
+    def filter_applied_Hz(self) -> float | None:
+        """Cut-off of a low-pass the force has been through [Hz]; None: unfiltered."""
+        return self._present()[0].filter_applied_Hz
+
+    @property
+    def delivered(self) -> Array:
+        """Force as delivered, stretch after stretch [N]."""
+        return np.concatenate([part.delivered for part in self._present()])
+
+    @cached_property
+    def graded(self) -> Array:
+        """Force through the filter (0-20 Hz) [N]."""
+        return np.concatenate([part.graded for part in self._present()])
+
+    @cached_property
+    def extended(self) -> Array:
+        """Force through the same kind of filter at 50 Hz [N]."""
+        return np.concatenate([part.extended for part in self._present()])
+
+    @property
+    def position(self) -> Array:
+        """Contact point along the track [m]."""
+        return np.concatenate([part.position[part.inside] for part in self._present()])
+
+    @property
+    def height(self) -> Array:
+        """Height of the contact point [m]."""
+        return np.concatenate([part.height for part in self._present()])
+
+    def band(self, low: float, high: float) -> float:
+        """Rms of the force in a band [N]; the differences of the stretches' means belong to the lowest band."""
+        sizes = np.array([part.delivered.size for part in self._present()], dtype=np.float64)
+        powers = np.array([part.band(low, high) ** 2 for part in self.parts])
+        power = float(np.average(powers, weights=sizes))
+        if low == 0:
+            means = np.array([part.delivered.mean() for part in self.parts])
+            power += float(np.average((means - np.average(means, weights=sizes)) ** 2, weights=sizes))
+        return float(np.sqrt(power))
+
+    @property
+    def seconds(self) -> float:
+        """How long all stretches last together [s]."""
+        return sum(part.delivered.size / part.rate for part in self.parts)
+
+    def _present(self) -> tuple[PantographSignals, ...]:
+        if not self.parts:
+            raise NothingLeft(self.why_none)
+        return self.parts

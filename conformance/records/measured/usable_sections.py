@@ -1,0 +1,89 @@
+"""Stretches of a measured record that can be evaluated: without gaps, at the speed of the case, evenly sampled."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
+from scipy.ndimage import uniform_filter1d
+
+from pantocheck.conformance.records.record import Array
+
+SHORT_GAP_S = 0.01
+"""A gap up to this long [s] is bridged: a fifth of a period at 20 Hz cannot hide anything below that."""
+
+GAP_STEPS = 1.5
+"""Samples farther apart than this many median steps have a gap between them."""
+
+SHORTEST_S = 1.0
+"""A stretch must last this long [s]: its lowest band, 0-5 Hz, then holds a few spectral lines."""
+
+SPEED_AVERAGED_S = 1.0
+"""Speed is averaged over this long [s], so that the jitter of a position sensor is not taken for a change of speed."""
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """A part of one pantograph's record, evenly sampled.
+
+    Parameters
+    ----------
+    position : (n,) contact point along the track [m]
+    force : (n,) [N]
+    height : (n,) height of the contact point [m], or None
+    """
+
+    position: Array
+    force: Array
+    height: Array | None
+
+
+def local_speed(time: Array, position: Array) -> Array:
+    """Speed of the train at each sample, averaged over about a second [m/s]."""
+    speed = np.gradient(position, time)
+    width = max(1, round(SPEED_AVERAGED_S / float(np.median(np.diff(time)))))
+    return np.asarray(uniform_filter1d(speed, min(width, speed.size), mode="nearest"))
+
+
+def usable_runs(time: Array, usable: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
+    """Indices of the usable samples between each two gaps; a gap of up to `SHORT_GAP_S` is no gap.
+
+    Parameters
+    ----------
+    time : (n,) increasing [s]
+    usable : (n,) whether a sample may be evaluated
+    """
+    chosen = np.flatnonzero(usable)
+    if chosen.size == 0:
+        return []
+    step = float(np.median(np.diff(time)))
+    longest = max(GAP_STEPS * step, SHORT_GAP_S + step)
+    breaks = np.flatnonzero(np.diff(time[chosen]) > longest)
+    return [run for run in np.split(chosen, breaks + 1) if time[run[-1]] - time[run[0]] >= SHORTEST_S]
+
+
+def stretch_of(
+    run: NDArray[np.intp], time: Array, position: Array, force: Array, height: Array | None, rate: float
+) -> Stretch:
+    """The samples of a run on a uniform time axis.
+
+    Samples that are evenly spaced are taken as they are. Others are interpolated by monotone cubics, which do not
+    overshoot: a loss of contact stays one, and no extreme is made that was not recorded.
+
+    Parameters
+    ----------
+    run : indices of the samples
+    time, position, force, height : (n,) of one pantograph [s, m, N, m]
+    rate : samples per second of the result [Hz]
+    """
+    at, height = time[run], None if height is None or not np.isfinite(height[run]).all() else height[run]
+    uniform = np.linspace(at[0], at[-1], at.size)
+    if np.abs(at - uniform).max() <= 0.01 / rate and abs((at.size - 1) / (at[-1] - at[0]) / rate - 1) < 1e-3:
+        return Stretch(position[run], force[run], height)
+    even = at[0] + np.arange(int(np.floor((at[-1] - at[0]) * rate * (1 + 1e-12))) + 1) / rate
+    even[-1] = min(even[-1], at[-1])
+
+    def resampled(values: Array) -> Array:
+        return np.asarray(PchipInterpolator(at, values)(even))
+
+    return Stretch(resampled(position[run]), resampled(force[run]), None if height is None else resampled(height))

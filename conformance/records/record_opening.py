@@ -1,0 +1,30 @@
+"""Both kinds of record: samples with a sidecar, and a summary. The `schema` key of the TOML file says which it is."""
+
+from pathlib import Path
+
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.toml_file import read_model, read_toml
+from pantocheck.conformance.records.record_sidecar import Sidecar
+from pantocheck.conformance.records.record_summary import Summary
+
+SCHEMAS: dict[str, type[Sidecar] | type[Summary]] = {"pantocheck.record/1": Sidecar, "pantocheck.summary/1": Summary}
+
+
+def read_either(path: Path) -> Sidecar | Summary:
+    """Read the TOML file of a record, whichever kind it is; a table may be named in place of its sidecar.
+
+    Raises
+    ------
+    InputError : it cannot be read, is wrong, or is of neither kind
+    """
+    path = path if path.suffix == ".toml" else path.with_suffix(".toml")
+    schema = read_toml(path, "record").get("schema")
+    model = SCHEMAS.get(schema) if isinstance(schema, str) else None
+    if model is None:
+        expected = " or ".join(f'"{name}"' for name in SCHEMAS)
+        raise InputError(
+            f"record '{path.name}', key schema",
+            "missing" if schema is None else f"found {str(schema)[:60]!r}",
+            f"A record says schema = {expected}.",
+        )
+    return read_model(path, model, "sidecar" if model is Sidecar else "summary record")

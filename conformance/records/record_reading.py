@@ -1,0 +1,118 @@
+"""Reading a record from a stranger: everything is checked before it becomes samples or a `Record`."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from pantocheck.conformance.input_files.atomic_writing import digest_of
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.toml_file import read_model
+from pantocheck.conformance.records.record import LARGEST_NUMBER, Array, Record, RecordInvalid
+from pantocheck.conformance.records.record_channels import CHANNELS, column_name
+from pantocheck.conformance.records.record_sidecar import Sidecar
+from pantocheck.conformance.records.record_tables import FORMAT, Rows, check_complete, read_csv, read_hdf5
+from pantocheck.conformance.records.record_writing import HDF5_SUFFIXES
+from pantocheck.conformance.records.samples import Samples, record_of
+
+LARGEST_FILE = 2_000_000_000
+
+
+def read_record(path: Path, evaluated: tuple[float, float] | None = None) -> tuple[Record, Sidecar]:
+    """Read a record by its sidecar, or by its table with the sidecar beside it.
+
+    Parameters
+    ----------
+    path : of either
+    evaluated : stretch of the case it is read for, which holds where the sidecar names none [m]
+
+    Raises
+    ------
+    InputError : a file is missing, damaged or contradicts the other, values are missing, or time is not uniform
+    """
+    samples, sidecar, table = read_samples(path)
+    try:
+        record = record_of(samples, sidecar)
+    except RecordInvalid as error:
+        raise invalid(table, error) from None
+    if sidecar.evaluated_m is None and evaluated is not None:
+        record = replace(record, evaluated=evaluated)
+    return record, sidecar
+
+
+def read_samples(path: Path) -> tuple[Samples, Sidecar, Path]:
+    """Read the samples of a record as they are, missing values and uneven times included, and the path of the table.
+
+    Raises
+    ------
+    InputError : a file is missing, damaged or contradicts the other
+    """
+    sidecar_path = path if path.suffix == ".toml" else path.with_suffix(".toml")
+    sidecar = read_model(sidecar_path, Sidecar, "sidecar")
+    table = sidecar_path.parent / sidecar.file
+    where = f"record '{table.name}'"
+    try:
+        if table.stat().st_size > LARGEST_FILE:
+            raise InputError(where, f"{table.stat().st_size} bytes", f"A record has at most {LARGEST_FILE} bytes.")
+        if sidecar.sha256 is not None and digest_of(table) != sidecar.sha256:
+            raise InputError(
+                where, "its content is not what the sidecar's sha256 says", "Copy or write the record again."
+            )
+        if table.suffix.lower() == ".csv":
+            rows = read_csv(table, sidecar, where)
+        elif table.suffix.lower() in HDF5_SUFFIXES:
+            rows = read_hdf5(table, sidecar, where)
+        else:
+            raise InputError(where, f"the suffix {table.suffix!r} is no format of a record", "Use .csv or .h5 .")
+    except OSError as error:
+        raise InputError(where, f"cannot be read ({error.strerror})", "The table lies beside its sidecar.") from None
+    check_complete(rows, where)
+    return _samples(rows, sidecar, where), sidecar, table
+
+
+def invalid(table: Path, error: RecordInvalid) -> InputError:
+    """What is impossible in a record, as an error of its file."""
+    return InputError(f"record '{table.name}', channel {error.channel}", error.found, FORMAT)
+
+
+def _samples(rows: Rows, sidecar: Sidecar, where: str) -> Samples:
+    for name, of in rows.items():
+        expected = sidecar.rows(CHANNELS[name].per)
+        first_alone = name == "position" and list(of) == [1] and sidecar.spacing_m is not None
+        # Uplift is measured at some supports: each column says at which one.
+        if name != "uplift" and len(of) != expected and not first_alone:
+            raise InputError(
+                where,
+                f"{len(of)} rows of {CHANNELS[name].key}, expected {expected}",
+                "Give one per pantograph, or position_1_m and spacing_m in the sidecar.",
+            )
+    lengths = {name: next(iter(of.values())).size for name, of in rows.items()}
+    for name, length in lengths.items():
+        if length != lengths["force"]:
+            raise InputError(
+                f"{where}, channel {CHANNELS[name].key}",
+                f"{length} samples, the force has {lengths['force']}",
+                "All channels have the same samples.",
+            )
+        for number, values in rows[name].items():
+            impossible = np.abs(values) > LARGEST_NUMBER  # infinity too; a missing value is not
+            if impossible.any():
+                at = int(np.argmax(impossible))
+                raise InputError(
+                    f"{where}, {column_name(CHANNELS[name].key, number)}",
+                    f"{values[at]:.3g} at sample {at + 1} is impossible",
+                    "Write nan where a value is missing.",
+                )
+    supports = sorted(rows.get("uplift", {}))
+    stacked: dict[str, Array] = {
+        name: np.ascontiguousarray(np.vstack([of[i] for i in sorted(of)])) for name, of in rows.items()
+    }
+    return Samples(
+        force=stacked["force"],
+        time=stacked["time"][0] if "time" in stacked else None,
+        speed=stacked["speed"][0] if "speed" in stacked else None,
+        position=stacked.get("position"),
+        contact_height=stacked.get("contact_height"),
+        uplift=stacked.get("uplift"),
+        support_position=np.array([(sidecar.support_position_m or ())[i - 1] for i in supports]) if supports else None,
+    )

@@ -1,0 +1,131 @@
+"""Summary records: the statistics of a run as they were published or measured, without the samples behind them."""
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from pantocheck.conformance.input_files.sourced_table import NumberList, Sourced, problem
+from pantocheck.conformance.input_files.suggestions import nearest
+from pantocheck.conformance.input_files.toml_file import read_model
+from pantocheck.conformance.quantities.registry import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES, QUANTITIES
+from pantocheck.conformance.quantities.statistics import coefficient_of_variation, statistical_extremes
+from pantocheck.conformance.records.evaluation import LINE, Evaluation, Value
+from pantocheck.conformance.records.record_sidecar import LineTable, RunTable, Speed, SystemTable
+
+SCHEMA = "pantocheck.summary/1"
+
+Values = Annotated[dict[str, Annotated[float, Field(ge=-1e9, le=1e9)]], Field(max_length=100)]
+
+NEVER_NEGATIVE = frozenset(
+    {
+        "std_force_N",
+        "std_force_50_N",
+        "rms_0_5_N",
+        "rms_5_20_N",
+        "rms_20_50_N",
+        "contact_loss_pct",
+        "contact_height_range_mm",
+        "wave_speed_m_s",
+        "elasticity_mm_N",
+    }
+)
+
+
+class Summary(Sourced):
+    """Quantities of a run by name, per pantograph and of the line."""
+
+    schema_: Annotated[
+        Literal["pantocheck.summary/1"],
+        Field(alias="schema", description='version of the format: "pantocheck.summary/1"'),
+    ]
+    case: Annotated[str | None, Field(max_length=200, description="id of the case that was run")] = None
+    speed_km_h: Speed
+    filter_cutoff_Hz: Annotated[
+        float, Field(gt=0, le=1000, description="cut-off of the low-pass the force statistics were taken with [Hz]")
+    ]
+    evaluated_m: Annotated[
+        NumberList | None, Field(min_length=2, max_length=2, description="start and end of the evaluated stretch [m]")
+    ] = None
+    pantograph: Annotated[
+        tuple[Values, ...],
+        Field(strict=False, min_length=1, max_length=20, description="quantities by name, one table per pantograph"),
+    ]
+    quantities: Annotated[
+        Values, Field(default_factory=dict, description="quantities of the line by name, such as the uplift")
+    ]
+    line: LineTable = LineTable()
+    system: SystemTable | None = None
+    run: RunTable = RunTable()
+
+    @model_validator(mode="after")
+    def _possible(self) -> "Summary":
+        for i, values in enumerate(self.pantograph, 1):
+            _check(values, f"pantograph[{i}]", [quantity.name for quantity in PANTOGRAPH_QUANTITIES])
+        static = [quantity.name for quantity in QUANTITIES.values() if quantity.scope == "static"]
+        _check(self.quantities, "quantities", [*(quantity.name for quantity in LINE_QUANTITIES), *static])
+        if self.evaluated_m is not None and self.evaluated_m[0] >= self.evaluated_m[1]:
+            raise problem("evaluated_m", "the stretch ends before it begins", "Give its start and its end.")
+        return self
+
+    @property
+    def evaluation(self) -> Evaluation:
+        """The quantities as if they had been computed from a record; those that are not given are skipped."""
+        values: dict[int, dict[str, Value]] = {
+            LINE: {name: self.quantities[name] for name in QUANTITIES if name in self.quantities}
+        }
+        skipped = {LINE: {q.name: _NOT_GIVEN for q in LINE_QUANTITIES if q.name not in self.quantities}}
+        for i, given in enumerate(self.pantograph, 1):
+            values[i] = {name: given[name] for name in QUANTITIES if name in given}
+            skipped[i] = {q.name: _NOT_GIVEN for q in PANTOGRAPH_QUANTITIES if q.name not in given}
+        return Evaluation(values, skipped)
+
+    @property
+    def contradictions(self) -> tuple[str, ...]:
+        """Statistics that should follow from others and do not: printed tables are at times inconsistent."""
+        found = []
+        for i, given in enumerate(self.pantograph, 1):
+            for name, expected, slack in _followed(given):
+                if name in given and abs(given[name] - expected) > slack:
+                    found.append(
+                        f"{name} of pantograph {i} is given as {given[name]:g}; {expected:.4g} follows from the mean "
+                        "and the standard deviation"
+                    )
+        return tuple(found)
+
+
+_NOT_GIVEN = "the summary record does not give it"
+
+
+def _followed(given: dict[str, float]) -> list[tuple[str, float, float]]:
+    """Name, value and rounding of what follows from mean and standard deviation."""
+    mean, std = given.get("mean_force_N"), given.get("std_force_N")
+    if mean is None or std is None:
+        return []
+    low, high = statistical_extremes(mean, std)
+    # Each number is printed to 0.1 N at best: 0.05 N on the mean and the extreme, three times that on sigma.
+    found = [("statistical_min_N", low, 0.3), ("statistical_max_N", high, 0.3)]
+    return [*found, ("cov_20", coefficient_of_variation(mean, std), 0.006)] if mean > 0 else found
+
+
+def _check(values: dict[str, float], table: str, known: list[str]) -> None:
+    for name, value in values.items():
+        if name not in known:
+            raise problem(f"{table}.{name[:80]}", "there is no such quantity here", nearest(name[:80], known))
+        if value < 0 and name in NEVER_NEGATIVE:
+            raise problem(f"{table}.{name}", f"{value:g} is negative", QUANTITIES[name].definition.capitalize() + ".")
+        if value > 100 and name.endswith("_pct"):
+            raise problem(f"{table}.{name}", f"{value:g} % is more than all", "Give a share of 100 %.")
+    low, high = values.get("min_force_N"), values.get("max_force_N")
+    if low is not None and high is not None and low > high:
+        raise problem(f"{table}.min_force_N", f"{low:g} is above max_force_N = {high:g}", "Exchange them.")
+
+
+def read_summary(path: Path) -> Summary:
+    """Read a summary record.
+
+    Raises
+    ------
+    InputError : it cannot be read, or is wrong
+    """
+    return read_model(path, Summary, "summary record")

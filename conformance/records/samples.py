@@ -1,0 +1,96 @@
+"""Samples: what a table holds, in SI units, before anything is made of it. A missing value is NaN."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pantocheck.conformance.records.record import Array, Record, RecordInvalid
+from pantocheck.conformance.records.record_sidecar import Sidecar
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Channels of p pantographs and s supports, n samples; None: not in the table.
+
+    Parameters
+    ----------
+    force : (p, n) contact force [N]
+    time : (n,) [s]
+    speed : (n,) of the train [m/s]
+    position : (p, n), or (1, n) of the first pantograph, along the track [m]
+    contact_height : (p, n) [m]
+    uplift : (s, n) of the contact wire at the supports [m]
+    support_position : (s,) [m]
+    """
+
+    force: Array
+    time: Array | None = None
+    speed: Array | None = None
+    position: Array | None = None
+    contact_height: Array | None = None
+    uplift: Array | None = None
+    support_position: Array | None = None
+
+    def at(self, chosen: NDArray[np.bool_]) -> "Samples":
+        """The samples that a mask chooses."""
+        parts = {name: getattr(self, name) for name in _SAMPLED}
+        return replace(self, **{name: value[..., chosen] for name, value in parts.items() if value is not None})
+
+
+_SAMPLED = ("force", "time", "speed", "position", "contact_height", "uplift")
+
+
+def completed(samples: Samples, sidecar: Sidecar) -> tuple[Array, Array]:
+    """Time [s] (n,) and positions [m] (p, n) of all pantographs; what the table lacks follows from the speed.
+
+    Raises
+    ------
+    RecordInvalid : a speed with which nothing moves
+    """
+    behind = np.array(sidecar.behind)[:, None]
+    speed = np.full(samples.force.shape[1], sidecar.speed_km_h / 3.6) if samples.speed is None else samples.speed
+    time, position = samples.time, samples.position
+    if time is None:
+        if position is None:
+            raise RecordInvalid("time", "there is neither a time nor a position")
+        if not np.all(speed > 0):
+            raise RecordInvalid("speed", f"not positive at sample {int(np.argmin(speed > 0)) + 1}")
+        time = _integral(1 / speed, position[0])
+    if position is None:
+        position = sidecar.start_m + _integral(speed, time)[None] - behind
+    elif position.shape[0] == 1:
+        position = position - behind
+    return time, position
+
+
+def _integral(rate: Array, over: Array) -> Array:
+    """Integral by trapezoids, 0 at the first sample."""
+    return np.concatenate([[0.0], np.cumsum((rate[1:] + rate[:-1]) / 2 * np.diff(over))])
+
+
+def record_of(samples: Samples, sidecar: Sidecar) -> Record:
+    """The record of a table without gaps, evenly sampled.
+
+    Raises
+    ------
+    RecordInvalid : values are missing, or time is not uniform
+    """
+    for name in _SAMPLED:
+        value = getattr(samples, name)
+        if value is not None and not np.isfinite(value).all():
+            bad = np.argwhere(~np.isfinite(value.T))[:, 0]
+            raise RecordInvalid(name, f"{bad.size} values are not finite, the first at sample {bad[0] + 1}")
+    time, position = completed(samples, sidecar)
+    whole = float(position[:, 0].max()), float(position[:, -1].min())
+    return Record(
+        time=time,
+        speed=sidecar.speed_km_h / 3.6,
+        position=position,
+        force=samples.force,
+        evaluated=whole if sidecar.evaluated_m is None else (sidecar.evaluated_m[0], sidecar.evaluated_m[1]),
+        filter_applied_Hz=sidecar.low_passed_Hz,
+        contact_height=samples.contact_height,
+        support_position=samples.support_position,
+        support_uplift=samples.uplift,
+    )

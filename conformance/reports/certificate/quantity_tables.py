@@ -1,0 +1,75 @@
+"""Tables of quantities: one row per quantity, one column per pantograph."""
+
+from typing import Any
+
+from pantocheck.conformance.reports.certificate.page_content import Table
+from pantocheck.conformance.reports.page_text import number
+from pantocheck.conformance.reports.words import holder, label, unit, words
+
+
+def columns(case: dict[str, Any]) -> list[str]:
+    """Keys of whatever has quantities: pantographs in running order, then the line as "0"."""
+    keys = set(case["quantities"]) | set(case["skipped"])
+    return sorted(keys, key=lambda key: (key == "0", len(key), key))
+
+
+def heading(key: str) -> str:
+    """Name of a column."""
+    return holder(key).capitalize()
+
+
+def bands(case: dict[str, Any]) -> Table:
+    """The extended band table: each cell with its verdict where graded, else marked informative."""
+    pantographs = [key for key in columns(case) if key != "0"]
+    graded = {
+        (row["quantity"], str(row.get("pantograph"))): row["verdict"]
+        for row in case["criteria"]
+        if row["verdict"] != "info"
+    }
+
+    def cell(name: str, key: str) -> str:
+        value = case["quantities"].get(key, {}).get(name)
+        if value is None:
+            return "not available"
+        verdict = graded.get((name, key))
+        return f"{number(value)} ({words()['verdict'][verdict]['word'] if verdict else 'informative'})"
+
+    return Table(
+        tuple(heading(key) for key in pantographs),
+        tuple(
+            (label(name), name, unit(name), tuple(cell(name, key) for key in pantographs))
+            for name in words()["bands"]["rows"]
+        )
+        if pantographs
+        else (),
+    )
+
+
+def quantities(case: dict[str, Any]) -> Table:
+    """Every quantity of a case; what is neither there nor skipped is left blank."""
+    keys = columns(case)
+    order = list(words()["quantity"])
+    names = {name for key in keys for name in (*case["quantities"].get(key, {}), *case["skipped"].get(key, {}))}
+    ordered = sorted(names, key=lambda name: (order.index(name) if name in order else len(order), name))
+
+    def cell(name: str, key: str) -> str:
+        value = case["quantities"].get(key, {}).get(name)
+        if value is None:
+            return "skipped" if name in case["skipped"].get(key, {}) else ""
+        error = (case.get("uncertainty") or {}).get(key, {}).get(name)
+        shown = ", ".join(number(one, 5) for one in (value if isinstance(value, list) else [value]))
+        return shown if error is None else f"{shown} ± {number(error, 2)}"
+
+    return Table(
+        tuple(heading(key) for key in keys),
+        tuple((label(name), name, unit(name), tuple(cell(name, key) for key in keys)) for name in ordered),
+    )
+
+
+def skipped(case: dict[str, Any]) -> tuple[tuple[str, str, str], ...]:
+    """What was skipped: whose, which quantity, why."""
+    return tuple(
+        (heading(key), label(name), reason)
+        for key in columns(case)
+        for name, reason in sorted(case["skipped"].get(key, {}).items())
+    )

@@ -1,0 +1,55 @@
+"""The certificate as one HTML file: no script, nothing fetched, every text escaped by the template engine."""
+
+import base64
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FunctionLoader, StrictUndefined
+from markupsafe import Markup
+
+from pantocheck.conformance.input_files.atomic_writing import write_in_place
+from pantocheck.conformance.reports.certificate.certificate_page import page
+from pantocheck.conformance.reports.words import TEMPLATES, words
+
+
+def write(results: dict[str, Any], path: Path) -> None:
+    """Write `certificate.html`.
+
+    Parameters
+    ----------
+    results : results.json as a dictionary
+    path : the file to write
+
+    Raises
+    ------
+    InputError : the file cannot be written
+    """
+    write_in_place(path, render(results).encode("utf-8"))
+
+
+def render(results: dict[str, Any]) -> str:
+    """The certificate's HTML text."""
+    made = environment()
+    # The bars are made here from numbers alone, so they may enter the page as markup; nothing else may.
+    made.filters["inline_svg"] = Markup
+    return made.get_template("certificate.html").render(
+        page=page(results), verdicts=words()["verdict"], trusts=words()["trust"]
+    )
+
+
+def environment() -> Environment:
+    """The template engine of every page: it escapes all texts, and knows the stylesheet and pictures as addresses."""
+    made = Environment(
+        loader=FunctionLoader(lambda name: (TEMPLATES / name).read_text("utf-8")),
+        autoescape=True,
+        undefined=StrictUndefined,
+        keep_trailing_newline=True,
+    )
+    made.filters["data_uri"] = data_uri
+    made.globals["stylesheet"] = Markup((TEMPLATES / "certificate.css").read_text("utf-8"))
+    return made
+
+
+def data_uri(svg: str) -> str:
+    """A picture as an address that holds it."""
+    return "data:image/svg+xml;base64," + base64.b64encode(svg.encode("utf-8")).decode("ascii")

@@ -1,0 +1,102 @@
+"""JUnit XML: one test suite per case, one test case per criterion, so that any CI server shows the verdicts."""
+
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+from pantocheck.conformance.input_files.atomic_writing import write_in_place
+from pantocheck.conformance.reports.certificate.case_facts import system
+from pantocheck.conformance.reports.page_text import cleaned
+from pantocheck.conformance.reports.words import owner
+
+# What a verdict is called in JUnit; `pass` and `info` have no element of their own.
+ELEMENTS = {"fail": "failure", "error": "error", "skip": "skipped"}
+
+
+def write(results: dict[str, Any], path: Path) -> None:
+    """Write `junit.xml`.
+
+    Parameters
+    ----------
+    results : results.json as a dictionary
+    path : the file to write
+
+    Raises
+    ------
+    InputError : the file cannot be written
+    """
+    write_in_place(path, render(results))
+
+
+def render(results: dict[str, Any]) -> bytes:
+    """The XML document."""
+    results = cleaned(results)
+    suites = [_suite(case, results) for case in results["cases"]]
+    total = {name: str(sum(int(suite.get(name, "0")) for suite in suites)) for name in _counters()}
+    root = ElementTree.Element("testsuites", {"name": "pantocheck", **total})
+    root.extend(suites)
+    ElementTree.indent(root)
+    return bytes(ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)) + b"\n"
+
+
+def _counters() -> tuple[str, ...]:
+    return ("tests", "failures", "errors", "skipped")
+
+
+def _suite(case: dict[str, Any], results: dict[str, Any]) -> ElementTree.Element:
+    # A case that was not graded is one test of its own, or it would vanish from the count.
+    tests = [_test(case["id"], row) for row in case["criteria"]] or [_whole(case)]
+    count = {
+        "tests": len(tests),
+        "failures": sum(test.find("failure") is not None for test in tests),
+        "errors": sum(test.find("error") is not None for test in tests),
+        "skipped": sum(test.find("skipped") is not None for test in tests),
+    }
+    wall = (case.get("run") or {}).get("wall_s")
+    attributes = {"name": case["id"], **{name: str(count[name]) for name in _counters()}}
+    if wall is not None:
+        attributes["time"] = f"{wall:.3f}"
+    if results.get("started"):
+        attributes["timestamp"] = results["started"].removesuffix("Z")
+    suite = ElementTree.Element("testsuite", attributes)
+    properties = ElementTree.SubElement(suite, "properties")
+    for name, value in {
+        "statement": results.get("statement"),
+        "suite_version": results["suite"].get("version"),
+        "suite_commit": results["suite"].get("commit"),
+        "system": system(results),
+        "input_digest": case.get("input_digest"),
+        **{f"platform_{name}": text for name, text in (results.get("platform") or {}).items()},
+    }.items():
+        if value:
+            ElementTree.SubElement(properties, "property", {"name": name, "value": str(value)})
+    suite.extend(tests)
+    return suite
+
+
+def _whole(case: dict[str, Any]) -> ElementTree.Element:
+    test = ElementTree.Element("testcase", {"classname": case["id"], "name": "case"})
+    _mark(test, case["verdict"], case.get("reason") or "no criteria")
+    return test
+
+
+def _test(case: str, row: dict[str, Any]) -> ElementTree.Element:
+    kind = "" if row.get("baseline") is None else "drift of "
+    test = ElementTree.Element("testcase", {"classname": case, "name": f"{kind}{row['quantity']} of {owner(row)}"})
+    value = "no value" if row["value"] is None else f"{row['value']:.8g} {row['unit']}".rstrip()
+    bounds = f"limits {_bound(row['lower'])} to {_bound(row['upper'])}"
+    margin = "" if row["margin"] is None else f", margin {row['margin']:.4g}"
+    reason = f" ({row['reason']})" if row.get("reason") else ""
+    _mark(test, row["verdict"], f"{value}, {bounds}{margin}, {row['trust']}{reason}")
+    return test
+
+
+def _mark(test: ElementTree.Element, verdict: str, text: str) -> None:
+    if verdict in ELEMENTS:
+        ElementTree.SubElement(test, ELEMENTS[verdict], {"message": text})
+    else:
+        ElementTree.SubElement(test, "system-out").text = f"{verdict}: {text}"
+
+
+def _bound(limit: float | None) -> str:
+    return "none" if limit is None else f"{limit:.8g}"

@@ -1,0 +1,64 @@
+"""The summary of a run in Markdown, for the page of a CI job."""
+
+import re
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FunctionLoader, StrictUndefined
+
+from pantocheck.conformance.input_files.atomic_writing import write_in_place
+from pantocheck.conformance.reports.certificate import case_facts as facts
+from pantocheck.conformance.reports.certificate import verdict_reasons as reasons
+from pantocheck.conformance.reports.certificate.certificate_page import error_name
+from pantocheck.conformance.reports.certificate.criteria_rows import criterion
+from pantocheck.conformance.reports.page_text import cleaned
+from pantocheck.conformance.reports.words import TEMPLATES, words
+
+# Everything that means something in GitHub's or GitLab's Markdown, mentions (@) and references (#, !) included.
+SPECIAL = re.compile(r"([\\`*_{}\[\]()#+!|~$@])")
+
+
+def write(results: dict[str, Any], path: Path) -> None:
+    """Write `summary.md`.
+
+    Parameters
+    ----------
+    results : results.json as a dictionary
+    path : the file to write
+
+    Raises
+    ------
+    InputError : the file cannot be written
+    """
+    write_in_place(path, render(results).encode("utf-8"))
+
+
+def render(results: dict[str, Any]) -> str:
+    """The Markdown text; whatever the template prints is escaped."""
+    results = cleaned(results)
+    environment = Environment(
+        loader=FunctionLoader(lambda name: (TEMPLATES / name).read_text("utf-8")),
+        autoescape=False,  # HTML's escaping does not suit Markdown: `finalize` escapes every printed value instead
+        finalize=escaped,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    return environment.get_template("summary.md").render(
+        results=results,
+        headline=reasons.headline(results),
+        reasons=reasons.reasons(results),
+        system=facts.system(results),
+        suite=facts.suite(results),
+        cases=[(case, [criterion(row, []) for row in case["criteria"]], error_name(case)) for case in results["cases"]],
+        words={name: of["word"] for name, of in words()["verdict"].items()},
+    )
+
+
+def escaped(value: Any) -> str:
+    """Text that Markdown shows as it is, in a table as well."""
+    text = str(value).replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+    text = SPECIAL.sub(r"\\\1", text)
+    # Bare addresses and the start of a list would still be taken as markup.
+    return re.sub(r"(?i)(https?|ftp)://", r"\1:&#8203;//", text).replace("www.", "www&#8203;.")

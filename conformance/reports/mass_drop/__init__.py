@@ -1,0 +1,1 @@
+"""Reports on identification and on fitted damping."""

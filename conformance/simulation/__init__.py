@@ -1,0 +1,1 @@
+"""From a case to the reference simulator: catenary, passage, static quantities, tuning, mass drops."""

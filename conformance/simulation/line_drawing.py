@@ -1,0 +1,86 @@
+"""A line at rest drawn to scale: seen from the side, and from above."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from pantocheck.conformance.reports.figures.force_figures import FULL, GREY, INK, drawn
+from pantocheck.model import Discretised, Kind, Wire
+
+SPANS = 2
+"""Spans drawn, half way along the line."""
+EXAGGERATED = 10
+"""Heights and lateral places are drawn so many times as large as lengths along the track."""
+WIDTHS = {Kind.CONTACT_WIRE: 1.8, Kind.MESSENGER_WIRE: 1.2, Kind.STITCH_WIRE: 0.9}
+
+Array = NDArray[np.float64]
+
+
+@drawn
+def line_drawing(line: Discretised, title: str, span: float) -> Figure:
+    """Side view and plan view of two spans, half a span more on either side.
+
+    Parameters
+    ----------
+    line : the discretised line
+    title : what it is
+    span : length of its spans [m]
+    """
+    last = float(line.mesh.position[-1])
+    middle = round(last / span / 2) * span
+    shown = (max(0.0, middle - (SPANS + 1) * span / 2), min(last, middle + (SPANS + 1) * span / 2))
+    lateral = line.catenary.has_lateral_field
+    figure = Figure(figsize=(FULL, 3.6 if lateral else 2.4))
+    axes = figure.subplots(2 if lateral else 1, 1, sharex=True, squeeze=False)[:, 0]
+    _view(axes[0], line, "z", shown)
+    axes[0].set_ylabel("height [m]")
+    axes[0].set_title(f"{title}: side view", fontsize=8, loc="left")
+    if lateral:
+        _view(axes[1], line, "y", shown)
+        axes[1].set_ylabel("lateral [m]")
+        axes[1].set_title("plan view", fontsize=8, loc="left")
+    axes[-1].set_xlabel(f"along the track [m]; heights and lateral places drawn {EXAGGERATED} times as large")
+    return figure
+
+
+def _view(axes: Axes, line: Discretised, field: str, shown: tuple[float, float]) -> None:
+    start, end = shown
+    middle = (start + end) / 2
+    for wire in line.catenary.wires:
+        if wire.end < start or end < wire.start:
+            continue
+        x, w = _shape(line, wire, field)
+        axes.plot(x, w, color=INK, linewidth=WIDTHS[wire.kind])
+    for n, dropper in enumerate(line.catenary.droppers):
+        if not start <= dropper.position <= end:
+            continue
+        ends = [_at(line, name, field, dropper.position) for name in (dropper.lower, dropper.upper)]
+        axes.plot([dropper.position] * 2, ends, color=GREY, linewidth=0.8)
+        if field == "z" and 0 <= dropper.position - middle < (end - start) / (SPANS + 1):
+            length = f"{line.state.dropper_length[n]:.3f}"
+            axes.annotate(length, (dropper.position, sum(ends) / 2), fontsize=5, rotation=90, ha="right", va="center")
+    for support in line.catenary.messenger_supports:
+        if not start <= support.position <= end:
+            continue
+        axes.plot(support.position, _at(line, support.wire, field, support.position), "^", color=INK, markersize=4)
+    for arm, force in zip(line.catenary.steady_arms, line.state.arm_force, strict=True):
+        if not start <= arm.position <= end:
+            continue
+        claw = _at(line, arm.wire, field, arm.position)
+        axes.plot(arm.position, claw, "o", color=INK, markersize=3, markerfacecolor="white")
+        if field == "y" and force[0] != 0.0 and arm.length is not None:
+            # The hinge lies where the arm pulls to; an arm that pushes has it on the other side.
+            towards = np.sign(force[0]) * (1 if arm.acts == "pull" else -1)
+            axes.plot([arm.position] * 2, [claw, claw + towards * arm.length], color=INK, linewidth=1.0)
+    axes.set_xlim(start, end)
+    axes.set_aspect(EXAGGERATED, adjustable="datalim" if field == "y" else "box")
+
+
+def _shape(line: Discretised, wire: Wire, field: str) -> tuple[Array, Array]:
+    inside = (line.mesh.position >= wire.start - 1e-6) & (line.mesh.position <= wire.end + 1e-6)
+    return line.mesh.position[inside], line.state.deflection[line.mesh.row_of[wire.name, field], inside, 0]
+
+
+def _at(line: Discretised, wire: str, field: str, position: float) -> float:
+    return float(line.state.deflection[line.mesh.row_of[wire, field], line.mesh.station(position), 0])

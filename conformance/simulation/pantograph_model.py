@@ -1,0 +1,62 @@
+"""From a case to the reference simulator's terms: its pantographs, and where they run."""
+
+import numpy as np
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.pantograph_file import Pantograph as PantographFile
+from pantocheck.model import Discretised, Pantograph, chain
+from pantocheck.model.pantograph import from_matrices, from_modes
+
+
+def pantograph(file: PantographFile, uplift_force: float, working_height: float) -> Pantograph:
+    """A pantograph pressing with an uplift force.
+
+    Parameters
+    ----------
+    file : as read
+    uplift_force : [N]
+    working_height : of the head over the contact wire at the supports, at rest and pressing with that force [m]
+
+    Returns
+    -------
+    the pantograph in the simulator's terms
+    """
+    contact = file.contact.stiffness_N_m
+    if file.chain is not None:
+        parts = file.chain
+        return chain(
+            np.array(parts.masses_kg),
+            np.array(parts.stiffness_N_m),
+            np.array(parts.damping_N_s_m),
+            uplift_force,
+            parts.uplift_mass,
+            contact,
+            working_height if parts.base_spring_unstretched == "working_height" else 0.0,
+        )
+    if file.matrices is not None:
+        given = file.matrices
+        matrices = (np.array(given.mass_kg), np.array(given.damping_N_s_m), np.array(given.stiffness_N_m))
+        return from_matrices(*matrices, np.array(given.head), uplift_force, contact, working_height)
+    modes = file.modes
+    if modes is None:
+        raise ValueError("a pantograph without a model")  # which no file passes as
+    omega, shape = 2 * np.pi * np.array(modes.frequency_Hz), np.array(modes.head_shape)
+    preload = omega**2 * shape * working_height / (shape @ shape)
+    force = uplift_force * shape + preload
+    return from_modes(np.array(modes.frequency_Hz), np.array(modes.damping_ratio), shape, force, uplift_force, contact)
+
+
+def starts(case: Case) -> tuple[float, ...]:
+    """Where each pantograph starts, the leading one first [m]."""
+    return tuple(case.start + case.offsets[-1] - offset for offset in case.offsets)
+
+
+def watched_supports(case: Case, line: Discretised) -> tuple[tuple[str, float], ...]:
+    """The first contact wire at the supports within and at the ends of the compared stretch."""
+    first, last = case.compared
+    wire = line.catenary.contact_wires[0].name
+    return tuple(
+        (wire, arm.position)
+        for arm in line.catenary.steady_arms
+        if arm.wire == wire and first - 1e-6 <= arm.position <= last + 1e-6
+    )

@@ -1,0 +1,135 @@
+"""What the reference simulator says of a line at rest."""
+
+import numpy as np
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.line_file import Line
+from pantocheck.conformance.records.evaluation import Value
+from pantocheck.conformance.simulation.catenary_model import catenary
+from pantocheck.conformance.simulation.pantograph_model import pantograph
+from pantocheck.model import Catenary, Discretised, Kind, discretise
+from pantocheck.model.fem.beam import wave_speed
+from pantocheck.model.modal.modes import Modes, modes
+from pantocheck.model.pantograph import apparent_mass
+from pantocheck.model.statics.elasticity import non_uniformity, static_uplift
+from pantocheck.model.statics.string_statics import in_vertical_plane, string_state
+from pantocheck.model.statics.wave_factors import amplification_coefficient, doppler_factor, reflection_coefficient
+
+SAMPLES_PER_SPAN = 24
+"""Places along a span at which the elasticity is taken."""
+SMALL_LOAD = 1.0
+"""Slackens no dropper [N]."""
+LARGE_LOAD = 200.0
+"""Slackens droppers [N]."""
+SPANS_OF_MODES = 10
+"""Natural frequencies are those of so many spans: they crowd together with every span that is added."""
+MODES = 10
+"""Natural frequencies that are given."""
+
+
+def static_quantities(case: Case, line: Discretised) -> dict[str, Value]:
+    """Quantities of a line at rest, in a span half way along it.
+
+    Parameters
+    ----------
+    case : with the line as its file has it
+    line : the same in finite elements
+    """
+    found: dict[str, Value] = {"presag_mm": _presag(case.line, line)}
+    found |= _dropper_lengths(case.line, line)
+    found |= _elasticity(case.line, line)
+    found |= _waves(case, line.catenary)
+    if case.is_static:
+        if case.measured is not None and case.file.apparent_mass is not None:
+            response = apparent_mass(
+                pantograph(case.measured, 0.0, 0.0), np.array(case.file.apparent_mass.frequency_Hz)
+            )
+            found["apparent_mass_kg"] = tuple(map(float, np.abs(response)))
+        found["natural_frequency_Hz"] = tuple(map(float, first_modes(case.line, _element(line)).frequency))
+    return found
+
+
+def along_span(start: float, span: float) -> np.ndarray:
+    """Places along a span, its end left out [m]."""
+    return start + span * np.arange(SAMPLES_PER_SPAN) / SAMPLES_PER_SPAN
+
+
+def first_modes(line: Line, element: float) -> Modes:
+    """The first modes of a few spans of a line in which more than half of the motion is vertical.
+
+    Parameters
+    ----------
+    line : as its file has it
+    element : longest element [m]
+    """
+    few = line.geometry.model_copy(update={"spans": min(line.geometry.spans, SPANS_OF_MODES)})
+    short = discretise(catenary(line.model_copy(update={"geometry": few})), element)
+    lateral = [row for row in range(short.mesh.rows) if short.mesh.row_field[row] == "y"]
+    count = MODES * (2 if lateral else 1)
+    while True:
+        found = modes(short, count)
+        size = (found.shape[..., 0] ** 2).sum(axis=2)
+        vertical = np.flatnonzero(size[:, lateral].sum(axis=1) < size.sum(axis=1) / 2)[:MODES]
+        if vertical.size == MODES:
+            return Modes(found.frequency[vertical], found.shape[vertical])
+        count *= 2
+
+
+def _middle(line: Line) -> int:
+    return line.geometry.spans // 2
+
+
+def _droppers(line: Line, built: Catenary) -> list[int]:
+    """Droppers of the middle span."""
+    return [i for i, d in enumerate(built.droppers) if d.position // line.geometry.span_m == _middle(line)]
+
+
+def _element(line: Discretised) -> float:
+    return float(np.diff(line.mesh.position).max())
+
+
+def _presag(file: Line, line: Discretised) -> tuple[float, ...]:
+    droppers = [line.catenary.droppers[i] for i in _droppers(file, line.catenary)]
+    height = [line.state.deflection[line.mesh.row_of[d.lower, "z"], line.mesh.station(d.position), 0] for d in droppers]
+    return tuple(float(-1e3 * z) for z in height)
+
+
+def _dropper_lengths(file: Line, line: Discretised) -> dict[str, Value]:
+    """By string statics, with bending, and with bending and stagger, so that each effect can be seen."""
+    droppers = _droppers(file, line.catenary)
+    found = {"dropper_length_m": string_state(line.catenary).dropper_length}
+    if line.catenary.has_lateral_field:
+        found["dropper_length_bending_m"] = discretise(
+            in_vertical_plane(line.catenary), _element(line)
+        ).state.dropper_length
+        found["dropper_length_stagger_m"] = line.state.dropper_length
+    else:
+        found["dropper_length_bending_m"] = line.state.dropper_length
+    return {name: tuple(map(float, length[droppers])) for name, length in found.items()}
+
+
+def _elasticity(file: Line, line: Discretised) -> dict[str, Value]:
+    places = along_span(_middle(file) * file.geometry.span_m, file.geometry.span_m)
+    found: dict[str, Value] = {}
+    for name, load in (("elasticity", SMALL_LOAD), ("elasticity_200_N", LARGE_LOAD)):
+        elasticity = 1e3 * static_uplift(line, places, load) / load
+        found[f"{name}_mm_N"] = float(elasticity.max())
+        found[f"{name}_non_uniformity_pct"] = 100 * non_uniformity(elasticity)
+        found[f"{name}_along_span_mm_N"] = tuple(map(float, elasticity))
+    return found
+
+
+def _waves(case: Case, built: Catenary) -> dict[str, Value]:
+    contact = built.contact_wires
+    messengers = [wire for wire in built.wires if wire.kind is Kind.MESSENGER_WIRE]
+    c = wave_speed(contact[0].tension, contact[0].mass_per_length)
+    reflection = reflection_coefficient(contact, messengers)
+    found: dict[str, Value] = {"wave_speed_m_s": c, "reflection_coefficient": reflection}
+    if not case.is_static and case.speed < c:
+        doppler = doppler_factor(case.speed, c)
+        found |= {
+            "speed_over_wave_speed": case.speed / c,
+            "doppler_factor": doppler,
+            "amplification_coefficient": amplification_coefficient(reflection, doppler),
+        }
+    return found

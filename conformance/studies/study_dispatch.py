@@ -1,0 +1,53 @@
+"""Which runs a case needs: one of the system under test, or those of a study. Heavy imports wait until then."""
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.study_tables import (
+    DampingChange,
+    DampingSensitivity,
+    DropperDamping,
+    ReleaseVelocity,
+    SteadyArmDamper,
+)
+from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.systems.system import System
+
+ONLY_BUILTIN = "this study drives the reference simulator itself; other systems deliver no such runs"
+
+
+def run_study(case: Case, system: System) -> Outcome:
+    """Run a case on a system: a study with all its runs, a mass drop with its identification, else the plain case.
+
+    Parameters
+    ----------
+    case : what is asked
+    system : under test; changes of damping are asked of any system, the other studies of the reference simulator only
+    """
+    match case.file.study:
+        case None if case.file.mass_drop is None or system.kind != "builtin":
+            return system.run(case)
+        case DampingChange() as study:
+            from pantocheck.conformance.studies.vovan2015.damping_change import damping_change
+
+            return damping_change(case, study, system)
+        case DampingSensitivity():
+            from pantocheck.conformance.studies.damping_sensitivity import damping_sensitivity
+
+            return damping_sensitivity(case, system)
+        case _ if system.kind != "builtin":
+            return Outcome(skipped=ONLY_BUILTIN)
+        case None:
+            from pantocheck.conformance.studies.vovan2015.mass_drop_study import mass_drop_modes
+
+            return mass_drop_modes(case)
+        case ReleaseVelocity() as study:
+            from pantocheck.conformance.studies.vovan2015.release_velocity import release_velocity
+
+            return release_velocity(case, study)
+        case DropperDamping() as study:
+            from pantocheck.conformance.studies.vovan2015.dropper_damping import dropper_damping
+
+            return dropper_damping(case, study)
+        case SteadyArmDamper() as study:
+            from pantocheck.conformance.studies.vovan2015.steady_arm_damper import steady_arm_damper
+
+            return steady_arm_damper(case, study)

@@ -1,0 +1,1 @@
+"""The studies of Vo Van, Balmes and Lorang (2015)."""

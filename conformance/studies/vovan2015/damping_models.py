@@ -1,0 +1,33 @@
+"""Computed damping ratios of a line under the damping models of a case."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.simulation.catenary_model import catenary
+from pantocheck.model import Catenary, Discretised
+from pantocheck.model.discretised_line import with_damping
+from pantocheck.model.modal.modes import Modes, damping_ratios
+
+Array = NDArray[np.float64]
+
+
+def lines(case: Case) -> dict[str, Catenary]:
+    """The case's line under each of the other damping models it names."""
+    return {name: catenary(case.with_damping(name, damping).line) for name, damping in case.dampings.items()}
+
+
+def model_ratios(mesh: Discretised, shapes: Modes, line: Catenary) -> Array:
+    """Damping ratio that a line's damping gives to the modes of the undamped line, modal bands in place of the rest.
+
+    Parameters
+    ----------
+    mesh : the line in finite elements, with any damping
+    shapes : its modes
+    line : the same line with the damping in question
+    """
+    ratio = damping_ratios(with_damping(mesh, line.damping), shapes)
+    for band in line.modal_damping:
+        inside = (shapes.frequency >= band.from_frequency) & (shapes.frequency < band.to_frequency)
+        ratio[inside] = band.damping_ratio
+    return ratio

@@ -1,0 +1,188 @@
+"""Largest compensation force of a dropper against its stiffness coefficient (the study's Figure 8).
+
+A dropper stays taut in the system's matrix; a force compensates it while it should be slack. Two laws are compared:
+
+* the slack dropper carries nothing: elastic and viscous force are both compensated, as the reference simulator does;
+* only the elastic force is compensated: the viscous part stays in the constant damping matrix. A large coefficient then
+  locks the dropper, because its dashpot holds it both ways.
+"""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.study_tables import DropperDamping
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.records.evaluation import LINE, Value
+from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.results.results_format import Chart, Mark, Series
+from pantocheck.conformance.results.traces import thinned
+from pantocheck.conformance.simulation.catenary_model import catenary
+from pantocheck.conformance.studies.vovan2015.findings_table import findings_table
+from pantocheck.conformance.studies.vovan2015.provenance_table import origins
+from pantocheck.conformance.systems.reference_simulator import passage_of, record_of
+from pantocheck.model import Catenary, Discretised, Kind, Passage, Rayleigh, discretise, run
+from pantocheck.model.discretised_line import with_damping
+from pantocheck.model.fem.dropper_laws import with_viscous_part_kept
+
+Array = NDArray[np.float64]
+
+OFF = 0.1
+"""Relative change of the force at which the transition begins, and share of it at which it has ended."""
+LEAST_DRAWN = 1.0
+"""Force at which smaller ones are drawn on a logarithmic scale [N]."""
+
+
+@dataclass(frozen=True)
+class Law:
+    """How a slack dropper is treated.
+
+    Parameters
+    ----------
+    line : the line with that law
+    viscous_share : share of the viscous force that is compensated with the elastic one
+    """
+
+    line: Callable[[Discretised], Discretised]
+    viscous_share: float
+
+
+LAWS = {
+    "slack dropper carries nothing": Law(lambda line: line, 1.0),
+    "only the elastic force is compensated": Law(with_viscous_part_kept, 0.0),
+}
+GRADED = "only the elastic force is compensated"
+
+
+def dropper_damping(case: Case, study: DropperDamping) -> Outcome:
+    """Run the case's passage once for every coefficient and law.
+
+    Parameters
+    ----------
+    case : a passage with given uplift forces
+    study : the dropper and its coefficients
+
+    Raises
+    ------
+    InputError : there is no dropper at that place, or an uplift force is to be tuned
+    """
+    begin = time.perf_counter()
+    steps, line = case.file.discretisation, catenary(case.line)
+    at = _dropper(line, study, case.id)
+    forces = tuple(use.uplift_force_N or 0.0 for use in case.file.pantograph)
+    if not all(forces):
+        raise InputError(f"case '{case.id}', key pantograph", "no uplift_force_N", "This study tunes no forces.")
+    mesh = discretise(line, steps.element_m)
+    passage = passage_of(case, mesh, steps.time_step_s, forces)
+    at_rest = run(mesh, passage)
+    coefficients = np.array(study.coefficients_s)
+    force = {
+        name: np.array([_largest(mesh, passage, at, value, law) for value in coefficients])
+        for name, law in LAWS.items()
+    }
+    findings = {LINE: transition(coefficients, force[GRADED])}
+    runs = 1 + len(LAWS) * coefficients.size
+    return Outcome(
+        record=record_of(case, passage, at_rest),
+        simulated_s=runs * passage.duration,
+        wall_s=time.perf_counter() - begin,
+        dt_s=steps.time_step_s,
+        element_m=steps.element_m,
+        findings=findings,
+        charts=(_chart(case, study, force),),
+        tables=(findings_table(case.limits, findings, {}), origins(case)),
+        notes=(
+            "Which force the study compensates is not printed. Graded is the law that compensates the elastic force "
+            "only: it locks the dropper as the study describes; the law of the reference simulator does not lock it.",
+        ),
+    )
+
+
+def transition(coefficient: Array, force: Array) -> dict[str, Value]:
+    """Where the largest compensation force leaves the value it has without damping, and what is left of it.
+
+    Parameters
+    ----------
+    coefficient : (n,) ascending [s]
+    force : (n,) largest compensation force [N]
+
+    Returns
+    -------
+    values by name of quantity; a level that is never reached is left out, and all of them if there is no force at first
+    """
+    if force[0] == 0:
+        return {}
+    share = force / force[0]
+    found: dict[str, Value] = {"dropper_locked_force_pct": float(100 * share[-1])}
+    off = np.abs(share - 1)
+    levels = (("start", off, OFF, 1), ("middle", share, 0.5, -1), ("end", share, OFF, -1))
+    for name, curve, level, sign in levels:
+        crossed = _crossing(np.log(coefficient), sign * curve, sign * level)
+        if crossed is not None:
+            found[f"dropper_transition_{name}_s"] = float(np.exp(crossed))
+    return found
+
+
+def _crossing(x: Array, y: Array, level: float) -> float | None:
+    """First place where a curve rises through a level, between two points on a straight line; None if it never does."""
+    above = np.flatnonzero(y >= level)
+    if not above.size:
+        return None
+    i = int(above[0])
+    if i == 0:
+        return float(x[0])
+    return float(x[i - 1] + (level - y[i - 1]) / (y[i] - y[i - 1]) * (x[i] - x[i - 1]))
+
+
+def _dropper(line: Catenary, study: DropperDamping, name: str) -> int:
+    for i, dropper in enumerate(line.droppers):
+        if abs(dropper.position - study.x_m) < 1e-3:
+            return i
+    raise InputError(f"case '{name}', key study.x_m", f"no dropper at {study.x_m:g} m", "Name a dropper's place.")
+
+
+def _largest(mesh: Discretised, passage: Passage, at: int, coefficient: float, law: Law) -> float:
+    """Largest force that compensates the taut dropper while it is slack [N]."""
+    damping = dict(mesh.catenary.damping) | {Kind.DROPPER: Rayleigh(stiffness_coefficient=coefficient)}
+    line = with_damping(mesh, damping)
+    dropper, bars = mesh.catenary.droppers[at], line.connectors
+    watched = ((dropper.upper, dropper.position), (dropper.lower, dropper.position))
+    history = run(law.line(line), replace(passage, watched=watched))
+    change = history.motion[0] - history.motion[1]
+    taut = bars.preload[at] + bars.stiffness[at] * change[:, 0]
+    taut += law.viscous_share * bars.damping[at] * change[:, 1]
+    return float(max(0.0, -taut.min()))
+
+
+def _chart(case: Case, study: DropperDamping, force: dict[str, Array]) -> Chart:
+    marks = [
+        Mark(label="printed: transition", axis="x", low=limit.lower, high=limit.upper)
+        for limit in case.limits
+        if limit.quantity == "dropper_transition_middle_s" and limit.lower is not None
+    ]
+    chosen = case.line.damping.droppers.stiffness_coefficient_s
+    if chosen > 0:
+        marks.append(Mark(label="chosen by the study", axis="x", low=chosen))
+    return Chart(
+        caption=f"Largest compensation force of the dropper at {study.x_m:g} m against its stiffness coefficient; "
+        f"what is below {LEAST_DRAWN:g} N is drawn there.",
+        alternative="; ".join(f"{name}: {v[0]:.4g} N to {v[-1]:.4g} N" for name, v in force.items()),
+        x_label="stiffness coefficient [s]",
+        y_label="largest compensation force [N]",
+        x_scale="log",
+        y_scale="log",
+        series=[
+            Series(
+                label=name,
+                style="line",
+                x=thinned(np.array(study.coefficients_s)),
+                y=thinned(np.maximum(values, LEAST_DRAWN)),
+            )
+            for name, values in force.items()
+        ],
+        marks=marks,
+    )

@@ -1,0 +1,34 @@
+"""Findings of a publication in a table: what it says, what was computed, and whether they agree."""
+
+from collections.abc import Mapping, Sequence
+
+from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.grading.case_grading import value_of
+from pantocheck.conformance.grading.verdicts import verdict_of
+from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.records.evaluation import Value
+from pantocheck.conformance.results.results_format import TextTable
+
+Values = Mapping[int, Mapping[str, Value]]
+
+
+def findings_table(limits: Sequence[Limit], computed: Values, printed: Values) -> TextTable:
+    """One row per limit of a case: the finding in words, printed and computed value, reproduced or not.
+
+    Parameters
+    ----------
+    limits : of the case; their notes are the findings in words
+    computed, printed : by pantograph and name
+    """
+    rows = []
+    for limit in limits:
+        value = value_of(limit, computed)
+        verdict = "not evaluated" if value is None else verdict_of(value, limit.lower, limit.upper)
+        said = {"pass": "reproduced", "fail": "not reproduced"}.get(verdict, verdict)
+        unit = QUANTITIES[limit.quantity].unit
+        rows.append([limit.note or limit.quantity, _text(value_of(limit, printed), unit), _text(value, unit), said])
+    return TextTable(caption="Findings", columns=["Finding", "Printed", "Computed", "Verdict"], rows=rows)
+
+
+def _text(value: float | None, unit: str) -> str:
+    return "-" if value is None else f"{value:.3g} {unit}".strip()

@@ -1,0 +1,91 @@
+"""What a damping model fitted to identified modes says beside the one that was put into the simulation."""
+
+from typing import Any
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.identification.damping.damping_results import damping_results
+from pantocheck.conformance.identification.damping.observability import RATIO_NEEDED, SHARE_NEEDED
+from pantocheck.conformance.identification.identification_files import ModeRow, mode_row
+from pantocheck.conformance.identification.identify import Identification
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.results.results_format import Chart, Mark, Series, TextTable
+from pantocheck.conformance.simulation.catenary_model import catenary
+from pantocheck.model import Catenary, Kind
+
+LEAST_DRAWN = 1e-3
+"""Ratio at which smaller ones, nought among them, are drawn on a logarithmic scale [-]."""
+
+
+def fit_report(case: Case, found: Identification) -> tuple[tuple[TextTable, ...], tuple[Chart, ...]]:
+    """Table of the coefficients put in and fitted, and the observability of every coefficient (the study's Figure 6).
+
+    Parameters
+    ----------
+    case : whose line was simulated
+    found : modes identified from its drops
+    """
+    line = catenary(case.line)
+    try:
+        results = fitted_damping(case, found)
+    except InputError as error:
+        return (TextTable(caption="Fitted damping", columns=["Why there is none"], rows=[[str(error)]]),), ()
+    return (_coefficients(results, line),), (_observability(results),)
+
+
+def fitted_damping(case: Case, found: Identification) -> dict[str, Any]:
+    """Damping model fitted to the modes identified from a case's drops, as `pantocheck fit-damping` has it.
+
+    Raises
+    ------
+    InputError : too few modes
+    """
+    rows = tuple(ModeRow.model_validate(mode_row(mode)) for mode in found.modes)
+    element = case.file.discretisation.element_m
+    return damping_results(rows, catenary(case.line), element, f"the modes of {case.id}")
+
+
+def _coefficients(results: dict[str, Any], line: Catenary) -> TextTable:
+    unit = {"stiffness": "s", "mass": "1/s"}
+    rows = []
+    for one in results["coefficients"]:
+        rayleigh = line.damping.get(Kind(one["kind"]))
+        put_in = 0.0 if rayleigh is None else getattr(rayleigh, f"{one['matrix']}_coefficient")
+        off = f"{100 * (one['value'] / put_in - 1):+.1f} %" if put_in else "-"
+        interval = f"{one['low_95']:.3g} to {one['high_95']:.3g}"
+        name = f"{one['kind'].replace('_', ' ')}, {one['matrix']} [{unit[one['matrix']]}]"
+        rows.append([name, f"{put_in:.4g}", f"{one['value']:.4g}", interval, off])
+    modal = (
+        " Modal bands of the case are not Rayleigh damping: the fit takes them for it." if line.modal_damping else ""
+    )
+    return TextTable(
+        caption="Rayleigh damping of the wires: put into the simulation, and fitted to the identified modes." + modal,
+        columns=["Coefficient", "Put in", "Fitted", "95 % interval", "Off by"],
+        rows=rows,
+    )
+
+
+def _observability(results: dict[str, Any]) -> Chart:
+    rows = results["observability"]
+    return Chart(
+        caption="Observability of every coefficient: its plausible value over the standard deviation with which the "
+        f"modes determine it. To be observable a coefficient must reach the dashed line, and make up at least "
+        f"{100 * SHARE_NEEDED:g} % of some mode's damping; what is below {LEAST_DRAWN:g} is drawn there.",
+        alternative="; ".join(
+            f"{row['kind']} {row['matrix']}: {row['plausible_over_std']:.3g}, "
+            f"{'observable' if row['observable'] else 'not observable'}"
+            for row in rows
+        ),
+        x_label="coefficient",
+        y_label="plausible value / std [-]",
+        y_scale="log",
+        ticks=[f"{row['kind'].replace('_', ' ')} {row['matrix']}" for row in rows],
+        series=[
+            Series(
+                label="all modes together",
+                style="bars",
+                x=[float(i) for i in range(len(rows))],
+                y=[max(row["plausible_over_std"], LEAST_DRAWN) for row in rows],
+            )
+        ],
+        marks=[Mark(label="needed", axis="y", low=RATIO_NEEDED)],
+    )

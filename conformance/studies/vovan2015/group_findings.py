@@ -1,0 +1,46 @@
+"""What the study measured of groups of span modes, computed from identified modes."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from pantocheck.conformance.identification.mode import Mode
+from pantocheck.conformance.records.evaluation import Value
+
+HIGHEST_HZ = 6.0
+"""Up to here the study sees no variation of damping after the third group."""
+
+
+def group_findings(modes: Sequence[Mode]) -> dict[str, Value]:
+    """Quantities of the groups of identified modes; what too few modes cannot tell is left out.
+
+    Parameters
+    ----------
+    modes : identified
+
+    Returns
+    -------
+    values by name of quantity; lists count groups from 1
+    """
+    upward = [mode for mode in modes if not mode.lateral]
+    certain = [mode for mode in upward if mode.certain]
+    counts, frequency, damping = [], [], []
+    number = 1
+    while members := [mode for mode in certain if mode.group == number]:
+        counts.append(float(sum(mode.group == number for mode in upward)))
+        frequency.append(float(np.median([mode.frequency for mode in members])))
+        damping.append(float(np.median([mode.damping_ratio for mode in members])))
+        number += 1
+    found: dict[str, Value] = {
+        "modes_in_group": tuple(counts),
+        "mode_frequency_Hz": tuple(frequency),
+        "damping_ratio": tuple(damping),
+    }
+    if certain:
+        found["largest_damping_ratio"] = max(mode.damping_ratio for mode in certain)
+    if len(damping) >= 3:
+        found["damping_decrease_pct"] = 100 * min(1 - damping[1] / damping[0], 1 - damping[2] / damping[1])
+        later = [z for f, z in zip(frequency[3:], damping[3:], strict=True) if f <= HIGHEST_HZ]
+        if later:
+            found["damping_rise_pct"] = 100 * (max(later) / damping[2] - 1)
+    return found

@@ -1,0 +1,123 @@
+"""A case's mass drops: simulated, identified, and what the groups of modes show."""
+
+import time
+
+import numpy as np
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.identification.identify import Identification, identify
+from pantocheck.conformance.records.evaluation import LINE
+from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.results.results_format import Chart, Mark, Series
+from pantocheck.conformance.results.traces import thinned
+from pantocheck.conformance.simulation.catenary_model import catenary
+from pantocheck.conformance.simulation.drop_simulation import mass_drop, simulated
+from pantocheck.conformance.studies.vovan2015.damping_models import lines, model_ratios
+from pantocheck.conformance.studies.vovan2015.fit_comparison import fit_report
+from pantocheck.conformance.studies.vovan2015.group_findings import group_findings
+from pantocheck.conformance.studies.vovan2015.provenance_table import origins
+from pantocheck.model import discretise
+from pantocheck.model.modal.modal_damping import modes_below
+
+
+def mass_drop_modes(case: Case) -> Outcome:
+    """Simulate a case's drops, identify the modes from their records, and report on groups, models and fit.
+
+    Parameters
+    ----------
+    case : with a mass drop
+    """
+    begin = time.perf_counter()
+    told, steps = mass_drop(case), case.file.discretisation
+    drops = [simulated(case, number) for number in range(1, len(told.drop) + 1)]
+    (found,) = identify(tuple(one.record for one in drops), told.highest_Hz)
+    bound = next((limit.upper for limit in case.limits if limit.quantity == "largest_damping_ratio"), None)
+    fit_tables, fit_charts = fit_report(case, found)
+    slack = [one.decay.last_slack for one in drops]
+    notes = [
+        f"Drop {i}: {test.mass_kg:g} kg on the {test.wire.replace('_', ' ')} at {test.x_m:g} m; "
+        + ("no dropper slack after the release." if last is None else f"droppers slack until {last:.2f} s after it.")
+        for i, (test, last) in enumerate(zip(told.drop, slack, strict=True), 1)
+    ]
+    return Outcome(
+        simulated_s=len(drops) * (told.hanging_s + told.record_s),
+        wall_s=time.perf_counter() - begin,
+        dt_s=steps.time_step_s,
+        element_m=steps.element_m,
+        notes=tuple(notes),
+        warnings=found.warnings,
+        findings={LINE: group_findings(found.modes)},
+        charts=(_against_frequency(case, found, bound), _boxes(found, bound), *fit_charts),
+        tables=(origins(case), *fit_tables),
+    )
+
+
+def _against_frequency(case: Case, found: Identification, bound: float | None) -> Chart:
+    """Identified damping, and that of the models computed from the line (the study's Figure 7)."""
+    told = mass_drop(case)
+    own = catenary(case.line)
+    mesh = discretise(own, case.file.discretisation.element_m)
+    shapes = modes_below(mesh, told.highest_Hz)
+    models = lines(case) or {"damping of the case": own}
+    certain = [mode for mode in found.modes if mode.certain and not mode.lateral]
+    return Chart(
+        caption="Damping ratio against frequency: identified from the drops with 95 % intervals, and computed from "
+        "each damping model.",
+        alternative="Damping ratio over frequency; the medians of the groups are in the table of quantities.",
+        x_label="frequency [Hz]",
+        y_label="damping ratio [%]",
+        series=[
+            Series(
+                label="identified",
+                style="points",
+                x=thinned(np.array([mode.frequency for mode in certain])),
+                y=thinned(np.array([100 * mode.damping_ratio for mode in certain])),
+                error=thinned(np.array([196 * mode.damping_ratio_std for mode in certain])),
+            ),
+            *(
+                Series(
+                    label=name,
+                    style="line",
+                    x=thinned(shapes.frequency),
+                    y=thinned(100 * model_ratios(mesh, shapes, line)),
+                )
+                for name, line in models.items()
+            ),
+        ],
+        marks=[*_bound(bound), *_printed_groups(case)],
+    )
+
+
+def _printed_groups(case: Case) -> list[Mark]:
+    """Where the limits put the groups of modes."""
+    return [
+        Mark(label=f"printed: group {limit.item}", axis="x", low=limit.lower, high=limit.upper)
+        for limit in case.limits
+        if limit.quantity == "mode_frequency_Hz" and limit.lower is not None and limit.upper is not None
+    ]
+
+
+def _boxes(found: Identification, bound: float | None) -> Chart:
+    """Damping by group (the study's Figure 5)."""
+    grouped = [mode for mode in found.modes if mode.certain and not mode.lateral and mode.group is not None]
+    return Chart(
+        caption="Identified damping ratios by group of span modes: quartiles and median.",
+        alternative="Box plot of damping ratios by group; the medians are in the table of quantities.",
+        x_label="group of span modes",
+        y_label="damping ratio [%]",
+        series=[
+            Series(
+                label="identified",
+                style="boxes",
+                x=[float(mode.group or 0) for mode in grouped],
+                y=thinned(np.array([100 * mode.damping_ratio for mode in grouped])),
+            )
+        ],
+        marks=_bound(bound),
+    )
+
+
+def _bound(bound: float | None) -> list[Mark]:
+    if bound is None:
+        return []
+    return [Mark(label=f"printed: all below {100 * bound:g} %", axis="y", low=100 * bound)]

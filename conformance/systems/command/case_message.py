@@ -1,0 +1,34 @@
+"""What a program is told of a case: every number of it, and none of its limits."""
+
+from typing import Any
+
+from pantocheck.conformance.cases.case import Case, without_keys
+from pantocheck.conformance.input_files.sourced_table import PROVENANCE
+
+
+def given(case: Case) -> object:
+    """A case as its `run` message holds it, see `messages.GivenCase`.
+
+    Notes and sources are withheld with the limits, because they speak of results.
+    """
+    file = case.file
+    content: dict[str, Any] = {
+        "id": case.id,
+        "title": file.title,
+        "speed_km_h": file.speed_km_h,
+        "evaluated_m": list(case.evaluated),
+        "filter": file.filter.model_dump(mode="json"),
+        "discretisation": file.discretisation.model_dump(mode="json"),
+        "line": case.line.model_dump(mode="json"),
+        "pantographs": [
+            {
+                **model.model_dump(mode="json", exclude={"title"}),
+                "uplift_force_N": use.uplift_force_N,
+                "target_mean_force_N": use.target_mean_force_N,
+                "start_m": case.start + case.offsets[-1] - behind,
+                "end_m": case.end + case.offsets[-1] - behind,
+            }
+            for use, model, behind in zip(file.pantograph, case.pantographs, case.offsets, strict=True)
+        ],
+    }
+    return without_keys(content, PROVENANCE)

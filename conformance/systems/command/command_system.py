@@ -1,0 +1,135 @@
+"""A program as a system under test: one process and one working folder for each case."""
+
+import tempfile
+import time
+from dataclasses import dataclass, replace
+from importlib.metadata import version
+from pathlib import Path
+from typing import Literal
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.systems.command.case_message import given
+from pantocheck.conformance.systems.command.delivery import DeliveryRefused, outcome_of
+from pantocheck.conformance.systems.command.program import Program, ProgramFailed
+from pantocheck.conformance.systems.command.program_arguments import arguments
+from pantocheck.conformance.systems.command.protocol_messages import (
+    PROTOCOL,
+    AnswerRefused,
+    Delivered,
+    Errored,
+    Skipped,
+    Started,
+    parsed,
+    written,
+)
+
+START_LIMIT = 120.0
+"""Time a program has for its first answer [s]; large environments take half a minute to start."""
+RUN = 1
+"""Number of the only run of a process; the protocol leaves room for more."""
+
+
+@dataclass(frozen=True)
+class Command:
+    """A program that speaks the protocol.
+
+    Parameters
+    ----------
+    arguments : program and arguments
+    timeout_s : time a case may take [s]
+    name, version : as the program gives them
+    broken : why it cannot run any case; None if it started
+    """
+
+    arguments: tuple[str, ...]
+    timeout_s: float
+    name: str
+    version: str
+    broken: str | None = None
+    kind: Literal["command"] = "command"
+
+    def run(self, case: Case) -> Outcome:
+        """Run a case in a fresh process; whatever goes wrong there is the error of this case alone."""
+        if self.broken is not None:
+            return Outcome(errored=self.broken)
+        with tempfile.TemporaryDirectory(prefix="pantocheck-", ignore_cleanup_errors=True) as name:
+            folder = Path(name)
+            try:
+                with Program(self.arguments, folder) as program:
+                    started(program, self.timeout_s)
+                    begin = time.monotonic()
+                    program.send(
+                        written("run", id=RUN, folder=str(folder), time_limit_s=self.timeout_s, case=given(case))
+                    )
+                    answer = _answer(program.line(self.timeout_s))
+                    wall = time.monotonic() - begin
+                    program.send(written("stop"))
+                    warnings = () if program.ended() else (f"{self.name} did not end when told to, and was ended",)
+                return replace(_outcome(case, answer, folder, wall), warnings=warnings)
+            except (ProgramFailed, AnswerRefused, DeliveryRefused) as error:
+                return Outcome(errored=f"{self.name}: {error}")
+            except InputError as error:
+                return Outcome(errored=f"{self.name}: {error.where}: {error.found}")
+
+
+def _answer(line: bytes) -> Delivered | Skipped | Errored:
+    answer = parsed(line)
+    if isinstance(answer, Started):
+        raise AnswerRefused("its answer to 'run' is 'started'")
+    if answer.id != RUN:
+        raise AnswerRefused(f"its answer is to run {answer.id}, asked was run {RUN}")
+    return answer
+
+
+def _outcome(case: Case, answer: Delivered | Skipped | Errored, folder: Path, wall: float) -> Outcome:
+    if isinstance(answer, Skipped):
+        return Outcome(skipped=answer.reason)
+    if isinstance(answer, Errored):
+        return Outcome(errored=answer.reason)
+    return outcome_of(case, answer, folder, wall)
+
+
+def started(program: Program, limit: float) -> Started:
+    """Greet a program.
+
+    Raises
+    ------
+    ProgramFailed, AnswerRefused : it did not answer as it should
+    """
+    program.send(written("start", protocol=PROTOCOL, suite_version=version("pantocheck")))
+    answer = parsed(program.line(min(limit, START_LIMIT)))
+    if not isinstance(answer, Started):
+        raise AnswerRefused(f"its first answer is {answer.message!r}, not 'started'")
+    if answer.protocol != PROTOCOL:
+        raise AnswerRefused(f"it speaks {answer.protocol!r}, the suite {PROTOCOL!r}")
+    return answer
+
+
+def command(text: str, base: Path, timeout: float) -> Command:
+    """The program of a command line, started once to learn its name.
+
+    Parameters
+    ----------
+    text : what follows `command:`
+    base : folder that file names in it are relative to
+    timeout : time a case may take [s]
+
+    Raises
+    ------
+    InputError : there is no such program
+    """
+    parts = arguments(text, base)
+    name = Path(parts[0]).name
+    try:
+        with (
+            tempfile.TemporaryDirectory(prefix="pantocheck-", ignore_cleanup_errors=True) as folder,
+            Program(parts, Path(folder)) as program,
+        ):
+            identity = started(program, timeout)
+            program.send(written("stop"))
+            program.ended()
+    except (ProgramFailed, AnswerRefused) as error:
+        return Command(parts, timeout, name, "", broken=f"{name}: {error}")
+    return Command(parts, timeout, identity.name, identity.version)

@@ -1,0 +1,142 @@
+"""The reference simulator as a system under test, in process."""
+
+import time
+from dataclasses import dataclass, replace
+from importlib.metadata import version
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.records.evaluation import pantograph_signals
+from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.simulation.catenary_model import catenary
+from pantocheck.conformance.simulation.pantograph_model import pantograph, starts, watched_supports
+from pantocheck.conformance.simulation.static_quantities import along_span, static_quantities
+from pantocheck.conformance.simulation.uplift_tuning import tuned
+from pantocheck.model import Discretised, History, Passage, discretise, run
+from pantocheck.model.dynamics.active_window import causal_reach
+from pantocheck.model.statics.elasticity import static_uplift
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run of a case: its record, and what it took to make it.
+
+    Parameters
+    ----------
+    record : of the run
+    simulated_s, wall_s : time that was simulated, and that it took [s]
+    """
+
+    record: Record
+    simulated_s: float
+    wall_s: float
+
+
+@dataclass(frozen=True)
+class ReferenceSimulator:
+    """Runs a case at its own discretisation and, for the discretisation error, with both steps halved."""
+
+    name: str = "Pantocheck reference simulator"
+    version: str = version("pantocheck")
+    kind: Literal["builtin"] = "builtin"
+
+    def run(self, case: Case) -> Outcome:
+        """Run a case."""
+        steps = case.file.discretisation
+        coarse, uplift_forces = _outcome(case, steps.element_m, steps.time_step_s)
+        fine, _ = _outcome(case, steps.element_m / 2, steps.time_step_s / 2, uplift_forces)
+        return replace(coarse, refined=fine)
+
+    def run_unrefined(self, case: Case) -> Outcome:
+        """Run a case once, at its own discretisation."""
+        steps = case.file.discretisation
+        return _outcome(case, steps.element_m, steps.time_step_s)[0]
+
+
+def _outcome(
+    case: Case, element: float, step: float, uplift_forces: tuple[float, ...] | None = None
+) -> tuple[Outcome, tuple[float, ...]]:
+    return run_line(case, discretise(catenary(case.line), element), element, step, uplift_forces)
+
+
+def run_line(
+    case: Case, line: Discretised, element: float, step: float, uplift_forces: tuple[float, ...] | None = None
+) -> tuple[Outcome, tuple[float, ...]]:
+    """Run a case on a line that is discretised already.
+
+    Parameters
+    ----------
+    case : to run
+    line : its line
+    element, step : length of an element [m] and time step [s], as reported
+    uplift_forces : of the pantographs [N]; None: those of the case, tuned if it asks for a mean
+
+    Returns
+    -------
+    outcome, uplift forces
+    """
+    outcome = Outcome(static=static_quantities(case, line), dt_s=step, element_m=element)
+    if case.is_static:
+        return outcome, ()
+    uses = case.file.pantograph
+    begin = uplift_forces or tuple(use.uplift_force_N or use.target_mean_force_N or 0.0 for use in uses)
+    run(line, replace(passage_of(case, line, step, begin), duration=0.0))  # compiles the kernels, not part of the run
+    made, forces = tuned(
+        lambda forces: _run(case, line, step, forces),
+        lambda made: _means(case, made),
+        begin,
+        [None if uplift_forces else use.target_mean_force_N for use in uses],
+    )
+    return replace(outcome, record=made.record, simulated_s=made.simulated_s, wall_s=made.wall_s), forces
+
+
+def _run(case: Case, line: Discretised, step: float, uplift_forces: tuple[float, ...]) -> Run:
+    passage = passage_of(case, line, step, uplift_forces)
+    begin = time.perf_counter()
+    history = run(line, passage)
+    return Run(record_of(case, passage, history), passage.duration, time.perf_counter() - begin)
+
+
+def _means(case: Case, made: Run) -> NDArray[np.float64]:
+    """Mean contact force of every pantograph over the samples that are graded [N]."""
+    low_pass, numbers = case.file.filter.low_pass, range(1, made.record.pantographs + 1)
+    return np.array([pantograph_signals(made.record, i, low_pass).delivered.mean() for i in numbers])
+
+
+def passage_of(case: Case, line: Discretised, step: float, uplift_forces: tuple[float, ...]) -> Passage:
+    """The passage of a case with given uplift forces, on a line that is discretised already."""
+    places = along_span(case.evaluated[0], case.line.geometry.span_m)
+    models = []
+    for file, force in zip(case.pantographs, uplift_forces, strict=True):
+        height = float(static_uplift(line, places, force).mean()) + force / file.contact.stiffness_N_m
+        models.append(pantograph(file, force, height))
+    duration = (case.end - case.start) / case.speed
+    wanted = case.file.discretisation.reach_m
+    causal = causal_reach(line, case.speed, duration)
+    return Passage(
+        pantographs=tuple(models),
+        start=starts(case),
+        speed=case.speed,
+        duration=duration,
+        time_step=step,
+        watched=watched_supports(case, line),
+        reach=causal if wanted is None else min(wanted, causal),
+    )
+
+
+def record_of(case: Case, passage: Passage, history: History) -> Record:
+    """The record of a case's passage."""
+    return Record(
+        time=history.time,
+        speed=passage.speed,
+        position=history.position,
+        force=history.force,
+        evaluated=case.evaluated,
+        contact_height=history.height,
+        support_position=np.array([position for _, position in passage.watched]),
+        support_uplift=history.motion[:, :, 0],
+    )

@@ -1,0 +1,88 @@
+"""From the description of a line to finite elements at rest."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pantocheck.model.catenary import Catenary, Kind, Rayleigh
+from pantocheck.model.fem.beams import Beams, build_beams
+from pantocheck.model.fem.connectors import Connectors, build_connectors, lump
+from pantocheck.model.fem.mesh import Mesh, build_mesh
+from pantocheck.model.statics.initial_state import InitialState, initial_state
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Discretised:
+    """A line in finite elements, at rest.
+
+    Parameters
+    ----------
+    catenary : what it was made from
+    mesh : stations and rows
+    beams : rows of beams with everything lumped onto them
+    connectors : droppers and clamps
+    state : initial state
+    """
+
+    catenary: Catenary
+    mesh: Mesh
+    beams: Beams
+    connectors: Connectors
+    state: InitialState
+
+    @property
+    def contact_rows(self) -> list[int]:
+        """Rows of the contact wires' vertical field."""
+        return [self.mesh.row_of[wire.name, "z"] for wire in self.catenary.contact_wires]
+
+
+def discretise(catenary: Catenary, element_length: float, places: tuple[float, ...] = ()) -> Discretised:
+    """Finite elements and initial state of a line.
+
+    Parameters
+    ----------
+    catenary : the line
+    element_length : longest element [m]
+    places : where stations are wanted besides those the line itself needs, as for loads and sensors [m]
+
+    Returns
+    -------
+    the discretised line
+
+    Raises
+    ------
+    NoInitialState : the prescribed geometry has no equilibrium
+    """
+    mesh = build_mesh(catenary, element_length, places)
+    beams = build_beams(catenary, mesh)
+    state = initial_state(catenary, mesh, beams)
+    lump(catenary, mesh, beams)
+    return Discretised(catenary, mesh, beams, build_connectors(catenary, mesh, state), state)
+
+
+def with_damping(line: Discretised, damping: Mapping[Kind, Rayleigh]) -> Discretised:
+    """The same line with other damping; its initial state does not depend on it.
+
+    Parameters
+    ----------
+    line : the discretised line
+    damping : by kind of component
+
+    Returns
+    -------
+    the line with that damping
+    """
+    catenary = replace(line.catenary, damping=dict(damping))
+    beams = build_beams(catenary, line.mesh)
+    lump(catenary, line.mesh, beams)
+    return replace(line, catenary=catenary, beams=beams, connectors=build_connectors(catenary, line.mesh, line.state))
+
+
+def never_slack(line: Discretised) -> Discretised:
+    """The same line with droppers that push as well as they pull: wrong, and a measure of what slackening does."""
+    connectors = line.connectors._replace(unilateral=np.zeros_like(line.connectors.unilateral))
+    return replace(line, connectors=connectors)

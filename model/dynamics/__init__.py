@@ -1,0 +1,1 @@
+"""Time integration: Newmark steps of wires, connectors, contacts and modal dampers."""

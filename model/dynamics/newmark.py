@@ -1,0 +1,115 @@
+"""The time step: Newmark average acceleration, waves kept in time (`dispersion`), unilateral droppers and contact.
+
+The rows of beams are factored once. Connectors, contacts and modal dampers are scalar forces whose effect within the
+step is known in closed form, so each is solved exactly in turn, and the turns are repeated until no force changes any
+more. Forces far apart do not feel each other within a step, so two or three turns do.
+"""
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from pantocheck.model.dynamics.active_window import hold, moving_part
+from pantocheck.model.dynamics.block_tridiagonal import solve
+from pantocheck.model.dynamics.connector_step import larger, predict_connectors, turn_connectors
+from pantocheck.model.dynamics.contact_step import correct_train, predict_train, turn_contacts
+from pantocheck.model.dynamics.modal_step import predict_modes, turn_modes
+from pantocheck.model.dynamics.state import Line, Motion, Train, Workspace
+from pantocheck.model.dynamics.wire_step import correct_wires, predict_wires, wire_forces
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+FORCE_TOLERANCE = 1e-9
+"""A step has converged when no force changed by more than this in a turn [N]; forces are of the order of 100 N."""
+MOST_TURNS = 200
+"""After so many turns a step is given up."""
+
+
+@njit(cache=True)
+def step(line: Line, motion: Motion, train: Train, work: Workspace) -> int:
+    """Advance line and pantographs by one time step, in place.
+
+    Parameters
+    ----------
+    line : Line
+    motion : Motion
+    train : Train, with no pantograph at all for a free line
+    work : Workspace
+
+    Returns
+    -------
+    turns taken; zero when the forces did not converge
+    """
+    dt = line.time_step
+    w, r = motion.w[2], motion.r[2]
+    first, last = moving_part(line, train)
+    predict_wires(dt, motion, first, last)
+    wire_forces(line, motion, work, first, last)
+    hold(motion, first, last)
+    predict_connectors(line, motion, work, first, last)
+    predict_train(line, motion, train, work)
+    w[line.load_row, line.load_station] += motion.load[0]
+    predict_modes(line, motion, work)
+    solve(line.factor, first, last, w, r)
+    turns = 0
+    while turns < MOST_TURNS:
+        turns += 1
+        largest = turn_contacts(line, train, work, w, r, first, last)
+        largest = larger(largest, turn_connectors(line, motion, work, w, r, first, last))
+        largest = larger(largest, turn_modes(line, motion, work, w, r))
+        if largest < FORCE_TOLERANCE:
+            break
+    correct_wires(dt, motion, first, last)
+    correct_train(dt, train)
+    # A comparison that is also false for NaN.
+    return turns if largest < FORCE_TOLERANCE else 0
+
+
+@njit(cache=True)
+def march(
+    line: Line,
+    motion: Motion,
+    train: Train,
+    work: Workspace,
+    load: Array,
+    watch_row: Indices,
+    watch_station: Indices,
+    contact: Array,
+    height: Array,
+    watched: Array,
+    tension: Array,
+) -> int:
+    """Advance by as many steps as the outputs have room for.
+
+    Parameters
+    ----------
+    line, motion, train, work : as for `step`
+    load : (T,) external load [N]
+    watch_row, watch_station : (U,) where motion is recorded
+    contact : (T, P) contact force in total, filled [N]
+    height : (T, P) of the head, filled [m]
+    watched : (T, U, 3) displacement, velocity, acceleration at the watched stations, filled [m, m/s, m/s2]
+    tension : (T, N) of the first connectors, as many as there is room for, filled [N]
+
+    Returns
+    -------
+    steps completed
+    """
+    for n in range(load.size):
+        motion.load[0] = load[n]
+        if step(line, motion, train, work) == 0:
+            return n
+        for p in range(train.position.size):
+            total, head = 0.0, 0.0
+            for k in range(train.contact.shape[1]):
+                total += train.contact[p, k]
+            for i in range(train.z.shape[2]):
+                head += train.head[p, i] * train.z[0, p, i]
+            contact[n, p], height[n, p] = total, head
+        for u in range(watch_row.size):
+            for i in range(3):
+                watched[n, u, i] = motion.w[i, watch_row[u], watch_station[u]]
+        for d in range(tension.shape[1]):
+            tension[n, d] = motion.tension[d]
+    return int(load.size)

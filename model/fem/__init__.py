@@ -1,0 +1,1 @@
+"""Finite elements of a line: beams, mesh, connectors, global matrices."""

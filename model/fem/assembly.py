@@ -1,0 +1,164 @@
+"""Global sparse matrices of a line: what statics, modes and independent checks solve with.
+
+Unknowns are ordered station by station with the rows interleaved, (w, r) each, so that the matrices are banded.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from pantocheck.model.discretised_line import Discretised
+from pantocheck.model.dynamics.mass_correction import compensation
+from pantocheck.model.fem import beam
+from pantocheck.model.fem.beams import by_station, wire_matrices
+from pantocheck.model.fem.residual_flexibility import bubble_flexibility, local_flexibility
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Matrices:
+    """Matrices of the free unknowns with every dropper taut.
+
+    Parameters
+    ----------
+    mass, damping, stiffness : (n, n)
+    free : (n,) index of each kept unknown among all of them
+    """
+
+    mass: sp.csc_array
+    damping: sp.csc_array
+    stiffness: sp.csc_array
+    free: NDArray[np.int64]
+
+
+def unknown(line: Discretised, row: int, station: int, slope: int = 0) -> int:
+    """Index of an unknown among all of them."""
+    return 2 * (station * line.mesh.rows + row) + slope
+
+
+def order(line: Discretised) -> NDArray[np.int64]:
+    """For every unknown in global order, its place in a (rows, stations, 2) array laid flat."""
+    rows, stations = line.mesh.rows, line.mesh.position.size
+    return np.arange(rows * stations * 2).reshape(rows, stations, 2).transpose(1, 0, 2).ravel()
+
+
+def free_unknowns(line: Discretised) -> NDArray[np.int64]:
+    """Indices of the unknowns that can move and that some wire carries."""
+    carried = np.zeros_like(line.beams.free)
+    present = line.beams.mass_per_length > 0
+    carried[:, :-1] |= present[:, :, None]
+    carried[:, 1:] |= present[:, :, None]
+    return np.flatnonzero((line.beams.free & carried).ravel()[order(line)])
+
+
+def assemble(line: Discretised) -> Matrices:
+    """Mass, damping and stiffness of the line with every dropper taut.
+
+    Parameters
+    ----------
+    line : the discretised line
+
+    Returns
+    -------
+    matrices of the free unknowns
+    """
+    beams, free = line.beams, free_unknowns(line)
+    wires = [wire_matrices(beams, row) for row in range(line.mesh.rows)]
+    place = order(line)
+    stiffness = sp.block_diag([k for k, _ in wires], format="csr")
+    mass = sp.block_diag([m for _, m in wires], format="csr")
+    damping = sp.block_diag(
+        [
+            a * k + b * m
+            for (k, m), a, b in zip(wires, beams.stiffness_coefficient, beams.mass_coefficient, strict=True)
+        ],
+        format="csr",
+    )
+    joint = connector_directions(line)
+
+    def keep(wire: sp.csr_array, lumped: Array, connector: Array) -> sp.csc_array:
+        on_deflections = np.stack([lumped, np.zeros_like(lumped)], axis=-1).ravel()
+        whole = (wire + sp.diags_array(on_deflections))[place][:, place] + joint @ sp.diags_array(connector) @ joint.T
+        return sp.csc_array(whole[free][:, free])
+
+    return Matrices(
+        mass=keep(mass, beams.lumped_mass, np.zeros_like(line.connectors.stiffness)),
+        damping=keep(damping, beams.lumped_damping, line.connectors.damping),
+        stiffness=keep(stiffness, beams.lumped_stiffness, line.connectors.stiffness),
+        free=free,
+    )
+
+
+def stepping_mass(line: Discretised, time_step: float) -> sp.csc_array:
+    """Mass of the line that a time step works with, see `dispersion`; for steps that are written out plainly.
+
+    Parameters
+    ----------
+    line : the discretised line
+    time_step : [s]
+
+    Returns
+    -------
+    (n, n) for the free unknowns [kg]
+    """
+    rows = range(line.mesh.rows)
+    taken = sp.block_diag([by_station(compensation(line.beams, row, time_step)) for row in rows], format="csr")
+    matrices, place = assemble(line), order(line)
+    return sp.csc_array(matrices.mass - taken[place][:, place][matrices.free][:, matrices.free])
+
+
+def connector_directions(line: Discretised) -> sp.csr_array:
+    """Elongation of each connector per unknown, over all unknowns: (unknowns, connectors)."""
+    connectors = line.connectors
+    number, row = np.nonzero(connectors.coefficient)
+    at = [unknown(line, int(r), int(connectors.station[n])) for n, r in zip(number, row, strict=True)]
+    size = line.beams.free.size
+    return sp.csr_array((connectors.coefficient[number, row], (at, number)), shape=(size, len(connectors.station)))
+
+
+def point_load(line: Discretised, row: int, position: float) -> Array:
+    """Unknowns' shares in the deflection of one row at any place; as a load: a unit force there.
+
+    Parameters
+    ----------
+    line : the discretised line
+    row : which row
+    position : [m]
+
+    Returns
+    -------
+    (unknowns,) [-, m]
+    """
+    x = line.mesh.position
+    e = int(np.clip(np.searchsorted(x, position) - 1, 0, x.size - 2))
+    h = x[e + 1] - x[e]
+    share = np.zeros(line.beams.free.size)
+    n = beam.shape((position - x[e]) / h, h)
+    for i in range(2):
+        share[unknown(line, row, e + i, 0)] = n[2 * i]
+        share[unknown(line, row, e + i, 1)] = n[2 * i + 1]
+    return share
+
+
+def contact_stiffness(line: Discretised, row: int, position: float, penalty: float) -> float:
+    """Penalty and local flexibility of the element under a place, in series: what a step written out plainly needs.
+
+    Parameters
+    ----------
+    line : the discretised line
+    row : of a contact wire
+    position : [m]
+    penalty : stiffness of the contact [N/m]
+
+    Returns
+    -------
+    [N/m]
+    """
+    x, beams = line.mesh.position, line.beams
+    e = int(np.clip(np.searchsorted(x, position) - 1, 0, x.size - 2))
+    h = float(x[e + 1] - x[e])
+    bubble = bubble_flexibility(h, float(beams.tension[row, e]), float(beams.bending_stiffness[row, e]))
+    return 1 / (1 / penalty + local_flexibility(bubble, (position - float(x[e])) / h))

@@ -1,0 +1,103 @@
+"""Stations along the line, and the rows of unknowns that hang on them.
+
+A row is one field (vertical z or lateral y) of the wires of one kind whose stretches do not overlap: all stitch wires
+share a row, two contact wires take two. Within a row every station has a deflection w and a slope r. Rows are coupled
+by connectors only, so each row is a tensioned beam of its own.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pantocheck.model.catenary import Catenary, Kind, Wire
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Stations and rows.
+
+    Parameters
+    ----------
+    position : (stations,) along the track [m]
+    row_kind : (rows,) kind of the wires of each row
+    row_field : (rows,) "z" or "y"
+    row_of : row by wire name and field
+    """
+
+    position: Array
+    row_kind: tuple[Kind, ...]
+    row_field: tuple[str, ...]
+    row_of: dict[tuple[str, str], int]
+
+    @property
+    def rows(self) -> int:
+        """Number of rows."""
+        return len(self.row_kind)
+
+    def station(self, position: float) -> int:
+        """Index of the station at a place where one was asked for [m]."""
+        nearest = int(np.argmin(np.abs(self.position - position)))
+        if abs(self.position[nearest] - position) > 1e-6:
+            raise KeyError(f"no station at {position} m")
+        return nearest
+
+
+def build_mesh(catenary: Catenary, element_length: float, places: tuple[float, ...] = ()) -> Mesh:
+    """Stations at every connector, with elements no longer than asked for in between.
+
+    Parameters
+    ----------
+    catenary : the line
+    element_length : longest element [m]
+    places : further places that are to be stations [m]
+
+    Returns
+    -------
+    the mesh
+    """
+    fields = ("z", "y") if catenary.has_lateral_field else ("z",)
+    rows: list[list[Wire]] = []
+    for wire in catenary.wires:
+        for row in rows:
+            if row[0].kind is wire.kind and all(wire.end < other.start or other.end < wire.start for other in row):
+                row.append(wire)
+                break
+        else:
+            rows.append([wire])
+    row_of = {
+        (wire.name, name): index + len(rows) * shift
+        for shift, name in enumerate(fields)
+        for index, row in enumerate(rows)
+        for wire in row
+    }
+    return Mesh(
+        position=_stations(_breakpoints(catenary, places), element_length),
+        row_kind=tuple(row[0].kind for row in rows) * len(fields),
+        row_field=tuple(name for name in fields for _ in rows),
+        row_of=row_of,
+    )
+
+
+def _breakpoints(catenary: Catenary, wanted: tuple[float, ...]) -> Array:
+    places = [*wanted, *(place for wire in catenary.wires for place in (wire.start, wire.end))]
+    changes = [change for wire in catenary.wires for change in wire.tension_changes]
+    places += [place for change in changes for place in (change.start, change.end)]
+    places += [dropper.position for dropper in catenary.droppers] + [arm.position for arm in catenary.steady_arms]
+    places += [support.position for support in catenary.messenger_supports]
+    places += [clamp.position for clamp in catenary.clamps]
+    ordered = np.unique(np.array(places))
+    # Places computed along different sums differ in the last bits; a sliver of an element would ruin the conditioning.
+    kept: Array = ordered[np.append(True, np.diff(ordered) > 1e-6)]
+    return kept
+
+
+def _stations(breakpoints: Array, element_length: float) -> Array:
+    pieces = [
+        np.linspace(start, end, max(1, int(np.ceil((end - start) / element_length - 1e-9))), endpoint=False)
+        for start, end in pairwise(breakpoints)
+    ]
+    return np.concatenate([*pieces, breakpoints[-1:]])

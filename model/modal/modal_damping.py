@@ -1,0 +1,81 @@
+"""Modal damping on chosen modes, the Rayleigh part compensated there.
+
+C = C_R + M Phi diag(2 zeta_j w_j - phi_j' C_R phi_j) Phi' M   (Bianchi et al. 2010). The second term gives the chosen
+modes exactly their ratios and leaves all others alone. As a matrix it is full, but low in rank: it is never formed.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pantocheck.model.discretised_line import Discretised
+from pantocheck.model.fem.assembly import assemble, order
+from pantocheck.model.modal.modes import Modes, modes
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ModalTerms:
+    """The low-rank part of the damping: sum over modes of damping times weight weight'.
+
+    Parameters
+    ----------
+    damping : (n,) 2 zeta w less what the Rayleigh part gives the mode [1/s]
+    weight : (n, rows, stations, 2) M phi [kg^1/2]
+    """
+
+    damping: Array
+    weight: Array
+
+
+def modal_terms(line: Discretised) -> ModalTerms:
+    """The low-rank part of a line's damping; of rank zero when the line asks for none.
+
+    Parameters
+    ----------
+    line : the discretised line
+
+    Returns
+    -------
+    the terms
+    """
+    bands = line.catenary.modal_damping
+    if not bands:
+        return ModalTerms(np.zeros(0), np.zeros((0, *line.beams.free.shape)))
+    matrices = assemble(line)
+    shapes = modes_below(line, max(band.to_frequency for band in bands))
+    place = order(line)[matrices.free]
+    vectors = shapes.shape.reshape(len(shapes.frequency), -1)[:, place]
+    damping, weight = [], []
+    for frequency, vector in zip(shapes.frequency, vectors, strict=True):
+        for band in bands:
+            if band.from_frequency <= frequency < band.to_frequency:
+                rayleigh = vector @ (matrices.damping @ vector)
+                damping.append(4 * np.pi * band.damping_ratio * frequency - rayleigh)
+                whole = np.zeros(line.beams.free.size)
+                whole[place] = matrices.mass @ vector
+                weight.append(whole.reshape(line.beams.free.shape))
+    return ModalTerms(np.array(damping), np.array(weight).reshape(-1, *line.beams.free.shape))
+
+
+def modes_below(line: Discretised, frequency: float) -> Modes:
+    """All modes of a line below a frequency.
+
+    Parameters
+    ----------
+    line : the discretised line
+    frequency : [Hz]
+
+    Returns
+    -------
+    the modes
+    """
+    count, most = 16, assemble(line).free.size - 2
+    while True:
+        found = modes(line, min(count, most))
+        if found.frequency[-1] >= frequency or count >= most:
+            inside = found.frequency < frequency
+            return Modes(found.frequency[inside], found.shape[inside])
+        count *= 2

@@ -1,0 +1,134 @@
+"""Modes of the line about its initial state, every dropper taut."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse.linalg import eigsh
+
+from pantocheck.model.catenary import Kind, Rayleigh
+from pantocheck.model.discretised_line import Discretised, with_damping
+from pantocheck.model.fem.assembly import assemble, order
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Real modes of the undamped line, mass-normalised.
+
+    Parameters
+    ----------
+    frequency : (n,) ascending [Hz]
+    shape : (n, rows, stations, 2) deflection and slope [kg^-1/2, kg^-1/2 m^-1]
+    """
+
+    frequency: Array
+    shape: Array
+
+
+@dataclass(frozen=True)
+class ComponentEnergies:
+    """How the energy of each mode is shared out over the kinds of component.
+
+    Parameters
+    ----------
+    kinds : the kinds, in the order of the columns
+    stiffness : (n, kinds) phi' K_e phi, adding up to (2 pi f)^2 [1/s2]
+    mass : (n, kinds) phi' M_e phi, adding up to 1 [-]
+    """
+
+    kinds: tuple[Kind, ...]
+    stiffness: Array
+    mass: Array
+
+
+def modes(line: Discretised, count: int) -> Modes:
+    """The lowest modes of a line.
+
+    Parameters
+    ----------
+    line : the discretised line
+    count : how many
+
+    Returns
+    -------
+    the modes
+    """
+    matrices = assemble(line)
+    # A fixed start vector makes the iteration, and with it the last digits, the same every time.
+    begin = np.ones(matrices.free.size)
+    w2, vectors = eigsh(matrices.stiffness, count, matrices.mass, sigma=0.0, v0=begin)
+    ascending = np.argsort(w2)
+    shape = np.zeros((count, line.beams.free.size))
+    shape[:, order(line)[matrices.free]] = _signed(vectors[:, ascending].T)
+    return Modes(np.sqrt(w2[ascending]) / (2 * np.pi), shape.reshape(count, *line.beams.free.shape))
+
+
+def _signed(vectors: Array) -> Array:
+    """Each shape turned so that its largest entry is positive."""
+    largest = np.take_along_axis(vectors, np.abs(vectors).argmax(axis=1)[:, None], axis=1)
+    signed: Array = vectors * np.sign(largest)
+    return signed
+
+
+def deflection_at(line: Discretised, shapes: Modes, row: int, position: float) -> Array:
+    """Deflection of every mode at one place of one row.
+
+    Parameters
+    ----------
+    line : the discretised line
+    shapes : its modes
+    row : which row
+    position : at a station [m]
+
+    Returns
+    -------
+    (n,) [kg^-1/2]
+    """
+    return np.asarray(shapes.shape[:, row, line.mesh.station(position), 0])
+
+
+def component_energies(line: Discretised, shapes: Modes) -> ComponentEnergies:
+    """Share of every kind of component in the energies of the modes.
+
+    Parameters
+    ----------
+    line : the discretised line
+    shapes : its modes
+
+    Returns
+    -------
+    the energies; a damping model a_e K_e + b_e M_e gives mode j the ratio sum (a_e k_ej + b_e m_ej) / (2 omega_j)
+    """
+    free = assemble(line).free
+    vectors = shapes.shape.reshape(len(shapes.frequency), -1)[:, order(line)[free]]
+    kinds = tuple(Kind)
+    stiffness, mass = (np.zeros((len(vectors), len(kinds))) for _ in range(2))
+    dampers = _energy(with_damping(line, {}), vectors)
+    for k, kind in enumerate(kinds):
+        # The damping matrix with one coefficient set to one is that component's stiffness or mass.
+        stiffness[:, k] = _energy(with_damping(line, {kind: Rayleigh(stiffness_coefficient=1.0)}), vectors) - dampers
+        mass[:, k] = _energy(with_damping(line, {kind: Rayleigh(mass_coefficient=1.0)}), vectors) - dampers
+    return ComponentEnergies(kinds, stiffness, mass)
+
+
+def _energy(line: Discretised, vectors: Array) -> Array:
+    return np.asarray(np.einsum("ji,ij->j", vectors, assemble(line).damping @ vectors.T))
+
+
+def damping_ratios(line: Discretised, shapes: Modes) -> Array:
+    """Damping ratio of every mode, its coupling with others through the damping left out: phi' C phi / (2 omega).
+
+    Parameters
+    ----------
+    line : the discretised line, with its damping
+    shapes : its modes
+
+    Returns
+    -------
+    (n,) [-]
+    """
+    free = assemble(line).free
+    vectors = shapes.shape.reshape(len(shapes.frequency), -1)[:, order(line)[free]]
+    return _energy(line, vectors) / (4 * np.pi * shapes.frequency)

@@ -1,0 +1,1 @@
+"""Static states of a line: initial state, lateral state, static solver, elasticity."""

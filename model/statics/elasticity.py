@@ -1,0 +1,48 @@
+"""Static checks of a line: elasticity, working height, wave propagation."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pantocheck.model.discretised_line import Discretised
+from pantocheck.model.fem.assembly import point_load
+from pantocheck.model.statics.static_solver import Statics
+
+Array = NDArray[np.float64]
+
+
+def static_uplift(line: Discretised, position: Array, force: float) -> Array:
+    """Uplift of the contact wire under a static force at each place in turn, droppers slackening as they do.
+
+    Parameters
+    ----------
+    line : the discretised line
+    position : (n,) [m]
+    force : upwards, shared by the contact wires [N]
+
+    Returns
+    -------
+    (n,) uplift where the force acts, the mean over the contact wires [m]
+    """
+    statics = Statics(line)
+    rows = line.contact_rows
+    uplift = np.empty(len(position))
+    for i, x in enumerate(position):
+        at = [point_load(line, row, float(x)) for row in rows]
+        displacement = statics.deflection(force / len(rows) * np.sum(at, axis=0)).displacement
+        flat = displacement.transpose(1, 0, 2).ravel()
+        uplift[i] = np.mean([share @ flat for share in at])
+    return uplift
+
+
+def non_uniformity(elasticity: Array) -> float:
+    """Non-uniformity of the elasticity along a span: (max - min) / (max + min).
+
+    Parameters
+    ----------
+    elasticity : (n,) along a span, in any unit
+
+    Returns
+    -------
+    [-]
+    """
+    return float((elasticity.max() - elasticity.min()) / (elasticity.max() + elasticity.min()))

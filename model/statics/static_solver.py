@@ -1,0 +1,93 @@
+"""Static deflection under loads, with droppers going slack."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+from scipy.sparse.linalg import splu
+
+from pantocheck.model.discretised_line import Discretised
+from pantocheck.model.fem.assembly import assemble, connector_directions, order
+
+Array = NDArray[np.float64]
+
+
+class NoEquilibrium(ArithmeticError):
+    """The set of slack droppers does not settle; a state from it would not be at rest."""
+
+
+@dataclass(frozen=True)
+class Deflection:
+    """A static deflection about the initial state.
+
+    Parameters
+    ----------
+    displacement : (rows, stations, 2) deflection and slope [m, -]
+    tension : (connectors,) in total [N]
+    """
+
+    displacement: Array
+    tension: Array
+
+    @property
+    def slack(self) -> NDArray[np.bool_]:
+        """(connectors,) which carry nothing."""
+        return np.equal(self.tension, 0.0)
+
+
+class Statics:
+    """Static solver of one line, factored once; slack droppers enter as low-rank corrections.
+
+    Parameters
+    ----------
+    line : the discretised line
+    """
+
+    def __init__(self, line: Discretised) -> None:
+        self.line = line
+        matrices = assemble(line)
+        self._free = matrices.free
+        self._factor = splu(matrices.stiffness)
+        self._direction = sp.csc_array(connector_directions(line)[self._free])
+
+    def deflection(self, load: Array) -> Deflection:
+        """Deflection under a load.
+
+        Parameters
+        ----------
+        load : (unknowns,) forces and moments in global order [N, N m]
+
+        Returns
+        -------
+        the deflection
+
+        Raises
+        ------
+        NoEquilibrium : the set of slack droppers does not settle
+        """
+        connectors = self.line.connectors
+        taut = self._factor.solve(np.asarray(load, dtype=float)[self._free])
+        slack = np.zeros(connectors.station.size, dtype=np.bool_)
+        for _ in range(100):
+            solution = taut
+            index = np.flatnonzero(slack)
+            if index.size:
+                # Cancel what the slack droppers would push, and hold their preload back from the wires.
+                b = self._direction[:, index].toarray()
+                compliance = self._factor.solve(b)
+                k, preload = connectors.stiffness[index], connectors.preload[index]
+                system = np.eye(index.size) - k[:, None] * (b.T @ compliance)
+                release = np.linalg.solve(system, preload + k * (b.T @ taut))
+                solution = taut + compliance @ release
+            tension = connectors.preload + connectors.stiffness * (self._direction.T @ solution)
+            now_slack = connectors.unilateral & (tension < 0)
+            if np.array_equal(now_slack, slack):
+                return self._expand(solution, np.where(slack, 0.0, tension))
+            slack = now_slack
+        raise NoEquilibrium("the droppers keep going slack and taut by turns")
+
+    def _expand(self, solution: Array, tension: Array) -> Deflection:
+        full = np.zeros(self.line.beams.free.size)
+        full[order(self.line)[self._free]] = solution
+        return Deflection(full.reshape(self.line.beams.free.shape), tension)

@@ -1,0 +1,206 @@
+"""Verification: a consistent certificate is found consistent, a tampered one is not, and garbage is refused."""
+
+import copy
+import io
+import json
+import random
+
+import pytest
+from pypdf import PdfWriter
+from typer.testing import CliRunner
+
+from pantocheck.conformance.authenticity import attachment
+from pantocheck.conformance.authenticity.recomputation import discrepancies
+from pantocheck.conformance.authenticity.verification import verify
+from pantocheck.conformance.command_line.app import app
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.reports.formats import pdf
+from pantocheck.conformance.results import results_reading as results_file
+from pantocheck.conformance.runner import run
+
+
+@pytest.fixture
+def certificate_file(certificate, tmp_path):
+    path = tmp_path / "certificate.pdf"
+    path.write_bytes(certificate)
+    return path
+
+
+def test_consistent(certificate_file):
+    found = verify(certificate_file)
+    assert found.consistent
+    assert (found.verdict, found.cases, found.criteria) == ("fail", 3, 22)
+
+
+def test_what_the_runner_grades_is_consistent(wave, case_250):
+    """Results of the suite's own grading, spectrum and thinned traces included, contradict themselves nowhere."""
+    results = run([case_250], wave(), "secondary").to_dict()
+    assert len(results["cases"][0]["criteria"]) == 8
+    assert discrepancies(results) == []
+
+
+def row(results, case=0, at=0):
+    return results["cases"][case]["criteria"][at]
+
+
+TAMPERINGS = {
+    "value": (lambda r: row(r, 1, 1).update(value=33.0), "reported among the quantities"),
+    "verdict": (lambda r: row(r, 1, 1).update(verdict="pass"), "verdict 'pass' stated, 'fail' follows"),
+    "verdict not counted": (lambda r: row(r, 1, 1).update(verdict="info"), "verdict 'info' stated, 'fail' follows"),
+    "provisional counted": (lambda r: row(r, 1, 4).update(verdict="fail"), "verdict 'fail' stated, 'info' follows"),
+    "margin": (lambda r: row(r).update(margin=row(r)["margin"] + 1e-6), "margin"),
+    "margin gone": (lambda r: row(r).update(margin=None), "margin nothing stated"),
+    "limit": (lambda r: row(r).update(upper=118.0), "verdict 'pass' stated, 'fail' follows"),
+    "limits crossed": (lambda r: row(r).update(lower=130.0), "above upper limit"),
+    "limits gone": (lambda r: row(r).update(lower=None, upper=None), "no limit"),
+    "skip of a known value": (lambda r: row(r).update(verdict="skip", value=None, margin=None), "nothing graded"),
+    "case verdict": (lambda r: r["cases"][1].update(verdict="pass"), "'fail' follows from the criteria"),
+    "failed rows removed": (lambda r: r["cases"][1].update(criteria=[]), "'info' follows from the criteria"),
+    "suite verdict": (lambda r: r.update(verdict="pass"), "'fail' follows from the cases"),
+    "trust": (lambda r: r.update(trust="primary"), "'info' follows"),
+    "statistical maximum": (lambda r: quantity(r, "statistical_max_N", 190.0), "statistical_max_N 190 stated"),
+    "coefficient of variation": (lambda r: quantity(r, "cov_50", 0.2), "cov_50 0.2 stated"),
+    "mean": (lambda r: quantity(r, "mean_force_N", 119.0), "drawn"),
+    "deviation": (lambda r: quantity(r, "std_force_N", 25.0), "std_force_N 25 stated"),
+    "maximum below what is drawn": (lambda r: quantity(r, "max_force_N", 165.0), "max_force_N 165 stated"),
+    "minimum above what is drawn": (lambda r: quantity(r, "min_force_N", 70.0), "min_force_N 70 stated"),
+    "band": (lambda r: quantity(r, "rms_20_50_N", 9.0), "follows from the spectrum"),
+}
+
+
+def quantity(results, name, value):
+    results["cases"][0]["quantities"]["1"][name] = value
+
+
+@pytest.mark.parametrize("name", TAMPERINGS)
+def test_tampering_is_found(results, name):
+    assert discrepancies(results) == []
+    tamper, expected = TAMPERINGS[name]
+    tamper(results)
+    assert any(expected in text for text in discrepancies(results))
+
+
+def test_a_whole_certificate_made_from_changed_results(results, tmp_path):
+    row(results, 1, 1)["verdict"] = "pass"
+    results["cases"][1]["verdict"] = "pass"
+    (tmp_path / "a.pdf").write_bytes(pdf.render(results, 1))
+    found = verify(tmp_path / "a.pdf")
+    assert len(found.discrepancies) == 3  # the row, its case, the suite
+
+
+def test_pages_that_say_other_than_the_results(results, passing, tmp_path, monkeypatch):
+    """Pages of a failing run with the results of a passing one: consistent in themselves, but not with each other."""
+    encoded = pdf.encoded
+    monkeypatch.setattr(pdf, "encoded", lambda _: encoded(passing))
+    (tmp_path / "a.pdf").write_bytes(pdf.render(results, 1))
+    found = verify(tmp_path / "a.pdf")
+    assert found.verdict == "pass"
+    assert len(found.discrepancies) == 2
+    assert all("PASS" in text for text in found.discrepancies)
+
+
+def pdf_with(*attachments):
+    writer = PdfWriter()
+    writer.add_blank_page(width=100, height=100)
+    for name, content in attachments:
+        writer.add_attachment(name, content)
+    buffer = io.BytesIO()
+    writer.write(buffer)
+    return buffer.getvalue()
+
+
+def changed(results, change):
+    results = copy.deepcopy(results)
+    change(results)
+    return json.dumps(results).encode()
+
+
+def without_pages():
+    buffer = io.BytesIO()
+    PdfWriter().write(buffer)
+    return buffer.getvalue()
+
+
+@pytest.mark.parametrize(
+    ("content", "found"),
+    [
+        (b"", "not a PDF"),
+        (b"%PDF-1.7\ngarbage", "damaged PDF"),
+        (without_pages(), "a PDF without pages"),
+        (pdf_with(), "no attachment named results.json"),
+        (pdf_with(("other.json", b"{}")), "no attachment named results.json"),
+        (pdf_with(("results.json", b"{}"), ("results.json", b"{}")), "2 attachments? named results.json"),
+        (pdf_with(("results.json", b"")), "not JSON"),
+        (pdf_with(("results.json", b"\xff\xfe\x00")), "not JSON"),
+        (pdf_with(("results.json", b"[" * 100_000)), "not JSON"),
+        (pdf_with(("results.json", b"[]")), "top level"),
+        (pdf_with(("results.json", b"{}")), "key suite"),
+    ],
+)
+def test_garbage_is_refused(tmp_path, content, found):
+    path = tmp_path / "a.pdf"
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=found):
+        verify(path)
+
+
+@pytest.mark.parametrize(
+    ("change", "key"),
+    [
+        (lambda r: r.update(verdict="maybe"), "key verdict"),
+        (lambda r: r.update(schema="other/1"), "key schema"),
+        (lambda r: r.pop("cases"), "key cases"),
+        (lambda r: row(r).update(value=float("nan")), "cases.0.criteria.0.value"),
+        (lambda r: row(r).update(value=10**400), "cases.0.criteria.0.value"),
+        (lambda r: row(r).update(value="<script>"), "cases.0.criteria.0.value"),
+    ],
+)
+def test_results_of_another_format_are_refused(results, tmp_path, change, key):
+    path = tmp_path / "a.pdf"
+    path.write_bytes(pdf_with(("results.json", changed(results, change))))
+    with pytest.raises(InputError, match=key):
+        verify(path)
+
+
+def test_no_file_and_too_large_a_file(certificate_file, tmp_path, monkeypatch):
+    with pytest.raises(InputError, match="cannot be read"):
+        verify(tmp_path / "none.pdf")
+    with pytest.raises(InputError, match="cannot be read"):
+        verify(tmp_path)
+    monkeypatch.setattr(results_file, "LARGEST", 1000)
+    with pytest.raises(InputError, match=r"attachment results\.json: .* bytes"):
+        verify(certificate_file)
+    monkeypatch.setattr(attachment, "LARGEST_FILE", 1000)
+    with pytest.raises(InputError, match="bytes"):
+        verify(certificate_file)
+
+
+def test_damage_never_ends_in_a_traceback(certificate, tmp_path):
+    """Either the damage hits nothing that is read, or it is refused by name."""
+    path = tmp_path / "a.pdf"
+    refused = 0
+    for seed in range(25):
+        chance = random.Random(seed)
+        damaged = bytearray(certificate[: chance.choice([len(certificate), chance.randrange(len(certificate))])])
+        for _ in range(chance.choice([1, 20, 2000])):
+            damaged[chance.randrange(len(damaged))] = chance.randrange(256)
+        path.write_bytes(damaged)
+        try:
+            verify(path)
+        except InputError:
+            refused += 1
+    assert refused > 5
+
+
+def test_command(certificate_file, results, tmp_path):
+    runner = CliRunner()
+    good = runner.invoke(app, ["verify", str(certificate_file)])
+    assert (good.exit_code, good.stdout.split(":")[0]) == (0, "consistent")
+    row(results, 1, 1)["margin"] = 0.5
+    (tmp_path / "bad.pdf").write_bytes(pdf.render(results, 1))
+    bad = runner.invoke(app, ["verify", str(tmp_path / "bad.pdf")])
+    assert bad.exit_code == 1
+    assert "en50318-2002/300, std_force_N of pantograph 1: margin 0.5 stated, -0.32" in bad.stdout
+    none = runner.invoke(app, ["verify", str(tmp_path / "none.pdf")])
+    assert none.exit_code == 2
+    assert "cannot be read" in none.stderr

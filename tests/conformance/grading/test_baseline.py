@@ -1,0 +1,139 @@
+"""Baselines: a value that drifts fails though its limits hold, and one that vanishes is skipped."""
+
+import json
+from dataclasses import replace
+
+import pytest
+from typer.testing import CliRunner
+
+from pantocheck.conformance.authenticity.recomputation import discrepancies
+from pantocheck.conformance.cases.library import select
+from pantocheck.conformance.command_line.app import app
+from pantocheck.conformance.grading.baseline import against_baseline
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.reports.formats import junit
+from pantocheck.conformance.results.results_reading import read_results
+from pantocheck.conformance.runner import run
+from pantocheck.conformance.systems.system_choice import system_named
+
+PASSING = "record:en50318-2002/known-passing-code"
+
+
+@pytest.fixture
+def results():
+    return run(select(["en50318-2002/*"]), system_named(PASSING))
+
+
+def changed(results, name, value):
+    """Baseline in which one quantity of the first case had another value."""
+    first = results.cases[0]
+    quantities = {**first.quantities, "1": {**first.quantities["1"], name: value}}
+    return results.model_copy(
+        update={"cases": [first.model_copy(update={"quantities": quantities}), *results.cases[1:]]}
+    )
+
+
+def test_same_values_do_not_drift(results):
+    compared = against_baseline(results, results, 0.1, "b.json")
+    assert compared.verdict == "pass"
+    assert [len(case.criteria) for case in compared.cases] == [8, 8]
+    assert compared.cases[0].notes[-1].startswith("Compared with baseline b.json: 8 values, of which 0 drifted")
+
+
+@pytest.mark.parametrize(("was", "drifts"), [(27.6 / 1.019, False), (27.6 / 1.021, True), (27.6 / 0.979, True)])
+def test_value_that_drifts_fails_within_its_limits(results, was, drifts):
+    compared = against_baseline(results, changed(results, "std_force_N", was), 2.0, "b.json")
+    assert compared.verdict == ("fail" if drifts else "pass")
+    if drifts:
+        (finding,) = (row for row in compared.cases[0].criteria if row.verdict == "fail")
+        assert (finding.quantity, finding.value, finding.baseline) == ("std_force_N", 27.6, was)
+        assert "% from the baseline of" in finding.reason
+        # To a hundredth of the drift of 0.54 N: four decimals, not twelve.
+        assert (finding.lower, finding.upper) == (round(0.98 * was, 4), round(1.02 * was, 4))
+        assert discrepancies(compared.to_dict()) == []
+        assert b'name="drift of std_force_N of pantograph 1"' in junit.render(compared.to_dict())
+        assert compared.cases[1].verdict == "pass"
+
+
+def test_value_near_zero_drifts_by_its_unit(results):
+    """No contact loss in the baseline: 1 % of one percent is allowed."""
+    lossy = changed(results, "contact_loss_pct", 0.02)
+    assert against_baseline(results, lossy, 1.0, "b").verdict == "fail"
+    assert against_baseline(results, lossy, 3.0, "b").verdict == "pass"
+
+
+def test_value_that_vanished_is_skipped(results):
+    compared = against_baseline(results, changed(results, "rms_20_50_N", 20.0), 1.0, "b.json")
+    (finding,) = (row for row in compared.cases[0].criteria if row.verdict == "skip")
+    assert finding.reason == "the baseline has 20 N; now: the summary record does not give it"
+    assert compared.verdict == "skip"
+    assert discrepancies(compared.to_dict()) == []
+
+
+def test_other_cases_and_other_inputs_are_warned_of(results):
+    first = results.cases[0]
+    other = results.model_copy(update={"cases": [first.model_copy(update={"input_digest": "sha256:0"})]})
+    compared = against_baseline(results, other, 1.0, "b.json")
+    assert any("inputs of the case have changed" in text for text in compared.cases[0].warnings)
+    assert any("baseline b.json has no case en50318-2002/300" in text for text in compared.cases[1].warnings)
+
+
+def test_ungraded_case_stays_what_it_is(results):
+    case = replace(select(["en50318-2002/250"])[0], limits=())
+    unknown = replace(case, file=case.file.model_copy(update={"id": "none"}))
+    skipped = run([unknown], system_named(PASSING))
+    assert against_baseline(skipped, results, 1.0, "b").verdict == "skip"
+
+
+def pantocheck(*arguments):
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+def test_gate_on_the_command_line_and_in_a_plan(results, tmp_path):
+    base = tmp_path / "baseline.json"
+    base.write_bytes(changed(results, "std_force_N", 27.0).to_json())
+    command = ["run", "en50318-2002/*", "--system", PASSING, "--out", tmp_path / "out", "--formats", "json,badge"]
+    assert pantocheck(*command).exit_code == 0
+    done = pantocheck(*command, "--baseline", base)
+    assert done.exit_code == 1
+    assert "drifted by +2.22 % from the baseline of 27 N" in done.output
+    assert "fail" in (tmp_path / "out" / "badge.svg").read_text().lower()
+    assert pantocheck(*command, "--baseline", base, "--drift", "3").exit_code == 0
+    plan = tmp_path / "plan.toml"
+    plan.write_text(
+        f'system = "{PASSING}"\ncases = ["en50318-2002/*"]\nbaseline = "baseline.json"\nformats = ["json"]\n'
+    )
+    assert pantocheck("run", "--plan", plan, "--out", tmp_path / "p").exit_code == 1
+    assert pantocheck("run", "--plan", plan, "--out", tmp_path / "p", "--drift", "3").exit_code == 0
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda text: "", "not JSON"),
+        (lambda text: text[:100], "not JSON"),
+        (lambda text: "[" * 100_000, "not JSON"),
+        (lambda text: "{}", "key suite: Field required"),
+        (lambda text: text.replace("27.6", "NaN"), "finite"),
+        (lambda text: text.replace("27.6", "1e300"), "less than or equal to"),
+        (lambda text: text.replace('"1": {', '"front": {', 1), "should match pattern"),
+    ],
+)
+def test_wrong_baseline_is_refused(results, tmp_path, change, message):
+    path = tmp_path / "b.json"
+    path.write_text(change(results.to_json().decode()))
+    with pytest.raises(InputError, match=message):
+        read_results(path)
+
+
+def test_baseline_is_read_before_anything_is_computed(tmp_path):
+    done = pantocheck("run", "--system", PASSING, "--baseline", tmp_path / "none.json", "--out", tmp_path / "out")
+    assert done.exit_code == 2
+    assert "results 'none.json': cannot be read" in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_results_round_trip(results, tmp_path):
+    (tmp_path / "r.json").write_bytes(results.to_json())
+    assert read_results(tmp_path / "r.json") == results
+    assert json.loads(results.to_json())["cases"][0]["criteria"][0]["baseline"] is None

@@ -1,0 +1,276 @@
+"""Profiles: the rules as published, what they do with a record that breaks one of them, and `pantocheck assess`."""
+
+import json
+import re
+
+import jsonschema
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from pantocheck.conformance.authenticity.recomputation import discrepancies
+from pantocheck.conformance.cases.library import library_folder
+from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.cases.profile_file import NoBound, SpeedFormula, bounds, profile_named
+from pantocheck.conformance.command_line.app import app
+from pantocheck.conformance.grading.assessed_record import subject_of
+from pantocheck.conformance.grading.profile_grading import assess
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.records.record_sidecar import LineTable
+from pantocheck.conformance.schemas import schema_of
+
+NAMES = ("acceptance-ac", "acceptance-dc-3kv", "acceptance-dc-1500v", "line-test")
+PASSING = library_folder() / "en50318-2002" / "known-passing-code"
+
+SIDECAR = """schema = "pantocheck.record/1"
+file = "train.csv"
+speed_km_h = {speed}
+pantographs = 1
+filter_applied_Hz = "none"
+support_position_m = [600.0]
+line = {{ span_m = 60.0, wave_speed_m_s = {wave}, uplift_space_mm = {space} }}
+"""
+
+
+@pytest.fixture
+def train(tmp_path):
+    """A record by distance: mean and sigma as asked, 40 spans; gives its path."""
+
+    def write(mean=125.0, sigma=30.0, speed=250.0, wave=120.0, space=80.0, spans=40):
+        random = np.random.default_rng(11)
+        position = np.arange(0, 60.0 * spans, 0.2)
+        amplitude = np.repeat(1 + 0.05 * random.standard_normal(spans), position.size // spans)
+        wave_form = np.sqrt(2) * amplitude * np.sin(2 * np.pi * position / 60)
+        force = mean + sigma * wave_form + 3 * np.sin(2 * np.pi * position / 2)
+        uplift = 55.0 * np.exp(-(((position - 600) / 5) ** 2))
+        table = np.column_stack([position, force, uplift])
+        names = "position_1_m,force_1_N,uplift_1_mm"
+        np.savetxt(tmp_path / "train.csv", table, "%.9g", ",", header=names, comments="")
+        (tmp_path / "train.toml").write_text(SIDECAR.format(speed=speed, wave=wave, space=space))
+        return tmp_path / "train.toml"
+
+    return write
+
+
+def graded(path, name="acceptance-ac", **keys):
+    profile = profile_named(name)
+    return assess(subject_of(path, profile, LineTable()), profile, **keys)
+
+
+def by_quantity(results):
+    return {row.quantity: row for row in results.cases[0].criteria}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_shipped_profiles_follow_their_schema(name):
+    import tomllib
+
+    text = (library_folder() / "profiles" / f"{name}.toml").read_text()
+    jsonschema.validate(tomllib.loads(text), schema_of("profile"))
+    assert profile_named(name).name == name
+
+
+@pytest.mark.parametrize(
+    ("name", "speed", "limit"),
+    [("acceptance-ac", 300.0, 157.3), ("acceptance-dc-3kv", 200.0, 148.8), ("acceptance-dc-1500v", 250.0, 200.625)],
+)
+def test_mean_force_follows_the_speed(train, name, speed, limit):
+    """0.00097 v^2 + 70, 110 and 140 N, by hand."""
+    row = by_quantity(graded(train(speed=speed), name))["mean_force_N"]
+    assert row.upper == pytest.approx(limit)
+    assert row.lower is None
+
+
+def test_good_line_is_accepted_with_its_uncertainty(train):
+    results = graded(train())
+    assert results.verdict == "pass"
+    rows = by_quantity(results)
+    assert set(rows) == {
+        "mean_force_N", "cov_20", "statistical_min_N", "speed_over_wave_speed", "max_uplift_at_support_mm",
+    }  # fmt: skip
+    assert rows["speed_over_wave_speed"].value == pytest.approx(250 / 3.6 / 120)
+    assert rows["max_uplift_at_support_mm"].value == pytest.approx(55, abs=0.1)
+    assert 0 < rows["cov_20"].uncertainty < 0.02
+    assert results.cases[0].uncertainty["1"]["cov_20"] == rows["cov_20"].uncertainty
+    assert discrepancies(results.to_dict()) == []
+    jsonschema.validate(results.to_dict(), schema_of("results"))
+
+
+@pytest.mark.parametrize(
+    ("change", "quantity"),
+    [
+        ({"mean": 131.0}, "mean_force_N"),
+        ({"sigma": 40.0}, "cov_20"),
+        ({"wave": 95.0}, "speed_over_wave_speed"),
+        ({"space": 54.0}, "max_uplift_at_support_mm"),
+    ],
+)
+def test_line_that_breaks_one_rule_fails_by_it_alone(train, change, quantity):
+    results = graded(train(**change))
+    assert results.verdict == "fail"
+    assert [row.quantity for row in results.cases[0].criteria if row.verdict == "fail"] == [quantity]
+
+
+def test_negative_statistical_minimum_fails(train):
+    rows = by_quantity(graded(train(sigma=45.0)))
+    assert rows["statistical_min_N"].verdict == "fail"
+
+
+def test_negative_force_never_passes(train):
+    """A wrong sign makes the mean small and its variation negative: neither may be taken for a good line."""
+    rows = by_quantity(graded(train(mean=-125.0)))
+    assert rows["cov_20"].verdict == "skip"
+    assert "is -125 N" in rows["cov_20"].reason
+    assert rows["statistical_min_N"].verdict == "fail"
+
+
+def test_rule_outside_its_range_is_skipped_and_opens_no_gate(train):
+    results = graded(train(speed=180.0))
+    assert results.verdict == "skip"
+    assert by_quantity(results)["mean_force_N"].reason == "the rule holds above 200 km/h, the record is of 180 km/h"
+    assert discrepancies(results.to_dict()) == []
+
+
+def test_what_is_not_known_of_the_line_is_left_out_and_said(train):
+    path = train()
+    path.write_text("\n".join(text for text in path.read_text().splitlines() if not text.startswith("line =")))
+    results = graded(path)
+    assert {row.quantity for row in results.cases[0].criteria} == {"mean_force_N", "cov_20", "statistical_min_N"}
+    left_out = [text for text in results.cases[0].warnings if "is not graded" in text]
+    assert len(left_out) == 2
+
+
+def test_space_for_uplift_without_an_uplift_is_skipped(train):
+    path = train()
+    table = path.with_suffix(".csv")
+    table.write_text("\n".join(line.rsplit(",", 1)[0] for line in table.read_text().splitlines()))
+    assert by_quantity(graded(path))["max_uplift_at_support_mm"].verdict == "skip"
+
+
+def test_verdict_within_the_uncertainty_is_warned_of(train):
+    value = by_quantity(graded(train()))["cov_20"]
+    reach = value.uncertainty
+    for upper, warned in ((value.value + 0.5 * reach, True), (value.value + 2 * reach, False)):
+        limit = Limit(quantity="cov_20", pantograph=1, upper=upper, trust="primary", source="own")
+        results = graded(train(), limits=[limit])
+        assert any("a longer record could turn the verdict" in text for text in results.cases[0].warnings) == warned
+        assert by_quantity(results)["cov_20"].source == "own"
+
+
+def test_line_test_compares_with_the_measured_record(train, tmp_path):
+    profile = profile_named("line-test")
+    measured = subject_of(PASSING / "250.toml", profile, LineTable())
+    simulated = subject_of(train(mean=119.0, sigma=28.0), profile, LineTable())
+    informative = assess(simulated, profile, "secondary", measured)
+    assert informative.verdict == "info"  # every tolerance is provisional
+    results = assess(simulated, profile, "provisional", measured)
+    rows = by_quantity(results)
+    assert results.verdict == "pass"
+    assert (rows["mean_force_N"].lower, rows["mean_force_N"].upper) == pytest.approx((115.7, 120.7))
+    assert (rows["std_force_N"].lower, rows["std_force_N"].upper) == pytest.approx((0.8 * 27.6, 1.2 * 27.6))
+    assert "about the measured 27.6 of 250" in rows["std_force_N"].source
+    assert any("contact_height_range_mm is not graded" in text for text in results.cases[0].warnings)
+    worse = subject_of(train(mean=119.0, sigma=34.0), profile, LineTable())
+    assert assess(worse, profile, "provisional", measured).verdict == "fail"
+
+
+def test_rule_without_a_bound_for_this_speed_goes_with_a_comparison(train):
+    """One rule compares, so that the measured record's uncertainty is there; the other holds above 260 km/h only."""
+    profile = profile_named("line-test")
+    rule = next(rule for rule in profile_named("acceptance-ac").rule if isinstance(rule.upper, SpeedFormula))
+    above = rule.model_copy(update={"upper": rule.upper.model_copy(update={"above_km_h": 260.0}), "lower": None})
+    mixed = profile.model_copy(update={"rule": (*profile.rule, above)})
+    subject = subject_of(train(), mixed, LineTable())
+    rows = assess(subject, mixed, "provisional", subject).cases[0].criteria
+    assert any(row.verdict == "skip" and "above 260 km/h" in (row.reason or "") for row in rows)
+
+
+def test_bounds_in_the_wrong_order_are_no_bounds():
+    rule = profile_named("acceptance-ac").rule[0].model_copy(update={"lower": 10.0, "upper": 5.0})
+    with pytest.raises(NoBound, match="its lower bound of 10 lies above its upper bound of 5"):
+        bounds(rule, 250.0, {}, None)
+
+
+def test_line_test_needs_a_fitting_pair(train):
+    profile = profile_named("line-test")
+    simulated = subject_of(train(), profile, LineTable())
+    with pytest.raises(InputError, match="compares with a measured record, and none is given"):
+        assess(simulated, profile)
+    faster = subject_of(PASSING / "300.toml", profile, LineTable())
+    with pytest.raises(InputError, match="it is of 300 km/h, train of 250 km/h"):
+        assess(simulated, profile, measured=faster)
+    with pytest.raises(InputError, match="does not compare"):
+        assess(simulated, profile_named("acceptance-ac"), measured=simulated)
+
+
+def test_same_record_same_results(train):
+    first, second = graded(train()), graded(train())
+    assert first.model_copy(update={"started": None}) == second.model_copy(update={"started": None})
+
+
+def test_peak_of_a_long_record_is_drawn(train):
+    """One sample of 60 000: thinned evenly, the figure would not show what the warning and the maximum are about."""
+    path = train(spans=200)
+    lines = path.with_suffix(".csv").read_text().splitlines()
+    lines[30_001] = re.sub(r",[-0-9.e]+,", ",700.0,", lines[30_001], count=1)
+    path.with_suffix(".csv").write_text("\n".join(lines))
+    trace = graded(path).cases[0].traces["1"]
+    assert max(trace.force_N) == 700.0
+    assert len(trace.force_N) == len(trace.position_m) == len(trace.force_20_N) <= 1500
+    assert np.all(np.diff(trace.position_m) > 0)
+
+
+def pantocheck(*arguments):
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+def test_assess_writes_what_run_writes(train, tmp_path):
+    out = tmp_path / "out"
+    done = pantocheck(
+        "assess", train(), "--profile", "acceptance-ac", "--out", out, "--formats", "html,json,junit,md,badge"
+    )
+    assert (done.exit_code, done.output.split()[0]) == (0, "PASS")
+    assert sorted(path.name for path in out.iterdir()) == [
+        "badge.svg", "certificate.html", "junit.xml", "results.json", "summary.md",
+    ]  # fmt: skip
+    assert "Uncertainty (95 %)" in (out / "certificate.html").read_text()
+    assert re.search(r"± 0\.\d+", (out / "certificate.html").read_text())
+    assert json.loads((out / "results.json").read_text())["cases"][0]["id"] == "acceptance-ac/train"
+    assert pantocheck("assess", train(sigma=40.0), "--profile", "acceptance-ac", "--out", out).exit_code == 1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--profile", "acceptance-dc"], "profile 'acceptance-dc': there is no such profile"),
+        (["--profile", "none.toml"], "profile 'none.toml': cannot be read"),
+        (["--profile", "acceptance-ac", "--wave-speed-m-s", "-3"], "key wave_speed_m_s: -3 must be greater than 0"),
+        (["--profile", "acceptance-ac", "--uplift-space-mm", "nan"], "key uplift_space_mm: nan is not a finite number"),
+        (["--profile", "acceptance-ac", "--drift", "0"], "key drift_pct: 0 must be greater than 0"),
+        (["--profile", "line-test"], "Add --measured RECORD2"),
+        (["--profile", "acceptance-ac", "--baseline", "none.json"], "results 'none.json': cannot be read"),
+    ],
+)
+def test_bad_options_end_with_one_message_and_exit_code_2(train, tmp_path, arguments, message):
+    done = pantocheck("assess", train(), *arguments, "--out", tmp_path / "out")
+    assert done.exit_code == 2
+    assert message in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("upper = 0.3", "upper = 0.3\ntolerance = 1.0", "has not exactly one kind of bound"),
+        ("upper = 0.3", "", "has not exactly one kind of bound"),
+        ('quantity = "cov_20"', 'quantity = "cov_2"', "there is no quantity 'cov_2'"),
+        ('quantity = "cov_20"', 'quantity = "damping_ratio"', "damping_ratio is not of a run"),
+        ("constant = 70.0", "constant_kN = 0.07", "constant_kN"),
+        ('given = "uplift_space_mm"', 'given = "luck"', "found 'luck', expected 'uplift_space_mm'"),
+    ],
+)
+def test_wrong_profile_names_its_key(tmp_path, old, new, message):
+    text = (library_folder() / "profiles" / "acceptance-ac.toml").read_text()
+    assert old in text
+    (tmp_path / "own.toml").write_text(text.replace(old, new))
+    with pytest.raises(InputError, match=message):
+        profile_named(str(tmp_path / "own.toml"))

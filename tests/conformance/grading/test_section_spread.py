@@ -1,0 +1,75 @@
+"""Spread over stretches: known for a force that is known, and graded beside the value."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.grading.case_grading import graded
+from pantocheck.conformance.grading.section_spread import spread
+from pantocheck.conformance.records.evaluation import evaluate
+from pantocheck.conformance.reports.certificate.criteria_rows import shifted
+from pantocheck.conformance.results.outcome import Outcome
+
+
+@pytest.fixture
+def growing(case_250, wave):
+    """The case with shifted stretches, and a record whose mean force grows by 1 N a span."""
+    case = replace(case_250, file=case_250.file.model_copy(update={"compared_spans": (3, 8)}))
+    record = wave().record(case)
+    return case, replace(record, force=record.force + record.position / case.line.geometry.span_m)
+
+
+def test_stretches_are_shifted_span_by_span(growing):
+    case, _ = growing
+    assert case.evaluated == (240.0, 360.0)
+    assert case.shifted == tuple((60.0 * n, 60.0 * (n + 2)) for n in (2, 3, 4, 5, 6))
+    assert case.compared == (120.0, 480.0)
+    assert case.end >= 480.0
+
+
+def test_spread_is_the_largest_departure(growing):
+    """Spans 3-4 to 7-8 about 5-6: two spans, 2 N, either way; a sample of 0.07 m more or less gives 1e-3 N."""
+    case, record = growing
+    values = evaluate(record, case.file.filter.low_pass).values
+    found = spread(record, case.shifted, case.file.filter.low_pass, values)
+    assert found[1]["mean_force_N"] == pytest.approx(2.0, abs=5e-3)
+    assert found[1]["contact_loss_pct"] == 0.0
+
+
+def test_record_that_covers_too_few_stretches_has_no_spread(growing):
+    case, record = growing
+    inside = (record.position[0] >= 200) & (record.position[0] < 400)
+    short = replace(
+        record,
+        time=record.time[inside],
+        position=record.position[:, inside],
+        force=record.force[:, inside],
+        contact_height=None,
+        support_position=None,
+        support_uplift=None,
+    )
+    values = evaluate(short, case.file.filter.low_pass).values
+    assert spread(short, case.shifted, case.file.filter.low_pass, values) == {}
+
+
+def test_verdict_that_another_stretch_could_turn_is_named(growing):
+    case, record = growing
+    value = evaluate(record, case.file.filter.low_pass).values[1]["mean_force_N"]
+    assert isinstance(value, float)
+    limit = Limit(quantity="mean_force_N", lower=value - 1.0, upper=value + 50, trust="secondary", source="test")
+    result = graded(replace(case, limits=(limit,)), Outcome(record), "secondary")
+    (row,) = result.criteria
+    assert row.spread == result.spread["1"]["mean_force_N"]
+    assert any("less than its spread over stretches of 2 N" in text for text in result.warnings)
+    remark = shifted(row.model_dump())
+    assert remark is not None
+    assert remark.startswith("moves by up to 2.0 N when the evaluated stretch")
+
+
+def test_case_that_does_not_ask_has_none(case_250, wave):
+    result = graded(case_250, Outcome(wave().record(case_250)), "secondary")
+    assert result.spread == {}
+    assert all(row.spread is None for row in result.criteria)
+    assert np.isfinite([row.value for row in result.criteria]).all()

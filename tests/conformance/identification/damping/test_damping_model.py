@@ -1,0 +1,183 @@
+"""Damping models: coefficients put into a small finite-element line come out of its modes."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import scipy.linalg
+import scipy.optimize
+
+from pantocheck.conformance.identification.damping.damping_model import (
+    Measured,
+    ModalEnergies,
+    fit_damping,
+    modal_bands,
+    with_modal,
+)
+from pantocheck.conformance.identification.damping.mode_pairing import assurance, pair
+from pantocheck.conformance.identification.damping.observability import observability, residual_without
+from pantocheck.conformance.input_files.input_error import InputError
+
+SPANS = (63.0, 63.0, 58.5, 63.0, 54.0, 63.0)
+WIRES = {"contact_wire": (20e3, 1.334, 0.055, 5e-5), "messenger_wire": (15e3, 1.06, 0.075, 8e-5)}
+STEP = 2.25  # node distance [m]; strings, whose bending below 6 Hz does not matter
+
+
+@pytest.fixture(scope="module")
+def line():
+    """Two strings on a common grid, droppers between them, arms and supports at the masts; plain dense matrices."""
+    n = round(sum(SPANS) / STEP) + 1
+    kinds = (*WIRES, "dropper", "steady_arm")
+    K, M = ({kind: np.zeros((2 * n, 2 * n)) for kind in kinds} for _ in "KM")
+    for w, (kind, (tension, mass, _, _)) in enumerate(WIRES.items()):
+        for i in range(n - 1):
+            at = np.ix_([w * n + i, w * n + i + 1], [w * n + i, w * n + i + 1])
+            K[kind][at] += tension / STEP * np.array([[1, -1], [-1, 1]])
+            M[kind][at] += mass * STEP / 6 * np.array([[2, 1], [1, 2]])
+    masts = np.round(np.cumsum((0.0, *SPANS)) / STEP).astype(int)
+    for i in range(1, n - 1):
+        if i % 3 == 0 and not np.any(np.abs(masts - i) < 2):
+            at = np.ix_([i, n + i], [i, n + i])
+            K["dropper"][at] += 1e5 * np.array([[1, -1], [-1, 1]])
+            M["dropper"][at] += np.diag([0.23, 0.26])
+    for i in masts[1:-1]:
+        K["steady_arm"][i, i] += 250.0
+        M["steady_arm"][i, i] += 0.5
+    held = np.concatenate([[0, n - 1], n + masts])
+    free = np.setdiff1d(np.arange(2 * n), held)
+    cut = np.ix_(free, free)
+    w2, shapes = scipy.linalg.eigh(sum(K.values())[cut], sum(M.values())[cut], subset_by_index=[0, 35])
+    energy = {
+        name: np.array([[phi @ table[kind][cut] @ phi for kind in kinds] for phi in shapes.T])
+        for name, table in (("K", K), ("M", M))
+    }
+    energies = ModalEnergies(np.sqrt(w2) / (2 * np.pi), kinds, energy["K"], energy["M"])
+    damping = sum(b * M[kind] + a * K[kind] for kind, (_, _, b, a) in WIRES.items()) + 1e-5 * K["dropper"]
+    # The truth comes from the complex eigenvalues, not from the modal formula that is fitted.
+    mass_inverse = np.linalg.inv(sum(M.values())[cut])
+    zero, one = np.zeros_like(mass_inverse), np.eye(len(mass_inverse))
+    state = np.block([[zero, one], [-mass_inverse @ sum(K.values())[cut], -mass_inverse @ damping[cut]]])
+    poles = np.linalg.eigvals(state)
+    poles = np.sort_complex(poles[poles.imag > 0] * -1j)[:36] * 1j
+    ratio = -poles.real / np.abs(poles)
+    return energies, ratio, np.repeat(np.arange(1, 7), 6)
+
+
+def measured_of(line, noise, random):
+    energies, ratio, group = line
+    noisy = ratio * (1 + noise * random.standard_normal(ratio.size))
+    return Measured(energies.frequency, noisy, np.maximum(noise, 1e-4) * ratio, group)
+
+
+def test_energies_of_the_kinds_add_up(line):
+    energies = line[0]
+    assert energies.mass.sum(axis=1) == pytest.approx(1, rel=1e-10)
+    assert energies.stiffness.sum(axis=1) == pytest.approx((2 * np.pi * energies.frequency) ** 2, rel=1e-8)
+
+
+def test_coefficients_come_back(line):
+    """Both wires within 5 % from ratios known to 0.3 %; the droppers' own 1e-5 s, not fitted, biases by less."""
+    fit = fit_damping(line[0], measured_of(line, 0.003, np.random.default_rng(1)))
+    for kind, (_, _, mass, stiffness) in WIRES.items():
+        assert fit.value(kind, "mass") == pytest.approx(mass, rel=0.05)
+        assert fit.value(kind, "stiffness") == pytest.approx(stiffness, rel=0.05)
+    assert fit.residual < 0.006
+
+
+def test_intervals_cover_the_truth(line):
+    """Of 20 fits x 4 coefficients, 95 % intervals miss about 4; fewer than 13 is five standard errors away."""
+    missed = 0
+    for seed in range(20):
+        fit = fit_damping(line[0], measured_of(line, 0.02, np.random.default_rng(seed)))
+        for c in fit.coefficients:
+            true = WIRES[c.kind][2 if c.matrix == "mass" else 3]
+            missed += not c.low <= true <= c.high
+    assert missed < 13
+
+
+def test_outlier_of_a_group_is_left_out(line):
+    measured = measured_of(line, 0.003, np.random.default_rng(2))
+    measured.damping_ratio[8] *= 1.5
+    fit = fit_damping(line[0], measured)
+    assert not fit.used[8]
+    assert fit.used.sum() >= 34
+    assert fit.value("contact_wire", "stiffness") == pytest.approx(5e-5, rel=0.06)
+
+
+def test_only_the_wires_are_observable(line):
+    measured = measured_of(line, 0.003, np.random.default_rng(3))
+    fit = fit_damping(line[0], measured)
+    seen = {(one.kind, one.matrix) for one in observability(line[0], measured, fit) if one.observable}
+    assert seen == {(kind, matrix) for kind in WIRES for matrix in ("stiffness", "mass")}
+    for name in seen:
+        assert residual_without(line[0], measured, fit, name) > 2 * fit.residual
+
+
+def test_coefficients_are_those_of_the_modes_used(line):
+    """Outliers of all sizes, some of which show only once larger ones are gone: the last to go must leave no trace.
+
+    Fitted anew to the modes used alone, each with its group's weight, the coefficients are the same to rounding.
+    """
+    for seed in range(10):
+        random = np.random.default_rng(seed)
+        measured = measured_of(line, 0.003, random)
+        measured.damping_ratio[random.choice(36, 8, replace=False)] *= 1 + 10 ** random.uniform(-2, -0.5, 8)
+        fit = fit_damping(line[0], measured)
+        names, columns = line[0].columns()
+        at = [names.index((c.kind, c.matrix)) for c in fit.coefficients]
+        count = np.array([np.sum(fit.used & (measured.group == number)) for number in measured.group])[fit.used]
+        std = np.hypot(measured.std, 0.01 * measured.damping_ratio)[fit.used]
+        weight = 1 / (std * np.sqrt(count))
+        scale = columns[:, at].max(axis=0)
+        anew = scipy.optimize.nnls(
+            columns[fit.used][:, at] / scale * weight[:, None], measured.damping_ratio[fit.used] * weight
+        )
+        assert [c.value for c in fit.coefficients] == pytest.approx(anew[0] / scale, rel=1e-8, abs=1e-15)
+
+
+def test_leaving_out_what_the_fit_puts_to_zero_changes_nothing(line):
+    """A negative coefficient cannot be fitted and becomes 0; groups of unlike certainty make the weights matter."""
+    energies, _, group = line
+    names, columns = energies.columns()
+    true = {("contact_wire", "stiffness"): 5e-5, ("contact_wire", "mass"): -0.01, ("messenger_wire", "mass"): 0.1}
+    ratio = columns @ [true.get(name, 0.0) for name in names]
+    random = np.random.default_rng(6)
+    std = ratio * np.array([0.001, 0.05])[group % 2]
+    measured = Measured(energies.frequency, ratio + std * random.standard_normal(ratio.size), std, group)
+    fit = fit_damping(energies, measured)
+    assert fit.value("contact_wire", "mass") == 0.0
+    growth = {(one.kind, one.matrix): one.growth for one in observability(energies, measured, fit)}
+    assert growth["contact_wire", "mass"] == pytest.approx(1.0, rel=1e-9)
+    assert growth["contact_wire", "stiffness"] > 1.0
+
+
+def test_modal_bands_give_the_first_groups_their_medians(line):
+    measured = measured_of(line, 0.0, np.random.default_rng(4))
+    bands = modal_bands(measured)
+    assert len(bands) == 3
+    assert all(a.high <= b.low for a, b in pairwise(bands))
+    changed = with_modal(measured.frequency, measured.damping_ratio, bands)
+    assert changed[:6] == pytest.approx(np.median(measured.damping_ratio[:6]))
+    assert np.array_equal(changed[18:], measured.damping_ratio[18:])
+
+
+def test_too_few_modes_are_refused(line):
+    energies = line[0]
+    few = ModalEnergies(energies.frequency[:4], energies.kinds, energies.stiffness[:4], energies.mass[:4])
+    with pytest.raises(InputError, match="4 modes for 4 coefficients"):
+        fit_damping(few, Measured(few.frequency, np.full(4, 0.005), np.full(4, 1e-5), np.ones(4, dtype=np.int64)))
+
+
+def test_pairs_by_frequency_and_shape():
+    """All computed frequencies 2 % low and two neighbours exchanged in order: the shapes tell."""
+    random = np.random.default_rng(5)
+    shapes = random.standard_normal((6, 4))
+    measured = np.array([1.0, 1.1, 1.2, 1.21, 1.4, 1.5])
+    computed = 0.98 * measured[[0, 1, 3, 2, 4, 5]]
+    table = [shapes[[0, 1, 3, 2, 4, 5]]] * 6
+    order = np.argsort(computed)
+    pairs = pair(measured, [row.astype(complex) * 2j for row in shapes], computed[order], [t[order] for t in table])
+    assert len(pairs) == 6
+    for p in pairs:
+        assert p.mac == pytest.approx(1.0)
+    assert assurance(np.array([1.0, 0.0]), np.array([0.0, 1.0])) == 0.0

@@ -1,0 +1,177 @@
+"""From a record to its quantities: the numbers by hand, and a reason for each that is not there."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.registry import (
+    GIVEN_QUANTITIES,
+    LINE_QUANTITIES,
+    PANTOGRAPH_QUANTITIES,
+    QUANTITIES,
+)
+from pantocheck.conformance.records.evaluation import LINE, evaluate
+from pantocheck.conformance.records.record import Record
+
+RATE, SPEED = 1000.0, 50.0
+
+
+def record(force=None, rate: float = RATE, length: float = 600.0, **changes) -> Record:
+    """100 N and sines of 20 N at 2 Hz, 10 N at 10 Hz, 8 N at 30 Hz; whole periods in the 4 s of 200 m to 400 m."""
+    time = np.arange(int(length / SPEED * rate)) / rate
+    if force is None:
+        force = 100 + sum(a * np.sin(2 * np.pi * f * time) for a, f in ((20, 2), (10, 10), (8, 30)))
+    given = {
+        "time": time,
+        "speed": SPEED,
+        "position": SPEED * time[None],
+        "force": np.atleast_2d(force),
+        "evaluated": (200.0, 400.0),
+    }
+    return Record(**(given | changes))
+
+
+def values(item: Record, **filter_settings) -> dict[str, float]:
+    return evaluate(item, LowPass(**filter_settings)).values[1]
+
+
+def test_every_quantity_of_a_known_force():
+    found = values(record(contact_height=5.3 + 0.02 * np.sin(2 * np.pi * np.arange(12_000) / 12_000 * 12)[None]))
+    # Gain of the default filter at 2, 10 and 30 Hz, and of the 50 Hz one: 1 / (1 + (sqrt(2) - 1) W^6) by definition.
+    gain = LowPass().gain(np.array([2.0, 10.0, 30.0]), RATE)
+    gain_50 = LowPass(cutoff_Hz=50.0).gain(np.array([2.0, 10.0, 30.0]), RATE)
+    sigma = np.sqrt(np.sum((gain * [20, 10, 8]) ** 2) / 2)
+    sigma_50 = np.sqrt(np.sum((gain_50 * [20, 10, 8]) ** 2) / 2)
+    expected = {
+        "mean_force_N": 100.0,
+        "std_force_N": sigma,
+        "std_force_50_N": sigma_50,
+        "cov_20": sigma / 100,
+        "cov_50": sigma_50 / 100,
+        "rms_0_5_N": 20 / np.sqrt(2),
+        "rms_5_20_N": 10 / np.sqrt(2),
+        "rms_20_50_N": 8 / np.sqrt(2),
+        "statistical_max_N": 100 + 3 * sigma,
+        "statistical_min_N": 100 - 3 * sigma,
+        "contact_loss_pct": 0.0,
+        "contact_height_range_mm": 40.0,
+    }
+    for name, number in expected.items():
+        # The filter's transients from the ends of the record, 4 s away, are below 1e-9.
+        assert_allclose(found[name], number, rtol=1e-6, err_msg=name)
+    assert 100 + 20 < found["max_force_N"] < 100 + 20 + 10 + 8 * gain[2]
+    assert set(found) == {quantity.name for quantity in PANTOGRAPH_QUANTITIES}
+
+
+def test_extremes_are_those_of_the_filtered_force():
+    """A spike of one sample: 500 N in the unfiltered force, below 20 N after 20 Hz (2 f_c / rate of its height)."""
+    force = np.full(12_000, 100.0)
+    force[6000] += 500
+    assert 100 < values(record(force))["max_force_N"] < 125
+
+
+def test_filter_runs_over_the_whole_record_before_the_stretch_is_cut():
+    """A step 20 ms before the stretch still rings inside it; filtering the stretch alone would not know of it."""
+    force = np.full(12_000, 100.0)
+    force[: int(RATE * 200 / SPEED) - 20] = 200.0
+    assert values(record(force))["max_force_N"] > 101
+
+
+def test_two_pantographs_are_evaluated_where_each_of_them_is():
+    """The second runs 100 m behind: it is over the stretch 2 s later, where the force is another."""
+    time = np.arange(12_000) / RATE
+    position = np.array([SPEED * time, SPEED * time - 100])
+    force = np.where(position < 200, 500.0, np.where(position < 400, [[110.0], [130.0]], 900.0))
+    found = evaluate(record(force, position=position), LowPass()).values
+    assert_allclose([found[1]["mean_force_N"], found[2]["mean_force_N"]], [110, 130], rtol=1e-12)
+
+
+def test_uplift_is_the_largest_at_the_evaluated_supports():
+    supports = np.array([150.0, 200.0, 300.0, 400.0, 450.0])
+    uplift = np.zeros((5, 12_000))
+    uplift[:, 7000] = [0.9, 0.04, 0.05, 0.06, 0.9]
+    found = evaluate(record(support_position=supports, support_uplift=uplift), LowPass())
+    assert_allclose(found.values[LINE]["max_uplift_at_support_mm"], 60.0)
+
+
+def test_force_filtered_at_20_hz_yields_nothing_above_and_no_contact_loss():
+    evaluation = evaluate(record(filter_applied_Hz=20.0), LowPass())
+    assert set(evaluation.skipped[1]) == {
+        "std_force_50_N",
+        "cov_50",
+        "rms_20_50_N",
+        "contact_loss_pct",
+        "contact_height_range_mm",
+    }
+    assert "filtered at 20 Hz" in evaluation.skipped[1]["rms_20_50_N"]
+    assert "filtered at 20 Hz" in evaluation.skipped[1]["std_force_50_N"]
+    assert "mean_force_N" in evaluation.values[1]
+
+
+def test_low_rate_yields_nothing_up_to_50_hz():
+    evaluation = evaluate(record(rate=100.0), LowPass())
+    assert {"rms_20_50_N", "std_force_50_N", "cov_50"} < set(evaluation.skipped[1])
+    assert "needs at least 125 samples per second; the record has 100" in evaluation.skipped[1]["rms_20_50_N"]
+    assert evaluation.values[1]["std_force_N"] > 0
+
+
+@pytest.mark.parametrize("length", [190.0, 390.0])
+def test_truncated_record_yields_no_number_at_all(length):
+    evaluation = evaluate(record(length=length), LowPass())
+    assert evaluation.values[1] == {}
+    assert "the evaluated stretch is 200 m to 400 m" in evaluation.skipped[1]["mean_force_N"]
+
+
+def test_short_stretch_yields_no_slow_band():
+    evaluation = evaluate(record(evaluated=(200.0, 220.0)), LowPass())
+    assert "lasts 0.4 s" in evaluation.skipped[1]["rms_0_5_N"]
+    assert evaluation.values[1]["std_force_N"] > 0
+    shorter = evaluate(record(evaluated=(200.0, 205.0)), LowPass())
+    assert "need at least 0.2 s" in shorter.skipped[1]["std_force_N"]
+
+
+def test_record_without_uplift_or_height_says_so():
+    evaluation = evaluate(record(), LowPass())
+    assert evaluation.skipped[1]["contact_height_range_mm"] == "the record has no contact height"
+    assert evaluation.skipped[LINE]["max_uplift_at_support_mm"] == "the record has no uplift at supports"
+
+
+def test_gain_and_offset_of_the_force_go_through():
+    """Statistics are linear in the force: gain 1.05 shows as 1.05, an offset only in mean and extremes."""
+    plain, louder = values(record()), values(record(1.05 * record().force))
+    for name in ("mean_force_N", "std_force_N", "rms_5_20_N", "max_force_N", "statistical_min_N"):
+        assert_allclose(louder[name], 1.05 * plain[name], rtol=1e-9)
+    moved = values(record(record().force + 7))
+    assert_allclose(moved["std_force_N"], plain["std_force_N"], rtol=1e-9)
+    assert_allclose(moved["min_force_N"], plain["min_force_N"] + 7, rtol=1e-9)
+
+
+def test_registry_has_every_name_of_the_contract():
+    names = """mean_force_N std_force_N std_force_50_N cov_20 cov_50 rms_0_5_N rms_5_20_N rms_20_50_N statistical_max_N
+    statistical_min_N max_force_N min_force_N contact_loss_pct max_uplift_at_support_mm contact_height_range_mm
+    presag_mm dropper_length_m elasticity_mm_N elasticity_non_uniformity_pct wave_speed_m_s speed_over_wave_speed
+    mode_frequency_Hz damping_ratio"""
+    assert set(QUANTITIES) >= set(names.split())
+    assert len(QUANTITIES) == len(PANTOGRAPH_QUANTITIES) + len(LINE_QUANTITIES) + len(GIVEN_QUANTITIES)
+    assert all(
+        name == quantity.name and quantity.definition and quantity.needs for name, quantity in QUANTITIES.items()
+    )
+
+
+def test_record_refuses_what_is_impossible():
+    good = record()
+    bad = good.force.copy()
+    bad[0, 17] = np.nan
+    with pytest.raises(ValueError, match="force: 1 values are not finite, the first at sample 18"):
+        replace(good, force=bad)
+    with pytest.raises(ValueError, match="not evenly spaced"):
+        replace(good, time=np.r_[good.time[:-1], good.time[-1] + 0.5])
+    with pytest.raises(ValueError, match="expected \\(1, 12000\\)"):
+        replace(good, position=good.position[:, :-1])
+    with pytest.raises(ValueError, match="move forwards"):
+        replace(good, position=good.position[:, ::-1])
+    with pytest.raises(ValueError, match="read-only"):
+        good.force[0, 0] = 1.0

@@ -1,0 +1,92 @@
+"""Lines at rest as the reference simulator reports them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pantocheck.conformance.cases.library import select
+from pantocheck.conformance.runner import run
+from pantocheck.conformance.simulation.catenary_model import catenary
+from pantocheck.conformance.simulation.static_quantities import SAMPLES_PER_SPAN, static_quantities
+from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
+from pantocheck.model import discretise
+
+
+def shortened(name, spans=8):
+    """A case of the library on a shorter line: what is checked in a span half way along hardly feels the ends."""
+    case = next(one for one in select([name]) if one.id == name)
+    geometry = case.line.geometry.model_copy(update={"spans": spans})
+    return replace(case, line=case.line.model_copy(update={"geometry": geometry}))
+
+
+@pytest.fixture(scope="module")
+def simple():
+    case = shortened("en50318-2018/ac-simple/static")
+    return case, static_quantities(case, discretise(catenary(case.line), 0.5))
+
+
+def test_published_lengths_by_strings_and_what_bending_and_stagger_add(simple):
+    """Strings to 1 mm; bending 4 to 5 mm more; the slant of the outer droppers 11 mm on top."""
+    case, found = simple
+    string, bending, stagger = (
+        1e3 * np.array(found[f"dropper_length{name}_m"]) for name in ("", "_bending", "_stagger")
+    )
+    assert string == pytest.approx(1e3 * np.array(case.line.droppers.length_m), abs=1.0)
+    assert (bending - string).min() > 4.0
+    assert (bending - string).max() < 5.2
+    # A straight zigzag is 0.167 m aside at 4.5 m, which on 1.022 m makes 13.6 mm; the droppers draw the wires together.
+    assert 10.0 < stagger[0] - bending[0] < 1e3 * (np.hypot(1.0216, 0.1673) - 1.0216)
+
+
+def test_elasticity_is_symmetrical_and_larger_when_droppers_slacken(simple):
+    _, found = simple
+    small, large = (np.array(found[f"elasticity{name}_along_span_mm_N"]) for name in ("", "_200_N"))
+    assert small.size == SAMPLES_PER_SPAN
+    assert small[1:] == pytest.approx(small[:0:-1], rel=1e-3)
+    assert (large > small - 1e-12).all()
+    assert large.max() / small.min() > 1
+    assert np.abs(large - small).max() > 0.01
+    assert found["elasticity_mm_N"] == small.max()
+
+
+def test_waves_and_modes(simple):
+    case, found = simple
+    assert found["wave_speed_m_s"] == pytest.approx(np.sqrt(22e3 / 1.35))
+    assert "doppler_factor" not in found
+    running = shortened("en50318-2018/ac-simple/320")
+    factors = static_quantities(running, discretise(catenary(running.line), 1.0))
+    c, v = factors["wave_speed_m_s"], 320 / 3.6
+    assert factors["doppler_factor"] == pytest.approx((c - v) / (c + v))
+    assert factors["amplification_coefficient"] == pytest.approx(
+        factors["reflection_coefficient"] / factors["doppler_factor"]
+    )
+    frequencies = np.array(found["natural_frequency_Hz"])
+    assert frequencies.size == 10
+    assert (np.diff(frequencies) > 0).all()
+    # Both wires as one string of 38 kN and 2.43 kg/m over a span: 1.14 Hz; the group lies around it.
+    assert frequencies[0] == pytest.approx(np.sqrt(38e3 / 2.43) / (2 * case.line.geometry.span_m), rel=0.25)
+
+
+def test_stitched_line_fits_its_figure():
+    """Seven lengths measured to 0.01 m."""
+    case = shortened("en50318-2018/ac-stitched/static")
+    found = static_quantities(case, discretise(catenary(case.line), 1.0))
+    assert found["dropper_length_m"] == pytest.approx(case.line.droppers.length_m, abs=0.0101)
+
+
+def test_failed_static_case_skips_what_builds_on_it():
+    static, running = (shortened(f"en50318-2018/ac-simple/{name}") for name in ("static", "275"))
+    wrong = static.limits[0].model_copy(update={"lower": 2.0, "upper": 3.0})
+    coarse = static.file.discretisation.model_copy(update={"element_m": 4.0})
+    static = replace(static, file=static.file.model_copy(update={"discretisation": coarse}), limits=(wrong,))
+    results = run([static, running], ReferenceSimulator())
+    assert [case.verdict for case in results.cases] == ["fail", "skip"]
+    assert results.cases[1].reason == f"requires {static.id}, which ended in fail"
+
+
+def test_apparent_mass_is_a_static_check(simple):
+    case, found = simple
+    assert case.file.apparent_mass is not None
+    assert len(found["apparent_mass_kg"]) == len(case.file.apparent_mass.frequency_Hz)
+    assert found["apparent_mass_kg"][-1] == pytest.approx(7.5, rel=0.1)  # at 20 Hz the head is nearly alone

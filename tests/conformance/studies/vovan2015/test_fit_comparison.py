@@ -1,0 +1,52 @@
+"""Observability of the coefficients on a study's page: what the drawn threshold means, and that it is the fit's."""
+
+import re
+
+import pytest
+
+from pantocheck.conformance.cases.library import select
+from pantocheck.conformance.identification.damping import observability
+from pantocheck.conformance.reports.figures import mass_drop_figures as massdrop_figures
+from pantocheck.conformance.reports.mass_drop.damping_report import OBSERVABILITY
+from pantocheck.conformance.studies.vovan2015 import fit_comparison as fitted
+
+ROWS = [
+    {"kind": kind, "matrix": "mass", "largest_share": share, "plausible_over_std": ratio, "observable": seen}
+    for kind, share, ratio, seen in (
+        ("contact_wire", 0.8, 40.0, True),
+        ("dropper", 0.01, 10.0, False),  # well determined, but it makes 1 % of any mode's damping
+        ("steady_arm", 0.0, 0.0, False),
+    )
+]
+
+
+@pytest.fixture
+def chart(monkeypatch):
+    monkeypatch.setattr(fitted, "fitted_damping", lambda *_: {"coefficients": [], "observability": ROWS})
+    (case,) = select(["vovan2015/mass-drop/updated"])
+    ((chart,),) = fitted.fit_report(case, None)[1:]
+    return chart
+
+
+def test_what_is_well_determined_is_not_called_observable_for_that_alone(chart):
+    """A coefficient needs its share in some mode's damping, too."""
+    assert "above the dashed line it is observable" not in chart.caption
+    assert f"{100 * observability.SHARE_NEEDED:g} %" in chart.caption
+    assert chart.marks[0].label == "needed"
+    told = re.findall(r"(\w+) mass: [\d.e+-]+, (observable|not observable)", chart.alternative)
+    assert dict(told) == {"contact_wire": "observable", "dropper": "not observable", "steady_arm": "not observable"}
+
+
+def test_drawn_threshold_is_that_of_the_fit(chart):
+    assert chart.marks[0].low == observability.RATIO_NEEDED
+    left, right = massdrop_figures.observability.__wrapped__(ROWS).axes
+    assert set(left.lines[0].get_xdata()) == {100 * observability.SHARE_NEEDED}
+    assert set(right.lines[0].get_xdata()) == {observability.RATIO_NEEDED}
+    assert f"at least {100 * observability.SHARE_NEEDED:g} % of some mode's damping" in OBSERVABILITY
+    assert f"at least {observability.RATIO_NEEDED:g} times the standard deviation" in OBSERVABILITY
+
+
+def test_floor_of_the_logarithmic_scale_is_said(chart):
+    (bars,) = chart.series
+    assert bars.y == [40.0, 10.0, fitted.LEAST_DRAWN]
+    assert f"what is below {fitted.LEAST_DRAWN:g} is drawn there" in chart.caption

@@ -1,0 +1,62 @@
+"""The dynamics once more, explicitly: central differences on assembled matrices, forces taken where things are.
+
+Nothing of the production kernel is used beyond the assembled matrices: no Newmark, no effective matrix, no low-rank
+correction, no iteration. Damping is taken with the velocity of the last half step.
+"""
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import splu
+
+from helpers.lines import Array, without_connectors
+from pantocheck.model import Discretised, Passage
+from pantocheck.model.fem.assembly import assemble, connector_directions, contact_stiffness, order, point_load
+from pantocheck.model.statics.static_solver import Statics
+
+
+def contact_force(line: Discretised, passage: Passage) -> Array:
+    """Contact force of one pantograph of two masses, both started at rest as the production run is.
+
+    Parameters
+    ----------
+    line : the discretised line, in the vertical plane
+    passage : its time step is the explicit one, below 2 / w_max
+
+    Returns
+    -------
+    (T,) [N]
+    """
+    (model,) = passage.pantographs
+    matrices = assemble(without_connectors(line))
+    free, dt, connectors = matrices.free, passage.time_step, line.connectors
+    row, place = line.contact_rows[0], order(line)[matrices.free]
+    rest = line.state.deflection.ravel()[order(line)]
+    solve = splu(matrices.mass).solve
+    stiffness, damping = sp.csr_array(matrices.stiffness), sp.csr_array(matrices.damping)
+    bars = sp.csr_array(connector_directions(line)[free])
+    pull = sp.csr_array(bars.T)
+    load = model.static_force * point_load(line, row, passage.start[0])
+    q = Statics(line).deflection(load).displacement.ravel()[place]
+    v = np.zeros(q.size)
+    head_height = point_load(line, row, passage.start[0])[free] @ q + point_load(line, row, passage.start[0]) @ rest
+    n = model.head.size
+    held = np.block([[model.stiffness, model.head[:, None]], [model.head[None], np.zeros((1, 1))]])
+    z = np.linalg.solve(held, np.append(model.force, head_height + model.static_force / model.contact_stiffness))[:n]
+    zv, inverse = np.zeros(n), np.linalg.inv(model.mass)
+    steps = round(passage.duration / dt)
+    record = np.zeros(steps)
+    for step in range(steps):
+        # Forces at the start of the step, the pantograph where it is then.
+        here = passage.start[0] + passage.speed * dt * step
+        share = point_load(line, row, here)
+        tension = connectors.stiffness * (pull @ q) + connectors.damping * (pull @ v)
+        change = np.where(connectors.unilateral, np.maximum(tension, -connectors.preload), tension)
+        closing = model.head @ z - share[free] @ q - share @ rest
+        force = max(0.0, contact_stiffness(line, row, here, model.contact_stiffness) * closing)
+        record[step] = force
+        v = v + dt * solve(share[free] * force - stiffness @ q - damping @ v - bars @ change)
+        q = q + dt * v
+        push = model.force - model.head * force - model.damping @ zv - model.stiffness @ z
+        zv = zv + dt * inverse @ push
+        z = z + dt * zv
+    return record

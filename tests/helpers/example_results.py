@@ -1,0 +1,314 @@
+"""A realistic results dictionary, made from a synthetic contact force whose statistics are known."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from pantocheck.conformance.reports.formats import html, pdf
+
+SOURCE = "Wang et al., An extended Habedank's equation-based EMTP model, IEEE Trans. Power Delivery, Table III"
+SPEED = 250 / 3.6
+RATE = 1000.0
+SPANS_M = (240.0, 360.0)
+SUPPORTS_M = [240.0, 300.0, 360.0]
+
+Signal = NDArray[np.float64]
+
+
+def force(mean: float, scale: float, phase: float) -> tuple[Signal, Signal, Signal]:
+    """Position [m], unfiltered and 20 Hz force [N]: span-passing, dropper-passing and high-frequency lines."""
+    position = np.arange(SPANS_M[0], SPANS_M[1], SPEED / RATE)
+    time = position / SPEED
+    span, dropper = SPEED / 60, SPEED / 6.5
+    slow = sum(a * np.cos(2 * np.pi * f * time + p + phase) for a, f, p in ((24, span, 0.4), (14, 3 * span, 1.9)))
+    fast = 18 * np.cos(2 * np.pi * dropper * time + 0.3 + phase)
+    above = 13 * np.cos(2 * np.pi * 31 * time + 0.8) + 6 * np.cos(2 * np.pi * 44 * time)
+    below_20 = mean + scale * (slow + fast)
+    return position, below_20 + scale * above, below_20
+
+
+def margin(value: float, lower: float | None, upper: float | None) -> float:
+    if lower is not None and upper is not None:
+        if lower == upper:
+            return 0.0 if value == lower else -abs(value - lower) / max(abs(lower), 1.0)
+        return min(value - lower, upper - value) / ((upper - lower) / 2)
+    if upper is not None:
+        return (upper - value) / (abs(upper) or 1.0)
+    assert lower is not None
+    return (value - lower) / (abs(lower) or 1.0)
+
+
+def band(x: Signal, low: float, high: float) -> float:
+    frequency = np.fft.rfftfreq(x.size, 1 / RATE)
+    power = 2 * np.abs(np.fft.rfft(x - x.mean()) / x.size) ** 2
+    return float(np.sqrt(power[(frequency > low) & (frequency <= high)].sum()))
+
+
+def statistics(raw: Signal, filtered: Signal) -> dict[str, float]:
+    mean, std = float(filtered.mean()), float(filtered.std())
+    return {
+        "mean_force_N": mean,
+        "std_force_N": std,
+        "std_force_50_N": float(raw.std()),
+        "cov_20": std / mean,
+        "cov_50": float(raw.std()) / mean,
+        "rms_0_5_N": band(raw, 0, 5),
+        "rms_5_20_N": band(raw, 5, 20),
+        "rms_20_50_N": band(raw, 20, 50),
+        "statistical_max_N": mean + 3 * std,
+        "statistical_min_N": mean - 3 * std,
+        "max_force_N": float(filtered.max()),
+        "min_force_N": float(filtered.min()),
+        "contact_loss_pct": 0.0,
+    }
+
+
+def criterion(
+    values: dict[str, float], pantograph: int, quantity: str, unit: str, *limits: float | None
+) -> dict[str, Any]:
+    lower, upper = limits
+    value = values[quantity]
+    nearness = margin(value, lower, upper)
+    return {
+        "quantity": quantity,
+        "pantograph": pantograph,
+        "item": None,
+        "value": value,
+        "unit": unit,
+        "lower": lower,
+        "upper": upper,
+        "verdict": "pass" if nearness >= 0 else "fail",
+        "trust": "secondary",
+        "source": SOURCE,
+        "margin": nearness,
+        "discretisation_error": abs(value) * 0.002,
+        "reason": None,
+    }
+
+
+def rounded(x: Signal) -> list[float]:
+    return [float(f"{v:.6g}") for v in x]
+
+
+def trace(position: Signal, raw: Signal, filtered: Signal) -> dict[str, Any]:
+    frequency = np.fft.rfftfreq(raw.size, 1 / RATE)
+    amplitude = 2 * np.abs(np.fft.rfft(raw - raw.mean())) / raw.size
+    shares, edges = np.histogram(filtered, bins=30)
+    up_to_50 = frequency <= 50
+    every = slice(None, None, max(1, math.ceil(raw.size / 1500)))
+    return {
+        "position_m": rounded(position[every]),
+        "force_N": rounded(raw[every]),
+        "force_20_N": rounded(filtered[every]),
+        "mean_N": float(filtered.mean()),
+        "std_N": float(filtered.std()),
+        "supports_m": SUPPORTS_M,
+        "spectrum": {"frequency_Hz": rounded(frequency[up_to_50]), "amplitude_N": rounded(amplitude[up_to_50])},
+        "histogram": {"edges_N": rounded(edges), "share_pct": rounded(100 * shares / raw.size)},
+    }
+
+
+def uplift(support: float, peak: float) -> dict[str, Any]:
+    time = np.linspace(3.0, 6.0, 600)
+    passing = support / SPEED
+    shape = np.exp(-(((time - passing) / 0.12) ** 2)) + 0.15 * np.sin(2 * np.pi * 1.1 * (time - passing))
+    return {"support_m": support, "time_s": rounded(time), "uplift_mm": rounded(peak * shape / shape.max())}
+
+
+def run_facts(speed: float) -> dict[str, Any]:
+    return {
+        "simulated_s": 7.0,
+        "wall_s": 0.412,
+        "dt_s": 0.001,
+        "element_m": 0.5,
+        "speed_km_h": speed,
+        "rate_Hz": 1000,
+        "filter": {"kind": "butterworth", "order": 6, "cutoff_Hz": 20, "phase": "zero"},
+        "evaluated_m": list(SPANS_M),
+    }
+
+
+def passing_case() -> dict[str, Any]:
+    front, rear = force(118.4, 0.98, 0.0), force(119.2, 1.02, 1.1)
+    q1, q2 = statistics(*front[1:]), statistics(*rear[1:])
+    q1["max_uplift_at_support_mm"] = 51.3
+    q2["max_uplift_at_support_mm"] = 51.3
+    limits: list[tuple[str, str, float | None, float | None]] = [
+        ("mean_force_N", "N", 110, 120),
+        ("std_force_N", "N", 22, 31),
+        ("statistical_max_N", "N", 180, 210),
+        ("statistical_min_N", "N", 20, 60),
+        ("max_force_N", "N", 160, 210),
+        ("min_force_N", "N", 50, 90),
+        ("max_uplift_at_support_mm", "mm", 48, 55),
+        ("contact_loss_pct", "%", 0, 0),
+    ]
+    return {
+        "id": "en50318-2002/250",
+        "title": "EN 50318:2002 reference model, 250 km/h",
+        "verdict": "pass",
+        "reason": None,
+        "notes": ["The steady arm carries its share of the contact wire, so that the wire is level at the support."],
+        "warnings": ["The contact force is sampled at 1000 Hz; contact losses shorter than 1 ms are not seen."],
+        "inputs": [
+            {"group": "contact_wire", "trust": "secondary", "source": SOURCE},
+            {"group": "evaluated_spans", "trust": "provisional", "source": "not traced to a printed source"},
+            {"group": "pantograph", "trust": "primary", "source": "manufacturer's data sheet"},
+        ],
+        "input_digest": "sha256:9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08",
+        "criteria": [criterion(q1, 1, *limit) for limit in limits] + [criterion(q2, 2, *limit) for limit in limits],
+        "quantities": {"0": {"wave_speed_m_s": 121.7}, "1": q1, "2": q2},
+        "skipped": {},
+        "run": run_facts(250),
+        "traces": {"1": trace(*front), "2": trace(*rear)},
+        "uplift": [uplift(240.0, 50.1), uplift(300.0, 51.3), uplift(360.0, 48.9)],
+    }
+
+
+def failing_case() -> dict[str, Any]:
+    signal = force(116.0, 1.35, 0.5)
+    q = statistics(*signal[1:])
+    del q["rms_20_50_N"], q["std_force_50_N"], q["cov_50"]
+    provisional = criterion(q, 1, "rms_5_20_N", "N", 20, 22)
+    provisional |= {"verdict": "info", "trust": "provisional", "source": "not traced to a printed source"}
+    provisional["reason"] = "a provisional limit does not count; it would be fail"
+    skipped = criterion(q, 1, "std_force_N", "N", 10, 20)
+    skipped |= {
+        "quantity": "rms_20_50_N",
+        "value": None,
+        "verdict": "skip",
+        "margin": None,
+        "discretisation_error": None,
+    }
+    skipped["reason"] = "the record is already filtered at 20 Hz; it says nothing about 20-50 Hz"
+    return {
+        "id": "en50318-2002/300",
+        "title": "EN 50318:2002 reference model, 300 km/h",
+        "verdict": "fail",
+        "reason": None,
+        "notes": [],
+        "warnings": [],
+        "inputs": [{"group": "contact_wire", "trust": "secondary", "source": SOURCE}],
+        "input_digest": "sha256:2c26b46b68ffc68ff99b453c1d30413413422d706483bfa0f98a5e886266e7ae",
+        "criteria": [
+            criterion(q, 1, "mean_force_N", "N", 110, 120),
+            criterion(q, 1, "std_force_N", "N", 32, 34),
+            criterion(q, 1, "max_force_N", "N", None, 225),
+            criterion(q, 1, "min_force_N", "N", 30, None),
+            provisional,
+            skipped,
+        ],
+        "quantities": {"1": q},
+        "skipped": {"1": {"rms_20_50_N": skipped["reason"], "std_force_50_N": skipped["reason"]}},
+        "run": run_facts(300),
+        "traces": {"1": trace(*signal)},
+        "uplift": [],
+    }
+
+
+def skipped_case() -> dict[str, Any]:
+    return {
+        "id": "en50318-2018/ac-simple/320-twin",
+        "title": "EN 50318:2018 AC simple, 320 km/h, two pantographs",
+        "verdict": "skip",
+        "reason": "the static case en50318-2018/ac-simple/static did not pass",
+        "notes": [],
+        "warnings": [],
+        "inputs": [],
+        "input_digest": "sha256:fcde2b2edba56bf408601fb721fe9b5c338d10ee429ea04fae5511b68fbf8fb9",
+        "criteria": [],
+        "quantities": {},
+        "skipped": {},
+        "run": run_facts(320) | dict.fromkeys(("simulated_s", "wall_s", "dt_s", "element_m", "rate_Hz", "evaluated_m")),
+        "traces": {},
+        "uplift": [],
+    }
+
+
+def example() -> dict[str, Any]:
+    return {
+        "schema": "pantocheck.results/1",
+        "suite": {"version": "0.1.0", "commit": "4f2c9d1e7a3b"},
+        "system": {"name": "Pantocheck reference simulator", "version": "0.1.0", "kind": "builtin"},
+        "statement": "self-declared conformance report, in the style of EN 50318",
+        "verdict": "fail",
+        "trust": "secondary",
+        "started": "2026-11-20T23:50:00Z",
+        "platform": {
+            "python": "3.11.9",
+            "numpy": "2.4.6",
+            "scipy": "1.17.1",
+            "numba": "0.68.1",
+            "machine": "x86_64",
+            "system": "Linux",
+        },
+        "cases": [passing_case(), failing_case(), skipped_case()],
+    }
+
+
+@pytest.fixture
+def results() -> dict[str, Any]:
+    """One passing, one failing and one skipped case; two pantographs; a provisional limit; a skipped quantity."""
+    return example()
+
+
+@pytest.fixture
+def passing() -> dict[str, Any]:
+    """The passing case alone."""
+    return example() | {"verdict": "pass", "cases": [passing_case()]}
+
+
+HOSTILE = [
+    "<script>alert(1)</script>",
+    '#import "x.typ": * "]) #panic()',
+    "${{7*7}} {{ 7*7 }} {% raw %}",
+    "a|b `c` *d* [e](f) \\ _g_",
+    "x" * 300,
+    "naïve Ω 東京 🚄 \u202egnp.exe \x00\x1b[31m \ud800 \ufffe \ue000",
+    "]]> &amp; <!-- -->",
+    "line one\nline two\r\n\tindented",
+]
+
+
+def with_hostile_text() -> dict[str, Any]:
+    """Every free text of the example replaced by text that tries to leave its place."""
+    results = example()
+    results["system"] |= {"name": HOSTILE[0], "version": HOSTILE[1]}
+    for number, case in enumerate(results["cases"]):
+        case["id"] += HOSTILE[number + 2]
+        case["title"] = HOSTILE[number]
+        case["notes"] = list(HOSTILE)
+        case["warnings"] = list(HOSTILE)
+        for row in case["criteria"][-1:]:
+            row["quantity"] = "a|b<i>"
+        case["inputs"] = [{"group": text, "trust": "secondary", "source": text} for text in HOSTILE]
+        for at, row in enumerate(case["criteria"]):
+            row["source"] = HOSTILE[at % len(HOSTILE)]
+            row["reason"] = HOSTILE[(at + 1) % len(HOSTILE)]
+    return results
+
+
+@pytest.fixture
+def hostile() -> dict[str, Any]:
+    return with_hostile_text()
+
+
+@pytest.fixture(scope="session")
+def page_text() -> str:
+    """The example as HTML."""
+    return html.render(example())
+
+
+@pytest.fixture(scope="session")
+def hostile_text() -> str:
+    """The example with hostile text as HTML."""
+    return html.render(with_hostile_text())
+
+
+@pytest.fixture(scope="session")
+def certificate() -> bytes:
+    """The example as PDF."""
+    return pdf.render(example(), 1_700_000_000)

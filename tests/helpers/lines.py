@@ -1,0 +1,77 @@
+"""Small lines that the tests of the simulator share."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pantocheck.model import (
+    Catenary,
+    Discretised,
+    Dropper,
+    Kind,
+    MessengerSupport,
+    Rayleigh,
+    SteadyArm,
+    Wire,
+)
+
+Array = NDArray[np.float64]
+
+DROPPERS_2002 = (5.0, 10.5, 17.0, 23.5, 30.0, 36.5, 43.0, 49.5, 55.0)
+"""Places of the droppers in a span of the EN 50318:2002 reference model [m]."""
+
+
+def bare_wire(
+    length: float, tension: float = 20e3, mass_per_length: float = 1.35, bending_stiffness: float = 195.0
+) -> Catenary:
+    """A contact wire pinned at both ends, with nothing hung on it."""
+    return Catenary((Wire("contact", Kind.CONTACT_WIRE, 0.0, length, tension, mass_per_length, bending_stiffness),))
+
+
+def simple_line(
+    spans: int = 2,
+    span: float = 60.0,
+    droppers: tuple[float, ...] = DROPPERS_2002,
+    damping: dict[Kind, Rayleigh] | None = None,
+    carries_share: bool = True,
+    dropper_stiffness: float = 1e5,
+) -> Catenary:
+    """Contact and messenger wire of the EN 50318:2002 reference model, over as many spans as asked for.
+
+    The supports at the anchors only say how high the messenger is anchored.
+    """
+    end = spans * span
+    masts = [number * span for number in range(1, spans)]
+    return Catenary(
+        wires=(
+            Wire("contact", Kind.CONTACT_WIRE, 0.0, end, 20e3, 1.35, 195.0),
+            Wire("messenger", Kind.MESSENGER_WIRE, 0.0, end, 16e3, 1.07, 131.7),
+        ),
+        droppers=tuple(
+            Dropper(number * span + x, "messenger", "contact", stiffness=dropper_stiffness)
+            for number in range(spans)
+            for x in droppers
+        ),
+        steady_arms=tuple(
+            SteadyArm(x, "contact", vertical_stiffness=300.0, carries_share=carries_share) for x in masts
+        ),
+        messenger_supports=tuple(MessengerSupport(number * span, "messenger", 1.2, 5e4) for number in range(spans + 1)),
+        damping=damping or {},
+    )
+
+
+def without_connectors(line: Discretised) -> Discretised:
+    """The same rows of beams with every dropper and clamp taken out of the matrices."""
+    nothing = np.zeros_like(line.connectors.stiffness)
+    return replace(line, connectors=line.connectors._replace(stiffness=nothing, damping=nothing))
+
+
+DAMPED = {
+    Kind.CONTACT_WIRE: Rayleigh(0.05, 1e-4),
+    Kind.MESSENGER_WIRE: Rayleigh(0.03, 3e-4),
+    Kind.DROPPER: Rayleigh(0.2, 1e-3),
+    Kind.STEADY_ARM: Rayleigh(0.4, 2e-3),
+    Kind.MESSENGER_SUPPORT: Rayleigh(0.0, 5e-4),
+}
+"""A different damping for every kind of component, so that none can be taken for another."""

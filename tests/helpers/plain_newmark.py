@@ -1,0 +1,130 @@
+"""The time step written out plainly: full matrices, solved anew for every guess of what is slack or open.
+
+Newmark average acceleration with the mass that keeps waves from running late. Unknown are the accelerations a of the
+whole line and of the pantographs; displacement and velocity follow from them. The balance of forces is smooth but for
+the kinks where a dropper goes slack or a head leaves the wire, so Newton's method with the active set of the last guess
+ends exactly after a few solves.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy.linalg import solve
+
+from helpers.lines import Array, without_connectors
+from pantocheck.model.discretised_line import Discretised
+from pantocheck.model.dynamics.simulation import Passage
+from pantocheck.model.dynamics.state import Motion, Train
+from pantocheck.model.fem.assembly import (
+    assemble,
+    connector_directions,
+    contact_stiffness,
+    order,
+    point_load,
+    stepping_mass,
+)
+
+
+@dataclass
+class State:
+    """Displacement, velocity and acceleration of line and pantographs stacked, and the forces; changed by `advance`."""
+
+    q: Array
+    v: Array
+    a: Array
+    tension: Array
+    contact: Array
+    time: float = 0.0
+
+
+class PlainNewmark:
+    """Line and pantographs as one system with dense matrices.
+
+    Parameters
+    ----------
+    line : the discretised line
+    passage : pantographs and their journey
+    """
+
+    def __init__(self, line: Discretised, passage: Passage) -> None:
+        matrices = assemble(without_connectors(line))
+        self.line, self.passage = line, passage
+        self.free = matrices.free
+        pantographs = passage.pantographs
+        sizes = [p.head.size for p in pantographs]
+        at = self.free.size + np.concatenate([[0], np.cumsum(sizes)]).astype(int)
+        self.of_pantograph = [slice(first, last) for first, last in pairwise(at)]
+        self.M, self.C, self.K = (np.zeros((at[-1], at[-1])) for _ in range(3))
+        inner = slice(0, self.free.size)
+        self.M[inner, inner] = stepping_mass(line, passage.time_step).toarray()
+        self.C[inner, inner] = matrices.damping.toarray()
+        self.K[inner, inner] = matrices.stiffness.toarray()
+        self.force = np.zeros(at[-1])
+        for own, p in zip(self.of_pantograph, pantographs, strict=True):
+            self.M[own, own], self.C[own, own], self.K[own, own] = p.mass, p.damping, p.stiffness
+            self.force[own] = p.force
+        self.elongation = np.zeros((at[-1], line.connectors.station.size))
+        self.elongation[inner] = connector_directions(line)[self.free].toarray()
+        self.rest = line.state.deflection.ravel()[order(line)]
+
+    def take(self, motion: Motion, train: Train) -> State:
+        """The state that the kernel starts from."""
+        place = order(self.line)[self.free]
+        fields = [
+            np.concatenate(
+                [
+                    np.stack([motion.w[i], motion.r[i]], axis=-1).ravel()[place],
+                    *(train.z[i, p, : pan.head.size] for p, pan in enumerate(self.passage.pantographs)),
+                ]
+            )
+            for i in range(3)
+        ]
+        return State(*fields, motion.tension.copy(), train.contact.ravel())
+
+    def advance(self, state: State) -> None:
+        """One time step, in place."""
+        dt, line = self.passage.time_step, self.line.connectors
+        state.time += dt
+        q0 = state.q + dt * state.v + dt**2 / 4 * state.a
+        v0 = state.v + dt / 2 * state.a
+        closing, rest_height = self._closing(state.time)
+        bars = self.elongation
+        places = [x + self.passage.speed * state.time for x in self.passage.start]
+        stiff = np.array(
+            [
+                contact_stiffness(self.line, row, place, pantograph.contact_stiffness)
+                for pantograph, place in zip(self.passage.pantographs, places, strict=True)
+                for row in self.line.contact_rows
+            ]
+        )
+        taut = ~line.unilateral | (state.tension > 0)
+        touching = state.contact > 0
+        for _ in range(100):
+            k, c, kc = line.stiffness * taut, line.damping * taut, stiff * touching
+            K = self.K + (bars * k) @ bars.T + (closing * kc) @ closing.T
+            C = self.C + (bars * c) @ bars.T
+            # A taut dropper changes its tension from the preload; a slack one takes its whole preload away.
+            constant = self.force + bars @ (line.preload * ~taut) + closing @ (kc * rest_height)
+            a = solve(self.M + dt / 2 * C + dt**2 / 4 * K, constant - K @ q0 - C @ v0, assume_a="pos")
+            q, v = q0 + dt**2 / 4 * a, v0 + dt / 2 * a
+            tension = line.preload + line.stiffness * (bars.T @ q) + line.damping * (bars.T @ v)
+            contact = stiff * (closing.T @ q - rest_height)
+            now_taut, now_touching = ~line.unilateral | (tension > 0), contact > 0
+            if np.array_equal(now_taut, taut) and np.array_equal(now_touching, touching):
+                state.q, state.v, state.a = q, v, a
+                state.tension, state.contact = tension * taut, contact * touching
+                return
+            taut, touching = now_taut, now_touching
+        raise ArithmeticError("the active set does not settle")
+
+    def _closing(self, time: float) -> tuple[Array, Array]:
+        """Overlap of each head and each wire per unknown, and the height of the wire at rest, at a time."""
+        pairs = [(p, row) for p in range(len(self.of_pantograph)) for row in self.line.contact_rows]
+        closing, height = np.zeros((self.M.shape[0], len(pairs))), np.zeros(len(pairs))
+        for n, (p, row) in enumerate(pairs):
+            share = point_load(self.line, row, self.passage.start[p] + self.passage.speed * time)
+            closing[: self.free.size, n] = -share[self.free]
+            closing[self.of_pantograph[p], n] = self.passage.pantographs[p].head
+            height[n] = share @ self.rest
+        return closing, height

@@ -1,0 +1,163 @@
+"""The lateral plane against closed forms and against the vertical plane."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from helpers.lines import Array, simple_line
+from pantocheck.model import Catenary, Discretised, Dropper, Kind, Passage, SteadyArm, Wire, chain, discretise, run
+from pantocheck.model.fem.beams import wire_matrices
+from pantocheck.model.fem.connectors import RIGID
+from pantocheck.model.statics.elasticity import static_uplift
+
+SPAN, STAGGER, TENSION = 60.0, 0.2, 20e3
+PANTOGRAPH = chain(
+    np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.array([90.0, 10.0]), 120.0, 0, 50e3, unstretched_height=0.06
+)
+
+
+def with_stagger(catenary: Catenary, contact: float, spans: int) -> Catenary:
+    """The line with a zigzag of the contact wire and a straight messenger; arms a metre long, stiff by their force."""
+    plans = {
+        Kind.CONTACT_WIRE: tuple((SPAN * n, contact if n % 2 else -contact) for n in range(spans + 1)),
+        Kind.MESSENGER_WIRE: tuple((SPAN * n, 0.0) for n in range(spans + 1)),
+    }
+    return replace(
+        catenary,
+        wires=tuple(replace(wire, stagger=plans[wire.kind]) for wire in catenary.wires),
+        steady_arms=tuple(replace(arm, vertical_stiffness=None, length=1.0) for arm in catenary.steady_arms),
+    )
+
+
+def zigzag(acts: str = "pull", length: float = 1.2, spans: int = 5) -> Discretised:
+    """A bare contact wire between steady arms."""
+    wire = Wire("contact", Kind.CONTACT_WIRE, 0.0, spans * SPAN, TENSION, 1.35, 195.0)
+    plan = tuple((SPAN * n, STAGGER if n % 2 else -STAGGER) for n in range(spans + 1))
+    arms = tuple(SteadyArm(SPAN * n, "contact", length=length, acts=acts) for n in range(1, spans))  # type: ignore[arg-type]
+    return discretise(Catenary((replace(wire, stagger=plan),), steady_arms=arms), 0.25)
+
+
+def passage(speed: float = 70.0, duration: float = 0.6) -> Passage:
+    return Passage((PANTOGRAPH,), (70.0,), speed, duration, 1e-3)
+
+
+def test_zero_stagger_is_the_vertical_plane() -> None:
+    """The same forces, but for the rounding that 600 steps of forces of 1e2 N gather: 1e-7 N."""
+    spans = 4
+    plane = simple_line(spans)
+    plane = replace(plane, steady_arms=tuple(replace(arm, vertical_stiffness=None) for arm in plane.steady_arms))
+    lateral = discretise(with_stagger(plane, 0.0, spans), 0.5)
+    assert "y" in lateral.mesh.row_field
+    flat = discretise(plane, 0.5)
+    assert "y" not in flat.mesh.row_field
+    assert lateral.state.dropper_length == pytest.approx(flat.state.dropper_length, rel=1e-13)
+    ours, theirs = run(lateral, passage()).force, run(flat, passage()).force
+    assert np.ptp(theirs) > 50
+    assert np.abs(ours - theirs).max() < 1e-7
+
+
+def test_steady_arm_carries_the_change_of_direction_of_the_wire() -> None:
+    """T times the kink, 4 a T / L; bending rounds the corner over sqrt(EI / T) = 0.1 m of 60 m: under 1 % more."""
+    line = zigzag()
+    by_hand = 4 * STAGGER * TENSION / SPAN
+    inner = line.state.arm_force[1:-1, 0]
+    assert np.abs(inner) == pytest.approx(by_hand, rel=0.01)
+    # Pulled outwards: a wire at positive stagger towards positive y.
+    assert np.sign(inner).tolist() == [-1.0, 1.0]
+
+
+@pytest.mark.parametrize(("acts", "sign"), [("pull", 1.0), ("push", -1.0)])
+def test_arm_is_a_pendulum_under_its_axial_force(acts: str, sign: float) -> None:
+    """Sideways as stiff as its force over its length, negative for one that pushes; along itself rigid."""
+    line = zigzag(acts, length=1.2)
+    force = np.abs(line.state.arm_force[:, 0])
+    stiffness, vertical = line.connectors.stiffness, line.mesh.row_of["contact", "z"]
+    across = np.abs(line.connectors.coefficient[:, vertical]) > 0.5
+    assert stiffness[across] == pytest.approx(sign * force / 1.2, rel=1e-12)
+    assert stiffness[~across].tolist() == [RIGID] * 4
+
+
+def test_arm_that_pushes_makes_the_wire_softer_at_the_support() -> None:
+    """With one arm in the middle of a wire: 4 T / L of the wire, and the arm's force over its length added or taken."""
+    lines = [zigzag(acts, spans=2) for acts in ("pull", "push")]
+    pull, push = (1 / static_uplift(line, np.array([SPAN]), 1.0)[0] for line in lines)
+    force = abs(lines[0].state.arm_force[0, 0])
+    assert pull - push == pytest.approx(2 * force / 1.2, rel=1e-9)
+    # Bending rounds the peak under the load over 0.1 m of 60 m: 0.3 % on the wire's share.
+    assert (pull + push) / 2 == pytest.approx(4 * TENSION / (2 * SPAN), rel=0.005)
+
+
+def test_lateral_forces_balance_on_every_station() -> None:
+    """Wires' tension against the slanting droppers: nothing is left where nothing else holds, to rounding."""
+    spans = 4
+    line = discretise(with_stagger(simple_line(spans), STAGGER, spans), 0.5)
+    for name, side in (("contact", 1.0), ("messenger", -1.0)):
+        row = line.mesh.row_of[name, "y"]
+        stiffness, _ = wire_matrices(line.beams, row)
+        left = -(stiffness @ line.state.deflection[row].ravel())[::2]
+        for n, dropper in enumerate(line.catenary.droppers):
+            at = line.mesh.station(dropper.position)
+            left[at] += side * line.state.dropper_tension[n] * line.state.dropper_direction[n, 0]
+        held = {line.mesh.station(SPAN * n) for n in range(spans + 1)}
+        free = [s for s in range(line.mesh.position.size) if s not in held]
+        assert np.abs(left[free]).max() < 1e-8
+        if name == "contact":
+            for arm, force in zip(line.catenary.steady_arms, line.state.arm_force, strict=True):
+                assert left[line.mesh.station(arm.position)] + force[0] == pytest.approx(0.0, abs=1e-8)
+
+
+def test_inclined_droppers_lie_along_the_line_between_their_wires() -> None:
+    spans = 4
+    flat = simple_line(spans)
+    line, plane = discretise(with_stagger(flat, STAGGER, spans), 0.5), discretise(flat, 0.5)
+    rise = plane.state.dropper_length
+    between = _between(line)
+    assert line.state.dropper_length == pytest.approx(np.hypot(rise, between), rel=1e-12)
+    assert line.state.dropper_direction[:, 0] == pytest.approx(between / line.state.dropper_length, abs=1e-12)
+    # What a dropper carries is set by the vertical plane: its tension is larger by the slant alone.
+    slanted = plane.state.dropper_tension * line.state.dropper_length / rise
+    assert line.state.dropper_tension == pytest.approx(slanted, rel=1e-9)
+    assert np.abs(between).max() > 0.1
+
+
+def _between(line: Discretised) -> Array:
+    y = line.state.deflection[..., 0]
+    upper, lower = line.mesh.row_of["messenger", "y"], line.mesh.row_of["contact", "y"]
+    at = [line.mesh.station(d.position) for d in line.catenary.droppers]
+    return np.asarray(y[upper, at] - y[lower, at])
+
+
+def test_mirrored_stagger_gives_the_same_forces() -> None:
+    """Left and right are alike: the vertical motion cannot tell them apart, to rounding."""
+    spans = 4
+    lines = [discretise(with_stagger(simple_line(spans), side * STAGGER, spans), 0.5) for side in (1.0, -1.0)]
+    one, other = (run(line, passage(duration=0.3)).force for line in lines)
+    assert np.abs(one - other).max() < 1e-7
+
+
+def test_two_wires_side_by_side_are_one_of_twice_everything() -> None:
+    """Two contact wires share the force: a pantograph cannot tell them from one of twice the tension, mass and EI."""
+    single = simple_line(3, dropper_stiffness=2e5)
+    contact = next(wire for wire in single.wires if wire.kind is Kind.CONTACT_WIRE)
+    messenger = next(wire for wire in single.wires if wire.kind is Kind.MESSENGER_WIRE)
+    doubled = replace(
+        contact, tension=2 * contact.tension, mass_per_length=2.70, bending_stiffness=2 * contact.bending_stiffness
+    )
+    one = replace(single, wires=(doubled, messenger))
+    names = ("left", "right")
+    droppers = tuple(Dropper(d.position, d.upper, name, stiffness=1e5) for d in single.droppers for name in names)
+    arms = tuple(replace(arm, wire=name, vertical_stiffness=150.0) for arm in single.steady_arms for name in names)
+    two = replace(
+        single,
+        wires=(*(replace(contact, name=name) for name in names), messenger),
+        droppers=droppers,
+        steady_arms=arms,
+    )
+    # Each wire has its own penalty: half as stiff, they give as one of the pantograph's.
+    half = replace(PANTOGRAPH, contact_stiffness=PANTOGRAPH.contact_stiffness / 2)
+    way = passage(duration=0.6)
+    together = run(discretise(two, 0.5), replace(way, pantographs=(half,))).force
+    alone = run(discretise(one, 0.5), way).force
+    assert np.ptp(alone) > 50
+    assert np.abs(together - alone).max() < 1e-6

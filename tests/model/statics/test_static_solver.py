@@ -1,0 +1,89 @@
+"""Static deflections: superposition while taut, slack droppers against a convex minimisation, elasticity."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.linalg import cholesky, solve_triangular
+from scipy.optimize import nnls
+
+from helpers.lines import Array, simple_line, without_connectors
+from pantocheck.model.discretised_line import discretise
+from pantocheck.model.fem.assembly import assemble, connector_directions, order, point_load
+from pantocheck.model.statics.static_solver import Statics
+
+LINE = discretise(simple_line(spans=3), 1.0)
+STATICS = Statics(LINE)
+ROWS = assemble(without_connectors(LINE))
+FREE, COMPLIANCE = ROWS.free, np.linalg.inv(ROWS.stiffness.toarray())
+BARS = connector_directions(LINE)[FREE].toarray()
+
+
+def tensions_by_minimisation(load: Array) -> tuple[Array, Array]:
+    """Displacement and dropper tensions by the principle of least complementary energy, a convex problem.
+
+    With the rows' compliance S = K^-1, the tensions N >= 0 minimise N'(B'SB + 1/k)N / 2 - N'(N0/k + B'S(f + B N0)):
+    a non-negative least-squares problem once the matrix is split by Cholesky. No active set is guessed here.
+    """
+    stiffness, preload = LINE.connectors.stiffness, LINE.connectors.preload
+    pulled = COMPLIANCE @ (load[FREE] + BARS @ preload)
+    root = cholesky(BARS.T @ COMPLIANCE @ BARS + np.diag(1 / stiffness))
+    tension, _ = nnls(root, solve_triangular(root, preload / stiffness + BARS.T @ pulled, trans="T"))
+    full = np.zeros(load.size)
+    full[order(LINE)[FREE]] = pulled - COMPLIANCE @ (BARS @ tension)
+    return full.reshape(LINE.beams.free.shape), tension
+
+
+def test_taut_deflections_add_up() -> None:
+    """Small loads slacken nothing: the deflection of the sum is the sum of the deflections, to rounding."""
+    one, two = 10.0 * point_load(LINE, 0, 73.3), -25.0 * point_load(LINE, 1, 111.0)
+    found = [STATICS.deflection(load) for load in (one, two, one + two)]
+    assert not any(f.slack.any() for f in found)
+    summed = found[0].displacement + found[1].displacement
+    np.testing.assert_allclose(found[2].displacement, summed, rtol=0, atol=1e-12)
+
+
+def test_load_that_slackens_droppers_lifts_more_than_in_proportion() -> None:
+    """800 N take the contact wire off several droppers: it moves by a tenth more than eighty times what 10 N do."""
+    lift = [STATICS.deflection(force * point_load(LINE, 0, 90.0)) for force in (10.0, 800.0)]
+    at = LINE.mesh.station(90.0)
+    assert not lift[0].slack.any()
+    assert lift[1].slack.sum() >= 3
+    assert lift[1].displacement[0, at, 0] > 1.1 * 80 * lift[0].displacement[0, at, 0]
+
+
+@settings(max_examples=40, deadline=None, derandomize=True)
+@given(st.lists(st.tuples(st.floats(1.0, 179.0), st.floats(-600.0, 900.0), st.integers(0, 1)), min_size=1, max_size=4))
+def test_slack_droppers_are_those_of_the_convex_minimum(loads: list[tuple[float, float, int]]) -> None:
+    """Any loads, up and down, on either wire: tensions to 1e-6 N of 100 N, displacements to 1e-9 m of 1 m.
+
+    What limits it is the complementary problem's own conditioning: droppers of 1e5 N/m beside wires of 1e3 N/m.
+    """
+    load = np.sum([force * point_load(LINE, row, x) for x, force, row in loads], axis=0)
+    found = STATICS.deflection(load)
+    displacement, tension = tensions_by_minimisation(load)
+    np.testing.assert_allclose(found.tension, tension, rtol=0, atol=1e-6)
+    np.testing.assert_allclose(found.displacement, displacement, rtol=0, atol=1e-9)
+
+
+def test_elasticity_is_positive_and_symmetrical() -> None:
+    """Lift under 100 N along the middle span of three, per newton: the span reads the same from both its ends.
+
+    At mid-span both wires act as one string on rigid supports would, L / 4(T + T') = 0.417 mm/N, and the give of
+    supports, neighbouring spans and droppers adds a tenth; near the supports it is about half of that.
+    """
+    loads = [100.0 * point_load(LINE, 0, x) for x in np.linspace(60.0, 120.0, 61)]
+    moved = [STATICS.deflection(load).displacement.ravel()[order(LINE)] @ load for load in loads]
+    elasticity = np.array(moved) / 100.0**2
+    np.testing.assert_allclose(elasticity, elasticity[::-1], rtol=1e-9)
+    string = 60.0 / (4 * (20e3 + 16e3))
+    assert string < elasticity[30] < 1.2 * string
+    assert elasticity.min() > 0.4 * string
+
+
+def test_a_unit_load_is_answered_reciprocally() -> None:
+    """Maxwell: what a force at A moves at B, the same force at B moves at A, whichever wires A and B are on."""
+    a, b = 10.0 * point_load(LINE, 0, 51.2), 10.0 * point_load(LINE, 1, 97.9)
+    place = order(LINE)
+    moved = [STATICS.deflection(load).displacement.ravel()[place] for load in (a, b)]
+    assert moved[0] @ b == pytest.approx(moved[1] @ a, rel=1e-9)
