@@ -10,7 +10,7 @@ import time
 from lines import QUANTITIES, ac_simple, figures, passage, staggered, vertical
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.model import Catenary, discretise, run
+from pantocheck.model import Catenary, discretise, simulate_passage
 
 DEFAULT = (0.5, 1e-3)
 ALLOWED_PCT = dict.fromkeys(QUANTITIES[:4], 1.0) | dict.fromkeys(QUANTITIES[4:], 2.0)
@@ -22,7 +22,7 @@ def run_figures(case: Case, built: Catenary, element: float, step: float) -> dic
     spans, span = case.line.geometry.spans, case.line.geometry.span_m
     line = discretise(built, element)
     way = passage(case, line, step, 1, (spans - 1.5) * span, math.inf)
-    return figures(way, run(line, way), ((spans - 10) * span, (spans - 2) * span))
+    return figures(way, simulate_passage(line, way), ((spans - 10) * span, (spans - 2) * span))
 
 
 def table(title: str, rows: list[tuple[str, dict[str, float]]]) -> None:

@@ -12,15 +12,15 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from scipy.signal import resample_poly
 
-from pantocheck.conformance.cases.library import select
-from pantocheck.conformance.identification.damping.damping_results import damping_results
+from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.identification.damping.damping_results import build_damping_results
 from pantocheck.conformance.identification.identification_files import read_modes, write_modes
-from pantocheck.conformance.identification.identify import identify
-from pantocheck.conformance.mass_drops.drop_record import Channel, Drop, DropRecord, Line
-from pantocheck.conformance.simulation.catenary_model import catenary
+from pantocheck.conformance.identification.identify import identify_modes
+from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
+from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.model import Kind, Rayleigh
-from pantocheck.model.dynamics.mass_drop import Drop as SimulatedDrop
-from pantocheck.model.dynamics.mass_drop import drop
+from pantocheck.model.dynamics.mass_drop import MassDropSetup as SimulatedDrop
+from pantocheck.model.dynamics.mass_drop import simulate_mass_drop
 
 PUT_IN = {
     Kind.CONTACT_WIRE: Rayleigh(0.06, 6e-5),
@@ -34,11 +34,11 @@ SPANS, MASS, PLACE, HANGING, DURATION, STEP, ELEMENT, NOISE = 6, 30.0, 165.0, 6.
 
 def main() -> None:
     """Run the loop once."""
-    case = select(["en50318-2002/250"])[0]
+    case = select_cases(["en50318-2002/250"])[0]
     six_spans = case.line.geometry.model_copy(update={"spans": SPANS})
-    line = replace(catenary(case.line.model_copy(update={"geometry": six_spans})), damping=PUT_IN)
+    line = replace(build_catenary(case.line.model_copy(update={"geometry": six_spans})), damping=PUT_IN)
     test = SimulatedDrop(MASS, "contact wire", PLACE, 0.0, HANGING, DURATION, STEP, SENSORS)
-    decay = drop(line, ELEMENT, test)
+    decay = simulate_mass_drop(line, ELEMENT, test)
     print(f"last slack dropper {decay.last_slack} s after the release")
     signals = resample_poly(decay.motion[:, :, 2].T, 1, 5, axis=0)
     signals = signals + NOISE * np.random.default_rng(0).standard_normal(signals.shape)
@@ -47,14 +47,14 @@ def main() -> None:
         "loop",
         1 / (5 * STEP),
         signals,
-        tuple(Channel(f"S{i}_z", i, "z", SHORT[wire], x) for i, (wire, x) in enumerate(SENSORS, 1)),
-        drop=Drop(MASS, "CW", PLACE, HANGING),
-        line=Line((case.line.geometry.span_m,) * SPANS),
+        tuple(DropChannel(f"S{i}_z", i, "z", SHORT[wire], x) for i, (wire, x) in enumerate(SENSORS, 1)),
+        drop=DropDescription(MASS, "CW", PLACE, HANGING),
+        line=DropLine((case.line.geometry.span_m,) * SPANS),
     )
     with TemporaryDirectory() as folder:
         path = Path(folder, "modes.json")
-        write_modes(path, identify((record,)))
-        results = damping_results(read_modes(path), line, ELEMENT, path.name)
+        write_modes(path, identify_modes((record,)))
+        results = build_damping_results(read_modes(path), line, ELEMENT, path.name)
     for one in results["coefficients"]:
         true = getattr(PUT_IN[Kind(one["kind"])], f"{one['matrix']}_coefficient")
         interval = f"[{one['low_95']:.4g}, {one['high_95']:.4g}]"

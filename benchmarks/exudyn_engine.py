@@ -16,10 +16,16 @@ import scipy.sparse as sp
 from exudyn.itemInterface import NodeGenericODE2, ObjectGenericODE2
 from numpy.typing import NDArray
 
-from pantocheck.model import Discretised, Passage
-from pantocheck.model.dynamics.kernel_arrays import time_stepping
-from pantocheck.model.dynamics.simulation import start
-from pantocheck.model.fem.assembly import assemble, connector_directions, order, point_load, stepping_mass
+from pantocheck.model import DiscretisedLine, Passage
+from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays
+from pantocheck.model.dynamics.simulation import start_motion
+from pantocheck.model.fem.assembly import (
+    assemble_matrices,
+    bandwidth_order,
+    connector_directions,
+    point_load,
+    stepping_mass,
+)
 from pantocheck.model.fem.residual_flexibility import local_flexibility
 
 Array = NDArray[np.float64]
@@ -34,17 +40,17 @@ class DroppersAndContact:
     passage : pantographs, their places and speed
     """
 
-    def __init__(self, line: Discretised, passage: Passage) -> None:
+    def __init__(self, line: DiscretisedLine, passage: Passage) -> None:
         """Line and pantographs at rest, and the matrices of both."""
-        stepping = time_stepping(line, passage.time_step, math.inf)
-        motion, train = start(line, stepping, passage)
-        matrices = assemble(line)
+        stepping = build_kernel_arrays(line, passage.time_step, math.inf)
+        motion, train = start_motion(line, stepping, passage)
+        matrices = assemble_matrices(line)
         self.line, self.passage, self.free = line, passage, matrices.free
         n, sizes = matrices.free.size, [p.head.size for p in passage.pantographs]
         at = n + np.concatenate([[0], np.cumsum(sizes)])
         self.own = [slice(int(a), int(b)) for a, b in pairwise(at)]
         self.size = int(at[-1])
-        place = order(line)
+        place = bandwidth_order(line)
         self.mass, self.damping, self.stiffness = (
             sp.csr_matrix(sp.block_diag([of_line, *of_pantographs]))
             for of_line, of_pantographs in (
@@ -119,7 +125,7 @@ class DroppersAndContact:
         return touched, shares, 1 / (1 / model.contact_stiffness + flexibility), closing
 
 
-def run_exudyn(line: Discretised, passage: Passage) -> tuple[Array, float, float]:
+def run_exudyn(line: DiscretisedLine, passage: Passage) -> tuple[Array, float, float]:
     """Exudyn's implicit Newmark solver with sparse matrices and Newton's method.
 
     Parameters

@@ -30,13 +30,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pantocheck.conformance.authenticity.recomputation import discrepancies
-from pantocheck.conformance.authenticity.verification import verify
-from pantocheck.conformance.cases.library import library_folder, load, overlaid, read_limits, select
-from pantocheck.conformance.cases.profile_file import profile_named
-from pantocheck.conformance.grading.assessed_record import subject_of
-from pantocheck.conformance.grading.baseline import against_baseline
-from pantocheck.conformance.grading.profile_grading import assess
+from pantocheck.conformance.authenticity.recomputation import find_discrepancies
+from pantocheck.conformance.authenticity.verification import verify_certificate
+from pantocheck.conformance.cases.library import library_folder, load_case, overlay_limits, read_limits, select_cases
+from pantocheck.conformance.cases.profile_file import load_profile
+from pantocheck.conformance.grading.assessed_record import load_assessed_record
+from pantocheck.conformance.grading.baseline import compare_with_baseline
+from pantocheck.conformance.grading.profile_grading import assess_record
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.plan import read_plan
 from pantocheck.conformance.records.record import Record
@@ -45,8 +45,8 @@ from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.reports.formats import pdf
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.results.results_reading import read_results
-from pantocheck.conformance.runner import run
-from pantocheck.conformance.systems.record_folder import record_folder
+from pantocheck.conformance.runner import run_cases
+from pantocheck.conformance.systems.record_folder import open_record_folder
 
 SLOWEST_S = 20
 CASE = "en50318-2002/250"
@@ -137,7 +137,7 @@ def targets(folder: Path) -> list[Target]:
     plan = (
         b'cases = ["en50318-2002/*"]\nsystem = "record:x"\nformats = ["json"]\nbaseline = "b.json"\ndrift_pct = 2.0\n'
     )
-    results = run(select([CASE]), record_folder(PASSING))
+    results = run_cases(select_cases([CASE]), open_record_folder(PASSING))
     profile = (library_folder() / "profiles" / "acceptance-ac.toml").read_bytes()
     with_digest = [
         Target(f"{suffix} table, digest known", tables[f"{suffix} with digest"], f"a.{suffix}", use_digested)
@@ -151,14 +151,19 @@ def targets(folder: Path) -> list[Target]:
     return [
         *tabled,
         *with_digest,
-        *(Target(f"case: {name}", case, name, lambda path: load(path / "250.toml")) for name in case),
+        *(Target(f"case: {name}", case, name, lambda path: load_case(path / "250.toml")) for name in case),
         Target("summary record", summary, "a.toml", use_record),
         Target("failing summary record", failing, "a.toml", use_record),
         Target("limits", {"l.toml": limits}, "l.toml", use_limits),
         Target("plan", {"p.toml": plan}, "p.toml", lambda path: read_plan(path / "p.toml")),
         Target("profile", {**tables["csv"], "p.toml": profile}, "p.toml", use_profile),
         Target("results as baseline", {"r.json": results.to_json()}, "r.json", use_baseline(results)),
-        Target("certificate", {"c.pdf": pdf.render(results.to_dict(), 1)}, "c.pdf", lambda p: verify(p / "c.pdf")),
+        Target(
+            "certificate",
+            {"c.pdf": pdf.render_pdf(results.to_dict(), 1)},
+            "c.pdf",
+            lambda p: verify_certificate(p / "c.pdf"),
+        ),
     ]
 
 
@@ -176,17 +181,17 @@ def _record() -> Record:
 def use_record(folder: Path) -> None:
     """Grade a record as the run of a case, and assess it."""
     try:
-        system = record_folder(folder)
+        system = open_record_folder(folder)
     except InputError:
         pass
     else:
         # What the record itself raises while it runs is told by `record_folder(...).run`: the runner would hide it.
-        (case,) = select([CASE])
+        (case,) = select_cases([CASE])
         with suppress(InputError):
             system.run(case)
-        check(run([case], system))
-    profile = profile_named("acceptance-ac")
-    check(assess(subject_of(folder / "a.toml", profile, LineTable(wave_speed_m_s=120.0)), profile))
+        check(run_cases([case], system))
+    profile = load_profile("acceptance-ac")
+    check(assess_record(load_assessed_record(folder / "a.toml", profile, LineTable(wave_speed_m_s=120.0)), profile))
 
 
 def use_digested(folder: Path) -> None:
@@ -197,13 +202,13 @@ def use_digested(folder: Path) -> None:
 
 def use_limits(folder: Path) -> None:
     """Lay limits over the case, and grade the passing code."""
-    check(run(overlaid(select([CASE]), read_limits(folder / "l.toml")), record_folder(PASSING)))
+    check(run_cases(overlay_limits(select_cases([CASE]), read_limits(folder / "l.toml")), open_record_folder(PASSING)))
 
 
 def use_profile(folder: Path) -> None:
     """Assess a sound record by a damaged profile."""
-    profile = profile_named(str(folder / "p.toml"))
-    check(assess(subject_of(folder / "a.toml", profile, LineTable(wave_speed_m_s=120.0)), profile))
+    profile = load_profile(str(folder / "p.toml"))
+    check(assess_record(load_assessed_record(folder / "a.toml", profile, LineTable(wave_speed_m_s=120.0)), profile))
 
 
 def use_baseline(results: Results) -> Callable[[Path], None]:
@@ -211,15 +216,15 @@ def use_baseline(results: Results) -> Callable[[Path], None]:
 
     def use(folder: Path) -> None:
         damaged_results = read_results(folder / "r.json")
-        discrepancies(damaged_results.to_dict())
-        check(against_baseline(results, damaged_results, 1.0, "r.json"))
+        find_discrepancies(damaged_results.to_dict())
+        check(compare_with_baseline(results, damaged_results, 1.0, "r.json"))
 
     return use
 
 
 def check(results: Results) -> None:
     """Whatever was graded is consistent in itself, and a case in `error` says why in the words of the suite."""
-    found = discrepancies(results.to_dict())
+    found = find_discrepancies(results.to_dict())
     if found and results.verdict in {"pass", "info"}:
         raise Falsehood(f"{results.verdict}: {found[0]}")
     for case in results.cases:

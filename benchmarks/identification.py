@@ -20,11 +20,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from pantocheck.conformance.identification.identify import Identification, identify
-from pantocheck.conformance.identification.model_order import whitened
-from pantocheck.conformance.identification.pole_refinement import refine
-from pantocheck.conformance.mass_drops.drop_reading import read_records
-from pantocheck.conformance.mass_drops.drop_record import Channel, Drop, DropRecord, Line
+from pantocheck.conformance.identification.identify import Identification, identify_modes
+from pantocheck.conformance.identification.model_order import whiten
+from pantocheck.conformance.identification.pole_refinement import refine_poles
+from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
+from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
 
 Real = NDArray[np.float64]
 SSI_ROWS, SSI_ORDER, SSI_RATE = 60, 160, 25.0  # block rows, largest model order, rate of the decimated record [Hz]
@@ -44,7 +44,7 @@ def main() -> None:
         tests = json.loads((chosen.folder / "truth.json").read_text())["tests"]
         for path in sorted(p for p in chosen.folder.iterdir() if p.suffix in (".h5", ".csv", ".uff")):
             modes = [mode for mode in tests[path.stem]["vertical_modes"] if mode["observable"]]
-            records = read_records(path)
+            records = read_drop_records(path)
             bound = np.array([mode["crlb_zeta_rel"] for mode in modes]) / np.sqrt(len(records))
             truth = np.array([(mode["f_record_hz"], mode["zeta"], mode["group"]) for mode in modes])
             score(path.stem, records, truth, bound, peers)
@@ -61,12 +61,18 @@ def made_up(seed: int, peers: bool) -> None:
     poles = span_modes(random, int(random.integers(40, 80)), pairs=int(random.integers(0, 8)))
     duration, noise = float(random.choice([100.0, 130.0, 180.0, 240.0])), float(10 ** random.uniform(-3, -2))
     made = drop(random, poles, duration=duration, noise=noise, nonlinear=float(random.uniform(0, 2.0)))
-    channels = tuple(Channel(f"S{i}_z", i, "z", "CW", 20.0 * i) for i in range(made.samples.shape[1]))
+    channels = tuple(DropChannel(f"S{i}_z", i, "z", "CW", 20.0 * i) for i in range(made.samples.shape[1]))
     name = f"made up {seed}"
     record = DropRecord(
-        name, name, made.rate, made.samples, channels, drop=Drop(20, "CW", 0.0, 5.0), line=Line((60.0,) * 6)
+        name,
+        name,
+        made.rate,
+        made.samples,
+        channels,
+        drop=DropDescription(20, "CW", 0.0, 5.0),
+        line=DropLine((60.0,) * 6),
     )
-    (found,) = identify((record,))
+    (found,) = identify_modes((record,))
     # Modes in the fitted band that are not reported enter the bound, or their leakage would pass for excitation.
     poles = poles[poles.imag < 2 * np.pi * found.band.fitted]
     bound = bounds(found, poles)
@@ -77,15 +83,15 @@ def made_up(seed: int, peers: bool) -> None:
 
 def bounds(found: Identification, poles: NDArray[np.complex128]) -> Real:
     """Cramer-Rao bounds on the damping ratios, relative, with the noise of an identification, (m,)."""
-    white = whitened(list(found.blocks), list(found.noise))
-    covariance = refine(poles, white, iterations=0).covariance
+    white = whiten(list(found.blocks), list(found.noise))
+    covariance = refine_poles(poles, white, iterations=0).covariance
     return np.asarray(np.sqrt(np.diag(covariance)[: poles.size]) / -poles.real)
 
 
 def score(name: str, records: tuple[DropRecord, ...], truth: Real, bound: Real, peers: bool) -> None:
     """Print the lines of one record; truth (m, 3): frequency [Hz], damping ratio, group."""
     begin = time.perf_counter()
-    (found,) = identify(records)
+    (found,) = identify_modes(records)
     ours = np.array([(mode.frequency, mode.damping_ratio) for mode in found.modes])
     line(name, "pantocheck", ours, truth, bound, time.perf_counter() - begin)
     if peers:

@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import select
+from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.quantities.filters import LowPass
-from pantocheck.conformance.records.evaluation import evaluate
+from pantocheck.conformance.records.evaluation import evaluate_record
 from pantocheck.conformance.records.record import Record
-from pantocheck.conformance.simulation.catenary_model import catenary
-from pantocheck.conformance.simulation.pantograph_model import pantograph
-from pantocheck.model import Catenary, Discretised, History, Passage
+from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.simulation.pantograph_model import build_pantograph
+from pantocheck.model import Catenary, DiscretisedLine, History, Passage
 from pantocheck.model.fem.connectors import arm_direction
 from pantocheck.model.statics.initial_state import InitialState
 
@@ -31,14 +31,14 @@ SPACING = 200.0
 
 def ac_simple(spans: int, stagger: float = 0.2, case: str = "en50318-2018/ac-simple/320") -> Case:
     """The case with another number of spans and another stagger [m]."""
-    found = next(one for one in select([case]) if one.id == case)
+    found = next(one for one in select_cases([case]) if one.id == case)
     geometry = found.line.geometry.model_copy(update={"spans": spans, "stagger_contact_wire_m": stagger})
     return replace(found, line=found.line.model_copy(update={"geometry": geometry}))
 
 
 def staggered(case: Case) -> Catenary:
     """The line of a case."""
-    return catenary(case.line)
+    return build_catenary(case.line)
 
 
 def vertical(case: Case, state: InitialState) -> Catenary:
@@ -49,7 +49,7 @@ def vertical(case: Case, state: InitialState) -> Catenary:
     case : with stagger
     state : of the line with stagger, which gives the forces
     """
-    built = catenary(case.line)
+    built = build_catenary(case.line)
     arms = tuple(
         replace(arm, vertical_stiffness=arm_direction(arm, force)[2] / (arm.length or 1.0))
         for arm, force in zip(built.steady_arms, state.arm_force, strict=True)
@@ -60,7 +60,7 @@ def vertical(case: Case, state: InitialState) -> Catenary:
 
 def passage(
     case: Case,
-    line: Discretised,
+    line: DiscretisedLine,
     step: float,
     pantographs: int,
     until: float,
@@ -78,7 +78,7 @@ def passage(
     reach : what lies farther than this from every pantograph stands still [m]
     """
     span = case.line.geometry.span_m
-    model = pantograph(case.pantographs[0], UPLIFT_FORCE, 0.06)
+    model = build_pantograph(case.pantographs[0], UPLIFT_FORCE, 0.06)
     starts = tuple(span + SPACING * (pantographs - 1 - i) for i in range(pantographs))
     return Passage(
         pantographs=(model,) * pantographs,
@@ -104,5 +104,5 @@ def figures(way: Passage, history: History, evaluated: tuple[float, float]) -> d
         support_position=np.array([x for _, x in way.watched]),
         support_uplift=history.motion[:, :, 0],
     )
-    values = evaluate(record, LowPass("butterworth", 6, 20.0, "zero")).values
+    values = evaluate_record(record, LowPass("butterworth", 6, 20.0, "zero")).values
     return {name: float({**values[0], **values[1]}[name]) for name in QUANTITIES}

@@ -8,28 +8,28 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
-from pantocheck.model import Discretised, Passage
-from pantocheck.model.dynamics.kernel_arrays import time_stepping
-from pantocheck.model.dynamics.simulation import start
+from pantocheck.model import DiscretisedLine, Passage
+from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays
+from pantocheck.model.dynamics.simulation import start_motion
 from pantocheck.model.fem.assembly import (
-    assemble,
+    assemble_matrices,
+    bandwidth_order,
     connector_directions,
     contact_stiffness,
-    order,
     point_load,
     stepping_mass,
 )
 
 
-def run_refactorised(line: Discretised, passage: Passage) -> tuple[np.ndarray, float]:
+def run_refactorised(line: DiscretisedLine, passage: Passage) -> tuple[np.ndarray, float]:
     """Newmark average acceleration, Newton's method on the set of taut droppers and closed contacts.
 
     Returns
     -------
     (T, P) contact force [N], process time of the steps [s]
     """
-    motion, train = start(line, time_stepping(line, passage.time_step, math.inf), passage)
-    matrices, connectors, dt = assemble(line), line.connectors, passage.time_step
+    motion, train = start_motion(line, build_kernel_arrays(line, passage.time_step, math.inf), passage)
+    matrices, connectors, dt = assemble_matrices(line), line.connectors, passage.time_step
     n, sizes = matrices.free.size, [p.head.size for p in passage.pantographs]
     at = n + np.concatenate([[0], np.cumsum(sizes)])
     own = [slice(int(a), int(b)) for a, b in pairwise(at)]
@@ -41,14 +41,14 @@ def run_refactorised(line: Discretised, passage: Passage) -> tuple[np.ndarray, f
     mass = sp.block_diag([stepping_mass(line, dt), *(p.mass for p in passage.pantographs)], format="csc")
     damping = sp.block_diag([bare_c, *(p.damping for p in passage.pantographs)], format="csc")
     stiffness = sp.block_diag([bare_k, *(p.stiffness for p in passage.pantographs)], format="csc")
-    place = order(line)[matrices.free]
+    place = bandwidth_order(line)[matrices.free]
     q, v, a = (
         np.concatenate([np.stack([motion.w[i], motion.r[i]], axis=-1).ravel()[place], *train.z[i]]) for i in range(3)
     )
     force = np.concatenate([np.zeros(n), *(p.force for p in passage.pantographs)])
     stiff = np.zeros(len(sizes))
     tension, contact = motion.tension.copy(), train.contact[:, 0].copy()
-    rest = line.state.deflection.ravel()[order(line)]
+    rest = line.state.deflection.ravel()[bandwidth_order(line)]
     row = line.contact_rows[0]
     steps = round(passage.duration / dt)
     record = np.zeros((steps, len(sizes)))

@@ -9,8 +9,8 @@ from dataclasses import replace
 import numpy as np
 from lines import QUANTITIES, ac_simple, figures, passage, staggered
 
-from pantocheck.conformance.systems.reference_simulator import passage_of
-from pantocheck.model import discretise, run
+from pantocheck.conformance.systems.reference_simulator import build_passage
+from pantocheck.model import discretise, simulate_passage
 
 EVALUATED = 10
 CHOSEN = {275: 24, 320: 30}
@@ -26,9 +26,9 @@ def table(speed: int, spans: int) -> None:
     span = case.line.geometry.span_m
     line = discretise(staggered(case), 0.5)
     use = case.file.pantograph[0]
-    own = passage_of(case, line, 1e-3, (use.uplift_force_N,)).pantographs
+    own = build_passage(case, line, 1e-3, (use.uplift_force_N,)).pantographs
     way = replace(passage(case, line, 1e-3, 1, (spans - RESERVE + 1) * span, 660.0), pantographs=own)
-    history = run(line, way)
+    history = simulate_passage(line, way)
 
     def after(first: int) -> np.ndarray:
         """The quantities over the ten spans after the first so many."""

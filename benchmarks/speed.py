@@ -21,7 +21,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 import numpy as np
 from lines import ac_simple, passage, staggered, vertical
 
-from pantocheck.model import Discretised, Passage, discretise, run
+from pantocheck.model import DiscretisedLine, Passage, discretise, simulate_passage
 from pantocheck.model.dynamics.active_window import causal_reach
 
 STEP, ELEMENT = 1e-3, 0.5
@@ -32,13 +32,13 @@ WHOLE_RUN = 14
 """Spans of a run over nearly all of 20 spans, the second pantograph 200 m behind the first."""
 
 
-def measured(line: Discretised, way: Passage) -> tuple[float, np.ndarray]:
+def measured(line: DiscretisedLine, way: Passage) -> tuple[float, np.ndarray]:
     """Process time per simulated time, best of two, and the contact force."""
-    run(line, replace(way, duration=0.01))
+    simulate_passage(line, replace(way, duration=0.01))
     best, force = math.inf, np.zeros(0)
     for _ in range(2):
         begin = time.process_time()
-        force = run(line, way).force
+        force = simulate_passage(line, way).force
         best = min(best, time.process_time() - begin)
     return best / way.duration, force
 

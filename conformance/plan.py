@@ -7,15 +7,15 @@ from typing import Annotated
 from pydantic import Field
 
 from pantocheck.conformance.cases.library import library_folder
-from pantocheck.conformance.input_files.sourced_table import Table
+from pantocheck.conformance.input_files.sourced_table import InputTable
 from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.input_files.trust import Trust
-from pantocheck.conformance.systems.command.program_arguments import arguments
+from pantocheck.conformance.systems.command.program_arguments import split_arguments
 
 Names = Annotated[tuple[str, ...], Field(strict=False, max_length=1000)]
 
 
-class Plan(Table):
+class Plan(InputTable):
     """What `pantocheck run` shall do; an option on the command line goes before the plan's."""
 
     cases: Annotated[Names, Field(description="ids, globs or paths of cases; left out: every case with limits")] = ()
@@ -54,7 +54,7 @@ def read_plan(path: Path) -> Plan:
     if kind == "record":
         system = f"record:{_beside(folder, rest)}"
     elif kind == "command":
-        system = f"command:{shlex.join(arguments(rest, folder))}"
+        system = f"command:{shlex.join(split_arguments(rest, folder))}"
     return plan.model_copy(
         update={
             "cases": tuple(str(folder / name) if name.endswith(".toml") else name for name in plan.cases),

@@ -9,9 +9,9 @@ from concurrent.futures.process import BrokenProcessPool
 from types import FrameType
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.grading.case_grading import graded, ungraded
+from pantocheck.conformance.grading.case_grading import build_ungraded, grade_case
 from pantocheck.conformance.input_files.trust import Trust
-from pantocheck.conformance.results.results_building import assembled, now
+from pantocheck.conformance.results.results_building import build_results, utc_now
 from pantocheck.conformance.results.results_format import CaseResult, Results, SystemIdentity
 from pantocheck.conformance.studies.study_dispatch import run_study
 from pantocheck.conformance.systems.system import System
@@ -32,7 +32,7 @@ class RunInterrupted(Exception):
         self.results = results
 
 
-def run(
+def run_cases(
     cases: Sequence[Case], system: System, trust: Trust = "secondary", jobs: int = 1, progress: Progress | None = None
 ) -> Results:
     """Run cases on a system and grade them.
@@ -53,7 +53,7 @@ def run(
     ------
     RunInterrupted : on KeyboardInterrupt, with what was finished
     """
-    started = now()
+    started = utc_now()
     finished: dict[str, CaseResult] = {}
 
     def keep(result: CaseResult) -> None:
@@ -70,7 +70,9 @@ def run(
     except KeyboardInterrupt:
         for case in cases:
             if case.id not in finished:
-                finished[case.id] = ungraded(case, "skip", "the run was interrupted before this case was finished")
+                finished[case.id] = build_ungraded(
+                    case, "skip", "the run was interrupted before this case was finished"
+                )
         raise RunInterrupted(_results(cases, system, trust, started, finished)) from None
     return _results(cases, system, trust, started, finished)
 
@@ -78,10 +80,10 @@ def run(
 def run_case(case: Case, system: System, trust: Trust) -> CaseResult:
     """Run one case and grade it; what its system raises ends as `error` with one line, so that the others go on."""
     try:
-        return graded(case, run_study(case, system), trust)
+        return grade_case(case, run_study(case, system), trust)
     except Exception as error:
         text = " ".join(str(error).split())[:300]
-        return ungraded(case, "error", f"{type(error).__name__}: {text}" if text else type(error).__name__)
+        return build_ungraded(case, "error", f"{type(error).__name__}: {text}" if text else type(error).__name__)
 
 
 def run_when_ready(
@@ -122,9 +124,9 @@ def _after_requirements(case: Case, finished: dict[str, CaseResult], cases: Sequ
             continue
         seen.add(required)
         if required not in finished:
-            return ungraded(case, "skip", f"requires {required}, which was not run")
+            return build_ungraded(case, "skip", f"requires {required}, which was not run")
         if finished[required].verdict in {"fail", "error"}:
-            return ungraded(case, "skip", f"requires {required}, which ended in {finished[required].verdict}")
+            return build_ungraded(case, "skip", f"requires {required}, which ended in {finished[required].verdict}")
         waiting += by_id[required].file.requires if required in by_id else ()
     return None
 
@@ -153,7 +155,7 @@ def _run_side_by_side(
                 broken = [case for future in done for case in [running.pop(future)] if not _kept(future, keep)]
                 if broken:
                     for case in (*broken, *running.values()):
-                        keep(ungraded(case, "error", "the process of this case, or one beside it, died"))
+                        keep(build_ungraded(case, "error", "the process of this case, or one beside it, died"))
                     running.clear()
                     pool.shutdown(wait=False)
                     pool = _pool(jobs)
@@ -200,4 +202,4 @@ def _results(
     cases: Sequence[Case], system: System, trust: Trust, started: str, finished: dict[str, CaseResult]
 ) -> Results:
     identity = SystemIdentity(name=system.name, version=system.version, kind=system.kind)
-    return assembled([finished[case.id] for case in cases], identity, trust, started)
+    return build_results([finished[case.id] for case in cases], identity, trust, started)

@@ -8,26 +8,26 @@ from pydantic import BaseModel
 from pantocheck.conformance.cases.case_file import CaseFile
 from pantocheck.conformance.cases.damping_file import DampingFile
 from pantocheck.conformance.cases.limits import LimitsFile
-from pantocheck.conformance.cases.line_file import Line
-from pantocheck.conformance.cases.pantograph_file import Pantograph
+from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.cases.profile_file import Profile
-from pantocheck.conformance.mass_drops.drop_sidecar import Sidecar as MassDropSidecar
+from pantocheck.conformance.mass_drops.drop_sidecar import DropSidecar as MassDropSidecar
 from pantocheck.conformance.plan import Plan
-from pantocheck.conformance.records.record_sidecar import Sidecar
-from pantocheck.conformance.records.record_summary import Summary
+from pantocheck.conformance.records.record_sidecar import RecordSidecar
+from pantocheck.conformance.records.record_summary import RecordSummary
 from pantocheck.conformance.results.results_format import results_schema
 from pantocheck.conformance.systems.command.protocol_messages import answer_schema, request_schema
 
 _MODELS: dict[str, type[BaseModel]] = {
     "case": CaseFile,
-    "line": Line,
-    "pantograph": Pantograph,
+    "line": LineFile,
+    "pantograph": PantographFile,
     "damping": DampingFile,
     "limits": LimitsFile,
     "plan": Plan,
-    "record": Sidecar,
+    "record": RecordSidecar,
     "mass-drop": MassDropSidecar,
-    "summary": Summary,
+    "summary": RecordSummary,
     "profile": Profile,
 }
 

@@ -12,14 +12,14 @@ from pantocheck.model.catenary import (
     TensionChange,
     Wire,
 )
-from pantocheck.model.discretised_line import Discretised, discretise, never_slack
-from pantocheck.model.dynamics.simulation import History, Passage, run
+from pantocheck.model.discretised_line import DiscretisedLine, discretise, never_slack
+from pantocheck.model.dynamics.simulation import History, Passage, simulate_passage
 from pantocheck.model.pantograph import Pantograph, chain
 
 __all__ = [
     "Catenary",
     "Clamp",
-    "Discretised",
+    "DiscretisedLine",
     "Dropper",
     "History",
     "Kind",
@@ -34,5 +34,5 @@ __all__ = [
     "chain",
     "discretise",
     "never_slack",
-    "run",
+    "simulate_passage",
 ]

@@ -8,15 +8,15 @@ from numpy.typing import NDArray
 
 from pantocheck.model.catenary import Catenary, Kind, Rayleigh
 from pantocheck.model.fem.beams import Beams, build_beams
-from pantocheck.model.fem.connectors import Connectors, build_connectors, lump
+from pantocheck.model.fem.connectors import Connectors, add_lumped, build_connectors
 from pantocheck.model.fem.mesh import Mesh, build_mesh
-from pantocheck.model.statics.initial_state import InitialState, initial_state
+from pantocheck.model.statics.initial_state import InitialState, compute_initial_state
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Discretised:
+class DiscretisedLine:
     """A line in finite elements, at rest.
 
     Parameters
@@ -40,7 +40,7 @@ class Discretised:
         return [self.mesh.row_of[wire.name, "z"] for wire in self.catenary.contact_wires]
 
 
-def discretise(catenary: Catenary, element_length: float, places: tuple[float, ...] = ()) -> Discretised:
+def discretise(catenary: Catenary, element_length: float, places: tuple[float, ...] = ()) -> DiscretisedLine:
     """Finite elements and initial state of a line.
 
     Parameters
@@ -59,12 +59,12 @@ def discretise(catenary: Catenary, element_length: float, places: tuple[float, .
     """
     mesh = build_mesh(catenary, element_length, places)
     beams = build_beams(catenary, mesh)
-    state = initial_state(catenary, mesh, beams)
-    lump(catenary, mesh, beams)
-    return Discretised(catenary, mesh, beams, build_connectors(catenary, mesh, state), state)
+    state = compute_initial_state(catenary, mesh, beams)
+    add_lumped(catenary, mesh, beams)
+    return DiscretisedLine(catenary, mesh, beams, build_connectors(catenary, mesh, state), state)
 
 
-def with_damping(line: Discretised, damping: Mapping[Kind, Rayleigh]) -> Discretised:
+def with_damping(line: DiscretisedLine, damping: Mapping[Kind, Rayleigh]) -> DiscretisedLine:
     """The same line with other damping; its initial state does not depend on it.
 
     Parameters
@@ -78,11 +78,11 @@ def with_damping(line: Discretised, damping: Mapping[Kind, Rayleigh]) -> Discret
     """
     catenary = replace(line.catenary, damping=dict(damping))
     beams = build_beams(catenary, line.mesh)
-    lump(catenary, line.mesh, beams)
+    add_lumped(catenary, line.mesh, beams)
     return replace(line, catenary=catenary, beams=beams, connectors=build_connectors(catenary, line.mesh, line.state))
 
 
-def never_slack(line: Discretised) -> Discretised:
+def never_slack(line: DiscretisedLine) -> DiscretisedLine:
     """The same line with droppers that push as well as they pull: wrong, and a measure of what slackening does."""
     connectors = line.connectors._replace(unilateral=np.zeros_like(line.connectors.unilateral))
     return replace(line, connectors=connectors)

@@ -8,10 +8,10 @@ from pypdf.errors import PyPdfError
 
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.reports.formats.embedding import NAME
-from pantocheck.conformance.reports.page_text import clean
-from pantocheck.conformance.results.results_reading import results_from
+from pantocheck.conformance.reports.page_text import clean_text
+from pantocheck.conformance.results.results_reading import parse_results
 
-LARGEST_FILE = 64 * 2**20  # bytes of a PDF; a certificate of two cases has half a million
+MAX_DOCUMENT_BYTES = 64 * 2**20  # bytes of a PDF; a certificate of two cases has half a million
 
 # A damaged file can break any assumption of the parser, and it has no single exception for that.
 DAMAGED = (
@@ -28,7 +28,7 @@ DAMAGED = (
 )
 
 
-def opened(path: Path) -> PdfReader:
+def open_document(path: Path) -> PdfReader:
     """A PDF ready to be read.
 
     Raises
@@ -37,8 +37,8 @@ def opened(path: Path) -> PdfReader:
     """
     try:
         size = path.stat().st_size
-        if size > LARGEST_FILE:
-            raise InputError(str(path), f"{size} bytes", f"A certificate has at most {LARGEST_FILE} bytes.")
+        if size > MAX_DOCUMENT_BYTES:
+            raise InputError(str(path), f"{size} bytes", f"A certificate has at most {MAX_DOCUMENT_BYTES} bytes.")
         with path.open("rb") as file:
             start = file.read(1024)
     except OSError as error:
@@ -55,7 +55,7 @@ def opened(path: Path) -> PdfReader:
     return reader
 
 
-def title_and_first_page(path: Path, reader: PdfReader) -> tuple[str, str]:
+def read_title_and_first_page(path: Path, reader: PdfReader) -> tuple[str, str]:
     """Title in the metadata, and text of the first page.
 
     Raises
@@ -69,7 +69,7 @@ def title_and_first_page(path: Path, reader: PdfReader) -> tuple[str, str]:
         raise _damaged(path, error) from None
 
 
-def embedded_results(path: Path, reader: PdfReader) -> dict[str, Any]:
+def read_embedded_results(path: Path, reader: PdfReader) -> dict[str, Any]:
     """The results embedded in a certificate, checked against their format.
 
     Raises
@@ -86,10 +86,10 @@ def embedded_results(path: Path, reader: PdfReader) -> dict[str, Any]:
         hint = f"A certificate holds one {NAME}; other PDFs cannot be verified."
         raise InputError(str(path), f"{number} attachment named {NAME}", hint)
     where = f"{path}, attachment {NAME}"
-    return results_from(content, where).to_dict()
+    return parse_results(content, where).to_dict()
 
 
 def _damaged(path: Path, error: Exception) -> InputError:
     return InputError(
-        str(path), f"a damaged PDF ({clean(str(error)) or type(error).__name__})", "Ask for it once more."
+        str(path), f"a damaged PDF ({clean_text(str(error)) or type(error).__name__})", "Ask for it once more."
     )

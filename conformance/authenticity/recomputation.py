@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
-from pantocheck.conformance.grading.verdicts import margin, verdict_of, worst
-from pantocheck.conformance.input_files.trust import counts
+from pantocheck.conformance.grading.verdicts import judge, margin, worst_verdict
+from pantocheck.conformance.input_files.trust import limit_counts
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, statistical_extremes
 from pantocheck.conformance.reports.figures.force_figures import BANDS_Hz
 
@@ -14,7 +14,7 @@ from pantocheck.conformance.reports.figures.force_figures import BANDS_Hz
 EXACT, ROUNDED = 1e-9, 2e-5
 
 
-def discrepancies(results: dict[str, Any]) -> list[str]:
+def find_discrepancies(results: dict[str, Any]) -> list[str]:
     """Everything in results that contradicts something else in them.
 
     Parameters
@@ -22,7 +22,7 @@ def discrepancies(results: dict[str, Any]) -> list[str]:
     results : valid results.json as a dictionary
     """
     found = [text for case in results["cases"] for text in _case(case, results["trust"])]
-    verdict = worst(case["verdict"] for case in results["cases"])
+    verdict = worst_verdict(case["verdict"] for case in results["cases"])
     if results["verdict"] != verdict:
         found.append(f"verdict: '{results['verdict']}' stated, '{verdict}' follows from the cases")
     return found
@@ -33,7 +33,7 @@ def _case(case: dict[str, Any], trust: Any) -> Iterator[str]:
         where = f"{case['id']}, {row['quantity']} of pantograph {row['pantograph']}"
         for text in (*_value(row, case["quantities"]), *_grade(row, trust)):
             yield f"{where}: {text}"
-    verdict = worst(row["verdict"] for row in case["criteria"])
+    verdict = worst_verdict(row["verdict"] for row in case["criteria"])
     ungraded = not case["criteria"] and case["reason"] and case["verdict"] in ("skip", "error")
     if case["verdict"] != verdict and not ungraded:
         yield f"{case['id']}: verdict '{case['verdict']}' stated, '{verdict}' follows from the criteria"
@@ -61,14 +61,14 @@ def _grade(row: dict[str, Any], trust: Any) -> Iterator[str]:
     value, lower, upper = row["value"], row["lower"], row["upper"]
     if lower is None and upper is None:
         # A rule that has no bound for this record is skipped; nothing else may be without a limit.
-        if row["verdict"] != ("skip" if counts(row["trust"], trust) else "info"):
+        if row["verdict"] != ("skip" if limit_counts(row["trust"], trust) else "info"):
             yield "no limit"
         return
     if lower is not None and upper is not None and lower > upper:
         yield f"lower limit {_shown(lower)} above upper limit {_shown(upper)}"
         return
-    verdict = "skip" if value is None else verdict_of(value, lower, upper)
-    if not counts(row["trust"], trust):
+    verdict = "skip" if value is None else judge(value, lower, upper)
+    if not limit_counts(row["trust"], trust):
         verdict = "info"
     if row["verdict"] != verdict:
         yield f"verdict '{row['verdict']}' stated, '{verdict}' follows from value, limits and trust"

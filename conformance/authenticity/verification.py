@@ -3,12 +3,16 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from pantocheck.conformance.authenticity.attachment import embedded_results, opened, title_and_first_page
-from pantocheck.conformance.authenticity.recomputation import discrepancies
+from pantocheck.conformance.authenticity.attachment import (
+    open_document,
+    read_embedded_results,
+    read_title_and_first_page,
+)
+from pantocheck.conformance.authenticity.recomputation import find_discrepancies
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.reports.certificate.certificate_page import TITLE
-from pantocheck.conformance.reports.page_text import clean
-from pantocheck.conformance.reports.words import words
+from pantocheck.conformance.reports.page_text import clean_text
+from pantocheck.conformance.reports.words import read_words
 
 
 @dataclass(frozen=True)
@@ -33,7 +37,7 @@ class Verification:
         return not self.discrepancies
 
 
-def verify(path: Path) -> Verification:
+def verify_certificate(path: Path) -> Verification:
     """Grade the results embedded in a certificate once more and compare.
 
     This shows that the verdicts follow from the numbers; that the numbers come from the system they name, only a new
@@ -47,11 +51,11 @@ def verify(path: Path) -> Verification:
     ------
     InputError : not a PDF, damaged, or without valid results
     """
-    reader = opened(path)
-    results = embedded_results(path, reader)
-    found = discrepancies(results)
-    word = words()["verdict"][results["verdict"]]["word"]
-    title, first_page = title_and_first_page(path, reader)
+    reader = open_document(path)
+    results = read_embedded_results(path, reader)
+    found = find_discrepancies(results)
+    word = read_words()["verdict"][results["verdict"]]["word"]
+    title, first_page = read_title_and_first_page(path, reader)
     if not title.startswith(word):
         found.append(f"the document's title does not begin with the verdict {word}: '{title}'")
     heading = next((line for line in first_page.splitlines() if line.startswith(TITLE)), "")
@@ -61,5 +65,5 @@ def verify(path: Path) -> Verification:
         verdict=results["verdict"],
         cases=len(results["cases"]),
         criteria=sum(len(case["criteria"]) for case in results["cases"]),
-        discrepancies=tuple(clean(text) for text in found),
+        discrepancies=tuple(clean_text(text) for text in found),
     )

@@ -7,17 +7,17 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from pantocheck.conformance.cases.case_file import CaseFile
-from pantocheck.conformance.cases.damping_file import Damping, overlaid
+from pantocheck.conformance.cases.damping_file import Damping, overlay_damping
 from pantocheck.conformance.cases.limits import Limit
-from pantocheck.conformance.cases.line_file import Line
-from pantocheck.conformance.cases.pantograph_file import Pantograph
+from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.cases.study_tables import DampingSensitivity
-from pantocheck.conformance.input_files.sourced_table import PROVENANCE, Sourced
+from pantocheck.conformance.input_files.sourced_table import PROVENANCE, SourcedTable
 from pantocheck.conformance.input_files.trust import Trust
 
 
 @dataclass(frozen=True)
-class Input:
+class InputProvenance:
     """Where a group of inputs comes from.
 
     Parameters
@@ -46,10 +46,10 @@ class Case:
     """
 
     file: CaseFile
-    line: Line
-    pantographs: tuple[Pantograph, ...]
+    line: LineFile
+    pantographs: tuple[PantographFile, ...]
     limits: tuple[Limit, ...]
-    measured: Pantograph | None = None
+    measured: PantographFile | None = None
     dampings: Mapping[str, Damping] = field(default_factory=dict)
 
     @property
@@ -133,7 +133,7 @@ class Case:
         return {"limit", "line", "requires", "damping", "on_request"} | unused
 
     @property
-    def groups(self) -> dict[str, Sourced]:
+    def groups(self) -> dict[str, SourcedTable]:
         """Every group of inputs that names its source, by dotted name: of the case, the line, and the pantographs."""
         tables: dict[str, object] = {"case": self.file}
         tables |= {f"line.{name}": getattr(self.line, name) for name in type(self.line).model_fields}
@@ -144,16 +144,16 @@ class Case:
         tables |= {f"damping '{name}'": damping for name, damping in self.dampings.items()}
         if self.measured is not None:
             tables |= {f"pantograph.{name}": getattr(self.measured, name) for name in type(self.measured).model_fields}
-        return {name: table for name, table in tables.items() if isinstance(table, Sourced)}
+        return {name: table for name, table in tables.items() if isinstance(table, SourcedTable)}
 
     @property
-    def inputs(self) -> tuple[Input, ...]:
+    def inputs(self) -> tuple[InputProvenance, ...]:
         """Where every group of inputs comes from; keys that are less certain than their group follow it."""
         found = []
         for name, table in self.groups.items():
             source = (table.source,) if isinstance(table.source, str) else tuple(table.source)
-            found.append(Input(name, table.trust, source))
-            found += [Input(f"{name}.{key}", "provisional", ("untraced",)) for key in table.provisional]
+            found.append(InputProvenance(name, table.trust, source))
+            found += [InputProvenance(f"{name}.{key}", "provisional", ("untraced",)) for key in table.provisional]
         return tuple(found)
 
     @property
@@ -176,7 +176,7 @@ class Case:
     def with_damping(self, name: str, damping: Damping) -> "Case":
         """The same case without limits and study, another damping laid over its line; its id ends in the name."""
         file = self.file.model_copy(update={"id": f"{self.id}/{name}", "study": None, "limit": (), "requires": ()})
-        line = self.line.model_copy(update={"damping": overlaid(self.line.damping, damping)})
+        line = self.line.model_copy(update={"damping": overlay_damping(self.line.damping, damping)})
         return replace(self, file=file, line=line, limits=(), dampings={})
 
 
@@ -185,13 +185,13 @@ _SAID_OF_NUMBERS = frozenset({*PROVENANCE, "title", "id", "model"})
 
 def _numbers(tree: object) -> object:
     """A file without what is said about its numbers, so that a corrected source leaves the digest as it is."""
-    return without_keys(tree, _SAID_OF_NUMBERS)
+    return drop_keys(tree, _SAID_OF_NUMBERS)
 
 
-def without_keys(tree: object, keys: frozenset[str]) -> object:
+def drop_keys(tree: object, keys: frozenset[str]) -> object:
     """Nested tables and lists without some keys, wherever they stand."""
     if isinstance(tree, dict):
-        return {key: without_keys(value, keys) for key, value in tree.items() if key not in keys}
+        return {key: drop_keys(value, keys) for key, value in tree.items() if key not in keys}
     if isinstance(tree, list):
-        return [without_keys(value, keys) for value in tree]
+        return [drop_keys(value, keys) for value in tree]
     return tree

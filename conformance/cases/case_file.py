@@ -8,13 +8,13 @@ from pantocheck.conformance.cases.damping_file import Damping
 from pantocheck.conformance.cases.drop_test import MassDrop
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.study_tables import Study
-from pantocheck.conformance.input_files.sourced_table import PositiveList, Sourced, Table, problem
+from pantocheck.conformance.input_files.sourced_table import InputTable, PositiveList, SourcedTable, validation_problem
 from pantocheck.conformance.quantities.filters import LowPass
 
 FileName = Annotated[str, Field(min_length=1, max_length=500)]
 
 
-class PantographUse(Sourced):
+class PantographUse(SourcedTable):
     """One pantograph of a run."""
 
     model: Annotated[FileName, Field(description="pantograph file, relative to the case file")]
@@ -29,7 +29,7 @@ class PantographUse(Sourced):
     @model_validator(mode="after")
     def _has_a_force(self) -> "PantographUse":
         if self.uplift_force_N is None and self.target_mean_force_N is None:
-            raise problem(
+            raise validation_problem(
                 "uplift_force_N",
                 "the pantograph has no uplift force",
                 "Give uplift_force_N, or target_mean_force_N to have it tuned.",
@@ -37,7 +37,7 @@ class PantographUse(Sourced):
         return self
 
 
-class Filter(Table):
+class Filter(InputTable):
     """Filter of the graded contact force."""
 
     kind: Annotated[Literal["butterworth"], Field(description="family of the filter")] = "butterworth"
@@ -48,7 +48,7 @@ class Filter(Table):
     @model_validator(mode="after")
     def _exists(self) -> "Filter":
         if self.phase == "zero" and self.order % 2:
-            raise problem(
+            raise validation_problem(
                 "order",
                 f"{self.order} is odd",
                 "A zero-phase filter runs half its order forwards and half backwards: give an even order.",
@@ -61,7 +61,7 @@ class Filter(Table):
         return LowPass(self.kind, self.order, self.cutoff_Hz, self.phase)
 
 
-class Discretisation(Table):
+class Discretisation(InputTable):
     """Mesh and time step of the reference simulator; a refinement pair halves both."""
 
     element_m: Annotated[float, Field(ge=0.02, le=5, description="largest length of an element [m]")] = 0.5
@@ -76,14 +76,14 @@ class Discretisation(Table):
     ] = None
 
 
-class ApparentMass(Table):
+class ApparentMass(InputTable):
     """Frequency response of a pantograph at its head, taken in a static case."""
 
     model: Annotated[FileName, Field(description="pantograph file, relative to the case file")]
     frequency_Hz: Annotated[PositiveList, Field(max_length=100, description="where it is taken [Hz]")]
 
 
-class CaseFile(Sourced):
+class CaseFile(SourcedTable):
     """A case as it stands in its file. Without a speed it is a static check of the line."""
 
     id: Annotated[
@@ -147,17 +147,21 @@ class CaseFile(Sourced):
         self._check_study()
         if self.speed_km_h is None:
             if self.pantograph:
-                raise problem("speed_km_h", "missing", "Give the speed of the train in km/h, e.g. speed_km_h = 250.0 .")
+                raise validation_problem(
+                    "speed_km_h", "missing", "Give the speed of the train in km/h, e.g. speed_km_h = 250.0 ."
+                )
         elif self.apparent_mass is not None:
-            raise problem("apparent_mass", "in a case that runs", "Put it into a static case, one without a speed.")
+            raise validation_problem(
+                "apparent_mass", "in a case that runs", "Put it into a static case, one without a speed."
+            )
         elif not self.pantograph:
-            raise problem("pantograph", "missing", "A run needs at least one [[pantograph]] table.")
+            raise validation_problem("pantograph", "missing", "A run needs at least one [[pantograph]] table.")
         elif self.evaluated_spans is None:
-            raise problem(
+            raise validation_problem(
                 "evaluated_spans", "missing", "Say which spans are evaluated, e.g. evaluated_spans = [5, 6] ."
             )
         if self.pantograph and len(self.spacing_m or ()) != len(self.pantograph) - 1:
-            raise problem(
+            raise validation_problem(
                 "spacing_m",
                 f"{len(self.spacing_m or ())} distances for {len(self.pantograph)} pantographs",
                 "Give one distance between each two neighbours, from the front.",
@@ -165,7 +169,7 @@ class CaseFile(Sourced):
         spans = self.evaluated_spans or (1,)
         ranged = len(spans) == 2 and spans[0] < spans[1]
         if spans[0] < 1 or not (ranged or list(spans) == list(range(spans[0], spans[0] + len(spans)))):
-            raise problem(
+            raise validation_problem(
                 "evaluated_spans",
                 f"{list(spans)} is not a stretch of neighbouring spans",
                 "Give the first and the last span, numbered from 1, e.g. [5, 6].",
@@ -173,7 +177,7 @@ class CaseFile(Sourced):
         if self.compared_spans is not None and not (
             1 <= self.compared_spans[0] <= spans[0] and spans[-1] <= self.compared_spans[1]
         ):
-            raise problem(
+            raise validation_problem(
                 "compared_spans",
                 f"{list(self.compared_spans)} does not hold the evaluated spans {list(spans)}",
                 "Give the first and the last span of a longer stretch.",
@@ -183,26 +187,28 @@ class CaseFile(Sourced):
 
     def _check_study(self) -> None:
         if self.mass_drop is not None and self.speed_km_h is not None:
-            raise problem("mass_drop", "a train and a mass drop in one case", "Make two cases of it.")
+            raise validation_problem("mass_drop", "a train and a mass drop in one case", "Make two cases of it.")
         if self.study is None:
             return
         drops = self.study.kind in {"release-velocity", "steady-arm-damper"}
         if drops and self.mass_drop is None:
-            raise problem("mass_drop", "missing", f"A study of kind {self.study.kind} compares mass drops.")
+            raise validation_problem("mass_drop", "missing", f"A study of kind {self.study.kind} compares mass drops.")
         if not drops and self.speed_km_h is None:
-            raise problem("speed_km_h", "missing", f"A study of kind {self.study.kind} compares runs of a train.")
+            raise validation_problem(
+                "speed_km_h", "missing", f"A study of kind {self.study.kind} compares runs of a train."
+            )
 
     def _check_limits(self) -> None:
         seen = set()
         for i, limit in enumerate(self.limit, 1):
             if limit.of > len(self.pantograph):
-                raise problem(
+                raise validation_problem(
                     f"limit[{i}].pantograph",
                     f"there is no pantograph {limit.of}",
                     f"The case has {len(self.pantograph)}, numbered from 1 at the front.",
                 )
             if limit.target in seen:
-                raise problem(
+                raise validation_problem(
                     f"limit[{i}].quantity",
                     f"a second limit for {limit.quantity}",
                     "Give lower and upper of a quantity in one [[limit]] table.",

@@ -8,11 +8,11 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from pantocheck.conformance.input_files.sourced_table import PROVENANCE, Sourced, Table, problem
+from pantocheck.conformance.input_files.sourced_table import PROVENANCE, InputTable, SourcedTable, validation_problem
 from pantocheck.conformance.input_files.trust import LEVELS
 
 
-class ComponentDamping(Table):
+class ComponentDamping(InputTable):
     """Rayleigh damping of one kind of component: C = mass_coefficient M + stiffness_coefficient K."""
 
     mass_coefficient_1_s: Annotated[float, Field(ge=0, le=100, description="multiplies the mass matrix [1/s]")] = 0.0
@@ -21,7 +21,7 @@ class ComponentDamping(Table):
     )
 
 
-class ModalDamping(Table):
+class ModalDamping(InputTable):
     """Damping ratio of all modes of the undamped line in a frequency band; Rayleigh damping is compensated there."""
 
     from_Hz: Annotated[float, Field(ge=0, le=1000, description="lower edge of the band [Hz]")]
@@ -31,11 +31,13 @@ class ModalDamping(Table):
     @model_validator(mode="after")
     def _ordered(self) -> "ModalDamping":
         if self.from_Hz >= self.to_Hz:
-            raise problem("from_Hz", f"{self.from_Hz:g} Hz is not below to_Hz = {self.to_Hz:g} Hz", "Exchange them.")
+            raise validation_problem(
+                "from_Hz", f"{self.from_Hz:g} Hz is not below to_Hz = {self.to_Hz:g} Hz", "Exchange them."
+            )
         return self
 
 
-class Damping(Sourced):
+class Damping(SourcedTable):
     """Damping of the line at rest; a component kind that is left out has none."""
 
     contact_wire: ComponentDamping = ComponentDamping()
@@ -53,7 +55,7 @@ class Damping(Sourced):
         ordered = sorted(self.modal, key=lambda band: band.from_Hz)
         for before, after in pairwise(ordered):
             if after.from_Hz < before.to_Hz:
-                raise problem(
+                raise validation_problem(
                     "modal",
                     f"the bands {before.from_Hz:g}-{before.to_Hz:g} Hz and {after.from_Hz:g}-"
                     f"{after.to_Hz:g} Hz overlap",
@@ -62,13 +64,13 @@ class Damping(Sourced):
         return self
 
 
-class DampingFile(Table):
+class DampingFile(InputTable):
     """A damping model in a file of its own, as `pantocheck fit-damping` writes it."""
 
     damping: Damping
 
 
-def overlaid(damping: Damping, over: Damping) -> Damping:
+def overlay_damping(damping: Damping, over: Damping) -> Damping:
     """Damping of a line with another laid over it: the kinds and modal bands of `over` replace its own."""
     said = over.model_fields_set - PROVENANCE
     kinds = {"contact_wire", "messenger_wire", "stitch_wire", "droppers", "steady_arms"}

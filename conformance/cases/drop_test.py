@@ -4,25 +4,31 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from pantocheck.conformance.input_files.sourced_table import NonNegative, Positive, Sourced, Table, problem
+from pantocheck.conformance.input_files.sourced_table import (
+    InputTable,
+    NonNegative,
+    Positive,
+    SourcedTable,
+    validation_problem,
+)
 
 WireName = Annotated[Literal["contact_wire", "messenger_wire"], Field(description="wire, as in the line file")]
 Place = Annotated[NonNegative, Field(le=1e5, description="place along the line, from its beginning [m]")]
-FileName = Annotated[str, Field(min_length=1, max_length=500)]
+DampingFileName = Annotated[str, Field(min_length=1, max_length=500)]
 DampingModels = Annotated[
-    dict[str, FileName],
+    dict[str, DampingFileName],
     Field(max_length=10, description="damping files, relative to the case, by the name they have in the report"),
 ]
 
 
-class Sensor(Table):
+class Sensor(InputTable):
     """A sensor on a wire; it feels the vertical motion."""
 
     wire: WireName
     x_m: Place
 
 
-class DropTest(Table):
+class DropTest(InputTable):
     """One drop."""
 
     mass_kg: Annotated[Positive, Field(le=200, description="mass that hangs on the wire until it is released [kg]")]
@@ -33,7 +39,7 @@ class DropTest(Table):
     ] = 0.0
 
 
-class MassDrop(Sourced):
+class MassDrop(SourcedTable):
     """Drops of one line with one set of sensors, and up to which frequency their modes are identified."""
 
     drop: Annotated[tuple[DropTest, ...], Field(strict=False, min_length=1, max_length=20)]
@@ -55,7 +61,7 @@ class MassDrop(Sourced):
     @model_validator(mode="after")
     def _observable(self) -> "MassDrop":
         if self.highest_Hz > 0.4 * self.rate_Hz:
-            raise problem(
+            raise validation_problem(
                 "highest_Hz",
                 f"{self.highest_Hz:g} Hz cannot be seen at {self.rate_Hz:g} samples per second",
                 f"Give at most {0.4 * self.rate_Hz:g} Hz, or a rate_Hz of {2.5 * self.highest_Hz:g}.",

@@ -10,12 +10,12 @@ from pathlib import Path
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import CaseFile
 from pantocheck.conformance.cases.damping_file import Damping, DampingFile
-from pantocheck.conformance.cases.damping_file import overlaid as overlaid_damping
+from pantocheck.conformance.cases.damping_file import overlay_damping as overlaid_damping
 from pantocheck.conformance.cases.limits import LimitOverride, LimitsFile
-from pantocheck.conformance.cases.line_file import Line
-from pantocheck.conformance.cases.pantograph_file import Pantograph
+from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.suggestions import nearest
+from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.toml_file import read_model, read_toml
 
 _ID = re.compile(r"^id\s*=", re.MULTILINE)
@@ -27,7 +27,7 @@ def library_folder() -> Path:
 
 
 @cache
-def library_ids(folder: Path) -> dict[str, Path]:
+def list_library(folder: Path) -> dict[str, Path]:
     """Ids of all cases below a folder, from the folder structure, each with its file."""
     found = {}
     for path in sorted(folder.rglob("*.toml")):
@@ -37,7 +37,7 @@ def library_ids(folder: Path) -> dict[str, Path]:
     return found
 
 
-def select(patterns: Sequence[str]) -> list[Case]:
+def select_cases(patterns: Sequence[str]) -> list[Case]:
     """Cases for ids, globs and paths of case files, in the order asked, those they require put before them.
 
     Without a pattern: every case of the library that has limits and is not marked to be run on request only.
@@ -46,11 +46,11 @@ def select(patterns: Sequence[str]) -> list[Case]:
     ------
     InputError : a pattern matches nothing (the nearest ids are named), or a file is wrong
     """
-    known = library_ids(library_folder())
+    known = list_library(library_folder())
     chosen: dict[str, Case] = {}
     for pattern in patterns or ["*"]:
         for path in _matching(pattern, known):
-            _add(load(path), known, chosen, ())
+            _add(load_case(path), known, chosen, ())
     if not patterns:
         graded = {case.id for case in chosen.values() if case.limits and not case.file.on_request}
         needed = {required for case in chosen.values() if case.id in graded for required in case.file.requires}
@@ -68,7 +68,7 @@ def _matching(pattern: str, known: dict[str, Path]) -> list[Path]:
         raise InputError(
             f"case '{pattern}'",
             "there is no such case",
-            nearest(pattern, list(known)) + " `pantocheck cases` lists all.",
+            suggest_names(pattern, list(known)) + " `pantocheck cases` lists all.",
         )
     return matches
 
@@ -83,14 +83,16 @@ def _add(case: Case, known: dict[str, Path], chosen: dict[str, Case], above: tup
     for required in case.file.requires:
         if required not in known:
             raise InputError(
-                f"case '{case.id}', key requires", f"there is no case {required!r}", nearest(required, list(known))
+                f"case '{case.id}', key requires",
+                f"there is no case {required!r}",
+                suggest_names(required, list(known)),
             )
-        _add(load(known[required]), known, chosen, (*above, case.id))
+        _add(load_case(known[required]), known, chosen, (*above, case.id))
     if chosen.setdefault(case.id, case) != case:
         raise InputError(f"case '{case.id}'", "two different files have this id", "Give each case an id of its own.")
 
 
-def load(path: Path) -> Case:
+def load_case(path: Path) -> Case:
     """Read a case file with its line and pantographs, and check that they fit together.
 
     Raises
@@ -98,18 +100,18 @@ def load(path: Path) -> Case:
     InputError : a file cannot be read, or is wrong
     """
     file = read_model(path, CaseFile, "case")
-    line = read_model(_beside(path, file.line, "line"), Line, "reference line")
+    line = read_model(_beside(path, file.line, "line"), LineFile, "reference line")
     if file.damping is not None:
         over = _damping(path, file.damping, "damping") if isinstance(file.damping, str) else file.damping
         line = line.model_copy(update={"damping": overlaid_damping(line.damping, over)})
     pantographs = tuple(
-        read_model(_beside(path, use.model, f"pantograph[{i}].model"), Pantograph, "pantograph")
+        read_model(_beside(path, use.model, f"pantograph[{i}].model"), PantographFile, "pantograph")
         for i, use in enumerate(file.pantograph, 1)
     )
     measured = None
     if file.apparent_mass is not None:
         beside = _beside(path, file.apparent_mass.model, "apparent_mass.model")
-        measured = read_model(beside, Pantograph, "pantograph")
+        measured = read_model(beside, PantographFile, "pantograph")
     case = Case(file, line, pantographs, file.limit, measured, _dampings(path, file))
     _check_geometry(case, path)
     _check_drops(case, path)
@@ -194,7 +196,7 @@ def read_limits(path: Path) -> tuple[LimitOverride, ...]:
     return read_model(path, LimitsFile, "limits").limit
 
 
-def overlaid(cases: Sequence[Case], limits: Sequence[LimitOverride]) -> list[Case]:
+def overlay_limits(cases: Sequence[Case], limits: Sequence[LimitOverride]) -> list[Case]:
     """Cases with a user's limits laid over them.
 
     Raises
@@ -207,7 +209,7 @@ def overlaid(cases: Sequence[Case], limits: Sequence[LimitOverride]) -> list[Cas
             raise InputError(
                 f"{where}.case",
                 f"no case that is run matches {limit.case!r}",
-                nearest(limit.case, [case.id for case in cases]),
+                suggest_names(limit.case, [case.id for case in cases]),
             )
         if limit.of > max(len(case.pantographs) for case in meant):
             raise InputError(
@@ -222,7 +224,7 @@ def overlaid(cases: Sequence[Case], limits: Sequence[LimitOverride]) -> list[Cas
 
 
 @cache
-def bibliography() -> dict[str, str]:
+def read_bibliography() -> dict[str, str]:
     """Source keys and the publications they stand for."""
     return {str(key): str(text) for key, text in read_toml(library_folder() / "sources.toml", "bibliography").items()}
 
@@ -230,4 +232,4 @@ def bibliography() -> dict[str, str]:
 def source_text(source: str | Sequence[str]) -> str:
     """Sources as a reader wants them: each key replaced by its publication, free text kept."""
     keys = (source,) if isinstance(source, str) else source
-    return "; ".join(bibliography().get(key, key) for key in keys)
+    return "; ".join(read_bibliography().get(key, key) for key in keys)

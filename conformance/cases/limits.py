@@ -4,15 +4,15 @@ from typing import Annotated
 
 from pydantic import Field, field_validator, model_validator
 
-from pantocheck.conformance.input_files.sourced_table import Table, problem
-from pantocheck.conformance.input_files.suggestions import nearest
+from pantocheck.conformance.input_files.sourced_table import InputTable, validation_problem
+from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.registry import QUANTITIES
 
-Bound = Annotated[float, Field(ge=-1e12, le=1e12)]
+FiniteBound = Annotated[float, Field(ge=-1e12, le=1e12)]
 
 
-class Limit(Table):
+class Limit(InputTable):
     """Bounds of one quantity; a quantity of the line or of a static check belongs to no pantograph."""
 
     quantity: Annotated[str, Field(description="name of a quantity", json_schema_extra={"enum": list(QUANTITIES)})]
@@ -23,8 +23,12 @@ class Limit(Table):
     item: Annotated[
         int | None, Field(ge=1, description="which one of a list-valued quantity (dropper, mode), from 1")
     ] = None
-    lower: Annotated[Bound | None, Field(description="smallest value that passes, in the unit of the quantity")] = None
-    upper: Annotated[Bound | None, Field(description="largest value that passes, in the unit of the quantity")] = None
+    lower: Annotated[
+        FiniteBound | None, Field(description="smallest value that passes, in the unit of the quantity")
+    ] = None
+    upper: Annotated[
+        FiniteBound | None, Field(description="largest value that passes, in the unit of the quantity")
+    ] = None
     trust: Annotated[Trust, Field(description="how far the limit can be trusted")]
     source: Annotated[str | list[str], Field(description="where it was read: keys of sources.toml, or free text")]
     note: Annotated[str | None, Field(description="what a reader should know about it", max_length=4000)] = None
@@ -33,17 +37,17 @@ class Limit(Table):
     @classmethod
     def _known(cls, name: str) -> str:
         if name not in QUANTITIES:
-            raise problem("", f"there is no quantity {name!r}", nearest(name, list(QUANTITIES)))
+            raise validation_problem("", f"there is no quantity {name!r}", suggest_names(name, list(QUANTITIES)))
         return name
 
     @model_validator(mode="after")
     def _consistent(self) -> "Limit":
         if self.lower is None and self.upper is None:
-            raise problem("", "a limit without a lower and an upper bound", "Give lower, upper or both.")
+            raise validation_problem("", "a limit without a lower and an upper bound", "Give lower, upper or both.")
         if self.lower is not None and self.upper is not None and self.lower > self.upper:
-            raise problem("lower", f"{self.lower:g} is above upper = {self.upper:g}", "Exchange them.")
+            raise validation_problem("lower", f"{self.lower:g} is above upper = {self.upper:g}", "Exchange them.")
         if QUANTITIES[self.quantity].scope != "pantograph" and self.pantograph is not None:
-            raise problem(
+            raise validation_problem(
                 "pantograph", f"{self.quantity} belongs to the line, not to a pantograph", "Leave pantograph out."
             )
         return self
@@ -67,7 +71,7 @@ class LimitOverride(Limit):
     case: Annotated[str, Field(description="id or glob of the cases it is for", max_length=200)] = "*"
 
 
-class LimitsFile(Table):
+class LimitsFile(InputTable):
     """A file of a user's own limits, for `--limits`."""
 
     limit: Annotated[tuple[LimitOverride, ...], Field(strict=False, min_length=1, max_length=10_000)]

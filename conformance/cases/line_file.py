@@ -6,13 +6,13 @@ from pydantic import Field, model_validator
 
 from pantocheck.conformance.cases.damping_file import Damping
 from pantocheck.conformance.input_files.sourced_table import (
+    InputTable,
     NonNegative,
     NumberList,
     Positive,
     PositiveList,
-    Sourced,
-    Table,
-    problem,
+    SourcedTable,
+    validation_problem,
 )
 
 Tension = Annotated[float, Field(gt=0, le=200e3, description="axial tension, one wire [N]")]
@@ -22,7 +22,7 @@ Area = Annotated[float | None, Field(gt=0, le=1000, description="cross-section [
 ClampMass = Annotated[float, Field(ge=0, le=20, description="mass of a clamp [kg]")]
 
 
-class Geometry(Sourced):
+class Geometry(SourcedTable):
     """Spans and heights."""
 
     span_m: Annotated[float, Field(ge=10, le=120, description="length of every span [m]")]
@@ -38,7 +38,7 @@ class Geometry(Sourced):
     ] = 0.0
 
 
-class Wire(Sourced):
+class WireTable(SourcedTable):
     """Contact wire or messenger wire; two of them run side by side, each with these numbers."""
 
     number: Annotated[Literal[1, 2], Field(description="how many run in parallel")] = 1
@@ -51,7 +51,7 @@ class Wire(Sourced):
     area_mm2: Area = None
 
 
-class StitchWire(Sourced):
+class StitchWireTable(SourcedTable):
     """A wire clamped to the messenger on both sides of a support, from which the nearest droppers hang."""
 
     length_m: Annotated[Positive, Field(description="distance between its clamps, the support in the middle [m]")]
@@ -61,7 +61,7 @@ class StitchWire(Sourced):
     clamp_kg: ClampMass = 0.0
 
 
-class Droppers(Sourced):
+class DropperTable(SourcedTable):
     """Droppers of a span: tension-only bars, the same in every span."""
 
     x_m: Annotated[PositiveList, Field(description="positions along the span, increasing [m]")]
@@ -82,11 +82,11 @@ class Droppers(Sourced):
     clamp_on_contact_kg: ClampMass = 0.0
 
     @model_validator(mode="after")
-    def _consistent(self) -> "Droppers":
+    def _consistent(self) -> "DropperTable":
         n = len(self.x_m)
         for i in range(1, n):
             if self.x_m[i] <= self.x_m[i - 1]:
-                raise problem(
+                raise validation_problem(
                     f"x_m[{i + 1}]",
                     f"{self.x_m[i]:g} m does not follow {self.x_m[i - 1]:g} m",
                     "List the droppers in the direction of travel, each at its own place.",
@@ -94,19 +94,23 @@ class Droppers(Sourced):
         for key in ("presag_m", "length_m"):
             value = getattr(self, key)
             if value is not None and len(value) != n:
-                raise problem(key, f"{len(value)} values for {n} droppers", "Give one value per dropper of x_m.")
+                raise validation_problem(
+                    key, f"{len(value)} values for {n} droppers", "Give one value per dropper of x_m."
+                )
         if (self.stiffness_N_m is None) == (self.axial_stiffness_EA_N is None):
-            raise problem(
+            raise validation_problem(
                 "stiffness_N_m",
                 "the stiffness of a dropper must be said once",
                 "Give either stiffness_N_m or axial_stiffness_EA_N.",
             )
         if self.mass_kg is not None and self.mass_kg_m is not None:
-            raise problem("mass_kg", "the mass of a dropper is said twice", "Give either mass_kg or mass_kg_m.")
+            raise validation_problem(
+                "mass_kg", "the mass of a dropper is said twice", "Give either mass_kg or mass_kg_m."
+            )
         return self
 
 
-class SteadyArm(Sourced):
+class SteadyArmTable(SourcedTable):
     """Arm that holds the contact wire at a support."""
 
     vertical_stiffness_N_m: Annotated[
@@ -131,9 +135,9 @@ class SteadyArm(Sourced):
     ] = "pull"
 
     @model_validator(mode="after")
-    def _stiffness_can_be_had(self) -> "SteadyArm":
+    def _stiffness_can_be_had(self) -> "SteadyArmTable":
         if self.vertical_stiffness_N_m is None and self.length_m is None:
-            raise problem(
+            raise validation_problem(
                 "vertical_stiffness_N_m",
                 "neither a stiffness nor a length is given",
                 "Give vertical_stiffness_N_m, or length_m from which it follows.",
@@ -141,45 +145,45 @@ class SteadyArm(Sourced):
         return self
 
 
-class MessengerSupport(Sourced):
+class MessengerSupportTable(SourcedTable):
     """Spring and damper under the messenger wire at a support."""
 
     stiffness_N_m: Annotated[Positive, Field(le=1e10, description="vertical stiffness [N/m]")]
     damping_N_s_m: Annotated[NonNegative, Field(description="vertical damper [N s/m]")] = 0.0
 
 
-class Line(Table):
+class LineFile(InputTable):
     """A catenary."""
 
     title: Annotated[str, Field(description="what it is", max_length=200)]
     geometry: Geometry
-    contact_wire: Wire
-    messenger_wire: Wire
-    stitch_wire: StitchWire | None = None
-    droppers: Droppers
-    steady_arm: SteadyArm
-    messenger_support: MessengerSupport
+    contact_wire: WireTable
+    messenger_wire: WireTable
+    stitch_wire: StitchWireTable | None = None
+    droppers: DropperTable
+    steady_arm: SteadyArmTable
+    messenger_support: MessengerSupportTable
     damping: Damping
     note: Annotated[str | None, Field(description="what a reader should know about it", max_length=4000)] = None
 
     @model_validator(mode="after")
-    def _fits_together(self) -> "Line":
+    def _fits_together(self) -> "LineFile":
         span = self.geometry.span_m
         for i, x in enumerate(self.droppers.x_m, 1):
             if x >= span:
-                raise problem(
+                raise validation_problem(
                     f"droppers.x_m[{i}]",
                     f"the dropper at {x:g} m lies outside its span of {span:g} m",
                     f"Positions are between 0 and {span:g} m, measured from the support before.",
                 )
         if self.stitch_wire is not None and self.stitch_wire.length_m >= span:
-            raise problem(
+            raise validation_problem(
                 "stitch_wire.length_m",
                 f"{self.stitch_wire.length_m:g} m in a span of {span:g} m",
                 "Two neighbouring stitch wires would overlap.",
             )
         if self.messenger_wire.number > self.contact_wire.number:
-            raise problem(
+            raise validation_problem(
                 "messenger_wire.number",
                 "two messenger wires above one contact wire",
                 "One or two messenger wires carry two contact wires; one carries one.",

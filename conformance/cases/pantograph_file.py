@@ -6,23 +6,23 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from pantocheck.conformance.input_files.sourced_table import (
+    InputTable,
     NonNegativeList,
     NumberList,
     Positive,
     PositiveList,
-    Sourced,
-    Table,
-    problem,
+    SourcedTable,
+    validation_problem,
 )
 
 
-class Contact(Sourced):
+class ContactTable(SourcedTable):
     """Contact between the head and the contact wire: a one-sided penalty spring."""
 
     stiffness_N_m: Annotated[Positive, Field(le=1e8, description="stiffness of the contact [N/m]")]
 
 
-class Chain(Sourced):
+class ChainTable(SourcedTable):
     """Lumped masses numbered from the base upwards; spring and damper i join mass i to mass i - 1 (1: to the base)."""
 
     names: Annotated[
@@ -45,21 +45,25 @@ class Chain(Sourced):
     ] = "working_height"
 
     @model_validator(mode="after")
-    def _same_length(self) -> "Chain":
+    def _same_length(self) -> "ChainTable":
         n = len(self.masses_kg)
         for key in ("stiffness_N_m", "damping_N_s_m", "names"):
             value = getattr(self, key)
             if value is not None and len(value) != n:
-                raise problem(key, f"{len(value)} values for {n} masses", "Give one value per mass, base to head.")
+                raise validation_problem(
+                    key, f"{len(value)} values for {n} masses", "Give one value per mass, base to head."
+                )
         return self
 
     @model_validator(mode="after")
-    def _force_has_a_mass(self) -> "Chain":
+    def _force_has_a_mass(self) -> "ChainTable":
         on, names = self.uplift_force_on, self.names or ()
         if isinstance(on, str) and on not in names:
-            raise problem("uplift_force_on", f"no mass is called {on!r}", f"Names are: {', '.join(names) or 'none'}.")
+            raise validation_problem(
+                "uplift_force_on", f"no mass is called {on!r}", f"Names are: {', '.join(names) or 'none'}."
+            )
         if isinstance(on, int) and not 1 <= on <= len(self.masses_kg):
-            raise problem(
+            raise validation_problem(
                 "uplift_force_on", f"there is no mass {on}", f"Masses are numbered 1 to {len(self.masses_kg)}."
             )
         return self
@@ -75,7 +79,7 @@ class Chain(Sourced):
 Matrix = Annotated[tuple[NumberList, ...], Field(strict=False, min_length=1, max_length=50)]
 
 
-class Matrices(Sourced):
+class MatricesTable(SourcedTable):
     """A linear pantograph by its matrices, base fixed; its uplift force is its static contact force."""
 
     mass_kg: Annotated[Matrix, Field(description="mass matrix, row by row [kg]")]
@@ -86,20 +90,22 @@ class Matrices(Sourced):
     ]
 
     @model_validator(mode="after")
-    def _possible(self) -> "Matrices":
+    def _possible(self) -> "MatricesTable":
         n = len(self.head)
         if not any(self.head):
-            raise problem("head", "all zeros", "Say which unknown, or which sum of unknowns, is the head.")
+            raise validation_problem("head", "all zeros", "Say which unknown, or which sum of unknowns, is the head.")
         for key in ("mass_kg", "damping_N_s_m", "stiffness_N_m"):
             rows = getattr(self, key)
             if len(rows) != n or any(len(row) != n for row in rows):
-                raise problem(key, f"not {n} rows of {n} values", "The matrices are square, one row per value of head.")
+                raise validation_problem(
+                    key, f"not {n} rows of {n} values", "The matrices are square, one row per value of head."
+                )
             matrix = np.array(rows)
             if not np.allclose(matrix, matrix.T, rtol=1e-9, atol=1e-9 * float(np.abs(matrix).max())):
-                raise problem(key, "not symmetric", "Check the order of its values.")
+                raise validation_problem(key, "not symmetric", "Check the order of its values.")
             lowest, largest = np.linalg.eigvalsh(matrix)[[0, -1]]
             if lowest < -1e-9 * abs(largest) or (key == "mass_kg" and lowest <= 1e-12 * largest):
-                raise problem(
+                raise validation_problem(
                     key,
                     f"its lowest eigenvalue is {lowest:.3g}",
                     "A mass matrix has positive eigenvalues, damping and stiffness none below zero.",
@@ -107,7 +113,7 @@ class Matrices(Sourced):
         return self
 
 
-class Modes(Sourced):
+class ModesTable(SourcedTable):
     """A linear pantograph by its mass-normalised modes, base fixed, head free; uplift force as for matrices."""
 
     frequency_Hz: Annotated[
@@ -119,32 +125,38 @@ class Modes(Sourced):
     ]
 
     @model_validator(mode="after")
-    def _same_length(self) -> "Modes":
+    def _same_length(self) -> "ModesTable":
         n = len(self.frequency_Hz)
         for key in ("damping_ratio", "head_shape"):
             if len(getattr(self, key)) != n:
-                raise problem(key, f"{len(getattr(self, key))} values for {n} modes", "Give one value per mode.")
+                raise validation_problem(
+                    key, f"{len(getattr(self, key))} values for {n} modes", "Give one value per mode."
+                )
         if not any(self.head_shape):
-            raise problem("head_shape", "all zeros", "A head that takes part in no mode cannot follow a wire.")
+            raise validation_problem(
+                "head_shape", "all zeros", "A head that takes part in no mode cannot follow a wire."
+            )
         return self
 
 
-class Pantograph(Table):
+class PantographFile(InputTable):
     """A pantograph as simulators take it: exactly one of chain, matrices and modes, and its contact."""
 
     title: Annotated[str, Field(description="what it is", max_length=200)]
-    chain: Chain | None = None
-    matrices: Matrices | None = None
-    modes: Modes | None = None
-    contact: Contact
+    chain: ChainTable | None = None
+    matrices: MatricesTable | None = None
+    modes: ModesTable | None = None
+    contact: ContactTable
     note: Annotated[str | None, Field(description="why a choice is what it is", max_length=4000)] = None
 
     @model_validator(mode="after")
-    def _said_once(self) -> "Pantograph":
+    def _said_once(self) -> "PantographFile":
         given = [name for name in ("chain", "matrices", "modes") if getattr(self, name) is not None]
         if len(given) != 1:
             found = (
                 f"the pantograph is given by {' and '.join(given)}" if given else "there is no model of the pantograph"
             )
-            raise problem(given[-1] if given else "chain", found, "Give one of the tables chain, matrices and modes.")
+            raise validation_problem(
+                given[-1] if given else "chain", found, "Give one of the tables chain, matrices and modes."
+            )
         return self

@@ -9,16 +9,16 @@ from pydantic import Discriminator, Field, Tag, model_validator
 from pantocheck.conformance.cases.case_file import Filter
 from pantocheck.conformance.cases.library import library_folder
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.sourced_table import Table, problem
-from pantocheck.conformance.input_files.suggestions import nearest
+from pantocheck.conformance.input_files.sourced_table import InputTable, validation_problem
+from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.registry import QUANTITIES
 
-SCHEMA = "pantocheck.profile/1"
+PROFILE_SCHEMA = "pantocheck.profile/1"
 
 
-class SpeedFormula(Table):
+class SpeedFormula(InputTable):
     """A bound that follows the speed v [km/h]: per_speed_squared v^2 + constant."""
 
     per_speed_squared: Annotated[
@@ -32,7 +32,7 @@ class SpeedFormula(Table):
         return self.per_speed_squared * speed_km_h**2 + self.constant
 
 
-class GivenBound(Table):
+class NamedBound(InputTable):
     """A bound that comes with the record: a key of its `line` table, times a factor."""
 
     given: Annotated[Literal["uplift_space_mm"], Field(description="key of the record's line table")]
@@ -41,28 +41,28 @@ class GivenBound(Table):
 
 def _kind_of_bound(bound: object) -> str:
     """Which bound a file means: only that one is then checked, and complained of."""
-    if isinstance(bound, SpeedFormula | GivenBound):
+    if isinstance(bound, SpeedFormula | NamedBound):
         return type(bound).__name__
     if isinstance(bound, dict):
-        return "GivenBound" if "given" in bound else "SpeedFormula"
+        return "NamedBound" if "given" in bound else "SpeedFormula"
     return "number"
 
 
-Bound = Annotated[
+RuleBound = Annotated[
     Annotated[float, Field(ge=-1e9, le=1e9), Tag("number")]
     | Annotated[SpeedFormula, Tag("SpeedFormula")]
-    | Annotated[GivenBound, Tag("GivenBound")],
+    | Annotated[NamedBound, Tag("NamedBound")],
     Discriminator(_kind_of_bound),
 ]
 Tolerance = Annotated[float, Field(gt=0, le=1e9)]
 
 
-class Rule(Table):
+class Rule(InputTable):
     """Bounds of one quantity, for every pantograph: stated, or around the value of a measured record."""
 
     quantity: Annotated[str, Field(description="name of a quantity", json_schema_extra={"enum": list(QUANTITIES)})]
-    lower: Annotated[Bound | None, Field(description="smallest value that passes, or a formula")] = None
-    upper: Annotated[Bound | None, Field(description="largest value that passes, or a formula")] = None
+    lower: Annotated[RuleBound | None, Field(description="smallest value that passes, or a formula")] = None
+    upper: Annotated[RuleBound | None, Field(description="largest value that passes, or a formula")] = None
     tolerance: Annotated[
         Tolerance | None, Field(description="how far off the measured value it may be, in the unit of the quantity")
     ] = None
@@ -78,16 +78,16 @@ class Rule(Table):
     @model_validator(mode="after")
     def _consistent(self) -> "Rule":
         if self.quantity not in QUANTITIES:
-            raise problem(
+            raise validation_problem(
                 "quantity",
                 f"there is no quantity {self.quantity[:80]!r}",
-                nearest(self.quantity[:80], list(QUANTITIES)),
+                suggest_names(self.quantity[:80], list(QUANTITIES)),
             )
         if QUANTITIES[self.quantity].scope == "mass_drop":
-            raise problem("quantity", f"{self.quantity} is not of a run", "Choose another quantity.")
+            raise validation_problem("quantity", f"{self.quantity} is not of a run", "Choose another quantity.")
         stated = self.lower is not None or self.upper is not None
         if stated + (self.tolerance is not None) + (self.tolerance_pct is not None) != 1:
-            raise problem(
+            raise validation_problem(
                 "",
                 f"{self.quantity} has not exactly one kind of bound",
                 "Give lower/upper, tolerance or tolerance_pct.",
@@ -100,7 +100,7 @@ class Rule(Table):
         return self.tolerance is not None or self.tolerance_pct is not None
 
 
-class Profile(Table):
+class Profile(InputTable):
     """Rules for a record."""
 
     schema_: Annotated[Literal["pantocheck.profile/1"], Field(alias="schema", description="version of the format")]
@@ -119,11 +119,11 @@ class Profile(Table):
         return any(rule.compares for rule in self.rule)
 
 
-class NoBound(ValueError):
+class BoundMissing(ValueError):
     """A rule has no bound for this record: guessed, it would be a limit that nobody stated."""
 
 
-def bounds(
+def resolve_bounds(
     rule: Rule, speed_km_h: float, given: Mapping[str, float | None], measured: float | None
 ) -> tuple[float | None, float | None]:
     """Lower and upper limit of a rule for a record.
@@ -141,31 +141,31 @@ def bounds(
     """
     if rule.compares:
         if measured is None:
-            raise NoBound("the measured record has no such quantity")
+            raise BoundMissing("the measured record has no such quantity")
         reach = rule.tolerance or abs(measured) * (rule.tolerance_pct or 0.0) / 100
         return measured - reach, measured + reach
     lower, upper = (_resolved(bound, speed_km_h, given) for bound in (rule.lower, rule.upper))
     if lower is not None and upper is not None and lower > upper:
-        raise NoBound(f"its lower bound of {lower:g} lies above its upper bound of {upper:g}")
+        raise BoundMissing(f"its lower bound of {lower:g} lies above its upper bound of {upper:g}")
     return lower, upper
 
 
-def _resolved(bound: Bound | None, speed_km_h: float, given: Mapping[str, float | None]) -> float | None:
+def _resolved(bound: RuleBound | None, speed_km_h: float, given: Mapping[str, float | None]) -> float | None:
     if isinstance(bound, SpeedFormula):
         if bound.above_km_h is not None and speed_km_h <= bound.above_km_h:
-            raise NoBound(f"the rule holds above {bound.above_km_h:g} km/h, the record is of {speed_km_h:g} km/h")
+            raise BoundMissing(f"the rule holds above {bound.above_km_h:g} km/h, the record is of {speed_km_h:g} km/h")
         value = bound.at(speed_km_h)
-    elif isinstance(bound, GivenBound):
+    elif isinstance(bound, NamedBound):
         known = given.get(bound.given)
         if known is None:
-            raise NoBound(f"the record does not give {bound.given}")
+            raise BoundMissing(f"the record does not give {bound.given}")
         value = bound.factor * known
     else:
         return bound
     return value
 
 
-def profile_named(name: str) -> Profile:
+def load_profile(name: str) -> Profile:
     """A profile of the library, or of a user's own file (a name that ends in .toml).
 
     Raises
@@ -176,5 +176,5 @@ def profile_named(name: str) -> Profile:
         return read_model(Path(name), Profile, "profile")
     known = {path.stem: path for path in sorted((library_folder() / "profiles").glob("*.toml"))}
     if name not in known:
-        raise InputError(f"profile '{name}'", "there is no such profile", nearest(name, list(known)))
+        raise InputError(f"profile '{name}'", "there is no such profile", suggest_names(name, list(known)))
     return read_model(known[name], Profile, "profile")

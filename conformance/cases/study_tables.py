@@ -5,12 +5,18 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from pantocheck.conformance.cases.drop_test import DampingModels, Place
-from pantocheck.conformance.input_files.sourced_table import Positive, PositiveList, Sourced, Table, problem
+from pantocheck.conformance.input_files.sourced_table import (
+    InputTable,
+    Positive,
+    PositiveList,
+    SourcedTable,
+    validation_problem,
+)
 
 Interval = Annotated[tuple[float, float], Field(strict=False, description="from and to")]
 
 
-class Printed(Table):
+class Printed(InputTable):
     """Values that a publication prints for one pantograph under one damping model, laid beside the computed ones."""
 
     model: Annotated[str, Field(max_length=100, description="name of the damping model")]
@@ -18,7 +24,7 @@ class Printed(Table):
     values: Annotated[dict[str, float], Field(min_length=1, max_length=50, description="by name of quantity")]
 
 
-class DampingChange(Sourced):
+class DampingChange(SourcedTable):
     """The same passage with the damping before and with the damping of the case: what changes."""
 
     kind: Literal["damping-change"]
@@ -28,7 +34,7 @@ class DampingChange(Sourced):
     printed: Annotated[tuple[Printed, ...], Field(strict=False, max_length=40)] = ()
 
 
-class ReleaseVelocity(Sourced):
+class ReleaseVelocity(SourcedTable):
     """Velocity of one sensor after one release under several damping models, in windows of time."""
 
     kind: Literal["release-velocity"]
@@ -43,11 +49,13 @@ class ReleaseVelocity(Sourced):
     def _ordered(self) -> "ReleaseVelocity":
         for i, (start, end) in enumerate(self.windows_s, 1):
             if not 0 <= start < end:
-                raise problem(f"windows_s[{i}]", f"{start:g} s to {end:g} s is not a window", "Give [from, to].")
+                raise validation_problem(
+                    f"windows_s[{i}]", f"{start:g} s to {end:g} s is not a window", "Give [from, to]."
+                )
         return self
 
 
-class DropperDamping(Sourced):
+class DropperDamping(SourcedTable):
     """The passage of the case with the droppers' stiffness coefficient going through many orders of magnitude."""
 
     kind: Literal["dropper-damping"]
@@ -57,11 +65,11 @@ class DropperDamping(Sourced):
     @model_validator(mode="after")
     def _ascending(self) -> "DropperDamping":
         if list(self.coefficients_s) != sorted(set(self.coefficients_s)):
-            raise problem("coefficients_s", "not in ascending order", "List each once, from small to large.")
+            raise validation_problem("coefficients_s", "not in ascending order", "List each once, from small to large.")
         return self
 
 
-class SteadyArmDamper(Sourced):
+class SteadyArmDamper(SourcedTable):
     """Identified damping with and without a vertical damper at every steady arm's claw, band by band."""
 
     kind: Literal["steady-arm-damper"]
@@ -72,7 +80,7 @@ class SteadyArmDamper(Sourced):
     ]
 
 
-class DampingSensitivity(Sourced):
+class DampingSensitivity(SourcedTable):
     """The same passage under several damping models, side by side; nothing of it is graded."""
 
     kind: Literal["damping-sensitivity"]

@@ -4,18 +4,18 @@ from typing import Annotated
 
 import typer
 
-from pantocheck.conformance.command_line.assess_command import assess
-from pantocheck.conformance.command_line.cases_command import cases
-from pantocheck.conformance.command_line.drop_command import drop
-from pantocheck.conformance.command_line.fit_damping_command import fit_damping
-from pantocheck.conformance.command_line.guard import guarded
-from pantocheck.conformance.command_line.identify_command import identify
-from pantocheck.conformance.command_line.run_command import run
-from pantocheck.conformance.command_line.schema_command import schema
-from pantocheck.conformance.command_line.self_test_command import self_test
-from pantocheck.conformance.command_line.show_command import show
-from pantocheck.conformance.command_line.simulate_command import simulate
-from pantocheck.conformance.command_line.verify_command import verify
+from pantocheck.conformance.command_line.assess_command import assess_command
+from pantocheck.conformance.command_line.cases_command import cases_command
+from pantocheck.conformance.command_line.drop_command import drop_command
+from pantocheck.conformance.command_line.fit_damping_command import fit_damping_command
+from pantocheck.conformance.command_line.guard import guard_command
+from pantocheck.conformance.command_line.identify_command import identify_command
+from pantocheck.conformance.command_line.run_command import run_command
+from pantocheck.conformance.command_line.schema_command import schema_command
+from pantocheck.conformance.command_line.self_test_command import self_test_command
+from pantocheck.conformance.command_line.show_command import show_command
+from pantocheck.conformance.command_line.simulate_command import simulate_command
+from pantocheck.conformance.command_line.verify_command import verify_command
 
 app = typer.Typer(
     name="pantocheck",
@@ -26,8 +26,20 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
-for command in (run, assess, cases, show, simulate, drop, identify, fit_damping, verify, schema, self_test):
-    app.command()(guarded(command))
+for command in (
+    run_command,
+    assess_command,
+    cases_command,
+    show_command,
+    simulate_command,
+    drop_command,
+    identify_command,
+    fit_damping_command,
+    verify_command,
+    schema_command,
+    self_test_command,
+):
+    app.command(command.__name__.removesuffix("_command").replace("_", "-"))(guard_command(command))
 
 
 def _print_version(asked: bool) -> None:

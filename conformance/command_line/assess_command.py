@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from pantocheck.conformance.command_line.options import Baseline, names, options_of
+from pantocheck.conformance.command_line.options import BaselineOption, build_options, split_names
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from pantocheck.conformance.records.record_sidecar import LineTable
 
 
-def assess(
+def assess_command(
     record: Annotated[Path, typer.Argument(help="Record: its sidecar, its table, or a summary record.")],
     profile: Annotated[
         str,
@@ -39,7 +39,7 @@ def assess(
     uplift_space_mm: Annotated[
         float | None, typer.Option(help="Space for uplift at the supports, if the record does not say it.")
     ] = None,
-    baseline: Baseline = None,
+    baseline: BaselineOption = None,
     drift: Annotated[float, typer.Option(help="How far a value may drift from the baseline, in percent.")] = 1.0,
 ) -> None:
     """Assess a record, simulated or measured, by a profile: acceptance of a line, or a line test.
@@ -50,29 +50,29 @@ def assess(
 
     pantocheck assess simulated.toml --profile line-test --measured train.toml --trust provisional
     """
-    from pantocheck.conformance.cases.profile_file import profile_named
+    from pantocheck.conformance.cases.profile_file import load_profile
     from pantocheck.conformance.command_line.results_output import EXIT_CODES, print_results
-    from pantocheck.conformance.grading.assessed_record import subject_of
-    from pantocheck.conformance.grading.baseline import against_baseline
-    from pantocheck.conformance.grading.profile_grading import assess as assessed
+    from pantocheck.conformance.grading.assessed_record import load_assessed_record
+    from pantocheck.conformance.grading.baseline import compare_with_baseline
+    from pantocheck.conformance.grading.profile_grading import assess_record as assessed
     from pantocheck.conformance.input_files.atomic_writing import check_writable
     from pantocheck.conformance.records.record_sidecar import LineTable
-    from pantocheck.conformance.reports.formats.report_writers import checked_formats, write_all
+    from pantocheck.conformance.reports.formats.report_writers import check_formats, write_all
     from pantocheck.conformance.results.results_reading import read_results
 
-    options = options_of(out=str(out), formats=names(formats), trust=trust, drift_pct=drift)
-    written = checked_formats(options.formats)
-    rules = profile_named(profile)
+    options = build_options(out=str(out), formats=split_names(formats), trust=trust, drift_pct=drift)
+    written = check_formats(options.formats)
+    rules = load_profile(profile)
     own = () if limits is None else _limits(limits)
     line = _line(wave_speed_m_s=wave_speed_m_s, uplift_space_mm=uplift_space_mm)
     earlier = None if baseline is None else read_results(baseline)
     check_writable(out)
-    subject = subject_of(record, rules, line)
-    other = None if measured is None else subject_of(measured, rules, LineTable())
+    subject = load_assessed_record(record, rules, line)
+    other = None if measured is None else load_assessed_record(measured, rules, LineTable())
     _check_owners(own, len(subject.pantographs))
     results = assessed(subject, rules, options.trust, other, own)
     if earlier is not None and baseline is not None:
-        results = against_baseline(results, earlier, options.drift_pct, baseline.name)
+        results = compare_with_baseline(results, earlier, options.drift_pct, baseline.name)
     print_results(results, write_all(results, out, written))
     raise typer.Exit(EXIT_CODES[results.verdict])
 
@@ -80,13 +80,13 @@ def assess(
 def _line(**given: float | None) -> "LineTable":
     from pydantic import ValidationError
 
-    from pantocheck.conformance.input_files.validation_messages import input_error
+    from pantocheck.conformance.input_files.validation_messages import build_input_error
     from pantocheck.conformance.records.record_sidecar import LineTable
 
     try:
         return LineTable.model_validate({key: value for key, value in given.items() if value is not None})
     except ValidationError as error:
-        raise input_error(error, LineTable, "command line") from None
+        raise build_input_error(error, LineTable, "command line") from None
 
 
 def _limits(path: Path) -> "Sequence[Limit]":

@@ -3,7 +3,7 @@
 from rich.console import Console
 from rich.text import Text
 
-from pantocheck.conformance.command_line.guard import printable
+from pantocheck.conformance.command_line.guard import strip_control_characters
 from pantocheck.conformance.grading.verdicts import Verdict
 
 _STYLES: dict[Verdict, str] = {
@@ -21,16 +21,16 @@ def console() -> Console:
     return output if output.is_terminal else Console(highlight=False, width=140)
 
 
-def verdict_text(verdict: Verdict) -> Text:
+def style_verdict(verdict: Verdict) -> Text:
     """A verdict as it is printed."""
     return Text(verdict.upper(), _STYLES[verdict])
 
 
-def plain(text: str) -> Text:
+def escape_text(text: str) -> Text:
     """Text of a file, with neither markup nor control characters obeyed."""
-    return Text(printable(text))
+    return Text(strip_control_characters(text))
 
 
-def number(value: float | None) -> str:
+def format_number(value: float | None) -> str:
     """A value as it is printed: four significant digits, a dash for none."""
     return "-" if value is None else f"{value:.4g}"

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from pantocheck.conformance.cases.line_file import Line
+    from pantocheck.conformance.cases.line_file import LineFile
 
 
-def fit_damping(
+def fit_damping_command(
     modes: Annotated[Path, typer.Argument(help="modes.json of `pantocheck identify`")],
     line: Annotated[str, typer.Option(help="The line measured: id of a case, or path of a case or line file")],
     out: Annotated[
@@ -21,40 +21,40 @@ def fit_damping(
 
     Example: pantocheck fit-damping T1/modes.json --line my-line.toml --out T1
     """
-    from pantocheck.conformance.command_line.console import console, plain
-    from pantocheck.conformance.identification.damping.damping_results import damping_results, damping_toml
+    from pantocheck.conformance.command_line.console import console, escape_text
+    from pantocheck.conformance.identification.damping.damping_results import build_damping_results, write_damping_toml
     from pantocheck.conformance.identification.identification_files import read_modes, write_json
-    from pantocheck.conformance.input_files.atomic_writing import check_writable, write_in_place
+    from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
     from pantocheck.conformance.reports.document import write_html, write_pdf
-    from pantocheck.conformance.reports.mass_drop.damping_report import damping_document
-    from pantocheck.conformance.simulation.catenary_model import catenary
+    from pantocheck.conformance.reports.mass_drop.damping_report import build_damping_document
+    from pantocheck.conformance.simulation.catenary_model import build_catenary
 
     check_writable(out)
     output = console()
     with output.status("modes of the line"):
-        results = damping_results(read_modes(modes), catenary(_line(line)), element, modes.name)
-        block = damping_toml(results)
-        document = damping_document(results, block)
-        write_in_place(out / "damping.toml", block.encode("utf-8"))
-        with_modal = damping_toml(results, results["modal"])
-        write_in_place(out / "damping_with_modal.toml", with_modal.encode("utf-8"))
+        results = build_damping_results(read_modes(modes), build_catenary(_line(line)), element, modes.name)
+        block = write_damping_toml(results)
+        document = build_damping_document(results, block)
+        write_atomically(out / "damping.toml", block.encode("utf-8"))
+        with_modal = write_damping_toml(results, results["modal"])
+        write_atomically(out / "damping_with_modal.toml", with_modal.encode("utf-8"))
         write_json(out / "damping.json", {"schema": "pantocheck.damping/1", **results})
         write_html(document, out / "damping.html")
         write_pdf(document, out / "damping.pdf")
-    output.print(plain(document.headline))
-    output.print(plain(block))
-    output.print(plain(f"{out}: damping.toml, damping_with_modal.toml, damping.json, damping.html, damping.pdf"))
+    output.print(escape_text(document.headline))
+    output.print(escape_text(block))
+    output.print(escape_text(f"{out}: damping.toml, damping_with_modal.toml, damping.json, damping.html, damping.pdf"))
 
 
-def _line(name: str) -> "Line":
-    from pantocheck.conformance.cases.library import select
-    from pantocheck.conformance.cases.line_file import Line
+def _line(name: str) -> "LineFile":
+    from pantocheck.conformance.cases.library import select_cases
+    from pantocheck.conformance.cases.line_file import LineFile
     from pantocheck.conformance.input_files.input_error import InputError
     from pantocheck.conformance.input_files.toml_file import read_model, read_toml
 
     if name.endswith(".toml") and "geometry" in read_toml(Path(name), "line"):
-        return read_model(Path(name), Line, "line")
-    found = select([name])
+        return read_model(Path(name), LineFile, "line")
+    found = select_cases([name])
     if any(one.line != found[0].line for one in found):
         raise InputError(f"line '{name}'", f"{len(found)} cases with different lines", "Name one case.")
     return found[0].line

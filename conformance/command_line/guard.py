@@ -15,7 +15,7 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 
-def guarded(command: Callable[P, R]) -> Callable[P, R]:
+def guard_command(command: Callable[P, R]) -> Callable[P, R]:
     """The command, with an input error printed as its message (exit code 2) and Ctrl-C ending quietly (130).
 
     A line whose equations have no solution is an input error, too.
@@ -26,12 +26,12 @@ def guarded(command: Callable[P, R]) -> Callable[P, R]:
         try:
             return command(*args, **kwargs)
         except InputError as error:
-            typer.echo(printable(str(error)), err=True)
+            typer.echo(strip_control_characters(str(error)), err=True)
             raise typer.Exit(BAD_INPUT) from None
         except (ArithmeticError, ValueError) as error:
             if not _unsolvable(error):
                 raise
-            typer.echo(printable(f"{error}\n  Check the line's data."), err=True)
+            typer.echo(strip_control_characters(f"{error}\n  Check the line's data."), err=True)
             raise typer.Exit(BAD_INPUT) from None
         except KeyboardInterrupt:
             typer.echo("Interrupted.", err=True)
@@ -49,6 +49,6 @@ def _unsolvable(error: Exception) -> bool:
     return isinstance(error, NoInitialState | NoEquilibrium | DidNotConverge)
 
 
-def printable(text: str) -> str:
+def strip_control_characters(text: str) -> str:
     """Text of a stranger's file without the control characters that a terminal would obey."""
     return "".join(c if c.isprintable() or c == "\n" else "?" for c in text)

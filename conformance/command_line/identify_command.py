@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 
-def identify(
+def identify_command(
     records: Annotated[
         list[Path],
         typer.Argument(
@@ -29,39 +29,43 @@ def identify(
     Examples: pantocheck identify T1.h5 --out T1
               pantocheck identify T1.h5 T2.csv --out both --highest 6
     """
-    from pantocheck.conformance.command_line.console import console, number, plain
+    from pantocheck.conformance.command_line.console import console, escape_text, format_number
     from pantocheck.conformance.identification.hand_placed_poles import read_poles
-    from pantocheck.conformance.identification.identification_files import summary, write_json, write_modes
-    from pantocheck.conformance.identification.identify import identify as run
+    from pantocheck.conformance.identification.identification_files import (
+        summarise_identification,
+        write_json,
+        write_modes,
+    )
+    from pantocheck.conformance.identification.identify import identify_modes as run
     from pantocheck.conformance.input_files.atomic_writing import check_writable
-    from pantocheck.conformance.mass_drops.drop_reading import read_records
+    from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
     from pantocheck.conformance.reports.document import write_html, write_pdf
-    from pantocheck.conformance.reports.mass_drop.identification_report import identification_document
+    from pantocheck.conformance.reports.mass_drop.identification_report import build_identification_document
 
     check_writable(out)
     output = console()
     placed = read_poles(poles) if poles is not None else None
-    read = tuple(run for path in records for run in read_records(path))
+    read = tuple(run for path in records for run in read_drop_records(path))
     with output.status("reading") as status:
-        found = run(read, highest, placed, progress=lambda text: status.update(plain(text)))
+        found = run(read, highest, placed, progress=lambda text: status.update(escape_text(text)))
         status.update("writing the report")
-        lines = [summary(one) for one in found]
+        lines = [summarise_identification(one) for one in found]
         write_modes(out / "modes.json", found)
         write_json(out / "identification.json", {"schema": "pantocheck.identification/1", "lines": lines})
-        document = identification_document(lines)
+        document = build_identification_document(lines)
         write_html(document, out / "identification.html")
         write_pdf(document, out / "identification.pdf")
-    output.print(plain(document.headline))
+    output.print(escape_text(document.headline))
     for line in lines:
         for group in line["groups"]:
             median = group["median_damping_ratio"]
             output.print(
-                plain(
+                escape_text(
                     f"group {group['group']}: {group['certain']} of {group['modes']} modes certain, "
                     f"{group['from_Hz']:.3f}-{group['to_Hz']:.3f} Hz, "
-                    f"median damping ratio {number(None if median is None else 100 * median)} %"
+                    f"median damping ratio {format_number(None if median is None else 100 * median)} %"
                 )
             )
     for text in document.warnings:
-        output.print(plain(f"warning: {text}"))
-    output.print(plain(f"{out}: modes.json, identification.json, identification.html, identification.pdf"))
+        output.print(escape_text(f"warning: {text}"))
+    output.print(escape_text(f"{out}: modes.json, identification.json, identification.html, identification.pdf"))

@@ -8,12 +8,12 @@ import typer
 if TYPE_CHECKING:
     from pantocheck.conformance.plan import Plan
 
-Baseline = Annotated[
+BaselineOption = Annotated[
     Path | None, typer.Option(help="Earlier results.json; a value that drifts from it fails, limits apart.")
 ]
 
 
-def options_of(plan: Path | None = None, **given: object) -> "Plan":
+def build_options(plan: Path | None = None, **given: object) -> "Plan":
     """The options of the command line, laid over those of a plan.
 
     Parameters
@@ -27,16 +27,16 @@ def options_of(plan: Path | None = None, **given: object) -> "Plan":
     """
     from pydantic import ValidationError
 
-    from pantocheck.conformance.input_files.validation_messages import input_error
+    from pantocheck.conformance.input_files.validation_messages import build_input_error
     from pantocheck.conformance.plan import Plan, read_plan
 
     base = read_plan(plan).model_dump() if plan is not None else {}
     try:
         return Plan.model_validate(base | {key: value for key, value in given.items() if value is not None})
     except ValidationError as error:
-        raise input_error(error, Plan, "command line") from None
+        raise build_input_error(error, Plan, "command line") from None
 
 
-def names(listed: str | None) -> tuple[str, ...] | None:
+def split_names(listed: str | None) -> tuple[str, ...] | None:
     """Names that an option lists with commas between them; None if it was not given."""
     return None if listed is None else tuple(name.strip() for name in listed.split(",") if name.strip())

@@ -7,12 +7,12 @@ from rich.padding import Padding
 from rich.table import Table
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.command_line.console import number, plain
+from pantocheck.conformance.command_line.console import escape_text, format_number
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.records.evaluation import Value
-from pantocheck.conformance.simulation.catenary_model import catenary
-from pantocheck.conformance.simulation.pantograph_model import pantograph
-from pantocheck.conformance.simulation.static_quantities import along_span, first_modes, static_quantities
+from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.simulation.pantograph_model import build_pantograph
+from pantocheck.conformance.simulation.static_quantities import compute_static_quantities, first_modes, span_positions
 from pantocheck.model import discretise
 from pantocheck.model.pantograph import apparent_mass
 
@@ -23,7 +23,7 @@ FREQUENCIES_Hz = (0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0, 10.0, 15.0, 20.0, 30.0
 ALONG = "_along_span_mm_N"
 
 
-def at_rest_tables(case: Case) -> "list[RenderableType]":
+def build_rest_tables(case: Case) -> "list[RenderableType]":
     """Quantities of the line at rest, elasticity along a span, and the apparent mass of the pantographs.
 
     Parameters
@@ -31,15 +31,15 @@ def at_rest_tables(case: Case) -> "list[RenderableType]":
     case : any case, with or without a speed
     """
     element = case.file.discretisation.element_m
-    found = static_quantities(case, discretise(catenary(case.line), element))
+    found = compute_static_quantities(case, discretise(build_catenary(case.line), element))
     found.setdefault("natural_frequency_Hz", tuple(map(float, first_modes(case.line, element).frequency)))
     parts = [_quantities(found), _elasticity(case, found)]
     models = dict.fromkeys([*case.pantographs, *([] if case.measured is None else [case.measured])])
     for model in models:
         table = _table(f"Apparent mass at the head: {model.title}", "frequency [Hz]", "size [kg]", "phase [deg]")
-        response = apparent_mass(pantograph(model, 0.0, 0.0), np.array(FREQUENCIES_Hz))
+        response = apparent_mass(build_pantograph(model, 0.0, 0.0), np.array(FREQUENCIES_Hz))
         for frequency, mass in zip(FREQUENCIES_Hz, response, strict=True):
-            table.add_row(number(frequency), number(abs(mass)), f"{np.degrees(np.angle(mass)):.1f}")
+            table.add_row(format_number(frequency), format_number(abs(mass)), f"{np.degrees(np.angle(mass)):.1f}")
         parts.append(table)
     return [Padding(part, (1, 0, 0, 0)) for part in parts]
 
@@ -50,8 +50,8 @@ def _quantities(found: dict[str, Value]) -> Table:
         if not name.endswith(ALONG):
             numbers = value if isinstance(value, tuple) else (value,)
             quantity = QUANTITIES[name]
-            text = ", ".join(number(one) for one in numbers)
-            table.add_row(plain(name), plain(text), quantity.unit, plain(quantity.definition))
+            text = ", ".join(format_number(one) for one in numbers)
+            table.add_row(escape_text(name), escape_text(text), quantity.unit, escape_text(quantity.definition))
     return table
 
 
@@ -59,8 +59,8 @@ def _elasticity(case: Case, found: dict[str, Value]) -> Table:
     table = _table("Elasticity along the span", "from the support [m]", "small load [mm/N]", "200 N [mm/N]")
     columns = [found[f"{name}{ALONG}"] for name in ("elasticity", "elasticity_200_N")]
     small, large = (column if isinstance(column, tuple) else (column,) for column in columns)
-    for x, one, other in zip(along_span(0.0, case.line.geometry.span_m), small, large, strict=True):
-        table.add_row(f"{x:.2f}", number(one), number(other))
+    for x, one, other in zip(span_positions(0.0, case.line.geometry.span_m), small, large, strict=True):
+        table.add_row(f"{x:.2f}", format_number(one), format_number(other))
     return table
 
 

@@ -9,7 +9,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 from rich.text import Text
 
-from pantocheck.conformance.command_line.console import console, number, plain, verdict_text
+from pantocheck.conformance.command_line.console import console, escape_text, format_number, style_verdict
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.results.results_format import CaseResult, Criterion, Results
 from pantocheck.conformance.runner import Progress as Report
@@ -19,7 +19,7 @@ EXIT_CODES: dict[Verdict, int] = {"pass": 0, "info": 0, "fail": 1, "skip": 1, "e
 
 
 @contextmanager
-def reported_progress(cases: int) -> Iterator[Report]:
+def report_progress(cases: int) -> Iterator[Report]:
     """A progress bar on standard error, on a terminal only; gives the callback of the runner."""
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     errors = Console(stderr=True)
@@ -36,22 +36,22 @@ def print_results(results: Results, files: Sequence[Path]) -> None:
     passed = sum(criterion.verdict == "pass" for criterion in counted)
     system = f"{results.system.name} {results.system.version}".strip()
     output.print(
-        verdict_text(results.verdict),
-        plain(
+        style_verdict(results.verdict),
+        escape_text(
             f" {passed} of {len(counted)} graded criteria within limits, {len(results.cases)} case(s), system {system}"
         ),
     )
-    output.print(plain(f"{results.statement}; limits count from trust '{results.trust}' up"))
+    output.print(escape_text(f"{results.statement}; limits count from trust '{results.trust}' up"))
     for case in results.cases:
         output.print()
-        output.print(verdict_text(case.verdict), plain(f" {case.id}  {case.title}"))
+        output.print(style_verdict(case.verdict), escape_text(f" {case.id}  {case.title}"))
         for line in filter(None, [case.reason, *(f"warning: {warning}" for warning in case.warnings)]):
-            output.print(plain(f"  {line}"))
+            output.print(escape_text(f"  {line}"))
         if case.criteria:
             output.print(_criteria_table(case))
     output.print()
     for name in files:
-        output.print(plain(str(name)), soft_wrap=True)
+        output.print(escape_text(str(name)), soft_wrap=True)
 
 
 def _criteria_table(case: CaseResult) -> Table:
@@ -62,16 +62,16 @@ def _criteria_table(case: CaseResult) -> Table:
     for item in case.criteria:
         error = item.discretisation_error if item.uncertainty is None else item.uncertainty
         table.add_row(
-            plain(_name(item)),
-            number(item.value),
+            escape_text(_name(item)),
+            format_number(item.value),
             "-" if error is None else f"{error:.2g}",
             "-" if item.spread is None else f"{item.spread:.2g}",
-            number(item.lower),
-            number(item.upper),
+            format_number(item.lower),
+            format_number(item.upper),
             "-" if item.margin is None else f"{item.margin:+.2f}",
-            verdict_text(item.verdict),
+            style_verdict(item.verdict),
             Text(item.trust),
-            plain(item.reason or ""),
+            escape_text(item.reason or ""),
         )
     return table
 

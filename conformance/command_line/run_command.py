@@ -5,10 +5,10 @@ from typing import Annotated
 
 import typer
 
-from pantocheck.conformance.command_line.options import Baseline, names, options_of
+from pantocheck.conformance.command_line.options import BaselineOption, build_options, split_names
 
 
-def run(
+def run_command(
     case: Annotated[
         list[str] | None, typer.Argument(help="Ids, globs or paths of cases; none: every case that has limits.")
     ] = None,
@@ -30,7 +30,7 @@ def run(
         ),
     ] = None,
     limits: Annotated[Path | None, typer.Option(help="TOML file of your own limits, laid over the cases.")] = None,
-    baseline: Baseline = None,
+    baseline: BaselineOption = None,
     drift: Annotated[
         float | None, typer.Option(help="How far a value may drift from the baseline, in percent.  [default: 1]")
     ] = None,
@@ -57,27 +57,26 @@ def run(
 
     pantocheck run --plan conformance.toml --baseline baseline/results.json --drift 2
     """
-    from pantocheck.conformance.cases.library import overlaid, read_limits, select
+    from pantocheck.conformance.cases.library import overlay_limits, read_limits, select_cases
     from pantocheck.conformance.command_line.guard import INTERRUPTED
     from pantocheck.conformance.command_line.results_output import (
         EXIT_CODES,
         print_results,
-        reported_progress,
+        report_progress,
     )
-    from pantocheck.conformance.grading.baseline import against_baseline
+    from pantocheck.conformance.grading.baseline import compare_with_baseline
     from pantocheck.conformance.input_files.atomic_writing import check_writable
-    from pantocheck.conformance.reports.formats.report_writers import checked_formats, write_all
+    from pantocheck.conformance.reports.formats.report_writers import check_formats, write_all
     from pantocheck.conformance.results.results_reading import read_results
-    from pantocheck.conformance.runner import RunInterrupted
-    from pantocheck.conformance.runner import run as run_cases
-    from pantocheck.conformance.systems.system_choice import system_named
+    from pantocheck.conformance.runner import RunInterrupted, run_cases
+    from pantocheck.conformance.systems.system_choice import choose_system
 
-    options = options_of(
+    options = build_options(
         plan,
         cases=tuple(case) if case else None,
         system=system,
         out=None if out is None else str(out),
-        formats=names(formats),
+        formats=split_names(formats),
         trust=trust,
         limits=None if limits is None else str(limits),
         baseline=None if baseline is None else str(baseline),
@@ -86,25 +85,25 @@ def run(
         damping_study=damping_study or None,
         timeout_s=timeout,
     )
-    chosen = select(options.cases)
+    chosen = select_cases(options.cases)
     if options.limits is not None:
-        chosen = overlaid(chosen, read_limits(Path(options.limits)))
+        chosen = overlay_limits(chosen, read_limits(Path(options.limits)))
     if options.damping_study:
-        from pantocheck.conformance.studies.damping_sensitivity import with_damping_study
+        from pantocheck.conformance.studies.damping_sensitivity import add_damping_study
 
-        chosen = [with_damping_study(case) for case in chosen]
-    written = checked_formats(options.formats)
+        chosen = [add_damping_study(case) for case in chosen]
+    written = check_formats(options.formats)
     earlier = None if options.baseline is None else read_results(Path(options.baseline))
-    tested, folder = system_named(options.system, options.timeout_s), Path(options.out)
+    tested, folder = choose_system(options.system, options.timeout_s), Path(options.out)
     check_writable(folder)
     interrupted = False
     try:
-        with reported_progress(len(chosen)) as progress:
+        with report_progress(len(chosen)) as progress:
             results = run_cases(chosen, tested, options.trust, min(options.jobs, len(chosen)), progress)
     except RunInterrupted as stopped:
         results, interrupted = stopped.results, True
         typer.echo("Interrupted: what was finished is kept.", err=True)
     if earlier is not None and options.baseline is not None:
-        results = against_baseline(results, earlier, options.drift_pct, Path(options.baseline).name)
+        results = compare_with_baseline(results, earlier, options.drift_pct, Path(options.baseline).name)
     print_results(results, write_all(results, folder, written))
     raise typer.Exit(INTERRUPTED if interrupted else EXIT_CODES[results.verdict])

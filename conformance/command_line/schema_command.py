@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 
-def schema(
+def schema_command(
     name: Annotated[
         str | None,
         typer.Argument(
@@ -20,19 +20,19 @@ def schema(
 
     Example: pantocheck schema case > case.schema.json
     """
-    from pantocheck.conformance.input_files.atomic_writing import write_in_place
+    from pantocheck.conformance.input_files.atomic_writing import write_atomically
     from pantocheck.conformance.input_files.input_error import InputError
-    from pantocheck.conformance.input_files.suggestions import nearest
+    from pantocheck.conformance.input_files.suggestions import suggest_names
     from pantocheck.conformance.schemas import NAMES, schema_of
 
     if name is not None and name not in NAMES:
-        raise InputError(f"schema '{name}'", "there is no such format", nearest(name, NAMES))
+        raise InputError(f"schema '{name}'", "there is no such format", suggest_names(name, NAMES))
     wanted = {each: schema_of(each) for each in (NAMES if name is None else (name,))}
     if out is None:
         typer.echo(_text(wanted if name is None else wanted[name]), nl=False)
         return
     for each, content in wanted.items():
-        write_in_place(out / f"{each}.schema.json", _text(content).encode())
+        write_atomically(out / f"{each}.schema.json", _text(content).encode())
 
 
 def _text(content: object) -> str:

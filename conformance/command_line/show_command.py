@@ -9,10 +9,10 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from pantocheck.conformance.cases.case import Case
-    from pantocheck.conformance.input_files.sourced_table import Sourced
+    from pantocheck.conformance.input_files.sourced_table import SourcedTable
 
 
-def show(
+def show_command(
     case: Annotated[str, typer.Argument(help="Id, glob or path of a case file, e.g. en50318-2002/250")],
     at_rest: Annotated[
         bool,
@@ -30,12 +30,12 @@ def show(
 
     pantocheck show en50318-2018/ac-stitched/static --drawing line.svg
     """
-    from pantocheck.conformance.cases.library import select
-    from pantocheck.conformance.command_line.console import console, plain
+    from pantocheck.conformance.cases.library import select_cases
+    from pantocheck.conformance.command_line.console import console, escape_text
     from pantocheck.conformance.input_files.input_error import InputError
 
     output = console()
-    chosen = _named(case, select([case]))
+    chosen = _named(case, select_cases([case]))
     if drawing is not None:
         if any(one.line != chosen[0].line for one in chosen):
             raise InputError(f"case '{case}'", "these cases have several lines", "Draw one case at a time.")
@@ -44,12 +44,12 @@ def show(
         for part in _parts(one):
             output.print(part)
         if at_rest:
-            from pantocheck.conformance.command_line.rest_tables import at_rest_tables
+            from pantocheck.conformance.command_line.rest_tables import build_rest_tables
 
-            for part in at_rest_tables(one):
+            for part in build_rest_tables(one):
                 output.print(part)
     if drawing is not None:
-        output.print(plain(str(drawing)), soft_wrap=True)
+        output.print(escape_text(str(drawing)), soft_wrap=True)
 
 
 def _named(pattern: str, found: "list[Case]") -> "list[Case]":
@@ -60,17 +60,17 @@ def _named(pattern: str, found: "list[Case]") -> "list[Case]":
 
 
 def _draw(case: "Case", path: Path) -> None:
-    from pantocheck.conformance.input_files.atomic_writing import check_writable, write_in_place
-    from pantocheck.conformance.simulation.catenary_model import catenary
-    from pantocheck.conformance.simulation.line_drawing import line_drawing
+    from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
+    from pantocheck.conformance.simulation.catenary_model import build_catenary
+    from pantocheck.conformance.simulation.line_drawing import draw_line
     from pantocheck.model import discretise
 
     check_writable(path.parent)
     # All spans are alike: a few show the line as well as all of them.
     few = case.line.geometry.model_copy(update={"spans": min(case.line.geometry.spans, 6)})
     drawn = case.line.model_copy(update={"geometry": few})
-    line = discretise(catenary(drawn), case.file.discretisation.element_m)
-    write_in_place(path, line_drawing(line, case.line.title, case.line.geometry.span_m).encode())
+    line = discretise(build_catenary(drawn), case.file.discretisation.element_m)
+    write_atomically(path, draw_line(line, case.line.title, case.line.geometry.span_m).encode())
 
 
 def _parts(case: "Case") -> list["RenderableType"]:
@@ -79,19 +79,19 @@ def _parts(case: "Case") -> list["RenderableType"]:
     from rich.text import Text
 
     from pantocheck.conformance.cases.library import source_text
-    from pantocheck.conformance.command_line.console import number, plain
+    from pantocheck.conformance.command_line.console import escape_text, format_number
 
-    parts: list[RenderableType] = [Text(f"{case.id}  ", "bold") + plain(case.file.title)]
+    parts: list[RenderableType] = [Text(f"{case.id}  ", "bold") + escape_text(case.file.title)]
     if not case.is_static:
         start, end = case.evaluated
-        parts.append(plain(f"{case.file.speed_km_h:g} km/h, evaluated {start:g} m to {end:g} m, {case.digest}"))
+        parts.append(escape_text(f"{case.file.speed_km_h:g} km/h, evaluated {start:g} m to {end:g} m, {case.digest}"))
     mesh = case.file.discretisation
-    parts.append(plain(f"mesh of the reference simulator: {mesh.element_m:g} m, {mesh.time_step_s:g} s"))
+    parts.append(escape_text(f"mesh of the reference simulator: {mesh.element_m:g} m, {mesh.time_step_s:g} s"))
     inputs = Table("input", "value", "trust", "source", title="Inputs", title_justify="left", box=None, pad_edge=False)
     for name, table in case.groups.items():
         for key, value in _numbers(table):
             trust = "provisional" if key.split(".")[0] in table.provisional else table.trust
-            inputs.add_row(plain(f"{name}.{key}"), plain(value), trust, plain(_short(table.source)))
+            inputs.add_row(escape_text(f"{name}.{key}"), escape_text(value), trust, escape_text(_short(table.source)))
     limits = Table(
         "limit", "lower", "upper", "trust", "source", title="Limits", title_justify="left", box=None, pad_edge=False
     )
@@ -99,19 +99,21 @@ def _parts(case: "Case") -> list["RenderableType"]:
         name = (
             f"{limit.quantity}{f'[{limit.item}]' if limit.item else ''}{f', pantograph {limit.of}' if limit.of else ''}"
         )
-        limits.add_row(name, number(limit.lower), number(limit.upper), limit.trust, plain(_short(limit.source)))
+        limits.add_row(
+            name, format_number(limit.lower), format_number(limit.upper), limit.trust, escape_text(_short(limit.source))
+        )
     said = [*(table.source for table in case.groups.values()), *(limit.source for limit in case.limits)]
     keys = dict.fromkeys(key for source in said for key in _keys(source))
-    sources = [plain(f"{key}: {source_text(key)}") for key in keys if source_text(key) != key]
+    sources = [escape_text(f"{key}: {source_text(key)}") for key in keys if source_text(key) != key]
     parts += [
         Padding(inputs, (1, 0, 0, 0)),
-        Padding(limits if case.limits else plain("No limits: informative."), (1, 0, 0, 0)),
+        Padding(limits if case.limits else escape_text("No limits: informative."), (1, 0, 0, 0)),
     ]
-    parts += [Padding(plain(text), (1, 0, 0, 0)) for text in case.notes]
+    parts += [Padding(escape_text(text), (1, 0, 0, 0)) for text in case.notes]
     return [*parts, Text(), *sources]
 
 
-def _numbers(table: "Sourced") -> list[tuple[str, str]]:
+def _numbers(table: "SourcedTable") -> list[tuple[str, str]]:
     """Keys of a table as its file has them, tables inside it with dots; what was left out has no source to show."""
     said = {"trust", "source", "provisional", "note", "id", "title", "line", "model", "requires", "limit", "pantograph"}
     said |= {"mass_drop", "study"}  # groups of their own

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 
-def verify(
+def verify_command(
     certificate: Annotated[Path, typer.Argument(metavar="CERTIFICATE.pdf", help="The certificate to verify.")],
 ) -> None:
     """Take the results out of a certificate, grade them once more, and compare.
@@ -19,7 +19,7 @@ def verify(
     Example: pantocheck verify report/certificate.pdf
     """
     # The PDF parser is loaded only when it is needed, so that other commands start fast.
-    from pantocheck.conformance.authenticity.verification import verify as verified
+    from pantocheck.conformance.authenticity.verification import verify_certificate as verified
 
     found = verified(certificate)
     size = f"{found.cases} case{'' if found.cases == 1 else 's'}, {found.criteria} criteria"

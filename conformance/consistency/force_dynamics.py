@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.signal import lsim
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.pantograph_file import Pantograph as PantographFile
+from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.consistency.finding import Finding
 from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE
 from pantocheck.conformance.records.record import Record
@@ -36,7 +36,7 @@ SAMPLES_PER_PERIOD = 20
 
 
 @dataclass(frozen=True)
-class Fit:
+class ResponseFit:
     """How the motion recorded follows from the force.
 
     Parameters
@@ -54,7 +54,7 @@ class Fit:
     response: Array
 
 
-def dynamics(case: Case, record: Record) -> list[Finding]:
+def check_force_dynamics(case: Case, record: Record) -> list[Finding]:
     """The pantograph of the case, driven by the force, moves as the contact height says."""
     if record.contact_height is None:
         return [Finding("dynamics", "unchecked", "force against motion: the record has no contact height")]
@@ -68,7 +68,7 @@ def dynamics(case: Case, record: Record) -> list[Finding]:
         low_pass = case.file.filter.low_pass
         channels = (record.force, record.contact_height)
         force, height = (low_pass(channel[number - 1], record.rate)[window][::step] for channel in channels)
-        fit = fitted(file, force, height, step / record.rate)
+        fit = fit_motion(file, force, height, step / record.rate)
         still = still or fit is None
         if fit is None:
             continue
@@ -77,7 +77,7 @@ def dynamics(case: Case, record: Record) -> list[Finding]:
     return [Finding("dynamics", "unchecked", "force against motion: the contact point hardly moves")] if still else []
 
 
-def fitted(file: PantographFile, force: Array, height: Array, step: float) -> Fit | None:
+def fit_motion(file: PantographFile, force: Array, height: Array, step: float) -> ResponseFit | None:
     """Compare a motion with the response of a pantograph.
 
     Parameters
@@ -100,10 +100,10 @@ def fitted(file: PantographFile, force: Array, height: Array, step: float) -> Fi
     return wire if wire.unexplained < head.unexplained / 2 else head
 
 
-def _fit(motion: Array, response: Array) -> Fit:
+def _fit(motion: Array, response: Array) -> ResponseFit:
     scale = float(motion @ response / max(float(response @ response), TINY))
     left = motion - scale * response
-    return Fit(
+    return ResponseFit(
         misfit=float((motion - response).std() / max(float(response.std()), TINY)),
         gain=1 / scale if scale else np.inf,
         unexplained=float(left.std() / max(motion.std(), TINY)),
@@ -117,9 +117,9 @@ def _responses(file: PantographFile, force: Array, step: float) -> tuple[Array, 
 
     Modes that decay or swing faster than the samples can follow have no part in filtered motions.
     """
-    from pantocheck.conformance.simulation.pantograph_model import pantograph
+    from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 
-    model = pantograph(file, 0.0, 0.0)
+    model = build_pantograph(file, 0.0, 0.0)
     m = model.head.size
     inverse = np.linalg.inv(model.mass)
     state = np.block([[np.zeros((m, m)), np.eye(m)], [-inverse @ model.stiffness, -inverse @ model.damping]])
@@ -145,7 +145,7 @@ def _window(record: Record, number: int) -> slice:
     return slice(int(first), min(int(last), int(first) + int(LONGEST_S * record.rate)))
 
 
-def _diagnosis(number: int, fit: Fit, step: float, filter_applied_Hz: float | None) -> Finding:
+def _diagnosis(number: int, fit: ResponseFit, step: float, filter_applied_Hz: float | None) -> Finding:
     said = f"pantograph {number}: contact force and contact height do not belong together"
     if fit.unexplained < CLEAR:
         text = f"{said}: the height follows from {1 / fit.gain:.3g} times the force; is its gain or unit right?"
@@ -162,7 +162,7 @@ def _diagnosis(number: int, fit: Fit, step: float, filter_applied_Hz: float | No
     return Finding("dynamics", "contradiction", text)
 
 
-def _lag(fit: Fit, most: int) -> tuple[int, float]:
+def _lag(fit: ResponseFit, most: int) -> tuple[int, float]:
     """Samples by which the motion comes after the response, and their correlation then."""
     n = fit.motion.size
     likeness = {}

@@ -2,16 +2,16 @@
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.consistency.finding import Finding
-from pantocheck.conformance.consistency.force_dynamics import dynamics
-from pantocheck.conformance.consistency.record_positions import coverage, motion, support_passing
-from pantocheck.conformance.consistency.roll_off import roll_off
+from pantocheck.conformance.consistency.force_dynamics import check_force_dynamics
+from pantocheck.conformance.consistency.record_positions import check_coverage, check_motion, check_support_passing
+from pantocheck.conformance.consistency.roll_off import check_roll_off
 from pantocheck.conformance.records.record import Record
 
 
-def findings(case: Case, record: Record) -> list[Finding]:
+def check_record(case: Case, record: Record) -> list[Finding]:
     """What the checks find in a record of a case: a contradiction ends them, because the rest builds on it."""
     found: list[Finding] = []
-    for check in (coverage, motion, support_passing, roll_off, dynamics):
+    for check in (check_coverage, check_motion, check_support_passing, check_roll_off, check_force_dynamics):
         found += check(case, record)
         if any(finding.kind == "contradiction" for finding in found):
             break

@@ -16,7 +16,7 @@ SMALLEST_LIFT_M = 0.005
 """A lift has a clear maximum from here on [m]."""
 
 
-def coverage(case: Case, record: Record) -> list[Finding]:
+def check_coverage(case: Case, record: Record) -> list[Finding]:
     """Every pantograph crosses the whole evaluated stretch, or the record is a piece of one."""
     for number in range(1, record.pantographs + 1):
         try:
@@ -26,7 +26,7 @@ def coverage(case: Case, record: Record) -> list[Finding]:
     return []
 
 
-def motion(case: Case, record: Record) -> list[Finding]:
+def check_motion(case: Case, record: Record) -> list[Finding]:
     """Positions advance with the speed of the train."""
     elapsed = record.time[-1] - record.time[0]
     for number, position in enumerate(record.position, 1):
@@ -40,7 +40,7 @@ def motion(case: Case, record: Record) -> list[Finding]:
     return []
 
 
-def support_passing(case: Case, record: Record) -> list[Finding]:
+def check_support_passing(case: Case, record: Record) -> list[Finding]:
     """A support is lifted most while a pantograph is near it; else positions and uplift are of different times."""
     try:
         uplift = line_signals(record).uplift

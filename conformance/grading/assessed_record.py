@@ -9,17 +9,17 @@ import numpy as np
 
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.profile_file import Profile
-from pantocheck.conformance.input_files.atomic_writing import digest_of
+from pantocheck.conformance.input_files.atomic_writing import file_digest
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.quantities.registry import QUANTITIES
-from pantocheck.conformance.records.evaluation import LINE, Evaluation, Value, evaluated
-from pantocheck.conformance.records.measured.block_bootstrap import FEWEST_BLOCKS, uncertainties
-from pantocheck.conformance.records.measured.record_preparation import Prepared, prepared
+from pantocheck.conformance.records.evaluation import LINE, Evaluation, Value, evaluate_signals
+from pantocheck.conformance.records.measured.block_bootstrap import FEWEST_BLOCKS, bootstrap_uncertainties
+from pantocheck.conformance.records.measured.record_preparation import PreparedRecord, prepare_record
 from pantocheck.conformance.records.record import RecordInvalid
-from pantocheck.conformance.records.record_opening import read_either
-from pantocheck.conformance.records.record_reading import invalid, read_samples
-from pantocheck.conformance.records.record_sidecar import LineTable, Sidecar, SystemTable
-from pantocheck.conformance.records.record_summary import Summary
+from pantocheck.conformance.records.record_opening import open_record
+from pantocheck.conformance.records.record_reading import build_record_error, read_samples
+from pantocheck.conformance.records.record_sidecar import LineTable, RecordSidecar, SystemTable
+from pantocheck.conformance.records.record_summary import RecordSummary
 from pantocheck.conformance.results.results_format import InputGroup
 
 ASSUMED_SPAN_M = 60.0
@@ -27,7 +27,7 @@ ASSUMED_SPAN_M = 60.0
 
 
 @dataclass(frozen=True)
-class Subject:
+class AssessedRecord:
     """A record as a profile sees it.
 
     Parameters
@@ -42,12 +42,12 @@ class Subject:
     """
 
     name: str
-    said: Sidecar | Summary
+    said: RecordSidecar | RecordSummary
     line: LineTable
     digest: str
     values: Evaluation
     uncertainty: dict[int, dict[str, float]]
-    signals: Prepared | None
+    signals: PreparedRecord | None
     notes: tuple[str, ...]
     warnings: tuple[str, ...]
 
@@ -64,12 +64,12 @@ class Subject:
     @property
     def inputs(self) -> list[InputGroup]:
         """Where the numbers come from, if the record says so."""
-        if not isinstance(self.said, Summary):
+        if not isinstance(self.said, RecordSummary):
             return []
         return [InputGroup(group=f"record {self.name}", trust=self.said.trust, source=source_text(self.said.source))]
 
 
-def subject_of(path: Path, profile: Profile, line: LineTable) -> Subject:
+def load_assessed_record(path: Path, profile: Profile, line: LineTable) -> AssessedRecord:
     """Read a record and compute its quantities as a profile asks.
 
     Parameters
@@ -82,18 +82,20 @@ def subject_of(path: Path, profile: Profile, line: LineTable) -> Subject:
     ------
     InputError : the record cannot be read, is impossible, or was filtered otherwise than the profile asks
     """
-    said = read_either(path)
+    said = open_record(path)
     known = said.line.model_copy(update=line.model_dump(exclude_none=True))
-    if isinstance(said, Summary):
+    if isinstance(said, RecordSummary):
         return _of_summary(path, said, profile, known)
     samples, sidecar, table = read_samples(path)
     try:
-        signals = prepared(samples, sidecar, profile.filter.low_pass, profile.speed_tolerance_pct)
+        signals = prepare_record(samples, sidecar, profile.filter.low_pass, profile.speed_tolerance_pct)
     except RecordInvalid as error:
-        raise invalid(table, error) from None
-    digest = _joined(digest_of(path.with_suffix(".toml")), digest_of(table), known.model_dump_json())
+        raise build_record_error(table, error) from None
+    digest = _joined(file_digest(path.with_suffix(".toml")), file_digest(table), known.model_dump_json())
     block = _block_length(known, sidecar)
-    uncertain = {of: uncertainties(pooled, block / signals.speed, digest) for of, pooled in signals.pantographs.items()}
+    uncertain = {
+        of: bootstrap_uncertainties(pooled, block / signals.speed, digest) for of, pooled in signals.pantographs.items()
+    }
     notes = list(signals.notes)
     if any(uncertain.values()):
         notes.append(
@@ -102,12 +104,12 @@ def subject_of(path: Path, profile: Profile, line: LineTable) -> Subject:
         )
     else:
         notes.append(f"The record is shorter than {FEWEST_BLOCKS} spans: the uncertainty of its statistics is unknown.")
-    return Subject(
+    return AssessedRecord(
         name=path.stem,
         said=sidecar,
         line=known,
         digest=digest,
-        values=_with_line(evaluated(signals.pantographs, signals.line), known, sidecar.speed_km_h),
+        values=_with_line(evaluate_signals(signals.pantographs, signals.line), known, sidecar.speed_km_h),
         uncertainty={of: values for of, values in uncertain.items() if values},
         signals=signals,
         notes=tuple(notes),
@@ -115,7 +117,7 @@ def subject_of(path: Path, profile: Profile, line: LineTable) -> Subject:
     )
 
 
-def _of_summary(path: Path, summary: Summary, profile: Profile, line: LineTable) -> Subject:
+def _of_summary(path: Path, summary: RecordSummary, profile: Profile, line: LineTable) -> AssessedRecord:
     cutoff = profile.filter.cutoff_Hz
     if abs(summary.filter_cutoff_Hz / cutoff - 1) > 0.001:
         raise InputError(
@@ -123,11 +125,11 @@ def _of_summary(path: Path, summary: Summary, profile: Profile, line: LineTable)
             f"the force was filtered at {summary.filter_cutoff_Hz:g} Hz, profile {profile.name} asks {cutoff:g} Hz",
             "Take the statistics with the profile's filter.",
         )
-    return Subject(
+    return AssessedRecord(
         name=path.stem,
         said=summary,
         line=line,
-        digest=_joined(digest_of(path.with_suffix(".toml")), line.model_dump_json()),
+        digest=_joined(file_digest(path.with_suffix(".toml")), line.model_dump_json()),
         values=_with_line(summary.evaluation, line, summary.speed_km_h),
         uncertainty={},
         signals=None,
@@ -136,7 +138,7 @@ def _of_summary(path: Path, summary: Summary, profile: Profile, line: LineTable)
     )
 
 
-def _block_length(line: LineTable, sidecar: Sidecar) -> float:
+def _block_length(line: LineTable, sidecar: RecordSidecar) -> float:
     """Length of a span [m]: as stated, or from the supports."""
     if line.span_m is not None:
         return line.span_m

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from pantocheck.conformance.grading.verdicts import margin, verdict_of, worst
+from pantocheck.conformance.grading.verdicts import judge, margin, worst_verdict
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results.results_format import CaseResult, Criterion, Results
 
@@ -25,7 +25,7 @@ class _Value:
     value: float
 
 
-def against_baseline(results: Results, baseline: Results, drift_pct: float, name: str) -> Results:
+def compare_with_baseline(results: Results, baseline: Results, drift_pct: float, name: str) -> Results:
     """Results with a failed criterion for each value that has drifted from its baseline.
 
     A value of the baseline that is no longer there is a skipped criterion, so that it does not vanish unnoticed.
@@ -39,7 +39,7 @@ def against_baseline(results: Results, baseline: Results, drift_pct: float, name
     """
     earlier = {case.id: case for case in baseline.cases}
     cases = [_compared(case, earlier.get(case.id), drift_pct, name) for case in results.cases]
-    return results.model_copy(update={"cases": cases, "verdict": worst(case.verdict for case in cases)})
+    return results.model_copy(update={"cases": cases, "verdict": worst_verdict(case.verdict for case in cases)})
 
 
 def _compared(case: CaseResult, earlier: CaseResult | None, drift_pct: float, name: str) -> CaseResult:
@@ -62,7 +62,7 @@ def _compared(case: CaseResult, earlier: CaseResult | None, drift_pct: float, na
             "criteria": [*case.criteria, *findings],
             "notes": [*case.notes, f"{said}{drift_pct:g} % or are missing."],
             "warnings": warnings,
-            "verdict": worst([case.verdict, *(row.verdict for row in findings)]),
+            "verdict": worst_verdict([case.verdict, *(row.verdict for row in findings)]),
         }
     )
 
@@ -86,7 +86,7 @@ def _row(case: CaseResult, then: _Value, now: float | None, drift_pct: float, na
     scale = max(abs(then.value), LEAST if unit else LEAST_RATIO)
     allowed = drift_pct / 100 * scale
     lower, upper = (_rounded(then.value + side * allowed, allowed) for side in (-1, 1))
-    verdict = "skip" if now is None else verdict_of(now, lower, upper)
+    verdict = "skip" if now is None else judge(now, lower, upper)
     why_none = case.skipped.get(then.of, {}).get(then.quantity, "the system no longer delivers it")
     if now is None:
         reason = f"the baseline has {then.value:.6g} {unit}".rstrip() + f"; now: {why_none}"

@@ -6,13 +6,13 @@ from collections.abc import Callable, Mapping, Sequence
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.limits import Limit
-from pantocheck.conformance.consistency.record_checks import findings
+from pantocheck.conformance.consistency.record_checks import check_record
 from pantocheck.conformance.grading.extended_band import extended_band_warnings
-from pantocheck.conformance.grading.section_spread import spread
-from pantocheck.conformance.grading.verdicts import Verdict, margin, verdict_of, worst
-from pantocheck.conformance.input_files.trust import Trust, counts
+from pantocheck.conformance.grading.section_spread import section_spread
+from pantocheck.conformance.grading.verdicts import Verdict, judge, margin, worst_verdict
+from pantocheck.conformance.input_files.trust import Trust, limit_counts
 from pantocheck.conformance.quantities.registry import QUANTITIES
-from pantocheck.conformance.records.evaluation import LINE, Evaluation, Value, evaluate
+from pantocheck.conformance.records.evaluation import LINE, Evaluation, Value, evaluate_record
 from pantocheck.conformance.results.outcome import Outcome
 from pantocheck.conformance.results.results_format import (
     CaseResult,
@@ -22,10 +22,10 @@ from pantocheck.conformance.results.results_format import (
     Number,
     RunFacts,
 )
-from pantocheck.conformance.results.traces import pantograph_traces, uplift_traces
+from pantocheck.conformance.results.traces import build_pantograph_traces, build_uplift_traces
 
 
-def graded(case: Case, outcome: Outcome, lowest_trust: Trust) -> CaseResult:
+def grade_case(case: Case, outcome: Outcome, lowest_trust: Trust) -> CaseResult:
     """Grade what a system delivered for a case.
 
     Parameters
@@ -35,25 +35,27 @@ def graded(case: Case, outcome: Outcome, lowest_trust: Trust) -> CaseResult:
     lowest_trust : lowest trust of the limits that carry a verdict
     """
     if outcome.errored is not None:
-        return ungraded(case, "error", outcome.errored, outcome)
+        return build_ungraded(case, "error", outcome.errored, outcome)
     if outcome.skipped is not None:
-        return ungraded(case, "skip", outcome.skipped, outcome)
+        return build_ungraded(case, "skip", outcome.skipped, outcome)
     if (mismatch := _mismatch(case, outcome)) is not None:
-        return ungraded(case, "error", mismatch, outcome)
+        return build_ungraded(case, "error", mismatch, outcome)
     evaluation, refined = _evaluated(case, outcome), _refined(case, outcome)
     record = outcome.record
-    shifted = {} if record is None else spread(record, case.shifted, case.file.filter.low_pass, evaluation.values)
-    found = findings(case, record) if record is not None else []
+    shifted = (
+        {} if record is None else section_spread(record, case.shifted, case.file.filter.low_pass, evaluation.values)
+    )
+    found = check_record(case, record) if record is not None else []
     contradiction = next((finding for finding in found if finding.kind == "contradiction"), None)
     # Numbers of a record that contradicts itself are shown, but not held against limits: some would pass.
     limits = case.limits if contradiction is None else ()
-    criteria = [_with_spread(criterion(limit, evaluation, lowest_trust, refined), shifted) for limit in limits]
+    criteria = [_with_spread(grade_criterion(limit, evaluation, lowest_trust, refined), shifted) for limit in limits]
     span, spans = case.line.geometry.span_m, case.line.geometry.spans
     supports = [i * span for i in range(spans + 1)]
     return _result(
         case,
         outcome,
-        verdict=worst(criterion.verdict for criterion in criteria) if contradiction is None else "error",
+        verdict=worst_verdict(criterion.verdict for criterion in criteria) if contradiction is None else "error",
         reason=None if contradiction is None else contradiction.text,
         warnings=[
             *outcome.warnings,
@@ -64,20 +66,20 @@ def graded(case: Case, outcome: Outcome, lowest_trust: Trust) -> CaseResult:
         ],
         notes=[f"not checked, {finding.text}" for finding in found if finding.kind == "unchecked"],
         criteria=criteria,
-        quantities={str(of): plain(evaluation.values[of]) for of in evaluation.values if evaluation.values[of]},
+        quantities={str(of): finite_values(evaluation.values[of]) for of in evaluation.values if evaluation.values[of]},
         skipped={str(of): evaluation.skipped[of] for of in evaluation.skipped if evaluation.skipped[of]},
         spread={str(of): values for of, values in shifted.items()},
-        traces=pantograph_traces(record, case.file.filter.low_pass, supports) if record is not None else {},
-        uplift=uplift_traces(record) if record is not None else [],
+        traces=build_pantograph_traces(record, case.file.filter.low_pass, supports) if record is not None else {},
+        uplift=build_uplift_traces(record) if record is not None else [],
         charts=list(outcome.charts),
         tables=list(outcome.tables),
     )
 
 
-def criteria_of(case: Case, outcome: Outcome, lowest_trust: Trust) -> list[Criterion]:
+def grade_criteria(case: Case, outcome: Outcome, lowest_trust: Trust) -> list[Criterion]:
     """Every limit of a case against what was delivered; parameters as in `graded`."""
     evaluation, refined = _evaluated(case, outcome), _refined(case, outcome)
-    return [criterion(limit, evaluation, lowest_trust, refined) for limit in case.limits]
+    return [grade_criterion(limit, evaluation, lowest_trust, refined) for limit in case.limits]
 
 
 def _refined(case: Case, outcome: Outcome) -> Evaluation | None:
@@ -107,7 +109,7 @@ def _mismatch(case: Case, outcome: Outcome) -> str | None:
     return None
 
 
-def ungraded(case: Case, verdict: Verdict, reason: str, outcome: Outcome | None = None) -> CaseResult:
+def build_ungraded(case: Case, verdict: Verdict, reason: str, outcome: Outcome | None = None) -> CaseResult:
     """Result of a case that did not get as far as its limits."""
     line = " ".join(reason.split())
     return _result(
@@ -154,7 +156,7 @@ def _evaluated(case: Case, outcome: Outcome) -> Evaluation:
     if outcome.record is None:
         evaluation = outcome.summary or Evaluation({LINE: {}}, {LINE: {}})
     else:
-        evaluation = evaluate(outcome.record, case.file.filter.low_pass)
+        evaluation = evaluate_record(outcome.record, case.file.filter.low_pass)
     ordered = {name: outcome.static[name] for name in QUANTITIES if name in outcome.static}
     values = {**evaluation.values, LINE: {**evaluation.values[LINE], **ordered}}
     for of, given in outcome.findings.items():
@@ -162,7 +164,7 @@ def _evaluated(case: Case, outcome: Outcome) -> Evaluation:
     return Evaluation(values, evaluation.skipped)
 
 
-def criterion(
+def grade_criterion(
     limit: Limit, evaluation: Evaluation, lowest_trust: Trust, refined: Evaluation | None = None
 ) -> Criterion:
     """A value against its limit.
@@ -174,17 +176,17 @@ def criterion(
     lowest_trust : lowest trust of the limits that carry a verdict
     refined : the same with element and time step halved, for the discretisation error
     """
-    value = value_of(limit, evaluation.values)
-    fine = value_of(limit, refined.values) if refined is not None else None
+    value = find_value(limit, evaluation.values)
+    fine = find_value(limit, refined.values) if refined is not None else None
     verdict: Verdict = "skip"
     reason: str | None = None
     if value is None:
         reason = evaluation.skipped.get(limit.of, {}).get(limit.quantity, "the system delivers no such quantity")
     else:
-        verdict = verdict_of(value, limit.lower, limit.upper)
+        verdict = judge(value, limit.lower, limit.upper)
         if verdict == "fail":
             reason = _outside(value, limit)
-    if not counts(limit.trust, lowest_trust):
+    if not limit_counts(limit.trust, lowest_trust):
         would = {"pass": "would pass", "fail": f"would fail: {reason}", "skip": f"not graded: {reason}"}[verdict]
         verdict, reason = "info", f"{would}; the limit is {limit.trust} and does not count"
     return Criterion(
@@ -204,7 +206,7 @@ def criterion(
     )
 
 
-def name_of(item: Criterion) -> str:
+def criterion_name(item: Criterion) -> str:
     """What a criterion is about: the quantity, which of several, and whose."""
     name = f"{item.quantity}[{item.item}]" if item.item else item.quantity
     return f"{name} of pantograph {item.pantograph}" if item.pantograph else f"{name} of the line"
@@ -215,7 +217,7 @@ def _with_spread(item: Criterion, shifted: dict[int, dict[str, float]]) -> Crite
     return item if found is None or item.value is None else item.model_copy(update={"spread": found})
 
 
-def value_of(limit: Limit, values: Mapping[int, Mapping[str, Value]]) -> float | None:
+def find_value(limit: Limit, values: Mapping[int, Mapping[str, Value]]) -> float | None:
     """The value that a limit is for; None if there is none, or no finite one.
 
     Parameters
@@ -250,7 +252,7 @@ def _close_calls(criteria: list[Criterion]) -> list[str]:
         ):
             if error is not None and distance < error:
                 close.append(
-                    f"{name_of(item)} lies {distance:.2g} {item.unit} from a limit, "
+                    f"{criterion_name(item)} lies {distance:.2g} {item.unit} from a limit, "
                     f"less than its {name} of {error:.2g} {item.unit}"
                 )
     return close
@@ -271,7 +273,7 @@ def _edge_warnings(case: Case, outcome: Outcome) -> list[str]:
     ]
 
 
-def plain(values: dict[str, Value]) -> dict[str, Number]:
+def finite_values(values: dict[str, Value]) -> dict[str, Number]:
     """Values as results hold them: lists and finite numbers."""
     finite: Callable[[float], bool] = math.isfinite
     kept: dict[str, Number] = {}

@@ -3,19 +3,19 @@
 from pantocheck.conformance.records.evaluation import LINE, Evaluation, Value
 from pantocheck.conformance.results.outcome import Outcome
 
-BAND = "rms_20_50_N"
+EXTENDED_BAND = "rms_20_50_N"
 LARGEST_CHANGE = 0.05
 """Change of the band's RMS by halving element and time step above which the mesh does not resolve it."""
 
-ABOUT = "20-50 Hz: "
+WARNING_PREFIX = "20-50 Hz: "
 """Begin of every such warning."""
 NOT_VALIDATED = (
-    f"{ABOUT}lumped models of pantographs and measuring chains are validated up to 20 Hz only; "
+    f"{WARNING_PREFIX}lumped models of pantographs and measuring chains are validated up to 20 Hz only; "
     "what lies above compares models with each other, not with a line"
 )
 
 
-def not_validated(evaluation: Evaluation) -> list[str]:
+def find_unvalidated(evaluation: Evaluation) -> list[str]:
     """What holds for every record that has numbers between 20 and 50 Hz, measured ones included."""
     return [NOT_VALIDATED] if _bands(evaluation) else []
 
@@ -31,22 +31,27 @@ def extended_band_warnings(outcome: Outcome, evaluation: Evaluation, refined: Ev
     evaluation : its quantities
     refined : those of the same case with element and time step halved; None if that was not run
     """
-    bands, warnings = _bands(evaluation), not_validated(evaluation)
+    bands, warnings = _bands(evaluation), find_unvalidated(evaluation)
     if not bands:
         return []
     if refined is None:
         step = "" if outcome.dt_s is None else f" (time step {outcome.dt_s:g} s)"
-        return [*warnings, f"{ABOUT}no run with a finer mesh and time step{step} shows whether the band is resolved"]
+        return [
+            *warnings,
+            f"{WARNING_PREFIX}no run with a finer mesh and time step{step} shows whether the band is resolved",
+        ]
     for of, value in bands.items():
-        fine = refined.values.get(of, {}).get(BAND)
+        fine = refined.values.get(of, {}).get(EXTENDED_BAND)
         if isinstance(value, float) and isinstance(fine, float) and abs(value - fine) > LARGEST_CHANGE * fine:
             warnings.append(
-                f"{ABOUT}halving element and time step changes the RMS of pantograph {of} from {value:.3g} N to "
-                f"{fine:.3g} N, by more than {100 * LARGEST_CHANGE:g} %: the band is not resolved"
+                f"{WARNING_PREFIX}halving element and time step changes the RMS of pantograph {of} from "
+                f"{value:.3g} N to {fine:.3g} N, by more than {100 * LARGEST_CHANGE:g} %: the band is not resolved"
             )
     return warnings
 
 
 def _bands(evaluation: Evaluation) -> dict[int, Value]:
     """RMS of the band, by pantograph."""
-    return {of: values[BAND] for of, values in evaluation.values.items() if of != LINE and BAND in values}
+    return {
+        of: values[EXTENDED_BAND] for of, values in evaluation.values.items() if of != LINE and EXTENDED_BAND in values
+    }

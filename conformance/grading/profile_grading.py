@@ -10,19 +10,19 @@ import numpy as np
 
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.limits import Limit
-from pantocheck.conformance.cases.profile_file import NoBound, Profile, Rule, bounds
-from pantocheck.conformance.grading.assessed_record import Subject
-from pantocheck.conformance.grading.case_grading import criterion, name_of, plain
-from pantocheck.conformance.grading.extended_band import not_validated
-from pantocheck.conformance.grading.verdicts import Verdict, worst
+from pantocheck.conformance.cases.profile_file import BoundMissing, Profile, Rule, resolve_bounds
+from pantocheck.conformance.grading.assessed_record import AssessedRecord
+from pantocheck.conformance.grading.case_grading import criterion_name, finite_values, grade_criterion
+from pantocheck.conformance.grading.extended_band import find_unvalidated
+from pantocheck.conformance.grading.verdicts import Verdict, worst_verdict
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.trust import Trust, counts
+from pantocheck.conformance.input_files.trust import Trust, limit_counts
 from pantocheck.conformance.quantities.bands import amplitude_spectrum
 from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.signals import EXTENDED_CUTOFF_HZ
 from pantocheck.conformance.records.evaluation import LINE
-from pantocheck.conformance.results.results_building import assembled, now
+from pantocheck.conformance.results.results_building import build_results, utc_now
 from pantocheck.conformance.results.results_format import (
     CaseResult,
     Criterion,
@@ -32,7 +32,7 @@ from pantocheck.conformance.results.results_format import (
     SystemIdentity,
     Traces,
 )
-from pantocheck.conformance.results.traces import signal_traces
+from pantocheck.conformance.results.traces import build_signal_traces
 
 
 @dataclass(frozen=True)
@@ -43,11 +43,11 @@ class _Graded:
     left_out: tuple[str, ...]
 
 
-def assess(
-    subject: Subject,
+def assess_record(
+    subject: AssessedRecord,
     profile: Profile,
     trust: Trust = "secondary",
-    measured: Subject | None = None,
+    measured: AssessedRecord | None = None,
     limits: Sequence[Limit] = (),
 ) -> Results:
     """Grade a record by a profile.
@@ -66,7 +66,7 @@ def assess(
     """
     _check_pair(subject, measured, profile)
     graded = _graded(subject, profile, trust, measured, limits)
-    verdict = worst(item.verdict for item in graded.criteria)
+    verdict = worst_verdict(item.verdict for item in graded.criteria)
     digest = hashlib.sha256("\n".join([subject.digest, measured.digest if measured else "", profile.model_dump_json()])
                             .encode()).hexdigest()  # fmt: skip
     told = [one for one in (subject, measured) if one is not None]
@@ -80,12 +80,12 @@ def assess(
             *(_of(one, warning, told) for one in told for warning in one.warnings),
             *graded.left_out,
             *_turning(graded.criteria, measured),
-            *not_validated(subject.values),
+            *find_unvalidated(subject.values),
         ],
         inputs=[group for one in told for group in one.inputs],
         input_digest=f"sha256:{digest}",
         criteria=list(graded.criteria),
-        quantities={str(of): plain(values) for of, values in subject.values.values.items() if values},
+        quantities={str(of): finite_values(values) for of, values in subject.values.values.items() if values},
         skipped={str(of): reasons for of, reasons in subject.values.skipped.items() if reasons},
         spread={},
         uncertainty={str(of): values for of, values in subject.uncertainty.items()},
@@ -94,10 +94,10 @@ def assess(
         uplift=[],
     )
     system = SystemIdentity(name=subject.system.name, version=subject.system.version, kind="record")
-    return assembled([case], system, trust, now())
+    return build_results([case], system, trust, utc_now())
 
 
-def _check_pair(subject: Subject, measured: Subject | None, profile: Profile) -> None:
+def _check_pair(subject: AssessedRecord, measured: AssessedRecord | None, profile: Profile) -> None:
     if profile.compares and measured is None:
         raise InputError(
             f"profile '{profile.name}'",
@@ -124,7 +124,7 @@ def _check_pair(subject: Subject, measured: Subject | None, profile: Profile) ->
 
 
 def _graded(
-    subject: Subject, profile: Profile, trust: Trust, measured: Subject | None, limits: Sequence[Limit]
+    subject: AssessedRecord, profile: Profile, trust: Trust, measured: AssessedRecord | None, limits: Sequence[Limit]
 ) -> _Graded:
     criteria: list[Criterion] = []
     left_out: list[str] = []
@@ -136,22 +136,22 @@ def _graded(
                 continue
             try:
                 criteria.append(_by_rule(rule, of, subject, measured, trust))
-            except NoBound as reason:
+            except BoundMissing as reason:
                 if rule.need == "if_known":
                     left_out.append(f"{rule.quantity} is not graded: {reason}")
                 else:
                     criteria.append(_without_bound(rule, of, subject, trust, str(reason)))
-    criteria += [_with_uncertainty(criterion(limit, subject.values, trust), subject) for limit in limits]
+    criteria += [_with_uncertainty(grade_criterion(limit, subject.values, trust), subject) for limit in limits]
     return _Graded(tuple(criteria), tuple(left_out))
 
 
-def _by_rule(rule: Rule, of: int, subject: Subject, measured: Subject | None, trust: Trust) -> Criterion:
+def _by_rule(rule: Rule, of: int, subject: AssessedRecord, measured: AssessedRecord | None, trust: Trust) -> Criterion:
     compared = measured.values.values.get(of, {}).get(rule.quantity) if measured is not None else None
     value = compared if isinstance(compared, float) and math.isfinite(compared) else None
-    lower, upper = bounds(rule, subject.said.speed_km_h, subject.line.model_dump(), value)
+    lower, upper = resolve_bounds(rule, subject.said.speed_km_h, subject.line.model_dump(), value)
     static = QUANTITIES[rule.quantity].scope == "static"
     if static and rule.need == "if_known" and rule.quantity not in subject.values.values[LINE]:
-        raise NoBound("the record does not give it")
+        raise BoundMissing("the record does not give it")
     limit = Limit(
         quantity=rule.quantity,
         pantograph=of or None,
@@ -161,10 +161,10 @@ def _by_rule(rule: Rule, of: int, subject: Subject, measured: Subject | None, tr
         source=_source(rule, value, measured),
         note=rule.note,
     )
-    return _with_uncertainty(criterion(limit, subject.values, trust), subject)
+    return _with_uncertainty(grade_criterion(limit, subject.values, trust), subject)
 
 
-def _source(rule: Rule, value: float | None, measured: Subject | None) -> str:
+def _source(rule: Rule, value: float | None, measured: AssessedRecord | None) -> str:
     text = source_text(rule.source)
     if not rule.compares or value is None or measured is None:
         return text
@@ -172,9 +172,9 @@ def _source(rule: Rule, value: float | None, measured: Subject | None) -> str:
     return f"{text}; {allowed} about the measured {value:.4g} of {measured.name}"
 
 
-def _without_bound(rule: Rule, of: int, subject: Subject, trust: Trust, reason: str) -> Criterion:
+def _without_bound(rule: Rule, of: int, subject: AssessedRecord, trust: Trust, reason: str) -> Criterion:
     """A rule that has no bound for this record: skipped, with its value told."""
-    verdict: Verdict = "skip" if counts(rule.trust, trust) else "info"
+    verdict: Verdict = "skip" if limit_counts(rule.trust, trust) else "info"
     value = subject.values.values.get(of, {}).get(rule.quantity)
     return Criterion(
         quantity=rule.quantity,
@@ -192,12 +192,12 @@ def _without_bound(rule: Rule, of: int, subject: Subject, trust: Trust, reason: 
     )
 
 
-def _with_uncertainty(item: Criterion, subject: Subject) -> Criterion:
+def _with_uncertainty(item: Criterion, subject: AssessedRecord) -> Criterion:
     found = subject.uncertainty.get(item.pantograph, {}).get(item.quantity)
     return item if found is None or item.value is None else item.model_copy(update={"uncertainty": found})
 
 
-def _turning(criteria: Sequence[Criterion], measured: Subject | None) -> list[str]:
+def _turning(criteria: Sequence[Criterion], measured: AssessedRecord | None) -> list[str]:
     """Verdicts that a longer record could turn are named."""
     found = []
     for item in criteria:
@@ -208,13 +208,13 @@ def _turning(criteria: Sequence[Criterion], measured: Subject | None) -> list[st
         distance = min(abs(item.value - bound) for bound in (item.lower, item.upper) if bound is not None)
         if distance < reach:
             found.append(
-                f"{name_of(item)} lies {distance:.2g} {item.unit} from a limit, less "
+                f"{criterion_name(item)} lies {distance:.2g} {item.unit} from a limit, less "
                 f"than its uncertainty of {reach:.2g} {item.unit}: a longer record could turn the verdict"
             )
     return found
 
 
-def _run(subject: Subject, profile: Profile) -> RunFacts:
+def _run(subject: AssessedRecord, profile: Profile) -> RunFacts:
     signals, run = subject.signals, subject.said.run
     stretch = subject.said.evaluated_m if signals is None else signals.evaluated
     return RunFacts(
@@ -229,7 +229,7 @@ def _run(subject: Subject, profile: Profile) -> RunFacts:
     )
 
 
-def _traces(subject: Subject) -> dict[str, Traces]:
+def _traces(subject: AssessedRecord) -> dict[str, Traces]:
     traces: dict[str, Traces] = {}
     if subject.signals is None:
         return traces
@@ -245,14 +245,14 @@ def _traces(subject: Subject) -> dict[str, Traces]:
         one = len(pooled.parts) == 1
         spectrum = amplitude_spectrum(pooled.delivered, pooled.parts[0].rate, highest) if one else (_NONE, _NONE)
         within = [x for x in supports if start <= x <= end]
-        traces[str(of)] = signal_traces(pooled, pooled.position, within, spectrum)
+        traces[str(of)] = build_signal_traces(pooled, pooled.position, within, spectrum)
     return traces
 
 
 _NONE = np.empty(0)
 
 
-def _of(one: Subject, text: str, all_of_them: list[Subject]) -> str:
+def _of(one: AssessedRecord, text: str, all_of_them: list[AssessedRecord]) -> str:
     """A remark with the record it is about, if there are two."""
     return text if len(all_of_them) == 1 else f"{one.name}: {text}"
 

@@ -4,13 +4,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from pantocheck.conformance.quantities.filters import LowPass
-from pantocheck.conformance.records.evaluation import Value, evaluate
+from pantocheck.conformance.records.evaluation import Value, evaluate_record
 from pantocheck.conformance.records.record import Record
 
-FEWEST_STRETCHES = 3
+MIN_SECTIONS = 3
 
 
-def spread(
+def section_spread(
     record: Record, stretches: Sequence[tuple[float, float]], low_pass: LowPass, values: dict[int, dict[str, Value]]
 ) -> dict[int, dict[str, float]]:
     """Largest departure of each quantity from its value when the evaluated stretch is shifted.
@@ -30,13 +30,13 @@ def spread(
     -------
     in the units of the quantities, by pantograph and name; without what fewer than three stretches give
     """
-    shifted = [evaluate(replace(record, evaluated=stretch), low_pass).values for stretch in stretches]
+    shifted = [evaluate_record(replace(record, evaluated=stretch), low_pass).values for stretch in stretches]
     found: dict[int, dict[str, float]] = {}
     for of, quantities in values.items():
         found[of] = {}
         for name, value in quantities.items():
             others = [one.get(of, {}).get(name) for one in shifted]
             numbers = [other for other in others if isinstance(other, float | int)]
-            if isinstance(value, float | int) and len(numbers) >= FEWEST_STRETCHES:
+            if isinstance(value, float | int) and len(numbers) >= MIN_SECTIONS:
                 found[of][name] = float(max(abs(other - value) for other in numbers))
     return {of: quantities for of, quantities in found.items() if quantities}

@@ -8,7 +8,7 @@ Verdict = Literal["error", "fail", "skip", "pass", "info"]
 WORST_FIRST: tuple[Verdict, ...] = get_args(Verdict)
 
 
-def verdict_of(value: float, lower: float | None, upper: float | None) -> Verdict:
+def judge(value: float, lower: float | None, upper: float | None) -> Verdict:
     """`pass` if a value lies within its limits (the limits themselves included), else `fail`."""
     inside = (lower is None or value >= lower) and (upper is None or value <= upper)
     return "pass" if inside else "fail"
@@ -40,6 +40,6 @@ def margin(value: float, lower: float | None, upper: float | None) -> float:
     raise ValueError("a margin needs at least one limit")
 
 
-def worst(verdicts: Iterable[Verdict]) -> Verdict:
+def worst_verdict(verdicts: Iterable[Verdict]) -> Verdict:
     """The verdict of a whole from those of its parts: error > fail > skip > pass > info; of nothing, `info`."""
     return min(verdicts, key=WORST_FIRST.index, default="info")

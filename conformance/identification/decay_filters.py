@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-Samples = TypeVar("Samples", Real, Complex)
+SampledArray = TypeVar("SampledArray", Real, Complex)
 
 
-def lowpass(rate: float, passes: float, stops: float, attenuation: float) -> Real:
+def low_pass_decay(rate: float, passes: float, stops: float, attenuation: float) -> Real:
     """Taps of a linear-phase low-pass (Kaiser window).
 
     Parameters
@@ -25,12 +25,12 @@ def lowpass(rate: float, passes: float, stops: float, attenuation: float) -> Rea
     return np.asarray(taps, dtype=np.float64)
 
 
-def complete_overlap(samples: Samples, taps: Real) -> Samples:
+def complete_overlap(samples: SampledArray, taps: Real) -> SampledArray:
     """Filtered samples of complete overlaps only, (n - taps + 1, c): each decay keeps its pole exactly."""
     return np.asarray(scipy.signal.oaconvolve(samples, taps[:, None], mode="valid", axes=0))
 
 
-def gain_at(taps: Real, poles: Complex, rate: float) -> Complex:
+def filter_gain(taps: Real, poles: Complex, rate: float) -> Complex:
     """Factor by which the filter, its delay removed, multiplies the amplitude of a decay at each pole, (m,).
 
     The first filtered sample is taken to belong to the time of the tap in the middle.

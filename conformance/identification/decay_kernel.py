@@ -15,7 +15,7 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 
-def kernel(poles: Complex, omega: Real, dt: float, n: int) -> Complex:
+def decay_kernel(poles: Complex, omega: Real, dt: float, n: int) -> Complex:
     """Transform of exp(lambda n dt), n = 0..N-1, at lines of the record's own grid.
 
     Parameters
@@ -60,10 +60,10 @@ def real_columns(towards_pole: Complex, towards_conjugate: Complex) -> Real:
     """
     with_real = towards_pole + towards_conjugate
     with_imaginary = 1j * (towards_pole - towards_conjugate)
-    return stacked(np.hstack([with_real, with_imaginary]))
+    return stack_real_imaginary(np.hstack([with_real, with_imaginary]))
 
 
-def stacked(spectrum: Complex) -> Real:
+def stack_real_imaginary(spectrum: Complex) -> Real:
     """(k, ...) complex lines as (2 k, ...) real rows."""
     return np.concatenate([spectrum.real, spectrum.imag])
 
@@ -79,7 +79,7 @@ def drift_columns(degree: int, n: int, lines: NDArray[np.int64]) -> Real:
     """
     t = np.linspace(-1.0, 1.0, n)
     polynomials = np.polynomial.legendre.legvander(t, degree)[:, 1:]
-    columns = stacked(np.fft.rfft(polynomials, axis=0)[lines])
+    columns = stack_real_imaginary(np.fft.rfft(polynomials, axis=0)[lines])
     return np.asarray(columns / np.linalg.norm(columns, axis=0))
 
 

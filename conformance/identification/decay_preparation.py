@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pantocheck.conformance.identification.decay_filters import complete_overlap
-from pantocheck.conformance.identification.linear_decay import Band, Stretch, find_stretch
+from pantocheck.conformance.identification.linear_decay import FrequencyBand, LinearDecay, find_linear_decay
 from pantocheck.conformance.identification.release import Release, find_release
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.mass_drops.drop_assembly import clipped
+from pantocheck.conformance.mass_drops.drop_assembly import find_clipping
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
 
 Real = NDArray[np.float64]
@@ -18,7 +18,7 @@ CLIPPED_EARLY = 0.15  # share of the decay: a channel clipped beyond it is left 
 
 
 @dataclass(frozen=True)
-class Prepared:
+class PreparedDecay:
     """One record, ready to be identified.
 
     Parameters
@@ -34,7 +34,7 @@ class Prepared:
     record: DropRecord
     columns: tuple[int, ...]
     release: Release
-    stretch: Stretch
+    stretch: LinearDecay
     lateral: Real
     warnings: tuple[str, ...]
 
@@ -45,7 +45,7 @@ class Prepared:
         return (r.drop.mass, r.drop.wire, r.drop.position, tuple(r.channels[c] for c in self.columns), r.quantity)
 
 
-def prepare(record: DropRecord, band: Band) -> Prepared:
+def prepare_decay(record: DropRecord, band: FrequencyBand) -> PreparedDecay:
     """Find release and linear stretch of a record.
 
     Raises
@@ -61,7 +61,7 @@ def prepare(record: DropRecord, band: Band) -> Prepared:
     columns, clipped_until = [], 0.0
     for c in vertical:
         signal = record.signals[:, c]
-        last = max((end for _, end in clipped(signal)), default=0)
+        last = max((end for _, end in find_clipping(signal)), default=0)
         if last / record.rate > release.time + CLIPPED_EARLY * (record.duration - release.time):
             warnings.append(f"{name}: channel '{record.channels[c].name}' is clipped far into the decay and left out")
             continue
@@ -72,11 +72,13 @@ def prepare(record: DropRecord, band: Band) -> Prepared:
     if len(columns) == 1:
         warnings.append(f"{name}: a single sensor; modes with a node there cannot be seen, and no shape can be told")
     names = tuple(record.channels[c].name for c in columns)
-    stretch = find_stretch(record.signals[:, columns], record.rate, release, band, name, names, clipped_until)
-    return Prepared(record, tuple(columns), release, stretch, _lateral(record, stretch), (*warnings, *stretch.warnings))
+    stretch = find_linear_decay(record.signals[:, columns], record.rate, release, band, name, names, clipped_until)
+    return PreparedDecay(
+        record, tuple(columns), release, stretch, _lateral(record, stretch), (*warnings, *stretch.warnings)
+    )
 
 
-def _lateral(record: DropRecord, stretch: Stretch) -> Real:
+def _lateral(record: DropRecord, stretch: LinearDecay) -> Real:
     begin = round(stretch.start * record.rate)
     n = stretch.samples.shape[0]
     step = round(stretch.dt * record.rate)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pantocheck.conformance.identification.decay_filters import gain_at
+from pantocheck.conformance.identification.decay_filters import filter_gain
 from pantocheck.conformance.identification.identify import Identification
 from pantocheck.conformance.input_files.channel_units import STANDARD_GRAVITY
 
@@ -40,7 +40,7 @@ class FrequencyResponse:
     identified: Complex
 
 
-def frequency_response(found: Identification, r: int) -> FrequencyResponse | None:
+def compute_frequency_response(found: Identification, r: int) -> FrequencyResponse | None:
     """Frequency responses of one record.
 
     Parameters
@@ -67,7 +67,9 @@ def frequency_response(found: Identification, r: int) -> FrequencyResponse | Non
     offset = rest.mean(axis=0) if rest.shape[0] > 10 else signals.mean(axis=0)
     measured = np.fft.rfft(signals - offset, axis=0)[used] / record.rate
     b, columns = found.block_of[r], found.columns[r]
-    back = np.exp(-found.poles * (stretch.first - one.release.time)) / gain_at(stretch.taps, found.poles, stretch.rate)
+    back = np.exp(-found.poles * (stretch.first - one.release.time)) / filter_gain(
+        stretch.taps, found.poles, stretch.rate
+    )
     inside = np.abs(found.poles) < 2 * np.pi * found.band.fitted
     residues = (found.fits[b].residues[:, columns] * back[:, None])[inside]
     poles, duration = found.poles[inside], n / record.rate

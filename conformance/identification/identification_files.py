@@ -8,14 +8,20 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
-from pantocheck.conformance.identification.frequency_response import frequency_response
+from pantocheck.conformance.identification.frequency_response import compute_frequency_response
 from pantocheck.conformance.identification.identify import Identification
 from pantocheck.conformance.identification.mode import Mode
-from pantocheck.conformance.identification.repeatability import LATER, WINDOW, Repeatability, aligned, repeatability
-from pantocheck.conformance.input_files.atomic_writing import write_in_place
+from pantocheck.conformance.identification.repeatability import (
+    LATER,
+    WINDOW,
+    Repeatability,
+    align_records,
+    compare_records,
+)
+from pantocheck.conformance.input_files.atomic_writing import write_atomically
 from pantocheck.conformance.input_files.input_error import InputError
 
-LARGEST_FILE = 50_000_000  # bytes
+MAX_MODES_BYTES = 50_000_000  # bytes
 SIGNIFICANT = 8
 
 
@@ -49,50 +55,50 @@ class ModeRow(BaseModel):
     lateral: bool = False
 
 
-def mode_row(mode: Mode) -> dict[str, Any]:
+def build_mode_row(mode: Mode) -> dict[str, Any]:
     """A mode as modes.json has it."""
     shape = [
         {
             "sensor": channel.sensor,
             "wire": channel.wire,
             "position_m": channel.position,
-            "re": rounded(value.real),
-            "im": rounded(value.imag),
-            "std": rounded(std),
+            "re": round_significant(value.real),
+            "im": round_significant(value.imag),
+            "std": round_significant(std),
         }
         for channel, value, std in zip(mode.channels, mode.shape, mode.shape_std, strict=True)
     ]
     return {
-        "frequency_Hz": rounded(mode.frequency),
-        "frequency_std_Hz": rounded(mode.frequency_std),
-        "damping_ratio": rounded(mode.damping_ratio),
-        "damping_ratio_std": rounded(mode.damping_ratio_std),
+        "frequency_Hz": round_significant(mode.frequency),
+        "frequency_std_Hz": round_significant(mode.frequency_std),
+        "damping_ratio": round_significant(mode.damping_ratio),
+        "damping_ratio_std": round_significant(mode.damping_ratio_std),
         "group": mode.group,
         "sensor_shape": shape,
-        "error": rounded(mode.error),
+        "error": round_significant(mode.error),
         "record": mode.record,
         "warnings": list(mode.warnings),
         "certain": mode.certain,
         "outlier": mode.outlier,
         "lateral": mode.lateral,
-        "amplitude_at_release": rounded(mode.amplitude),
-        "phase_collinearity": None if mode.collinearity is None else rounded(mode.collinearity),
-        "lateral_over_vertical": None if mode.lateral_share is None else rounded(mode.lateral_share),
-        "half_power_points": rounded(mode.half_power_points),
+        "amplitude_at_release": round_significant(mode.amplitude),
+        "phase_collinearity": None if mode.collinearity is None else round_significant(mode.collinearity),
+        "lateral_over_vertical": None if mode.lateral_share is None else round_significant(mode.lateral_share),
+        "half_power_points": round_significant(mode.half_power_points),
     }
 
 
-def summary(found: Identification) -> dict[str, Any]:
+def summarise_identification(found: Identification) -> dict[str, Any]:
     """Every number of one line's identification."""
     repeats = _repeats(found)
     return {
         "quantity": found.prepared[0].record.quantity,
         "band_Hz": [found.band.low, found.band.high],
-        "misfit": rounded(found.misfit),
+        "misfit": round_significant(found.misfit),
         "warnings": list(found.warnings),
         "records": [_record(found, r) for r in range(len(found.prepared))],
         "groups": _groups(found),
-        "modes": [mode_row(mode) for mode in found.modes],
+        "modes": [build_mode_row(mode) for mode in found.modes],
         "repeatability": [_repeatability(one) for one in repeats],
         "overlays": _overlays(found),
         "spectra": [_spectra(found, r) for r in range(len(found.prepared))],
@@ -109,12 +115,12 @@ def write_modes(path: Path, all_found: tuple[Identification, ...]) -> None:
     ------
     InputError : it cannot be written
     """
-    write_json(path, [mode_row(mode) for found in all_found for mode in found.modes])
+    write_json(path, [build_mode_row(mode) for found in all_found for mode in found.modes])
 
 
 def write_json(path: Path, value: Any) -> None:
     """Write plain data as JSON; the same data, the same bytes."""
-    write_in_place(path, (json.dumps(value, indent=1, allow_nan=False) + "\n").encode("ascii"))
+    write_atomically(path, (json.dumps(value, indent=1, allow_nan=False) + "\n").encode("ascii"))
 
 
 def read_modes(path: Path) -> tuple[ModeRow, ...]:
@@ -126,8 +132,8 @@ def read_modes(path: Path) -> tuple[ModeRow, ...]:
     """
     where = f"modes '{path.name}'"
     try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise InputError(where, "is too large", f"A list of modes has at most {LARGEST_FILE} bytes.")
+        if path.stat().st_size > MAX_MODES_BYTES:
+            raise InputError(where, "is too large", f"A list of modes has at most {MAX_MODES_BYTES} bytes.")
         content = path.read_bytes()
     except OSError as error:
         raise InputError(where, f"cannot be read from {path} ({error.strerror})", "Check the path.") from None
@@ -143,14 +149,14 @@ def read_modes(path: Path) -> tuple[ModeRow, ...]:
         ) from None
 
 
-def rounded(value: float) -> float:
+def round_significant(value: float) -> float:
     """A number to `SIGNIFICANT` digits; what is not finite becomes 0, which no measured number is."""
     return float(f"{value:.{SIGNIFICANT}g}") if np.isfinite(value) else 0.0
 
 
 def _repeats(found: Identification) -> list[Repeatability]:
     tests = dict.fromkeys(one.test for one in found.prepared)
-    compared = [repeatability(tuple(one for one in found.prepared if one.test == test)) for test in tests]
+    compared = [compare_records(tuple(one for one in found.prepared if one.test == test)) for test in tests]
     return [one for one in compared if one is not None]
 
 
@@ -161,13 +167,13 @@ def _record(found: Identification, r: int) -> dict[str, Any]:
         "name": one.record.name,
         "source": one.record.source,
         "sampling_rate_Hz": one.record.rate,
-        "length_s": rounded(one.record.duration),
+        "length_s": round_significant(one.record.duration),
         "mass_kg": drop.mass,
         "drop_wire": drop.wire,
         "drop_position_m": drop.position,
-        "release_s": rounded(one.release.time),
-        "used_from_s": rounded(stretch.start),
-        "used_to_s": rounded(stretch.end),
+        "release_s": round_significant(one.release.time),
+        "used_from_s": round_significant(stretch.start),
+        "used_to_s": round_significant(stretch.end),
         "channels": [one.record.channels[c].name for c in one.columns],
     }
 
@@ -182,11 +188,11 @@ def _groups(found: Identification) -> list[dict[str, Any]]:
                 "group": number,
                 "modes": len(members),
                 "certain": len(certain),
-                "from_Hz": rounded(members[0].frequency),
-                "to_Hz": rounded(members[-1].frequency),
-                "median_damping_ratio": rounded(float(np.median(certain))) if certain else None,
-                "lowest": rounded(min(certain)) if certain else None,
-                "highest": rounded(max(certain)) if certain else None,
+                "from_Hz": round_significant(members[0].frequency),
+                "to_Hz": round_significant(members[-1].frequency),
+                "median_damping_ratio": round_significant(float(np.median(certain))) if certain else None,
+                "lowest": round_significant(min(certain)) if certain else None,
+                "highest": round_significant(max(certain)) if certain else None,
             }
         )
     return rows
@@ -201,12 +207,12 @@ def _repeatability(one: Repeatability) -> dict[str, Any]:
                 "first": c.first,
                 "second": c.second,
                 "channel": c.channel,
-                "shift_s": rounded(c.shift),
-                "correlation_at_start": rounded(c.correlation[0]),
+                "shift_s": round_significant(c.shift),
+                "correlation_at_start": round_significant(c.correlation[0]),
                 "correlation_later": _maybe(c.correlation[1]),
-                "possible_at_start": rounded(c.possible[0]),
+                "possible_at_start": round_significant(c.possible[0]),
                 "possible_later": _maybe(c.possible[1]),
-                "residual_at_start": rounded(c.residual[0]),
+                "residual_at_start": round_significant(c.residual[0]),
                 "residual_later": _maybe(c.residual[1]),
             }
             for c in one.comparisons
@@ -222,7 +228,7 @@ def _overlays(found: Identification) -> list[dict[str, Any]]:
         if len(repeats) < 2:
             continue
         lowest_rate = min(one.record.rate for one in repeats)
-        curves = [aligned(one, lowest_rate) for one in repeats]
+        curves = [align_records(one, lowest_rate) for one in repeats]
         channel = int(np.argmax(curves[0][1].std(axis=0)))
         runs = []
         for one, (time, samples) in zip(repeats, curves, strict=True):
@@ -239,7 +245,7 @@ def _overlays(found: Identification) -> list[dict[str, Any]]:
 
 
 def _maybe(value: float | None) -> float | None:
-    return None if value is None else rounded(value)
+    return None if value is None else round_significant(value)
 
 
 def _spectra(found: Identification, r: int) -> dict[str, Any]:
@@ -254,12 +260,12 @@ def _spectra(found: Identification, r: int) -> dict[str, Any]:
         "measured": [_list(np.abs(column)) for column in measured.T],
         "fitted": [_list(np.abs(column)) for column in (measured - left).T],
         "residual": [_list(np.abs(column)) for column in left.T],
-        "poles_Hz": [rounded(mode.frequency) for mode in found.modes],
+        "poles_Hz": [round_significant(mode.frequency) for mode in found.modes],
     }
 
 
 def _response(found: Identification, r: int) -> dict[str, Any] | None:
-    response = frequency_response(found, r)
+    response = compute_frequency_response(found, r)
     if response is None:
         return None
     return {

@@ -6,15 +6,21 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pantocheck.conformance.identification.decay_filters import gain_at
-from pantocheck.conformance.identification.decay_preparation import Prepared, prepare
-from pantocheck.conformance.identification.linear_decay import Band
-from pantocheck.conformance.identification.mode import Mode, normalised, phase_collinearity, remarks
-from pantocheck.conformance.identification.mode_groups import group_numbers, outliers
-from pantocheck.conformance.identification.model_order import complete, noise_of, settle, whitened
-from pantocheck.conformance.identification.pole_refinement import refine
-from pantocheck.conformance.identification.projection import Block, Fit, block, residue_spread, solve
-from pantocheck.conformance.identification.start_poles import start_poles
+from pantocheck.conformance.identification.decay_filters import filter_gain
+from pantocheck.conformance.identification.decay_preparation import PreparedDecay, prepare_decay
+from pantocheck.conformance.identification.linear_decay import FrequencyBand
+from pantocheck.conformance.identification.mode import Mode, mode_remarks, normalise_shape, phase_collinearity
+from pantocheck.conformance.identification.mode_groups import find_group_outliers, number_groups
+from pantocheck.conformance.identification.model_order import estimate_noise, find_hidden_poles, select_poles, whiten
+from pantocheck.conformance.identification.pole_refinement import refine_poles
+from pantocheck.conformance.identification.projection import (
+    DataBlock,
+    ProjectionFit,
+    build_block,
+    residue_spread,
+    solve_residues,
+)
+from pantocheck.conformance.identification.start_poles import find_start_poles
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
 
@@ -23,7 +29,7 @@ Complex = NDArray[np.complex128]
 
 SAME_LENGTH = 0.02  # repeats whose lengths differ by less are cut to the shortest and share one set of columns
 SHARED_POLES = 1.5  # squared error over its expectation above which several records do not share their poles
-REACH = 3  # spectral lines on each side over which a mode's own residual is judged
+FREQUENCY_REACH = 3  # spectral lines on each side over which a mode's own residual is judged
 
 
 @dataclass(frozen=True)
@@ -44,12 +50,12 @@ class Identification:
     warnings : what is doubtful about the whole
     """
 
-    prepared: tuple[Prepared, ...]
-    band: Band
+    prepared: tuple[PreparedDecay, ...]
+    band: FrequencyBand
     modes: tuple[Mode, ...]
     poles: Complex
-    blocks: tuple[Block, ...]
-    fits: tuple[Fit, ...]
+    blocks: tuple[DataBlock, ...]
+    fits: tuple[ProjectionFit, ...]
     noise: tuple[Real, ...]
     block_of: tuple[int, ...]
     columns: tuple[slice, ...]
@@ -57,7 +63,7 @@ class Identification:
     warnings: tuple[str, ...]
 
 
-def identify(
+def identify_modes(
     records: tuple[DropRecord, ...],
     highest: float = 10.0,
     poles: Complex | None = None,
@@ -96,7 +102,7 @@ def _identify_line(
     records: tuple[DropRecord, ...], highest: float, given: Complex | None, progress: Callable[[str], None]
 ) -> Identification:
     slowest = min(records, key=lambda record: record.rate)
-    band = Band.up_to(highest, slowest.rate)
+    band = FrequencyBand.up_to(highest, slowest.rate)
     if band.high < min(2 * band.low, highest):
         raise InputError(
             slowest.name,
@@ -106,32 +112,34 @@ def _identify_line(
     prepared = []
     for record in records:
         progress(f"{record.name}: release and linear stretch")
-        prepared.append(prepare(record, band))
+        prepared.append(prepare_decay(record, band))
     stretches, block_of, columns = _arranged(prepared)
-    blocks = [block(samples, dt, band.low, band.fitted) for samples, dt in stretches]
+    blocks = [build_block(samples, dt, band.low, band.fitted) for samples, dt in stretches]
     progress(f"{records[0].name}: poles")
     if given is not None:
-        noise = [noise_of(solve(given, data), given.size, data) for data in blocks]
+        noise = [estimate_noise(solve_residues(given, data), given.size, data) for data in blocks]
         for _ in range(3):
-            given = refine(given, whitened(blocks, noise)).poles
-            noise = [noise_of(solve(given, data), given.size, data) for data in blocks]
+            given = refine_poles(given, whiten(blocks, noise)).poles
+            noise = [estimate_noise(solve_residues(given, data), given.size, data) for data in blocks]
         poles = given
     else:
-        structure = complete(settle(_start(prepared, stretches, band), blocks), blocks)
+        structure = find_hidden_poles(select_poles(_start(prepared, stretches, band), blocks), blocks)
         poles, noise = structure.poles, structure.noise
     progress(f"{records[0].name}: uncertainty")
     return _reported(tuple(prepared), band, poles, blocks, noise, block_of, columns)
 
 
-def _start(prepared: list[Prepared], stretches: list[tuple[Real, float]], band: Band) -> Complex:
+def _start(prepared: list[PreparedDecay], stretches: list[tuple[Real, float]], band: FrequencyBand) -> Complex:
     (dt,) = {dt for _, dt in stretches} if len({dt for _, dt in stretches}) == 1 else (0.0,)
     if dt == 0.0:
         # Records of different rates: the longest alone gives the start.
         return max(prepared, key=lambda one: one.stretch.duration).stretch.poles
-    return start_poles([samples / samples.std(axis=0) for samples, _ in stretches], 1 / dt, band.low, band.fitted + 0.5)
+    return find_start_poles(
+        [samples / samples.std(axis=0) for samples, _ in stretches], 1 / dt, band.low, band.fitted + 0.5
+    )
 
 
-def _arranged(prepared: list[Prepared]) -> tuple[list[tuple[Real, float]], tuple[int, ...], tuple[slice, ...]]:
+def _arranged(prepared: list[PreparedDecay]) -> tuple[list[tuple[Real, float]], tuple[int, ...], tuple[slice, ...]]:
     """Samples of the blocks, and for each record its block and its columns there."""
     stretches: list[tuple[Real, float]] = []
     block_of, columns = [], []
@@ -152,18 +160,18 @@ def _arranged(prepared: list[Prepared]) -> tuple[list[tuple[Real, float]], tuple
 
 
 def _reported(
-    prepared: tuple[Prepared, ...],
-    band: Band,
+    prepared: tuple[PreparedDecay, ...],
+    band: FrequencyBand,
     poles: Complex,
-    blocks: list[Block],
+    blocks: list[DataBlock],
     noise: list[Real],
     block_of: tuple[int, ...],
     columns: tuple[slice, ...],
 ) -> Identification:
-    white = whitened(blocks, noise)
-    refined = refine(poles, white, iterations=10)
+    white = whiten(blocks, noise)
+    refined = refine_poles(poles, white, iterations=10)
     poles, m = refined.poles, refined.poles.size
-    fits = tuple(solve(poles, data) for data in blocks)
+    fits = tuple(solve_residues(poles, data) for data in blocks)
     spreads = [residue_spread(poles, data) for data in blocks]
     misfit = _misfit(refined.cost, m, white)
     decay_std, omega_std = (np.sqrt(np.diag(refined.covariance)[part]) for part in (slice(0, m), slice(m, None)))
@@ -191,17 +199,17 @@ def _reported(
     return replace(whole, modes=_grouped(modes, prepared[0].record), warnings=tuple(dict.fromkeys(warnings)))
 
 
-def _misfit(cost: float, m: int, blocks: list[Block]) -> float:
+def _misfit(cost: float, m: int, blocks: list[DataBlock]) -> float:
     rows = sum(2 * data.lines.size * data.spectrum.shape[1] for data in blocks)
     linear = sum((2 * m + data.residual_terms.shape[1]) * data.spectrum.shape[1] for data in blocks)
     return float(cost / max(rows - linear - 2 * m, 1))
 
 
-def _inflation(white: list[Block], fits: tuple[Fit, ...], noise: list[Real], pole: complex) -> float:
+def _inflation(white: list[DataBlock], fits: tuple[ProjectionFit, ...], noise: list[Real], pole: complex) -> float:
     """Factor for standard deviations where the residual around a mode is more than noise."""
     energy, count = 0.0, 0
     for data, fit, sigma in zip(white, fits, noise, strict=True):
-        reach = max(REACH * 2 * np.pi / data.duration, -2 * pole.real)
+        reach = max(FREQUENCY_REACH * 2 * np.pi / data.duration, -2 * pole.real)
         near = np.abs(data.omega - pole.imag) < reach
         energy += float(np.sum(np.abs(fit.residual[near] / sigma) ** 2))
         count += 2 * int(near.sum()) * sigma.size
@@ -228,14 +236,14 @@ def _mode(
     shares = [share[j] for share in lateral if share is not None]
     share = float(max(shares)) if shares else None
     since = one.stretch.first - one.release.time
-    gain = gain_at(one.stretch.taps, np.array([pole]), one.stretch.rate)[0]
+    gain = filter_gain(one.stretch.taps, np.array([pole]), one.stretch.rate)[0]
     return Mode(
         frequency=frequency,
         frequency_std=float(omega_std / (2 * np.pi)),
         damping_ratio=damping,
         damping_ratio_std=damping_std,
         channels=tuple(one.record.channels[c] for c in one.columns),
-        shape=normalised(residues),
+        shape=normalise_shape(residues),
         shape_std=np.asarray(spread / np.abs(scale)),
         amplitude=float(2 * np.abs(scale / gain * np.exp(-pole * since))),
         collinearity=phase_collinearity(residues),
@@ -243,7 +251,7 @@ def _mode(
         record=one.record.name,
         lateral_share=share,
         half_power_points=2 * damping * frequency * one.stretch.duration,
-        warnings=remarks(frequency, damping, damping_std, one.stretch.duration, nearest, share),
+        warnings=mode_remarks(frequency, damping, damping_std, one.stretch.duration, nearest, share),
     )
 
 
@@ -280,9 +288,9 @@ def _lateral_share(whole: Identification, r: int) -> Real | None:
     one = whole.prepared[r]
     if one.lateral.shape[1] == 0:
         return None
-    data = block(one.lateral, one.stretch.dt, whole.band.low, whole.band.fitted)
-    fit = solve(whole.poles, data)
-    noise = noise_of(fit, whole.poles.size, data) * residue_spread(whole.poles, data)[:, None]
+    data = build_block(one.lateral, one.stretch.dt, whole.band.low, whole.band.fitted)
+    fit = solve_residues(whole.poles, data)
+    noise = estimate_noise(fit, whole.poles.size, data) * residue_spread(whole.poles, data)[:, None]
     sideways = np.where(np.abs(fit.residues) > 4 * noise, np.abs(fit.residues), 0).max(axis=1)
     upward = np.abs(whole.fits[whole.block_of[r]].residues[:, whole.columns[r]]).max(axis=1)
     return np.asarray(sideways / np.maximum(upward, np.finfo(float).tiny))
@@ -292,12 +300,12 @@ def _grouped(modes: list[Mode], record: DropRecord) -> tuple[Mode, ...]:
     upward = [mode for mode in modes if not mode.lateral]
     certain = np.array([mode.frequency for mode in upward if mode.certain])
     spans = len(record.line.spans) or None
-    numbers = group_numbers(certain, np.array([mode.frequency for mode in upward]), spans)
+    numbers = number_groups(certain, np.array([mode.frequency for mode in upward]), spans)
     of = {id(mode): int(number) or None for mode, number in zip(upward, numbers, strict=True)}
     grouped = [replace(mode, group=of.get(id(mode))) for mode in modes]
     far = set[int]()
     for number in {mode.group for mode in grouped} - {None}:
         members = [i for i, mode in enumerate(grouped) if mode.group == number and mode.certain]
-        flags = outliers(np.array([grouped[i].damping_ratio for i in members]))
+        flags = find_group_outliers(np.array([grouped[i].damping_ratio for i in members]))
         far |= {i for i, flag in zip(members, flags, strict=True) if flag}
     return tuple(replace(mode, outlier=i in far) for i, mode in enumerate(grouped))

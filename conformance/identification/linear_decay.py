@@ -10,11 +10,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from pantocheck.conformance.identification.decay_filters import complete_overlap, lowpass
-from pantocheck.conformance.identification.model_order import settle
-from pantocheck.conformance.identification.projection import block, solve
+from pantocheck.conformance.identification.decay_filters import complete_overlap, low_pass_decay
+from pantocheck.conformance.identification.model_order import select_poles
+from pantocheck.conformance.identification.projection import build_block, solve_residues
 from pantocheck.conformance.identification.release import Release
-from pantocheck.conformance.identification.start_poles import start_poles
+from pantocheck.conformance.identification.start_poles import find_start_poles
 from pantocheck.conformance.input_files.input_error import InputError
 
 Real = NDArray[np.float64]
@@ -29,7 +29,7 @@ TEST_TRANSITION = 2.5  # of the filter in front of that test [Hz]
 
 
 @dataclass(frozen=True)
-class Band:
+class FrequencyBand:
     """What is identified, and what it takes.
 
     Parameters
@@ -45,7 +45,7 @@ class Band:
     stop: float = 14.0
 
     @classmethod
-    def up_to(cls, high: float, rate: float, low: float = 0.3) -> "Band":
+    def up_to(cls, high: float, rate: float, low: float = 0.3) -> "FrequencyBand":
         """Band for a wanted upper frequency [Hz], lowered if the sampling rate [Hz] demands it."""
         stop = min(high + 4.0, 0.45 * rate)
         fitted = min(high + 1.0, 0.78 * stop)
@@ -53,7 +53,7 @@ class Band:
 
 
 @dataclass(frozen=True)
-class Stretch:
+class LinearDecay:
     """Free decay of one record, low-passed and decimated; every decay in it keeps its pole.
 
     Parameters
@@ -84,15 +84,15 @@ class Stretch:
         return float(self.samples.shape[0] * self.dt)
 
 
-def find_stretch(
+def find_linear_decay(
     signals: Real,
     rate: float,
     release: Release,
-    band: Band,
+    band: FrequencyBand,
     name: str,
     channels: tuple[str, ...],
     clipped_until: float = 0.0,
-) -> Stretch:
+) -> LinearDecay:
     """The longest stretch after the release that a sum of decays explains down to the noise.
 
     Parameters
@@ -110,7 +110,7 @@ def find_stretch(
     InputError : less than `SHORTEST` is left, or a channel is dead there
     """
     begin = int(release.time * rate)
-    taps = lowpass(rate, band.fitted, band.stop, 80.0)
+    taps = low_pass_decay(rate, band.fitted, band.stop, 80.0)
     step = max(1, int(rate / (2.6 * band.stop)))
     available = (signals.shape[0] - begin) / rate
     if available - GUARD < SHORTEST:
@@ -147,7 +147,7 @@ def find_stretch(
     if start * dt > GUARD + 1.0:
         warnings.append(f"{name}: not a linear decay before {start * dt:.1f} s after the release")
     half_filter = (taps.size - 1) / 2 / rate
-    return Stretch(
+    return LinearDecay(
         samples=samples[start:end],
         dt=dt,
         taps=taps,
@@ -160,7 +160,7 @@ def find_stretch(
     )
 
 
-def _search(samples: Real, guard: int, dt: float, band: Band) -> tuple[int, int, Complex]:
+def _search(samples: Real, guard: int, dt: float, band: FrequencyBand) -> tuple[int, int, Complex]:
     """First sample, end, and poles of the linear stretch.
 
     Fits over ever longer stretches are each tested over the whole record. A fit over a short stretch may fail further
@@ -215,17 +215,17 @@ class _Tested:
 
 
 def _tested(
-    samples: Real, begin: int, end: int, poles: Complex, dt: float, band: Band, width: float = LONG_WINDOW
+    samples: Real, begin: int, end: int, poles: Complex, dt: float, band: FrequencyBand, width: float = LONG_WINDOW
 ) -> _Tested:
     window = int(width / dt)
-    starts, level = levels(_left(samples, begin, end, poles, dt, band), window, dt, band)
+    starts, level = residual_levels(_left(samples, begin, end, poles, dt, band), window, dt, band)
     reach = window + _test_filter(dt, band).size
     inside = (starts >= begin) & (starts + reach < end)
     floor = np.maximum(np.median(level[inside], axis=0), np.finfo(float).tiny)
     return _Tested(starts, _disturbed(level / floor, width, band), window, reach)
 
 
-def _first_sample(samples: Real, begin: int, end: int, poles: Complex, dt: float, band: Band) -> int:
+def _first_sample(samples: Real, begin: int, end: int, poles: Complex, dt: float, band: FrequencyBand) -> int:
     tested = _tested(samples, begin, end, poles, dt, band, SHORT_WINDOW)
     # Up to the first second and more of calm: a single loud window later on is chance.
     calm = np.convolve(~tested.disturbed, np.ones(5), mode="full")[4:] == 5
@@ -239,15 +239,15 @@ def _first_sample(samples: Real, begin: int, end: int, poles: Complex, dt: float
     return min(max(int(tested.starts[early][-1]) + reach, earliest), end - 1)
 
 
-def _poles(samples: Real, dt: float, band: Band) -> Complex:
+def _poles(samples: Real, dt: float, band: FrequencyBand) -> Complex:
     spread = samples.std(axis=0)
-    poles = start_poles([samples / spread], 1 / dt, band.low, band.fitted + 0.5)
-    return settle(poles, [block(samples, dt, band.low, band.fitted)], rounds=4).poles
+    poles = find_start_poles([samples / spread], 1 / dt, band.low, band.fitted + 0.5)
+    return select_poles(poles, [build_block(samples, dt, band.low, band.fitted)], rounds=4).poles
 
 
-def _left(samples: Real, start: int, end: int, poles: Complex, dt: float, band: Band) -> Real:
+def _left(samples: Real, start: int, end: int, poles: Complex, dt: float, band: FrequencyBand) -> Real:
     """What the decays fitted over [start, end) leave of all samples; drift and what lies outside the band stay in."""
-    residues = solve(poles, block(samples[start:end], dt, band.low, band.fitted)).residues
+    residues = solve_residues(poles, build_block(samples[start:end], dt, band.low, band.fitted)).residues
     t = (np.arange(samples.shape[0]) - start) * dt
     # Poles beyond the band stand for what leaks in from there; as decays they mean nothing.
     # Nor does a fast decay carried back over many of its own time constants.
@@ -255,7 +255,7 @@ def _left(samples: Real, start: int, end: int, poles: Complex, dt: float, band: 
     return np.asarray(samples - 2 * (np.exp(np.outer(t, poles[real])) @ residues[real]).real)
 
 
-def levels(residual: Real, window: int, dt: float, band: Band) -> tuple[NDArray[np.int64], Real]:
+def residual_levels(residual: Real, window: int, dt: float, band: FrequencyBand) -> tuple[NDArray[np.int64], Real]:
     """Mean square below the band's upper end in overlapping windows, a trend in each taken off.
 
     Parameters
@@ -278,7 +278,7 @@ def levels(residual: Real, window: int, dt: float, band: Band) -> tuple[NDArray[
     return starts, np.asarray(np.mean((views - views @ straight) ** 2, axis=2))
 
 
-def _disturbed(ratio: Real, width: float, band: Band) -> NDArray[np.bool_]:
+def _disturbed(ratio: Real, width: float, band: FrequencyBand) -> NDArray[np.bool_]:
     """Windows that hold more than noise: all channels together, or one alone."""
     freedom = 2 * width * (band.high - band.low)
     # Weak modes nobody fitted and gusts make the noise of a line breathe by some ten percent; a disturbance doubles it.
@@ -287,7 +287,7 @@ def _disturbed(ratio: Real, width: float, band: Band) -> NDArray[np.bool_]:
     return np.asarray(together | alone)
 
 
-def _test_filter(dt: float, band: Band) -> Real:
+def _test_filter(dt: float, band: FrequencyBand) -> Real:
     """What lies above the band is no part of the test of the residual; short, so that it sees where a change is."""
     passes = max(band.fitted - TEST_TRANSITION, 0.5 * band.fitted)
-    return lowpass(1 / dt, passes, band.fitted, 70.0)
+    return low_pass_decay(1 / dt, passes, band.fitted, 70.0)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pantocheck.conformance.mass_drops.drop_record import Channel
+from pantocheck.conformance.mass_drops.drop_record import DropChannel
 
 Complex = NDArray[np.complex128]
 
@@ -43,7 +43,7 @@ class Mode:
     frequency_std: float
     damping_ratio: float
     damping_ratio_std: float
-    channels: tuple[Channel, ...]
+    channels: tuple[DropChannel, ...]
     shape: Complex
     shape_std: NDArray[np.float64]
     amplitude: float
@@ -87,13 +87,13 @@ def phase_collinearity(shape: Complex) -> float | None:
     return ((xx - yy) ** 2 + 4 * xy**2) / total if total > 0 else None
 
 
-def normalised(residues: Complex) -> Complex:
+def normalise_shape(residues: Complex) -> Complex:
     """Shape of residues with its largest component 1."""
     largest = residues[np.argmax(np.abs(residues))]
     return np.asarray(residues / largest) if np.abs(largest) > 0 else residues
 
 
-def remarks(
+def mode_remarks(
     frequency: float,
     damping_ratio: float,
     damping_ratio_std: float,

@@ -16,7 +16,7 @@ LAST_GROUP = 8  # beyond, bending of the spans and bending between droppers mix
 CLEARANCE = 0.06  # how near a mode may come to a place between groups, over the first group's mean
 
 
-def group_numbers(certain: Real, all_modes: Real, spans: int | None) -> Numbers:
+def number_groups(certain: Real, all_modes: Real, spans: int | None) -> Numbers:
     """Number of the group of each mode, from 1; 0 beyond `LAST_GROUP`.
 
     Parameters
@@ -41,7 +41,7 @@ def group_numbers(certain: Real, all_modes: Real, spans: int | None) -> Numbers:
     return np.asarray(numbers, dtype=np.int64)
 
 
-def outliers(values: Real) -> NDArray[np.bool_]:
+def find_group_outliers(values: Real) -> NDArray[np.bool_]:
     """Values beyond 1.5 quartile ranges outside the quartiles (Tukey's rule), (n,); none of fewer than four."""
     if values.size < 4:
         return np.zeros(values.size, dtype=np.bool_)

@@ -13,9 +13,14 @@ import scipy.linalg
 import scipy.stats
 from numpy.typing import NDArray
 
-from pantocheck.conformance.identification.decay_kernel import far_pole_columns, kernel, real_columns, stacked
-from pantocheck.conformance.identification.pole_refinement import refine
-from pantocheck.conformance.identification.projection import Block, Fit, solve
+from pantocheck.conformance.identification.decay_kernel import (
+    decay_kernel,
+    far_pole_columns,
+    real_columns,
+    stack_real_imaginary,
+)
+from pantocheck.conformance.identification.pole_refinement import refine_poles
+from pantocheck.conformance.identification.projection import DataBlock, ProjectionFit, solve_residues
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -28,7 +33,7 @@ DAMPING_TRIALS = (0.3, 1.0, 3.0)  # of the neighbours' median decay rate
 
 
 @dataclass(frozen=True)
-class Structure:
+class PoleSelection:
     """Poles that the data support.
 
     Parameters
@@ -41,7 +46,7 @@ class Structure:
     noise: list[Real]
 
 
-def settle(poles: Complex, blocks: list[Block], rounds: int = 8) -> Structure:
+def select_poles(poles: Complex, blocks: list[DataBlock], rounds: int = 8) -> PoleSelection:
     """Refine, add and remove poles until neither helps.
 
     Parameters
@@ -53,18 +58,18 @@ def settle(poles: Complex, blocks: list[Block], rounds: int = 8) -> Structure:
     noise = _noise(poles, blocks)
     settled: Complex | None = None
     for _ in range(rounds):
-        poles = _in_band(_sweep(_in_band(poles, blocks), whitened(blocks, noise)), blocks)
+        poles = _in_band(_sweep(_in_band(poles, blocks), whiten(blocks, noise)), blocks)
         if settled is not None and _same(poles, settled):
             break
         settled = poles
         noise = _noise(poles, blocks)
-        white = whitened(blocks, noise)
+        white = whiten(blocks, noise)
         poles = _remove(_add(poles, white), white)
-    poles = refine(_in_band(poles, blocks), whitened(blocks, noise)).poles
-    return Structure(poles, _noise(poles, blocks))
+    poles = refine_poles(_in_band(poles, blocks), whiten(blocks, noise)).poles
+    return PoleSelection(poles, _noise(poles, blocks))
 
 
-def complete(found: Structure, blocks: list[Block]) -> Structure:
+def find_hidden_poles(found: PoleSelection, blocks: list[DataBlock]) -> PoleSelection:
     """Look for a second mode hidden under each pole, where the residual shows too little to be noticed, then settle.
 
     Parameters
@@ -72,30 +77,30 @@ def complete(found: Structure, blocks: list[Block]) -> Structure:
     found : what `settle` found
     blocks : data in physical units
     """
-    white = whitened(blocks, found.noise)
+    white = whiten(blocks, found.noise)
     extended = _add(found.poles, white, [float(omega) for omega in found.poles.imag])
     if _same(extended, found.poles):
         return found
-    return settle(extended, blocks, rounds=3)
+    return select_poles(extended, blocks, rounds=3)
 
 
-def _noise(poles: Complex, blocks: list[Block]) -> list[Real]:
-    return [noise_of(solve(poles, data), poles.size, data) for data in blocks]
+def _noise(poles: Complex, blocks: list[DataBlock]) -> list[Real]:
+    return [estimate_noise(solve_residues(poles, data), poles.size, data) for data in blocks]
 
 
-def _in_band(poles: Complex, blocks: list[Block]) -> Complex:
+def _in_band(poles: Complex, blocks: list[DataBlock]) -> Complex:
     """Poles in the band or just outside: a strong mode beyond the edge leaks in, and stays as a residual term."""
     low = min(data.omega[0] for data in blocks)
     high = max(data.omega[-1] for data in blocks)
     return np.asarray(poles[(poles.imag > low / 2) & (poles.imag < high + 2 * np.pi * OUTSIDE)])
 
 
-def whitened(blocks: list[Block], noise: list[Real]) -> list[Block]:
+def whiten(blocks: list[DataBlock], noise: list[Real]) -> list[DataBlock]:
     """Blocks with each channel in units of its noise."""
     return [replace(data, spectrum=data.spectrum / sigma) for data, sigma in zip(blocks, noise, strict=True)]
 
 
-def noise_of(fit: Fit, poles: int, data: Block) -> Real:
+def estimate_noise(fit: ProjectionFit, poles: int, data: DataBlock) -> Real:
     """Standard deviation of the real or imaginary part of a line, per channel, (c,).
 
     From the median over the lines, which a few unmodelled peaks do not move; |r|^2 / (2 sigma^2) of white noise has
@@ -108,54 +113,54 @@ def noise_of(fit: Fit, poles: int, data: Block) -> Real:
     return np.asarray(np.sqrt(np.maximum(median, np.finfo(float).tiny) / (2 * np.log(2) * share_left)))
 
 
-def threshold(blocks: list[Block]) -> float:
+def detection_threshold(blocks: list[DataBlock]) -> float:
     """Least drop in squared error, in units of the noise, that a pole must bring."""
     channels = sum(data.spectrum.shape[1] for data in blocks)
     lines = max(data.lines.size for data in blocks)
     return float(scipy.stats.chi2.isf(FALSE_ALARM / (4 * lines), 2 + 2 * channels))
 
 
-def _add(poles: Complex, blocks: list[Block], centres: list[float] | None = None) -> Complex:
+def _add(poles: Complex, blocks: list[DataBlock], centres: list[float] | None = None) -> Complex:
     """Poles with those added that pay; tried at the centres [rad/s], or where the residual asks for it."""
-    least = threshold(blocks)
-    fits = [solve(poles, data) for data in blocks]
+    least = detection_threshold(blocks)
+    fits = [solve_residues(poles, data) for data in blocks]
     for centre in _suspicious(blocks, fits) if centres is None else centres:
         local = _local(poles, blocks, fits, centre)
         trial = _best_candidate(local, centre) if local.blocks else None
         if trial is None or trial[1] < 0.3 * least:
             continue
-        before = refine(local.poles, local.blocks, iterations=10, tolerance=0.1)
-        after = refine(np.append(local.poles, trial[0]), local.blocks, iterations=60, tolerance=0.1)
+        before = refine_poles(local.poles, local.blocks, iterations=10, tolerance=0.1)
+        after = refine_poles(np.append(local.poles, trial[0]), local.blocks, iterations=60, tolerance=0.1)
         if before.cost - after.cost > least:
             poles = np.concatenate([poles[~local.near], after.poles])
-            fits = [solve(poles, data) for data in blocks]
+            fits = [solve_residues(poles, data) for data in blocks]
     return np.asarray(poles[np.argsort(poles.imag)])
 
 
-def _remove(poles: Complex, blocks: list[Block]) -> Complex:
-    least = threshold(blocks)
+def _remove(poles: Complex, blocks: list[DataBlock]) -> Complex:
+    least = detection_threshold(blocks)
     weight = _weights(poles, blocks)
     doubtful = np.flatnonzero((weight < 3 * least) | _crowded(poles, blocks))
-    fits = [solve(poles, data) for data in blocks]
+    fits = [solve_residues(poles, data) for data in blocks]
     for pole in poles[doubtful[np.argsort(weight[doubtful])]]:
         at = int(np.argmin(np.abs(poles - pole)))
         local = _local(poles, blocks, fits, poles[at].imag)
         if not local.blocks:
             continue
         others = local.poles[np.abs(local.poles - poles[at]) > 0]
-        with_it = refine(local.poles, local.blocks, iterations=10, tolerance=0.1)
-        without = refine(others, local.blocks, iterations=15, tolerance=0.1)
+        with_it = refine_poles(local.poles, local.blocks, iterations=10, tolerance=0.1)
+        without = refine_poles(others, local.blocks, iterations=15, tolerance=0.1)
         # Less than it takes to enter, or a pole on the edge would come and go for ever.
         if without.cost - with_it.cost < 0.7 * least:
             poles = _in_band(np.concatenate([poles[~local.near], without.poles]), blocks)
-            fits = [solve(poles, data) for data in blocks]
+            fits = [solve_residues(poles, data) for data in blocks]
     return np.asarray(poles[np.argsort(poles.imag)])
 
 
-def _sweep(poles: Complex, blocks: list[Block]) -> Complex:
+def _sweep(poles: Complex, blocks: list[DataBlock]) -> Complex:
     """Refine section by section, each with its neighbours: near the optimum in a tenth of the time."""
     for _ in range(2):
-        fits = [solve(poles, data) for data in blocks]
+        fits = [solve_residues(poles, data) for data in blocks]
         moved = []
         edges = 2 * np.pi * np.arange(0, poles.imag.max(initial=0.0) / (2 * np.pi) + SECTION, SECTION)
         for low, high in pairwise(edges):
@@ -164,7 +169,9 @@ def _sweep(poles: Complex, blocks: list[Block]) -> Complex:
             local = _local(poles, blocks, fits, (low + high) / 2, 2 * np.pi * SECTION)
             inner = (local.poles.imag >= low) & (local.poles.imag < high)
             refined = (
-                refine(local.poles, local.blocks, iterations=8, tolerance=0.3).poles if local.blocks else local.poles
+                refine_poles(local.poles, local.blocks, iterations=8, tolerance=0.3).poles
+                if local.blocks
+                else local.poles
             )
             moved.append(refined[inner])
         poles = np.concatenate([*moved, np.zeros(0, dtype=np.complex128)])
@@ -181,10 +188,12 @@ class _Local:
 
     poles: Complex
     near: NDArray[np.bool_]
-    blocks: list[Block]
+    blocks: list[DataBlock]
 
 
-def _local(poles: Complex, blocks: list[Block], fits: list[Fit], centre: float, least_half: float = 0.0) -> _Local:
+def _local(
+    poles: Complex, blocks: list[DataBlock], fits: list[ProjectionFit], centre: float, least_half: float = 0.0
+) -> _Local:
     resolution = 2 * np.pi / min(data.duration for data in blocks)
     half = max(12 * resolution, 2 * np.pi * 0.15, least_half)
     near = np.abs(poles.imag - centre) < half
@@ -195,14 +204,14 @@ def _local(poles: Complex, blocks: list[Block], fits: list[Fit], centre: float, 
             continue
         omega = data.omega[window]
         residues = fit.residues[near]
-        share = kernel(poles[near], omega, data.dt, data.n) @ residues
-        share += kernel(poles[near].conj(), omega, data.dt, data.n) @ residues.conj()
+        share = decay_kernel(poles[near], omega, data.dt, data.n) @ residues
+        share += decay_kernel(poles[near].conj(), omega, data.dt, data.n) @ residues.conj()
         spectrum = fit.residual[window] + share
-        narrowed.append(Block(data.lines[window], spectrum, data.dt, data.n, far_pole_columns(omega, 2)))
+        narrowed.append(DataBlock(data.lines[window], spectrum, data.dt, data.n, far_pole_columns(omega, 2)))
     return _Local(poles[near], near, narrowed)
 
 
-def _suspicious(blocks: list[Block], fits: list[Fit]) -> list[float]:
+def _suspicious(blocks: list[DataBlock], fits: list[ProjectionFit]) -> list[float]:
     """Angular frequencies [rad/s] where three lines together hold more than noise, strongest first."""
     found: list[tuple[float, float]] = []
     for data, fit in zip(blocks, fits, strict=True):
@@ -226,13 +235,14 @@ def _best_candidate(local: _Local, centre: float) -> tuple[complex, float] | Non
     gain = np.zeros(trials.size)
     for data in local.blocks:
         present = real_columns(
-            kernel(local.poles, data.omega, data.dt, data.n), kernel(local.poles.conj(), data.omega, data.dt, data.n)
+            decay_kernel(local.poles, data.omega, data.dt, data.n),
+            decay_kernel(local.poles.conj(), data.omega, data.dt, data.n),
         )
         q = scipy.linalg.qr(np.hstack([present, data.residual_terms]), mode="economic")[0]
-        x = stacked(data.spectrum)
+        x = stack_real_imaginary(data.spectrum)
         residual = x - q @ (q.T @ x)
         new = real_columns(
-            kernel(trials, data.omega, data.dt, data.n), kernel(trials.conj(), data.omega, data.dt, data.n)
+            decay_kernel(trials, data.omega, data.dt, data.n), decay_kernel(trials.conj(), data.omega, data.dt, data.n)
         )
         new -= q @ (q.T @ new)
         for t in range(trials.size):
@@ -242,17 +252,17 @@ def _best_candidate(local: _Local, centre: float) -> tuple[complex, float] | Non
     return (complex(trials[best]), float(gain[best])) if gain[best] > 0 else None
 
 
-def _weights(poles: Complex, blocks: list[Block]) -> Real:
+def _weights(poles: Complex, blocks: list[DataBlock]) -> Real:
     """What each pole takes off the squared error with all other poles held, (m,)."""
     m = poles.size
     taken = np.zeros(m)
     for data in blocks:
         columns = real_columns(
-            kernel(poles, data.omega, data.dt, data.n), kernel(poles.conj(), data.omega, data.dt, data.n)
+            decay_kernel(poles, data.omega, data.dt, data.n), decay_kernel(poles.conj(), data.omega, data.dt, data.n)
         )
         q, r = scipy.linalg.qr(np.hstack([columns, data.residual_terms]), mode="economic")
         inverse = scipy.linalg.pinv(r)
-        coefficients = inverse @ (q.T @ stacked(data.spectrum))
+        coefficients = inverse @ (q.T @ stack_real_imaginary(data.spectrum))
         for j in range(m):
             pair = [j, j + m]
             covariance = inverse[pair] @ inverse[pair].T
@@ -260,7 +270,7 @@ def _weights(poles: Complex, blocks: list[Block]) -> Real:
     return taken
 
 
-def _crowded(poles: Complex, blocks: list[Block]) -> NDArray[np.bool_]:
+def _crowded(poles: Complex, blocks: list[DataBlock]) -> NDArray[np.bool_]:
     """Poles so near another that one of the two may be idle."""
     resolution = 2 * np.pi / max(data.duration for data in blocks)
     distance = np.abs(poles[:, None] - poles[None, :]) + np.where(np.eye(poles.size) > 0, np.inf, 0)

@@ -6,7 +6,7 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from pantocheck.conformance.identification.projection import Block, normal_equations
+from pantocheck.conformance.identification.projection import DataBlock, build_normal_equations
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -15,7 +15,7 @@ SMALLEST_DAMPING_RATIO = 1e-6  # a decay slower than this is not a decay in a re
 
 
 @dataclass(frozen=True)
-class Refined:
+class RefinedPoles:
     """Poles at the least output error.
 
     Parameters
@@ -30,7 +30,9 @@ class Refined:
     covariance: Real
 
 
-def refine(poles: Complex, blocks: list[Block], iterations: int = 30, tolerance: float = 1e-3) -> Refined:
+def refine_poles(
+    poles: Complex, blocks: list[DataBlock], iterations: int = 30, tolerance: float = 1e-3
+) -> RefinedPoles:
     """Minimise the output error over the poles.
 
     Parameters
@@ -42,12 +44,12 @@ def refine(poles: Complex, blocks: list[Block], iterations: int = 30, tolerance:
     """
     poles = poles[np.argsort(poles.imag)]
     if not poles.size:
-        return Refined(poles, normal_equations(poles, blocks).cost, np.zeros((0, 0)))
-    current = normal_equations(poles, blocks)
+        return RefinedPoles(poles, build_normal_equations(poles, blocks).cost, np.zeros((0, 0)))
+    current = build_normal_equations(poles, blocks)
     damping = 1e-3
     for _ in range(iterations):
         trial_poles = _step(poles, current.matrix, current.gradient, damping)
-        trial = normal_equations(trial_poles, blocks)
+        trial = build_normal_equations(trial_poles, blocks)
         gain = current.cost - trial.cost
         if gain > 0:
             poles, current, damping = trial_poles, trial, max(damping / 10, 1e-9)
@@ -59,7 +61,7 @@ def refine(poles: Complex, blocks: list[Block], iterations: int = 30, tolerance:
             damping *= 10
     order = np.argsort(poles.imag)
     both = np.concatenate([order, order + poles.size])
-    return Refined(poles[order], current.cost, _inverse(current.matrix)[np.ix_(both, both)])
+    return RefinedPoles(poles[order], current.cost, _inverse(current.matrix)[np.ix_(both, both)])
 
 
 def _step(poles: Complex, matrix: Real, gradient: Real, damping: float) -> Complex:

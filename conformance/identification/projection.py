@@ -19,12 +19,12 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from pantocheck.conformance.identification.decay_kernel import (
+    decay_kernel,
     drift_columns,
     far_pole_columns,
-    kernel,
     kernel_and_derivative,
     real_columns,
-    stacked,
+    stack_real_imaginary,
 )
 
 Real = NDArray[np.float64]
@@ -32,7 +32,7 @@ Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
-class Block:
+class DataBlock:
     """Channels that share one time grid: the sensors of one record, or of repeats of one length.
 
     Parameters
@@ -62,7 +62,7 @@ class Block:
 
 
 @dataclass(frozen=True)
-class Fit:
+class ProjectionFit:
     """Least-squares solution of one block for given poles.
 
     Parameters
@@ -75,7 +75,9 @@ class Fit:
     residual: Complex
 
 
-def block(samples: Real, dt: float, low: float, high: float, drift_degree: int = 4, far_degree: int = 3) -> Block:
+def build_block(
+    samples: Real, dt: float, low: float, high: float, drift_degree: int = 4, far_degree: int = 3
+) -> DataBlock:
     """Transform of channels and the residual terms that go with the band.
 
     Parameters
@@ -91,23 +93,23 @@ def block(samples: Real, dt: float, low: float, high: float, drift_degree: int =
     spectrum = np.fft.rfft(samples - samples.mean(axis=0), axis=0)[lines]
     omega = 2 * np.pi * lines / (n * dt)
     terms = np.hstack([drift_columns(drift_degree, n, lines), far_pole_columns(omega, far_degree)])
-    return Block(lines, np.asarray(spectrum), dt, n, terms)
+    return DataBlock(lines, np.asarray(spectrum), dt, n, terms)
 
 
-def solve(poles: Complex, data: Block) -> Fit:
+def solve_residues(poles: Complex, data: DataBlock) -> ProjectionFit:
     """Residues and residual of given poles, shape (m,) [1/s]."""
     columns = np.hstack([_pole_columns(poles, data), data.residual_terms])
     q, r = scipy.linalg.qr(columns, mode="economic", check_finite=False)
-    x = stacked(data.spectrum)
+    x = stack_real_imaginary(data.spectrum)
     projected = q.T @ x
     m = poles.size
     coefficients = np.linalg.lstsq(r, projected, rcond=1e-13)[0]
     residual = x - q @ projected
     k = data.lines.size
-    return Fit(coefficients[:m] + 1j * coefficients[m : 2 * m], residual[:k] + 1j * residual[k:])
+    return ProjectionFit(coefficients[:m] + 1j * coefficients[m : 2 * m], residual[:k] + 1j * residual[k:])
 
 
-def residue_spread(poles: Complex, data: Block) -> Real:
+def residue_spread(poles: Complex, data: DataBlock) -> Real:
     """Standard deviation of a residue's real or imaginary part for unit noise in the lines, poles known, (m,)."""
     r = scipy.linalg.qr(np.hstack([_pole_columns(poles, data), data.residual_terms]), mode="r", check_finite=False)[0]
     inverse = np.linalg.pinv(r[: r.shape[1]])
@@ -117,7 +119,7 @@ def residue_spread(poles: Complex, data: Block) -> Real:
 
 
 @dataclass(frozen=True)
-class Normal:
+class NormalEquations:
     """Gauss-Newton normal equations in (decay rate, angular frequency) of every pole.
 
     Parameters
@@ -132,7 +134,7 @@ class Normal:
     gradient: Real
 
 
-def normal_equations(poles: Complex, blocks: list[Block]) -> Normal:
+def build_normal_equations(poles: Complex, blocks: list[DataBlock]) -> NormalEquations:
     """Normal equations of the poles over all blocks, residues eliminated per channel.
 
     Parameters
@@ -147,7 +149,7 @@ def normal_equations(poles: Complex, blocks: list[Block]) -> Normal:
         mirrored, mirrored_slope = kernel_and_derivative(poles.conj(), data.omega, data.dt, data.n)
         columns = np.hstack([real_columns(value, mirrored), data.residual_terms])
         q, r = scipy.linalg.qr(columns, mode="economic", check_finite=False)
-        x = stacked(data.spectrum)
+        x = stack_real_imaginary(data.spectrum)
         projected = q.T @ x
         residual = x - q @ projected
         residues = np.linalg.lstsq(r, projected, rcond=1e-13)[0][: 2 * m]
@@ -156,7 +158,7 @@ def normal_equations(poles: Complex, blocks: list[Block]) -> Normal:
         derivative -= q @ (q.T @ derivative)
         cost += float(np.sum(residual**2))
         _accumulate(matrix, gradient, derivative.T @ derivative, correlation, residues)
-    return Normal(cost, matrix, gradient)
+    return NormalEquations(cost, matrix, gradient)
 
 
 def _accumulate(matrix: Real, gradient: Real, gram: Real, correlation: Real, residues: Real) -> None:
@@ -175,5 +177,7 @@ def _accumulate(matrix: Real, gradient: Real, gram: Real, correlation: Real, res
     gradient[m:] += np.sum(-s * c1 + p * c2, axis=1)
 
 
-def _pole_columns(poles: Complex, data: Block) -> Real:
-    return real_columns(kernel(poles, data.omega, data.dt, data.n), kernel(poles.conj(), data.omega, data.dt, data.n))
+def _pole_columns(poles: Complex, data: DataBlock) -> Real:
+    return real_columns(
+        decay_kernel(poles, data.omega, data.dt, data.n), decay_kernel(poles.conj(), data.omega, data.dt, data.n)
+    )

@@ -6,8 +6,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from pantocheck.conformance.identification.decay_filters import complete_overlap, lowpass
-from pantocheck.conformance.identification.decay_preparation import Prepared
+from pantocheck.conformance.identification.decay_filters import complete_overlap, low_pass_decay
+from pantocheck.conformance.identification.decay_preparation import PreparedDecay
 
 Real = NDArray[np.float64]
 
@@ -49,7 +49,7 @@ class Repeatability:
     reason: str
 
 
-def repeatability(repeats: tuple[Prepared, ...]) -> Repeatability | None:
+def compare_records(repeats: tuple[PreparedDecay, ...]) -> Repeatability | None:
     """Compare every repeat with the first one.
 
     Parameters
@@ -81,7 +81,7 @@ def _repeats(c: Comparison) -> bool:
     return early and late
 
 
-def aligned(one: Prepared, lowest_rate: float) -> tuple[Real, Real]:
+def align_records(one: PreparedDecay, lowest_rate: float) -> tuple[Real, Real]:
     """Time from the release [s], (n,), and the vertical channels below `HIGHEST`, (n, c).
 
     Parameters
@@ -90,16 +90,16 @@ def aligned(one: Prepared, lowest_rate: float) -> tuple[Real, Real]:
     lowest_rate : samples per second of the slowest record it is compared with [Hz]; it may not reach `HIGHEST`
     """
     rate, passes = one.record.rate, min(HIGHEST, 0.28 * lowest_rate)
-    taps = lowpass(rate, passes, 1.5 * passes, 50.0)
+    taps = low_pass_decay(rate, passes, 1.5 * passes, 50.0)
     samples = complete_overlap(one.record.signals[:, list(one.columns)], taps)
     time = (np.arange(samples.shape[0]) + (taps.size - 1) / 2) / rate - one.release.time
     return np.asarray(time, dtype=np.float64), samples
 
 
-def _compared(first: Prepared, second: Prepared) -> list[Comparison]:
+def _compared(first: PreparedDecay, second: PreparedDecay) -> list[Comparison]:
     lowest_rate = min(first.record.rate, second.record.rate)
-    t1, x1 = aligned(first, lowest_rate)
-    t2, x2 = aligned(second, lowest_rate)
+    t1, x1 = align_records(first, lowest_rate)
+    t2, x2 = align_records(second, lowest_rate)
     rate = first.record.rate
     start = 1.5  # the first second differs by how the droppers slacken
     shift = _shift(t1, x1, t2, x2, start, rate)

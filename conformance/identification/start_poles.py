@@ -16,13 +16,13 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from pantocheck.conformance.identification.decay_filters import complete_overlap, lowpass
+from pantocheck.conformance.identification.decay_filters import complete_overlap, low_pass_decay
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 
-def start_poles(
+def find_start_poles(
     records: list[Real], rate: float, low: float, high: float, band: float = 1.0, largest_order: int = 24
 ) -> Complex:
     """Poles of all bands between two frequencies.
@@ -52,7 +52,7 @@ def _band_poles(records: list[Real], rate: float, low: float, high: float, large
     flank = max(0.4 * width, 25.0 * rate / min(samples.shape[0] for samples in records))
     middle = 2 * np.pi * (low + high) / 2
     step = max(1, int(rate / (width + 2.5 * flank)))
-    taps = lowpass(rate, width / 2 + 0.1 * flank, width / 2 + flank, 60.0)
+    taps = low_pass_decay(rate, width / 2 + 0.1 * flank, width / 2 + flank, 60.0)
     signals = []
     for samples in records:
         turned = samples * np.exp(-1j * middle * np.arange(samples.shape[0]) / rate)[:, None]

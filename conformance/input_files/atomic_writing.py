@@ -9,7 +9,7 @@ from pathlib import Path
 from pantocheck.conformance.input_files.input_error import InputError
 
 
-def write_in_place(path: Path, content: bytes) -> None:
+def write_atomically(path: Path, content: bytes) -> None:
     """Write a file under a temporary name and move it into place.
 
     Parameters
@@ -21,10 +21,10 @@ def write_in_place(path: Path, content: bytes) -> None:
     ------
     InputError : the folder cannot be made or written
     """
-    produce_in_place(path, lambda temporary: temporary.write_bytes(content))
+    produce_atomically(path, lambda temporary: temporary.write_bytes(content))
 
 
-def produce_in_place(path: Path, produce: Callable[[Path], object]) -> None:
+def produce_atomically(path: Path, produce: Callable[[Path], object]) -> None:
     """Let `produce` write a temporary file beside `path`, then move it into place; nothing is left if it fails.
 
     Raises
@@ -69,7 +69,7 @@ def check_writable(folder: Path) -> None:
         ) from None
 
 
-def digest_of(path: Path) -> str:
+def file_digest(path: Path) -> str:
     """SHA-256 of a file, in hexadecimal."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()

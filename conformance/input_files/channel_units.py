@@ -1,11 +1,11 @@
 """Units and directions of channels."""
 
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.mass_drops.drop_record import Axis, Quantity
+from pantocheck.conformance.mass_drops.drop_record import Axis, MotionQuantity
 
 STANDARD_GRAVITY = 9.80665  # [m/s2]
 
-UNITS: dict[str, tuple[Quantity, float]] = {
+CHANNEL_UNITS: dict[str, tuple[MotionQuantity, float]] = {
     "m/s2": ("acceleration", 1.0),
     "mm/s2": ("acceleration", 1e-3),
     "g": ("acceleration", STANDARD_GRAVITY),
@@ -20,7 +20,7 @@ UNITS: dict[str, tuple[Quantity, float]] = {
 SPELLINGS = {"m/s^2": "m/s2", "m/s**2": "m/s2", "m/s²": "m/s2", "ms-2": "m/s2", "m s-2": "m/s2", "gn": "g", "g_n": "g"}
 
 
-def unit(text: str, where: str) -> tuple[Quantity, float]:
+def convert_unit(text: str, where: str) -> tuple[MotionQuantity, float]:
     """What a unit measures and its factor to SI.
 
     Raises
@@ -29,12 +29,12 @@ def unit(text: str, where: str) -> tuple[Quantity, float]:
     """
     name = text.strip()
     name = SPELLINGS.get(name.lower(), name)
-    if name not in UNITS:
-        raise InputError(where, f"unit {text[:40]!r} is not known", f"Known units are {', '.join(UNITS)}.")
-    return UNITS[name]
+    if name not in CHANNEL_UNITS:
+        raise InputError(where, f"unit {text[:40]!r} is not known", f"Known units are {', '.join(CHANNEL_UNITS)}.")
+    return CHANNEL_UNITS[name]
 
 
-def direction(text: str, where: str) -> tuple[Axis, float]:
+def parse_direction(text: str, where: str) -> tuple[Axis, float]:
     """Axis and sign of a direction such as `+z` or `-x`.
 
     Raises

@@ -2,7 +2,7 @@
 
 import math
 
-UNITS: dict[str, tuple[str, float]] = {
+KEY_UNITS: dict[str, tuple[str, float]] = {
     "N": ("Forces are given in newtons", 1.0),
     "kN": ("Forces are given in newtons", 1e3),
     "daN": ("Forces are given in newtons", 10.0),
@@ -43,7 +43,7 @@ UNITS: dict[str, tuple[str, float]] = {
 """Unit at the end of a key: what is said of its kind, and its factor to the unit of the schema."""
 
 
-def converted(key: str, value: object, known: list[str]) -> str | None:
+def convert_key(key: str, value: object, known: list[str]) -> str | None:
     """Hint for a key in a unit that the schema does not use, its value converted; None if it is not that."""
     for other in known:
         found = _same_in_another_unit(key, other)
@@ -57,15 +57,15 @@ def converted(key: str, value: object, known: list[str]) -> str | None:
 
 
 def _same_in_another_unit(key: str, other: str) -> tuple[str, float] | None:
-    for unit, (saying, factor) in UNITS.items():
+    for unit, (saying, factor) in KEY_UNITS.items():
         if not key.endswith(f"_{unit}"):
             continue
         stem = key.removesuffix(f"_{unit}")
-        for wanted, (same_saying, wanted_factor) in UNITS.items():
+        for wanted, (same_saying, wanted_factor) in KEY_UNITS.items():
             if other == f"{stem}_{wanted}" and saying == same_saying:
                 return saying, factor / wanted_factor
     # A key without its unit.
-    for unit, (saying, _) in UNITS.items():
+    for unit, (saying, _) in KEY_UNITS.items():
         if other == f"{key}_{unit}":
             return saying, 1.0
     return None

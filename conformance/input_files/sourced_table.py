@@ -20,13 +20,13 @@ PROVENANCE = frozenset({"trust", "source", "provisional", "note"})
 """Keys of a sourced table that say where its numbers come from."""
 
 
-class Table(BaseModel):
+class InputTable(BaseModel):
     """A table of a case file: keys that are not in the schema are refused, NaN and infinity too."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
 
-class Sourced(Table):
+class SourcedTable(InputTable):
     """A table whose numbers come from somewhere: one source and trust for all of them, exceptions named."""
 
     trust: Annotated[Trust, Field(description="how far the numbers of this table can be trusted")]
@@ -41,14 +41,16 @@ class Sourced(Table):
     note: Annotated[str | None, Field(description="why a number or a choice is what it is", max_length=4000)] = None
 
     @model_validator(mode="after")
-    def _exceptions_exist(self) -> "Sourced":
+    def _exceptions_exist(self) -> "SourcedTable":
         for key in self.provisional:
             if key not in type(self).model_fields:
-                raise problem("provisional", f"{key!r} is not a key of this table", "List keys of the same table.")
+                raise validation_problem(
+                    "provisional", f"{key!r} is not a key of this table", "List keys of the same table."
+                )
         return self
 
 
-def problem(key: str, found: str, hint: str) -> PydanticCustomError:
+def validation_problem(key: str, found: str, hint: str) -> PydanticCustomError:
     """An inconsistency between keys, for a validator to raise.
 
     Parameters

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from difflib import get_close_matches
 
 
-def nearest(name: str, known: Sequence[str]) -> str:
+def suggest_names(name: str, known: Sequence[str]) -> str:
     """A sentence that says which known name was probably meant, or which there are."""
     # An id is often given by its last part alone.
     tails = {item.rsplit("/", 1)[-1]: item for item in known}

@@ -7,9 +7,9 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.validation_messages import input_error
+from pantocheck.conformance.input_files.validation_messages import build_input_error
 
-LARGEST_FILE = 5_000_000
+MAX_TOML_BYTES = 5_000_000
 """Bytes of a TOML file; no line or case needs more, and a parser given gigabytes would hang."""
 
 T = TypeVar("T", bound=BaseModel)
@@ -33,15 +33,15 @@ def read_model(path: Path, model: type[T], kind: str) -> T:
     try:
         return model.model_validate(tree)
     except ValidationError as error:
-        raise input_error(error, model, where) from None
+        raise build_input_error(error, model, where) from None
 
 
 def read_toml(path: Path, kind: str) -> dict[str, Any]:
     """Read a TOML file without checking what it holds; parameters and errors as in `read_model`."""
     where = f"{kind} '{path.name}'"
     try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise InputError(where, f"{path.stat().st_size} bytes", f"A {kind} has at most {LARGEST_FILE} bytes.")
+        if path.stat().st_size > MAX_TOML_BYTES:
+            raise InputError(where, f"{path.stat().st_size} bytes", f"A {kind} has at most {MAX_TOML_BYTES} bytes.")
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise InputError(where, f"cannot be read from {path} ({error.strerror})", "Check the path.") from None

@@ -9,6 +9,6 @@ Trust = Literal["primary", "secondary", "provisional"]
 LEVELS: tuple[Trust, ...] = get_args(Trust)
 
 
-def counts(trust: Trust, lowest: Trust) -> bool:
+def limit_counts(trust: Trust, lowest: Trust) -> bool:
     """Whether a limit of this trust carries a verdict when `lowest` is the lowest level that counts."""
     return LEVELS.index(trust) <= LEVELS.index(lowest)

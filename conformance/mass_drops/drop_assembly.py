@@ -5,10 +5,16 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from pantocheck.conformance.input_files.channel_units import direction, unit
+from pantocheck.conformance.input_files.channel_units import convert_unit, parse_direction
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.mass_drops.drop_record import Channel, Drop, DropRecord, Line, Quantity
-from pantocheck.conformance.mass_drops.drop_sidecar import ChannelTable, Sidecar
+from pantocheck.conformance.mass_drops.drop_record import (
+    DropChannel,
+    DropDescription,
+    DropLine,
+    DropRecord,
+    MotionQuantity,
+)
+from pantocheck.conformance.mass_drops.drop_sidecar import DropChannelTable, DropSidecar
 
 Real = NDArray[np.float64]
 
@@ -19,16 +25,16 @@ SAME_EXTREMES = 4  # so many samples in a row on the very same extreme are a fla
 
 
 @dataclass(frozen=True)
-class Column:
+class DropColumn:
     """What a file itself says of a column; what it does not say is None."""
 
     name: str | None = None
     unit: str | None = None
-    table: ChannelTable | None = None
+    table: DropChannelTable | None = None
 
 
 @dataclass(frozen=True)
-class Table:
+class DropColumns:
     """One run as a file holds it.
 
     Parameters
@@ -43,16 +49,16 @@ class Table:
     """
 
     values: Real
-    columns: tuple[Column, ...]
+    columns: tuple[DropColumn, ...]
     time: Real | None = None
     rate: float | None = None
     title: str = ""
     run: int = 0
-    drop: Drop = field(default_factory=Drop)
-    line: Line = field(default_factory=Line)
+    drop: DropDescription = field(default_factory=DropDescription)
+    line: DropLine = field(default_factory=DropLine)
 
 
-def assemble(table: Table, sidecar: Sidecar | None, source: str) -> DropRecord:
+def assemble_drop_records(table: DropColumns, sidecar: DropSidecar | None, source: str) -> DropRecord:
     """A record in SI units.
 
     Parameters
@@ -71,7 +77,7 @@ def assemble(table: Table, sidecar: Sidecar | None, source: str) -> DropRecord:
     described = _described(table, sidecar, source)
     rate = _rate(table, sidecar, source)
     signals = np.empty((n, len(described)))
-    channels, quantities, warnings = [], set[Quantity](), list[str]()
+    channels, quantities, warnings = [], set[MotionQuantity](), list[str]()
     for c, channel in enumerate(described):
         where = f"{source}, channel '{channel.name}'"
         if channel.column > width:
@@ -82,11 +88,11 @@ def assemble(table: Table, sidecar: Sidecar | None, source: str) -> DropRecord:
             )
         values = table.values[:, channel.column - 1]
         _check_finite(values, rate, where)
-        quantity, factor = unit(channel.unit, where)
-        axis, sign = direction(channel.direction, where)
+        quantity, factor = convert_unit(channel.unit, where)
+        axis, sign = parse_direction(channel.direction, where)
         signals[:, c] = values * (factor * sign)
         quantities.add(quantity)
-        channels.append(Channel(channel.name, channel.sensor, axis, channel.wire.upper(), channel.position_m))
+        channels.append(DropChannel(channel.name, channel.sensor, axis, channel.wire.upper(), channel.position_m))
         warnings += _doubts(signals[:, c], quantity, rate, where)
     name = (sidecar.test.name if sidecar else "") or table.title or source
     return DropRecord(
@@ -102,7 +108,7 @@ def assemble(table: Table, sidecar: Sidecar | None, source: str) -> DropRecord:
     )
 
 
-def flat_tops(signal: Real) -> list[tuple[int, int]]:
+def find_flat_tops(signal: Real) -> list[tuple[int, int]]:
     """Stretches [start, end) where a signal stays on its own maximum or minimum.
 
     A signal that never moves is not clipped but dead, and is reported as one stretch.
@@ -114,16 +120,16 @@ def flat_tops(signal: Real) -> list[tuple[int, int]]:
     return sorted(found)
 
 
-def clipped(signal: Real) -> list[tuple[int, int]]:
+def find_clipping(signal: Real) -> list[tuple[int, int]]:
     """Flat tops [start, end) of a saturated amplifier: those far from the signal's middle.
 
     A converter's quiet floor also repeats its smallest value; it lies near the median.
     """
     middle, reach = np.median(signal), 0.2 * np.ptp(signal)
-    return [top for top in flat_tops(signal) if abs(signal[top[0]] - middle) > reach]
+    return [top for top in find_flat_tops(signal) if abs(signal[top[0]] - middle) > reach]
 
 
-def _described(table: Table, sidecar: Sidecar | None, source: str) -> tuple[ChannelTable, ...]:
+def _described(table: DropColumns, sidecar: DropSidecar | None, source: str) -> tuple[DropChannelTable, ...]:
     width = table.values.shape[1]
     if sidecar is None:
         own = tuple(column.table for column in table.columns)
@@ -158,14 +164,14 @@ def _described(table: Table, sidecar: Sidecar | None, source: str) -> tuple[Chan
     return sidecar.channel
 
 
-def _check_same(channel: ChannelTable, column: Column, source: str) -> None:
+def _check_same(channel: DropChannelTable, column: DropColumn, source: str) -> None:
     if column.name and column.name.strip() != channel.name.strip():
         raise InputError(
             source,
             f"column {channel.column} is headed '{column.name[:60]}', the sidecar calls it '{channel.name}'",
             "Correct the sidecar: a channel taken for another one gives wrong shapes.",
         )
-    if column.unit and unit(column.unit, source) != unit(channel.unit, f"sidecar of {source}"):
+    if column.unit and convert_unit(column.unit, source) != convert_unit(channel.unit, f"sidecar of {source}"):
         raise InputError(
             f"{source}, channel '{channel.name}'",
             f"the file says {column.unit}, the sidecar says {channel.unit}",
@@ -173,7 +179,7 @@ def _check_same(channel: ChannelTable, column: Column, source: str) -> None:
         )
 
 
-def _rate(table: Table, sidecar: Sidecar | None, source: str) -> float:
+def _rate(table: DropColumns, sidecar: DropSidecar | None, source: str) -> float:
     stated = [
         (rate, who)
         for rate, who in (
@@ -227,11 +233,11 @@ def _check_finite(values: Real, rate: float, where: str) -> None:
         )
 
 
-def _doubts(signal: Real, quantity: Quantity, rate: float, where: str) -> list[str]:
+def _doubts(signal: Real, quantity: MotionQuantity, rate: float, where: str) -> list[str]:
     if np.ptp(signal) == 0:
         raise InputError(where, "never changes", "The sensor was dead: leave this channel out of the sidecar.")
     found = []
-    tops = clipped(signal)
+    tops = find_clipping(signal)
     if tops:
         found.append(
             f"{where}: clipped, {len(tops)} times between {tops[0][0] / rate:.2f} s and {tops[-1][1] / rate:.2f} s"
@@ -241,7 +247,7 @@ def _doubts(signal: Real, quantity: Quantity, rate: float, where: str) -> list[s
     return found
 
 
-def _one(quantities: set[Quantity], sidecar: Sidecar | None, source: str) -> Quantity:
+def _one(quantities: set[MotionQuantity], sidecar: DropSidecar | None, source: str) -> MotionQuantity:
     if len(quantities) > 1:
         raise InputError(source, f"mixes {' and '.join(sorted(quantities))}", "Give one file per kind of sensor.")
     (quantity,) = quantities
@@ -254,12 +260,12 @@ def _one(quantities: set[Quantity], sidecar: Sidecar | None, source: str) -> Qua
     return quantity
 
 
-def _drop(table: Table, sidecar: Sidecar | None, duration: float, source: str) -> Drop:
+def _drop(table: DropColumns, sidecar: DropSidecar | None, duration: float, source: str) -> DropDescription:
     drop = table.drop
     if sidecar is not None:
         said = sidecar.drop
         trigger = sidecar.record.trigger_nominal_s
-        drop = Drop(
+        drop = DropDescription(
             said.mass_kg if said.mass_kg is not None else drop.mass,
             said.wire.upper() or drop.wire,
             said.position_m if said.position_m is not None else drop.position,
@@ -274,11 +280,11 @@ def _drop(table: Table, sidecar: Sidecar | None, duration: float, source: str) -
     return drop
 
 
-def _line(table: Table, sidecar: Sidecar | None) -> Line:
+def _line(table: DropColumns, sidecar: DropSidecar | None) -> DropLine:
     if sidecar is None:
         return table.line
     test = sidecar.test
-    return Line(
+    return DropLine(
         test.spans_m or table.line.spans,
         test.cw_tension_n if test.cw_tension_n is not None else table.line.contact_wire_tension,
         test.mw_tension_n if test.mw_tension_n is not None else table.line.messenger_wire_tension,

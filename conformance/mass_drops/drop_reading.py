@@ -2,17 +2,18 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.mass_drops.drop_assembly import Table, assemble
+from pantocheck.conformance.mass_drops.drop_assembly import DropColumns, assemble_drop_records
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
-from pantocheck.conformance.mass_drops.drop_sidecar import Sidecar, read_sidecar
+from pantocheck.conformance.mass_drops.drop_sidecar import DropSidecar, read_drop_sidecar
 
-LARGEST_FILE = 2_000_000_000  # bytes
+MAX_DROP_BYTES = 2_000_000_000  # bytes
 
 
-def read_records(path: Path) -> tuple[DropRecord, ...]:
+def read_drop_records(path: Path) -> tuple[DropRecord, ...]:
     """All runs in a file of records.
 
     Parameters
@@ -33,35 +34,32 @@ def read_records(path: Path) -> tuple[DropRecord, ...]:
         raise InputError(source, "is not a file", "Name a record file.")
     if size == 0:
         raise InputError(source, "is empty", "Export the record again.")
-    if size > LARGEST_FILE:
-        raise InputError(source, f"has {size} bytes", f"A record has at most {LARGEST_FILE} bytes.")
-    sidecar = read_sidecar(path)
+    if size > MAX_DROP_BYTES:
+        raise InputError(source, f"has {size} bytes", f"A record has at most {MAX_DROP_BYTES} bytes.")
+    sidecar = read_drop_sidecar(path)
     file = str(path.resolve())
-    return tuple(replace(assemble(table, sidecar, source), file=file) for table in reader(path, sidecar))
+    return tuple(replace(assemble_drop_records(table, sidecar, source), file=file) for table in reader(path, sidecar))
 
 
-Reader = Callable[[Path, Sidecar | None], list[Table]]
+Reader = Callable[[Path, DropSidecar | None], list[DropColumns]]
+
+# Module of each format and the suffixes of its files; its library is loaded only when a file of that format comes.
+_READERS = {
+    "csv_drops": (".csv", ".txt"),
+    "uff_drops": (".uff", ".unv", ".uf", ".uff58", ".58"),
+    "matlab_drops": (".mat",),
+    "hdf5_drops": (".h5", ".hdf5"),
+    "tdms_drops": (".tdms",),
+    "mdf_drops": (".mf4", ".mdf"),
+}
 
 
 def _reader(suffix: str, source: str) -> Reader:
-    # Each format's library is loaded only when a file of that format comes.
-    match suffix:
-        case ".csv" | ".txt":
-            from pantocheck.conformance.mass_drops.formats.csv_drops import read
-        case ".uff" | ".unv" | ".uf" | ".uff58" | ".58":
-            from pantocheck.conformance.mass_drops.formats.uff_drops import read
-        case ".mat":
-            from pantocheck.conformance.mass_drops.formats.matlab_drops import read
-        case ".h5" | ".hdf5":
-            from pantocheck.conformance.mass_drops.formats.hdf5_drops import read
-        case ".tdms":
-            from pantocheck.conformance.mass_drops.formats.tdms_drops import read
-        case ".mf4" | ".mdf":
-            from pantocheck.conformance.mass_drops.formats.mdf_drops import read
-        case ".toml":
-            raise InputError(source, "is a sidecar", "Name the record beside it: .csv, .uff, .mat, .h5, .tdms or .mf4.")
-        case _:
-            raise InputError(
-                source, f"format '{suffix}' is not known", "Known are .csv, .uff, .mat, .h5, .tdms and .mf4."
-            )
-    return read
+    if suffix == ".toml":
+        raise InputError(source, "is a sidecar", "Name the record beside it: .csv, .uff, .mat, .h5, .tdms or .mf4.")
+    for name, suffixes in _READERS.items():
+        if suffix in suffixes:
+            module = import_module(f"pantocheck.conformance.mass_drops.formats.{name}")
+            reader: Reader = getattr(module, f"read_{name}")
+            return reader
+    raise InputError(source, f"format '{suffix}' is not known", "Known are .csv, .uff, .mat, .h5, .tdms and .mf4.")

@@ -8,11 +8,11 @@ from numpy.typing import NDArray
 
 Real = NDArray[np.float64]
 Axis = Literal["x", "y", "z"]
-Quantity = Literal["acceleration", "velocity", "displacement"]
+MotionQuantity = Literal["acceleration", "velocity", "displacement"]
 
 
 @dataclass(frozen=True)
-class Channel:
+class DropChannel:
     """One measured direction of one sensor.
 
     Parameters
@@ -32,7 +32,7 @@ class Channel:
 
 
 @dataclass(frozen=True)
-class Drop:
+class DropDescription:
     """What was dropped.
 
     Parameters
@@ -50,7 +50,7 @@ class Drop:
 
 
 @dataclass(frozen=True)
-class Line:
+class DropLine:
     """What the file says of the line: enough to tell whether two records are of the same one.
 
     Parameters
@@ -85,10 +85,10 @@ class DropRecord:
     source: str
     rate: float
     signals: Real
-    channels: tuple[Channel, ...]
-    quantity: Quantity = "acceleration"
-    drop: Drop = Drop()
-    line: Line = Line()
+    channels: tuple[DropChannel, ...]
+    quantity: MotionQuantity = "acceleration"
+    drop: DropDescription = DropDescription()
+    line: DropLine = DropLine()
     warnings: tuple[str, ...] = ()
     file: str = ""
 

@@ -7,7 +7,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from pantocheck.conformance.input_files.toml_file import read_model
 
-Positive = Annotated[float, Field(gt=0)]
+PositiveNumber = Annotated[float, Field(gt=0)]
 
 
 class _Open(BaseModel):
@@ -16,12 +16,12 @@ class _Open(BaseModel):
     model_config = ConfigDict(extra="ignore", frozen=True, strict=True, allow_inf_nan=False)
 
 
-class Test(_Open):
+class DropTestTable(_Open):
     """The test and its line."""
 
     name: Annotated[str, Field(max_length=200, description="name of the test")] = ""
     spans_m: Annotated[
-        tuple[Positive, ...], Field(strict=False, max_length=1000, description="lengths of the spans [m]")
+        tuple[PositiveNumber, ...], Field(strict=False, max_length=1000, description="lengths of the spans [m]")
     ] = ()
     cw_tension_n: Annotated[float | None, Field(gt=0, description="tension of the contact wire [N]")] = None
     mw_tension_n: Annotated[float | None, Field(gt=0, description="tension of the messenger wire [N]")] = None
@@ -35,7 +35,7 @@ class DropTable(_Open):
     position_m: Annotated[float | None, Field(description="where it hung, from the first support [m]")] = None
 
 
-class RecordTable(_Open):
+class DropRecordTable(_Open):
     """The recording."""
 
     sampling_rate_hz: Annotated[float, Field(gt=0, le=1e6, description="samples per second [Hz]")]
@@ -46,7 +46,7 @@ class RecordTable(_Open):
     ] = None
 
 
-class ChannelTable(_Open):
+class DropChannelTable(_Open):
     """A column."""
 
     column: Annotated[int, Field(ge=1, le=10000, description="number of the column, from 1, time not counted")]
@@ -58,26 +58,26 @@ class ChannelTable(_Open):
     unit: Annotated[str, Field(max_length=40, description="m/s2, g, ...")]
 
 
-class Sidecar(_Open):
+class DropSidecar(_Open):
     """A sidecar file."""
 
-    test: Test = Test()
+    test: DropTestTable = DropTestTable()
     drop: DropTable = DropTable()
-    record: RecordTable
-    channel: Annotated[tuple[ChannelTable, ...], Field(strict=False, min_length=1, description="one per column")]
+    record: DropRecordTable
+    channel: Annotated[tuple[DropChannelTable, ...], Field(strict=False, min_length=1, description="one per column")]
 
 
-def sidecar_of(record: Path) -> Path:
+def find_drop_sidecar(record: Path) -> Path:
     """Where the sidecar of a record is looked for: beside it, with the same stem."""
     return record.with_suffix(".toml")
 
 
-def read_sidecar(record: Path) -> Sidecar | None:
+def read_drop_sidecar(record: Path) -> DropSidecar | None:
     """The sidecar of a record, None if there is none.
 
     Raises
     ------
     InputError : it cannot be read or is wrong
     """
-    path = sidecar_of(record)
-    return read_model(path, Sidecar, "sidecar") if path.is_file() else None
+    path = find_drop_sidecar(record)
+    return read_model(path, DropSidecar, "sidecar") if path.is_file() else None

@@ -9,10 +9,10 @@ import numpy as np
 import pyuff
 import tomli_w
 
-from pantocheck.conformance.input_files.atomic_writing import produce_in_place, write_in_place
+from pantocheck.conformance.input_files.atomic_writing import produce_atomically, write_atomically
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
-from pantocheck.conformance.mass_drops.drop_sidecar import sidecar_of
+from pantocheck.conformance.mass_drops.drop_sidecar import find_drop_sidecar
 
 SI_UNIT = {"acceleration": "m/s2", "velocity": "m/s", "displacement": "m"}
 DATA_TYPE = {"acceleration": 12, "velocity": 11, "displacement": 8}
@@ -20,7 +20,7 @@ DATA_TYPE = {"acceleration": 12, "velocity": 11, "displacement": 8}
 UNWRITABLE = ",;\t\"'"  # in the head line of a CSV file, which is read without quoting
 
 
-def write_csv(record: DropRecord, path: Path) -> None:
+def write_drop_csv(record: DropRecord, path: Path) -> None:
     """Write a record as CSV (decimal point, commas) and its sidecar beside it.
 
     Parameters
@@ -42,11 +42,11 @@ def write_csv(record: DropRecord, path: Path) -> None:
     head = ",".join(["time_s", *(channel.name for channel in record.channels)])
     table = np.column_stack([record.time, record.signals])
     body = "\n".join(",".join(f"{value:.9g}" for value in row) for row in table)
-    write_in_place(sidecar_of(path), tomli_w.dumps(_sidecar(record)).encode())
-    write_in_place(path, f"{head}\n{body}\n".encode())
+    write_atomically(find_drop_sidecar(path), tomli_w.dumps(_sidecar(record)).encode())
+    write_atomically(path, f"{head}\n{body}\n".encode())
 
 
-def write_uff(record: DropRecord, path: Path, form: Literal["ascii", "binary"] = "binary") -> None:
+def write_drop_uff(record: DropRecord, path: Path, form: Literal["ascii", "binary"] = "binary") -> None:
     """Write a record as universal file, one data set 58 per channel; parameters and errors as in `write_csv`.
 
     What the format has no field for (wire, position, mass, trigger) stands in its id lines and in a sidecar.
@@ -61,8 +61,8 @@ def write_uff(record: DropRecord, path: Path, form: Literal["ascii", "binary"] =
             warnings.simplefilter("ignore", ResourceWarning)
             pyuff.UFF(str(temporary)).write_sets(sets, mode="add")
 
-    write_in_place(sidecar_of(path), tomli_w.dumps(_sidecar(record)).encode())
-    produce_in_place(path, produce)
+    write_atomically(find_drop_sidecar(path), tomli_w.dumps(_sidecar(record)).encode())
+    produce_atomically(path, produce)
 
 
 def _set_58(record: DropRecord, c: int, form: Literal["ascii", "binary"]) -> dict[str, Any]:
@@ -112,7 +112,7 @@ def _ascii(text: str) -> str:
     return text.encode("ascii", "replace").decode("ascii")[:80].strip() or "NONE"
 
 
-def write_hdf5(records: tuple[DropRecord, ...], path: Path) -> None:
+def write_drop_hdf5(records: tuple[DropRecord, ...], path: Path) -> None:
     """Write the runs of one test as HDF5; parameters and errors as in `write_csv`.
 
     Raises
@@ -146,7 +146,7 @@ def write_hdf5(records: tuple[DropRecord, ...], path: Path) -> None:
             for k, record in enumerate(records, 1):
                 file.create_dataset(f"run_{k}/{record.quantity}", data=record.signals.T, compression="gzip")
 
-    produce_in_place(path, produce)
+    produce_atomically(path, produce)
 
 
 def _facts(record: DropRecord) -> dict[str, Any]:

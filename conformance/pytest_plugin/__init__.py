@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 if TYPE_CHECKING:
-    from pantocheck.conformance.pytest_plugin.user_fixtures import Graded
+    from pantocheck.conformance.pytest_plugin.user_fixtures import GradedCase
 
 FOLDER = "pantocheck_folder"
 """Key under which a worker of pytest-xdist is told the folder that all of them share."""
@@ -73,10 +73,10 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
     folder = shared_folder(config)
     if any(folder.iterdir()):
         from pantocheck.conformance.input_files.input_error import InputError
-        from pantocheck.conformance.pytest_plugin.collection import certificates
+        from pantocheck.conformance.pytest_plugin.collection import write_certificates
 
         try:
-            config.stash[_LINES], drifted = certificates(config, folder)
+            config.stash[_LINES], drifted = write_certificates(config, folder)
         except InputError as error:
             config.stash[_LINES], drifted = [f"no certificate: {error}"], True
         if drifted and session.exitstatus == pytest.ExitCode.OK:
@@ -98,20 +98,20 @@ def pytest_unconfigure(config: pytest.Config) -> None:
 
 
 @pytest.fixture(scope="session")
-def pantocheck_run(pytestconfig: pytest.Config) -> "Callable[..., Graded]":
+def pantocheck_run(pytestconfig: pytest.Config) -> "Callable[..., GradedCase]":
     """Function that runs a case on a system and grades it; see `pytest_grading.run`."""
     from functools import partial
 
-    from pantocheck.conformance.pytest_plugin.user_fixtures import run
+    from pantocheck.conformance.pytest_plugin.user_fixtures import run_and_grade
 
-    return partial(run, trust=pytestconfig.getoption("pantocheck_trust") or "secondary")
+    return partial(run_and_grade, trust=pytestconfig.getoption("pantocheck_trust") or "secondary")
 
 
 @pytest.fixture(scope="session")
-def pantocheck_assess(pytestconfig: pytest.Config) -> "Callable[..., Graded]":
+def pantocheck_assess(pytestconfig: pytest.Config) -> "Callable[..., GradedCase]":
     """Function that grades a record, or arrays of force, as a run of a case; see `pytest_grading.assess`."""
     from functools import partial
 
-    from pantocheck.conformance.pytest_plugin.user_fixtures import assess
+    from pantocheck.conformance.pytest_plugin.user_fixtures import grade_arrays
 
-    return partial(assess, trust=pytestconfig.getoption("pantocheck_trust") or "secondary")
+    return partial(grade_arrays, trust=pytestconfig.getoption("pantocheck_trust") or "secondary")

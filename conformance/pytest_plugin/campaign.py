@@ -9,24 +9,24 @@ from pathlib import Path
 from filelock import FileLock
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import overlaid, read_limits, select
-from pantocheck.conformance.grading.baseline import against_baseline
-from pantocheck.conformance.grading.case_grading import ungraded
-from pantocheck.conformance.input_files.atomic_writing import check_writable, write_in_place
+from pantocheck.conformance.cases.library import overlay_limits, read_limits, select_cases
+from pantocheck.conformance.grading.baseline import compare_with_baseline
+from pantocheck.conformance.grading.case_grading import build_ungraded
+from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.plan import Plan, read_plan
-from pantocheck.conformance.reports.formats.report_writers import checked_formats
-from pantocheck.conformance.results.results_building import assembled, now
+from pantocheck.conformance.reports.formats.report_writers import check_formats
+from pantocheck.conformance.results.results_building import build_results, utc_now
 from pantocheck.conformance.results.results_format import CaseResult, Results, SystemIdentity
 from pantocheck.conformance.results.results_reading import read_results
 from pantocheck.conformance.runner import run_when_ready
-from pantocheck.conformance.studies.damping_sensitivity import with_damping_study
+from pantocheck.conformance.studies.damping_sensitivity import add_damping_study
 from pantocheck.conformance.systems.system import System
-from pantocheck.conformance.systems.system_choice import system_named
+from pantocheck.conformance.systems.system_choice import choose_system
 
 
 @dataclass
-class Campaign:
+class PlanSession:
     """A plan that is worked off.
 
     Parameters
@@ -47,7 +47,7 @@ class Campaign:
     @classmethod
     def of_plan(
         cls, path: Path, shared: Path, out: str | None, formats: tuple[str, ...] | None, trust: Trust | None
-    ) -> "Campaign":
+    ) -> "PlanSession":
         """Read a plan; None leaves an option as the plan has it.
 
         Raises
@@ -56,12 +56,12 @@ class Campaign:
         """
         given = {"out": out, "formats": formats, "trust": trust}
         plan = read_plan(path).model_copy(update={key: value for key, value in given.items() if value is not None})
-        cases = select(plan.cases)
+        cases = select_cases(plan.cases)
         if plan.limits is not None:
-            cases = overlaid(cases, read_limits(Path(plan.limits)))
+            cases = overlay_limits(cases, read_limits(Path(plan.limits)))
         if plan.damping_study:
-            cases = [with_damping_study(case) for case in cases]
-        checked_formats(plan.formats)
+            cases = [add_damping_study(case) for case in cases]
+        check_formats(plan.formats)
         check_writable(Path(plan.out))
         return cls(path, plan, cases, shared / _key(str(path.resolve())))
 
@@ -73,7 +73,7 @@ class Campaign:
     @property
     def formats(self) -> tuple[str, ...]:
         """What is written."""
-        return checked_formats(self.plan.formats)
+        return check_formats(self.plan.formats)
 
     def result(self, case: Case) -> CaseResult:
         """Of a case: read if any process has it, else computed, those it requires first."""
@@ -85,7 +85,7 @@ class Campaign:
             with FileLock(self.folder / f"{_key(case.id)}.lock"):
                 if (known := self._read(case)) is None:
                     known = run_when_ready(case, self._started(), self.plan.trust, self._finished, self.cases)
-                    write_in_place(self._file(case), known.model_dump_json().encode())
+                    write_atomically(self._file(case), known.model_dump_json().encode())
             self._finished[case.id] = known
         return self._finished[case.id]
 
@@ -99,28 +99,28 @@ class Campaign:
             return None
         said = json.loads(session.read_text(encoding="utf-8"))
         finished = [
-            self._read(case) or ungraded(case, "skip", "not run in this session of pytest") for case in self.cases
+            self._read(case) or build_ungraded(case, "skip", "not run in this session of pytest") for case in self.cases
         ]
         identity = SystemIdentity.model_validate(said["system"])
-        results = assembled(finished, identity, self.plan.trust, said["started"])
+        results = build_results(finished, identity, self.plan.trust, said["started"])
         if self.plan.baseline is None:
             return results, 0
         path = Path(self.plan.baseline)
-        compared = against_baseline(results, read_results(path), self.plan.drift_pct, path.name)
+        compared = compare_with_baseline(results, read_results(path), self.plan.drift_pct, path.name)
         return compared, _criteria(compared) - _criteria(results)
 
     def _started(self) -> System:
         """The system under test, started once in this process."""
         if self._system is None:
-            self._system = system_named(self.plan.system, self.plan.timeout_s)
+            self._system = choose_system(self.plan.system, self.plan.timeout_s)
             session = {
                 "plan": str(self.path.resolve()),
-                "started": now(),
+                "started": utc_now(),
                 "system": {name: getattr(self._system, name) for name in ("name", "version", "kind")},
             }
             with FileLock(self.folder / "session.lock"):
                 if not (self.folder / "session.json").exists():
-                    write_in_place(self.folder / "session.json", json.dumps(session).encode())
+                    write_atomically(self.folder / "session.json", json.dumps(session).encode())
         return self._system
 
     def _file(self, case: Case) -> Path:
@@ -131,7 +131,7 @@ class Campaign:
         return CaseResult.model_validate_json(path.read_bytes()) if path.is_file() else None
 
 
-def registered(shared: Path) -> Iterator[Path]:
+def list_registered(shared: Path) -> Iterator[Path]:
     """Plans of which a case was run in a session, by name."""
     plans = [json.loads(path.read_text(encoding="utf-8"))["plan"] for path in shared.glob("*/session.json")]
     return map(Path, sorted(plans))

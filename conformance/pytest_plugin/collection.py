@@ -10,21 +10,21 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.pytest_plugin import shared_folder
-from pantocheck.conformance.pytest_plugin.campaign import Campaign, registered
-from pantocheck.conformance.pytest_plugin.user_fixtures import line
+from pantocheck.conformance.pytest_plugin.campaign import PlanSession, list_registered
+from pantocheck.conformance.pytest_plugin.user_fixtures import criterion_line
 from pantocheck.conformance.reports.formats.report_writers import FILES, write_all
 from pantocheck.conformance.results.results_format import CaseResult
 
 
-class NotMet(Exception):
+class CriterionNotMet(Exception):
     """A criterion is not met, or its case did not get that far: shown as its one line, without a traceback."""
 
 
-def campaign(config: pytest.Config, path: Path, folder: Path) -> Campaign:
+def open_session(config: pytest.Config, path: Path, folder: Path) -> PlanSession:
     """The campaign of a plan under the options of a session."""
     out = config.getoption("pantocheck_out")
     formats = config.getoption("pantocheck_formats")
-    return Campaign.of_plan(
+    return PlanSession.of_plan(
         path,
         folder,
         out=None if out is None else str(config.invocation_params.dir / out),
@@ -39,7 +39,7 @@ class PlanFile(pytest.File):
     def collect(self) -> "Iterator[CaseNode]":
         """Its cases."""
         try:
-            planned = campaign(self.config, self.path, shared_folder(self.config))
+            planned = open_session(self.config, self.path, shared_folder(self.config))
         except InputError as error:
             raise self.CollectError(str(error)) from None
         for case in planned.cases:
@@ -49,7 +49,7 @@ class PlanFile(pytest.File):
 class CaseNode(pytest.Collector):
     """A case of a plan."""
 
-    def __init__(self, campaign: Campaign, case: Case, **kwargs: Any) -> None:
+    def __init__(self, campaign: PlanSession, case: Case, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         self.campaign, self.case = campaign, case
         if self.config.pluginmanager.hasplugin("xdist"):
@@ -72,7 +72,7 @@ class CaseNode(pytest.Collector):
         """
         result = self.campaign.result(self.case)
         if result.verdict == "error":
-            raise NotMet(f"error: {result.reason}")
+            raise CriterionNotMet(f"error: {result.reason}")
         if result.reason:
             pytest.skip(result.reason)
         return result
@@ -100,7 +100,7 @@ class OneLine(pytest.Item):
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
         """The line, if it is a verdict or an error of input; anything else is a defect and keeps its traceback."""
-        told = isinstance(excinfo.value, NotMet | InputError)
+        told = isinstance(excinfo.value, CriterionNotMet | InputError)
         return str(excinfo.value) if told else super().repr_failure(excinfo, style)
 
     def reportinfo(self) -> tuple[Path, None, str]:
@@ -129,12 +129,12 @@ class CriterionItem(OneLine):
         criteria = self.case_node.result().criteria
         item = next(c for c in criteria if (c.quantity, c.pantograph, c.item) == self.limit.target)
         if item.verdict == "fail":
-            raise NotMet(line(item))
+            raise CriterionNotMet(criterion_line(item))
         if item.verdict in {"skip", "info"}:
             pytest.skip(item.reason or item.verdict)
 
 
-def certificates(config: pytest.Config, folder: Path) -> tuple[list[str], bool]:
+def write_certificates(config: pytest.Config, folder: Path) -> tuple[list[str], bool]:
     """Write the certificates of all plans of a session; a line for each, and whether a value drifted from a baseline.
 
     Raises
@@ -142,8 +142,8 @@ def certificates(config: pytest.Config, folder: Path) -> tuple[list[str], bool]:
     InputError : a file cannot be written
     """
     lines, drifted_anywhere = [], False
-    for path in registered(folder):
-        finished = campaign(config, path, folder)
+    for path in list_registered(folder):
+        finished = open_session(config, path, folder)
         if (found := finished.results()) is None:
             continue
         results, drifted = found

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import select
-from pantocheck.conformance.grading.case_grading import graded, name_of
+from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.grading.case_grading import criterion_name, grade_case
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.trust import Trust
@@ -18,11 +18,11 @@ from pantocheck.conformance.results.outcome import Outcome
 from pantocheck.conformance.results.results_format import CaseResult, Criterion
 from pantocheck.conformance.runner import run_case
 from pantocheck.conformance.systems.system import System
-from pantocheck.conformance.systems.system_choice import TIMEOUT_S, system_named
+from pantocheck.conformance.systems.system_choice import TIMEOUT_S, choose_system
 
 
 @dataclass(frozen=True)
-class Graded:
+class GradedCase:
     """A case that was graded.
 
     Parameters
@@ -41,7 +41,10 @@ class Graded:
     def reasons(self) -> tuple[str, ...]:
         """One line for the case, if it was not graded, and for every criterion that is not met."""
         whole = (self.result.reason,) if self.result.reason else ()
-        return (*whole, *(line(item) for item in self.result.criteria if item.verdict not in {"pass", "info"}))
+        return (
+            *whole,
+            *(criterion_line(item) for item in self.result.criteria if item.verdict not in {"pass", "info"}),
+        )
 
     def value(self, quantity: str, pantograph: int = 1) -> float | list[float]:
         """A quantity of a pantograph (0: of the line), whether it has limits or not."""
@@ -56,7 +59,7 @@ class Graded:
         """
         __tracebackhide__ = True
         wanted = [item for item in self.result.criteria if not quantities or item.quantity in quantities]
-        reasons = [line(item) for item in wanted if item.verdict not in {"pass", "info"}]
+        reasons = [criterion_line(item) for item in wanted if item.verdict not in {"pass", "info"}]
         if self.result.reason:
             reasons.insert(0, f"{self.result.verdict}: {self.result.reason}")
         reasons += [f"{name} has no limits" for name in quantities if name not in {item.quantity for item in wanted}]
@@ -64,9 +67,9 @@ class Graded:
             raise AssertionError(f"{self.result.id}: " + "\n".join(reasons))
 
 
-def line(item: Criterion) -> str:
+def criterion_line(item: Criterion) -> str:
     """A criterion on one line: what, its value, its limits, and why it is not met."""
-    of = name_of(item)
+    of = criterion_name(item)
     if item.value is None:
         return f"{of}: {item.verdict}, {item.reason}"
     bounds = " to ".join("any" if bound is None else f"{bound:g}" for bound in (item.lower, item.upper))
@@ -74,9 +77,9 @@ def line(item: Criterion) -> str:
     return f"{text}: {item.reason}" if item.reason else text
 
 
-def run(
+def run_and_grade(
     case: str, system: str | System = "builtin", *, trust: Trust = "secondary", timeout_s: float = TIMEOUT_S
-) -> Graded:
+) -> GradedCase:
     """Run a case on a system and grade it.
 
     Parameters
@@ -90,11 +93,11 @@ def run(
     ------
     InputError : there is no such case or system
     """
-    tested = system_named(system, timeout_s) if isinstance(system, str) else system
-    return Graded(run_case(_one(case), tested, trust))
+    tested = choose_system(system, timeout_s) if isinstance(system, str) else system
+    return GradedCase(run_case(_one(case), tested, trust))
 
 
-def assess(
+def grade_arrays(
     case: str,
     record: Record | str | Path | None = None,
     *,
@@ -106,7 +109,7 @@ def assess(
     support_uplift_m: ArrayLike | None = None,
     filter_applied_Hz: float | None = None,
     trust: Trust = "secondary",
-) -> Graded:
+) -> GradedCase:
     """Grade a record as a run of a case.
 
     Parameters
@@ -144,11 +147,11 @@ def assess(
             )
         except RecordInvalid as error:
             raise InputError(f"pantocheck_assess, {error.channel}", error.found, "See the docstring.") from None
-    return Graded(graded(asked, Outcome(record), trust))
+    return GradedCase(grade_case(asked, Outcome(record), trust))
 
 
 def _one(name: str) -> Case:
-    found = [case for case in select([name]) if case.id == name or name.endswith(".toml")]
+    found = [case for case in select_cases([name]) if case.id == name or name.endswith(".toml")]
     if len(found) != 1:
         raise InputError(f"case '{name}'", f"{len(found)} cases", "Name one case by its id or its file.")
     return found[0]

@@ -8,7 +8,7 @@ from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandN
 
 Array = NDArray[np.float64]
 
-FEWEST_LINES = 4
+MIN_BAND_LINES = 4
 """Spectral lines a band must hold at least: with fewer, its rms is decided by where the stretch begins and ends."""
 
 
@@ -44,9 +44,9 @@ def band_rms(force: Array, rate: float, low: float, high: float, filter_applied_
             f"the force was delivered filtered at {filter_applied_Hz:g} Hz; the band {low:g}-{high:g} Hz is gone"
         )
     duration = force.size / rate
-    if (high - low) * duration < FEWEST_LINES:
+    if (high - low) * duration < MIN_BAND_LINES:
         raise BandNotObservable(
-            f"a band of {high - low:g} Hz needs at least {FEWEST_LINES / (high - low):g} s; "
+            f"a band of {high - low:g} Hz needs at least {MIN_BAND_LINES / (high - low):g} s; "
             f"the evaluated stretch lasts {duration:.3g} s"
         )
     frequency, power = _power(force, rate)

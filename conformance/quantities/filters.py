@@ -85,7 +85,7 @@ class LowPass:
         return np.asarray(np.abs(response) ** (2 if self.phase == "zero" else 1))
 
 
-def low_passed(signal: Array, rate: float, low_pass: LowPass, filter_applied_Hz: float | None) -> Array:
+def filter_force(signal: Array, rate: float, low_pass: LowPass, filter_applied_Hz: float | None) -> Array:
     """Signal filtered to a cut-off, also when it has been through a filter before.
 
     A signal delivered with the same cut-off is left as it is: a second pass would take another 3 dB at the cut-off.

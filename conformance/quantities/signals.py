@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pantocheck.conformance.quantities.bands import band_rms
-from pantocheck.conformance.quantities.filters import LowPass, low_passed
+from pantocheck.conformance.quantities.filters import LowPass, filter_force
 from pantocheck.conformance.quantities.unavailable import BandNotObservable, ChannelMissing, StretchNotCovered
 
 Array = NDArray[np.float64]
@@ -119,7 +119,7 @@ class PantographSignals:
                 f"statistics up to {low_pass.cutoff_Hz:g} Hz need at least {shortest:g} s; "
                 f"the evaluated stretch lasts {duration:.3g} s"
             )
-        return low_passed(self.force, self.rate, low_pass, self.filter_applied_Hz)[self.inside]
+        return filter_force(self.force, self.rate, low_pass, self.filter_applied_Hz)[self.inside]
 
     @property
     def height(self) -> Array:

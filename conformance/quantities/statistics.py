@@ -45,7 +45,7 @@ def contact_loss(force: Array, filter_applied_Hz: float | None = None) -> float:
     return float(100 * np.count_nonzero(force <= 0) / force.size)
 
 
-def histogram(force: Array, bins: int = 30) -> tuple[Array, Array]:
+def force_histogram(force: Array, bins: int = 30) -> tuple[Array, Array]:
     """Edges of the classes [N] and share of the samples in each [%]; widths are 1, 2 or 5 times a power of ten."""
     spread = float(np.ptp(force))
     raw = max(spread, 1.0) / bins

@@ -49,7 +49,7 @@ def line_signals(record: Record) -> LineSignals:
     return LineSignals(record.evaluated, record.support_position, record.support_uplift)
 
 
-def evaluate(record: Record, low_pass: LowPass) -> Evaluation:
+def evaluate_record(record: Record, low_pass: LowPass) -> Evaluation:
     """Every quantity of a record; one that the record cannot support is skipped with its reason.
 
     Parameters
@@ -58,10 +58,10 @@ def evaluate(record: Record, low_pass: LowPass) -> Evaluation:
     low_pass : filter of the graded force
     """
     numbered = range(1, record.pantographs + 1)
-    return evaluated({i: pantograph_signals(record, i, low_pass) for i in numbered}, line_signals(record))
+    return evaluate_signals({i: pantograph_signals(record, i, low_pass) for i in numbered}, line_signals(record))
 
 
-def evaluated(pantographs: Mapping[int, ForceSignals], line: LineSignals) -> Evaluation:
+def evaluate_signals(pantographs: Mapping[int, ForceSignals], line: LineSignals) -> Evaluation:
     """Every quantity of the signals of pantographs, by number, and of a line; what they cannot support is skipped."""
     values: dict[int, dict[str, Value]] = {LINE: {}}
     skipped: dict[int, dict[str, str]] = {LINE: {}}

@@ -3,12 +3,12 @@
 import re
 from dataclasses import dataclass
 
-from pantocheck.conformance.input_files.key_units import UNITS, converted
-from pantocheck.conformance.input_files.suggestions import nearest
+from pantocheck.conformance.input_files.key_units import KEY_UNITS, convert_key
+from pantocheck.conformance.input_files.suggestions import suggest_names
 
 
 @dataclass(frozen=True)
-class Channel:
+class RecordChannel:
     """A kind of channel.
 
     Parameters
@@ -30,47 +30,47 @@ class Channel:
     @property
     def units(self) -> dict[str, float]:
         """Units that a file may use, each with its factor to `unit`."""
-        kind, base = UNITS[self.unit]
-        return {unit: factor / base for unit, (of, factor) in UNITS.items() if of == kind}
+        kind, base = KEY_UNITS[self.unit]
+        return {unit: factor / base for unit, (of, factor) in KEY_UNITS.items() if of == kind}
 
 
-CHANNELS: dict[str, Channel] = {
+CHANNELS: dict[str, RecordChannel] = {
     channel.name: channel
     for channel in (
-        Channel("time", "s", "record"),
-        Channel("speed", "m_s", "record"),
-        Channel("position", "m", "pantograph"),
-        Channel("force", "N", "pantograph"),
-        Channel("contact_height", "m", "pantograph"),
-        Channel("uplift", "m", "support"),
+        RecordChannel("time", "s", "record"),
+        RecordChannel("speed", "m_s", "record"),
+        RecordChannel("position", "m", "pantograph"),
+        RecordChannel("force", "N", "pantograph"),
+        RecordChannel("contact_height", "m", "pantograph"),
+        RecordChannel("uplift", "m", "support"),
     )
 }
 
 
 @dataclass(frozen=True)
-class Column:
+class RecordColumn:
     """What a column or dataset holds: its channel, its number (1 if there is one for the record), and its factor."""
 
-    channel: Channel
+    channel: RecordChannel
     number: int
     factor: float
 
 
-def column_named(name: str) -> Column | None:
+def find_column(name: str) -> RecordColumn | None:
     """Meaning of a CSV column such as `force_1_N`; None if there is no such column."""
     for stem, number, unit in _readings(name):
         channel = CHANNELS.get(stem)
         if channel is not None and (number is None) == (channel.per == "record") and unit in channel.units:
-            return Column(channel, int(number or 1), channel.units[unit])
+            return RecordColumn(channel, int(number or 1), channel.units[unit])
     return None
 
 
-def dataset_named(name: str) -> Column | None:
+def find_dataset(name: str) -> RecordColumn | None:
     """Meaning of an HDF5 dataset such as `force_N`; None if there is no such dataset."""
     for channel in CHANNELS.values():
         unit = name.removeprefix(f"{channel.name}_")
         if unit != name and unit in channel.units:
-            return Column(channel, 1, channel.units[unit])
+            return RecordColumn(channel, 1, channel.units[unit])
     return None
 
 
@@ -80,9 +80,9 @@ def column_name(key: str, number: int) -> str:
     return key if channel.per == "record" else f"{channel.name}_{number}_{channel.unit}"
 
 
-def hint_for(name: str, known: list[str]) -> str:
+def suggest_column(name: str, known: list[str]) -> str:
     """What an unknown column or dataset probably was meant to be."""
-    return converted(name, None, known) or nearest(name, known)
+    return convert_key(name, None, known) or suggest_names(name, known)
 
 
 def _readings(name: str) -> list[tuple[str, str | None, str]]:

@@ -4,13 +4,16 @@ from pathlib import Path
 
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_model, read_toml
-from pantocheck.conformance.records.record_sidecar import Sidecar
-from pantocheck.conformance.records.record_summary import Summary
+from pantocheck.conformance.records.record_sidecar import RecordSidecar
+from pantocheck.conformance.records.record_summary import RecordSummary
 
-SCHEMAS: dict[str, type[Sidecar] | type[Summary]] = {"pantocheck.record/1": Sidecar, "pantocheck.summary/1": Summary}
+RECORD_SCHEMAS: dict[str, type[RecordSidecar] | type[RecordSummary]] = {
+    "pantocheck.record/1": RecordSidecar,
+    "pantocheck.summary/1": RecordSummary,
+}
 
 
-def read_either(path: Path) -> Sidecar | Summary:
+def open_record(path: Path) -> RecordSidecar | RecordSummary:
     """Read the TOML file of a record, whichever kind it is; a table may be named in place of its sidecar.
 
     Raises
@@ -19,12 +22,12 @@ def read_either(path: Path) -> Sidecar | Summary:
     """
     path = path if path.suffix == ".toml" else path.with_suffix(".toml")
     schema = read_toml(path, "record").get("schema")
-    model = SCHEMAS.get(schema) if isinstance(schema, str) else None
+    model = RECORD_SCHEMAS.get(schema) if isinstance(schema, str) else None
     if model is None:
-        expected = " or ".join(f'"{name}"' for name in SCHEMAS)
+        expected = " or ".join(f'"{name}"' for name in RECORD_SCHEMAS)
         raise InputError(
             f"record '{path.name}', key schema",
             "missing" if schema is None else f"found {str(schema)[:60]!r}",
             f"A record says schema = {expected}.",
         )
-    return read_model(path, model, "sidecar" if model is Sidecar else "summary record")
+    return read_model(path, model, "sidecar" if model is RecordSidecar else "summary record")

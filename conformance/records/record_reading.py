@@ -5,20 +5,20 @@ from pathlib import Path
 
 import numpy as np
 
-from pantocheck.conformance.input_files.atomic_writing import digest_of
+from pantocheck.conformance.input_files.atomic_writing import file_digest
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.records.record import LARGEST_NUMBER, Array, Record, RecordInvalid
 from pantocheck.conformance.records.record_channels import CHANNELS, column_name
-from pantocheck.conformance.records.record_sidecar import Sidecar
+from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.record_tables import FORMAT, Rows, check_complete, read_csv, read_hdf5
 from pantocheck.conformance.records.record_writing import HDF5_SUFFIXES
-from pantocheck.conformance.records.samples import Samples, record_of
+from pantocheck.conformance.records.samples import RecordSamples, build_record
 
-LARGEST_FILE = 2_000_000_000
+MAX_RECORD_BYTES = 2_000_000_000
 
 
-def read_record(path: Path, evaluated: tuple[float, float] | None = None) -> tuple[Record, Sidecar]:
+def read_record(path: Path, evaluated: tuple[float, float] | None = None) -> tuple[Record, RecordSidecar]:
     """Read a record by its sidecar, or by its table with the sidecar beside it.
 
     Parameters
@@ -32,15 +32,15 @@ def read_record(path: Path, evaluated: tuple[float, float] | None = None) -> tup
     """
     samples, sidecar, table = read_samples(path)
     try:
-        record = record_of(samples, sidecar)
+        record = build_record(samples, sidecar)
     except RecordInvalid as error:
-        raise invalid(table, error) from None
+        raise build_record_error(table, error) from None
     if sidecar.evaluated_m is None and evaluated is not None:
         record = replace(record, evaluated=evaluated)
     return record, sidecar
 
 
-def read_samples(path: Path) -> tuple[Samples, Sidecar, Path]:
+def read_samples(path: Path) -> tuple[RecordSamples, RecordSidecar, Path]:
     """Read the samples of a record as they are, missing values and uneven times included, and the path of the table.
 
     Raises
@@ -48,13 +48,13 @@ def read_samples(path: Path) -> tuple[Samples, Sidecar, Path]:
     InputError : a file is missing, damaged or contradicts the other
     """
     sidecar_path = path if path.suffix == ".toml" else path.with_suffix(".toml")
-    sidecar = read_model(sidecar_path, Sidecar, "sidecar")
+    sidecar = read_model(sidecar_path, RecordSidecar, "sidecar")
     table = sidecar_path.parent / sidecar.file
     where = f"record '{table.name}'"
     try:
-        if table.stat().st_size > LARGEST_FILE:
-            raise InputError(where, f"{table.stat().st_size} bytes", f"A record has at most {LARGEST_FILE} bytes.")
-        if sidecar.sha256 is not None and digest_of(table) != sidecar.sha256:
+        if table.stat().st_size > MAX_RECORD_BYTES:
+            raise InputError(where, f"{table.stat().st_size} bytes", f"A record has at most {MAX_RECORD_BYTES} bytes.")
+        if sidecar.sha256 is not None and file_digest(table) != sidecar.sha256:
             raise InputError(
                 where, "its content is not what the sidecar's sha256 says", "Copy or write the record again."
             )
@@ -70,12 +70,12 @@ def read_samples(path: Path) -> tuple[Samples, Sidecar, Path]:
     return _samples(rows, sidecar, where), sidecar, table
 
 
-def invalid(table: Path, error: RecordInvalid) -> InputError:
+def build_record_error(table: Path, error: RecordInvalid) -> InputError:
     """What is impossible in a record, as an error of its file."""
     return InputError(f"record '{table.name}', channel {error.channel}", error.found, FORMAT)
 
 
-def _samples(rows: Rows, sidecar: Sidecar, where: str) -> Samples:
+def _samples(rows: Rows, sidecar: RecordSidecar, where: str) -> RecordSamples:
     for name, of in rows.items():
         expected = sidecar.rows(CHANNELS[name].per)
         first_alone = name == "position" and list(of) == [1] and sidecar.spacing_m is not None
@@ -107,7 +107,7 @@ def _samples(rows: Rows, sidecar: Sidecar, where: str) -> Samples:
     stacked: dict[str, Array] = {
         name: np.ascontiguousarray(np.vstack([of[i] for i in sorted(of)])) for name, of in rows.items()
     }
-    return Samples(
+    return RecordSamples(
         force=stacked["force"],
         time=stacked["time"][0] if "time" in stacked else None,
         speed=stacked["speed"][0] if "speed" in stacked else None,

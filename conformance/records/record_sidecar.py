@@ -4,9 +4,15 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from pantocheck.conformance.input_files.sourced_table import NonNegative, NumberList, PositiveList, Table, problem
+from pantocheck.conformance.input_files.sourced_table import (
+    InputTable,
+    NonNegative,
+    NumberList,
+    PositiveList,
+    validation_problem,
+)
 
-SCHEMA = "pantocheck.record/1"
+RECORD_SCHEMA = "pantocheck.record/1"
 
 Speed = Annotated[float, Field(ge=1, le=600, description="speed of the train [km/h]")]
 Cutoff = Annotated[
@@ -15,14 +21,14 @@ Cutoff = Annotated[
 ]
 
 
-class SystemTable(Table):
+class SystemTable(InputTable):
     """What the record comes from: a simulator or a measuring system."""
 
     name: Annotated[str, Field(max_length=200, description="name of the simulator or measuring system")]
     version: Annotated[str, Field(max_length=200, description="its version")] = ""
 
 
-class RunTable(Table):
+class RunTable(InputTable):
     """How a simulated record was computed; all may be left out."""
 
     simulated_s: Annotated[float | None, Field(gt=0, description="time simulated [s]")] = None
@@ -31,7 +37,7 @@ class RunTable(Table):
     element_m: Annotated[float | None, Field(gt=0, description="length of an element [m]")] = None
 
 
-class LineTable(Table):
+class LineTable(InputTable):
     """What is known of the line beside the samples; all may be left out. Profiles grade by it."""
 
     span_m: Annotated[
@@ -45,7 +51,7 @@ class LineTable(Table):
     ] = None
 
 
-class Sidecar(Table):
+class RecordSidecar(InputTable):
     """What a table of samples is."""
 
     schema_: Annotated[
@@ -83,14 +89,16 @@ class Sidecar(Table):
     run: RunTable = RunTable()
 
     @model_validator(mode="after")
-    def _consistent(self) -> "Sidecar":
+    def _consistent(self) -> "RecordSidecar":
         check_cutoff(self.filter_applied_Hz)
         if self.evaluated_m is not None and self.evaluated_m[0] >= self.evaluated_m[1]:
-            raise problem("evaluated_m", "the stretch ends before it begins", "Give its start and its end.")
+            raise validation_problem("evaluated_m", "the stretch ends before it begins", "Give its start and its end.")
         if "/" in self.file or "\\" in self.file or self.file in {".", ".."} or "\0" in self.file:
-            raise problem("file", f"{self.file!r} is a path", "The table lies beside its sidecar: give its name alone.")
+            raise validation_problem(
+                "file", f"{self.file!r} is a path", "The table lies beside its sidecar: give its name alone."
+            )
         if self.spacing_m is not None and len(self.spacing_m) != self.pantographs - 1:
-            raise problem(
+            raise validation_problem(
                 "spacing_m",
                 f"{len(self.spacing_m)} distances for {self.pantographs} pantographs",
                 "Give one distance between each two neighbours, from the front.",
@@ -116,7 +124,7 @@ class Sidecar(Table):
 def check_cutoff(value: float | str) -> None:
     """Refuse a cut-off that is none; for validators."""
     if not isinstance(value, str) and value <= 0:
-        raise problem(
+        raise validation_problem(
             "filter_applied_Hz",
             f"{value:g} Hz is not a cut-off",
             'Write filter_applied_Hz = "none" for an unfiltered force.',

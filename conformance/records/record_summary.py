@@ -5,17 +5,17 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from pantocheck.conformance.input_files.sourced_table import NumberList, Sourced, problem
-from pantocheck.conformance.input_files.suggestions import nearest
+from pantocheck.conformance.input_files.sourced_table import NumberList, SourcedTable, validation_problem
+from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.quantities.registry import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES, QUANTITIES
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, statistical_extremes
 from pantocheck.conformance.records.evaluation import LINE, Evaluation, Value
 from pantocheck.conformance.records.record_sidecar import LineTable, RunTable, Speed, SystemTable
 
-SCHEMA = "pantocheck.summary/1"
+SUMMARY_SCHEMA = "pantocheck.summary/1"
 
-Values = Annotated[dict[str, Annotated[float, Field(ge=-1e9, le=1e9)]], Field(max_length=100)]
+SummaryValues = Annotated[dict[str, Annotated[float, Field(ge=-1e9, le=1e9)]], Field(max_length=100)]
 
 NEVER_NEGATIVE = frozenset(
     {
@@ -32,7 +32,7 @@ NEVER_NEGATIVE = frozenset(
 )
 
 
-class Summary(Sourced):
+class RecordSummary(SourcedTable):
     """Quantities of a run by name, per pantograph and of the line."""
 
     schema_: Annotated[
@@ -48,24 +48,24 @@ class Summary(Sourced):
         NumberList | None, Field(min_length=2, max_length=2, description="start and end of the evaluated stretch [m]")
     ] = None
     pantograph: Annotated[
-        tuple[Values, ...],
+        tuple[SummaryValues, ...],
         Field(strict=False, min_length=1, max_length=20, description="quantities by name, one table per pantograph"),
     ]
     quantities: Annotated[
-        Values, Field(default_factory=dict, description="quantities of the line by name, such as the uplift")
+        SummaryValues, Field(default_factory=dict, description="quantities of the line by name, such as the uplift")
     ]
     line: LineTable = LineTable()
     system: SystemTable | None = None
     run: RunTable = RunTable()
 
     @model_validator(mode="after")
-    def _possible(self) -> "Summary":
+    def _possible(self) -> "RecordSummary":
         for i, values in enumerate(self.pantograph, 1):
             _check(values, f"pantograph[{i}]", [quantity.name for quantity in PANTOGRAPH_QUANTITIES])
         static = [quantity.name for quantity in QUANTITIES.values() if quantity.scope == "static"]
         _check(self.quantities, "quantities", [*(quantity.name for quantity in LINE_QUANTITIES), *static])
         if self.evaluated_m is not None and self.evaluated_m[0] >= self.evaluated_m[1]:
-            raise problem("evaluated_m", "the stretch ends before it begins", "Give its start and its end.")
+            raise validation_problem("evaluated_m", "the stretch ends before it begins", "Give its start and its end.")
         return self
 
     @property
@@ -111,21 +111,25 @@ def _followed(given: dict[str, float]) -> list[tuple[str, float, float]]:
 def _check(values: dict[str, float], table: str, known: list[str]) -> None:
     for name, value in values.items():
         if name not in known:
-            raise problem(f"{table}.{name[:80]}", "there is no such quantity here", nearest(name[:80], known))
+            raise validation_problem(
+                f"{table}.{name[:80]}", "there is no such quantity here", suggest_names(name[:80], known)
+            )
         if value < 0 and name in NEVER_NEGATIVE:
-            raise problem(f"{table}.{name}", f"{value:g} is negative", QUANTITIES[name].definition.capitalize() + ".")
+            raise validation_problem(
+                f"{table}.{name}", f"{value:g} is negative", QUANTITIES[name].definition.capitalize() + "."
+            )
         if value > 100 and name.endswith("_pct"):
-            raise problem(f"{table}.{name}", f"{value:g} % is more than all", "Give a share of 100 %.")
+            raise validation_problem(f"{table}.{name}", f"{value:g} % is more than all", "Give a share of 100 %.")
     low, high = values.get("min_force_N"), values.get("max_force_N")
     if low is not None and high is not None and low > high:
-        raise problem(f"{table}.min_force_N", f"{low:g} is above max_force_N = {high:g}", "Exchange them.")
+        raise validation_problem(f"{table}.min_force_N", f"{low:g} is above max_force_N = {high:g}", "Exchange them.")
 
 
-def read_summary(path: Path) -> Summary:
+def read_record_summary(path: Path) -> RecordSummary:
     """Read a summary record.
 
     Raises
     ------
     InputError : it cannot be read, or is wrong
     """
-    return read_model(path, Summary, "summary record")
+    return read_model(path, RecordSummary, "summary record")

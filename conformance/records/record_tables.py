@@ -11,21 +11,21 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record import MAX_SAMPLES, Array
 from pantocheck.conformance.records.record_channels import (
     CHANNELS,
-    Channel,
-    Column,
+    RecordChannel,
+    RecordColumn,
     column_name,
-    column_named,
-    dataset_named,
-    hint_for,
+    find_column,
+    find_dataset,
+    suggest_column,
 )
-from pantocheck.conformance.records.record_sidecar import Sidecar
+from pantocheck.conformance.records.record_sidecar import RecordSidecar
 
 FORMAT = "See docs/records.md for the format."
 Rows = dict[str, dict[int, Array]]
 """Rows of each channel by number from 1."""
 
 
-def read_csv(path: Path, sidecar: Sidecar, where: str) -> Rows:
+def read_csv(path: Path, sidecar: RecordSidecar, where: str) -> Rows:
     """Rows of a CSV file; errors as in `read_samples`."""
     try:
         with path.open(encoding="utf-8-sig") as file:
@@ -60,13 +60,13 @@ def read_csv(path: Path, sidecar: Sidecar, where: str) -> Rows:
     return rows
 
 
-def _columns(names: list[str], sidecar: Sidecar, where: str) -> list[Column]:
+def _columns(names: list[str], sidecar: RecordSidecar, where: str) -> list[RecordColumn]:
     columns = []
     for name in names:
-        column = column_named(name)
+        column = find_column(name)
         if column is None:
             raise InputError(
-                f"{where}, line 1, column {name[:80]!r}", "unknown column", hint_for(name, _known(sidecar))
+                f"{where}, line 1, column {name[:80]!r}", "unknown column", suggest_column(name, _known(sidecar))
             )
         allowed = sidecar.rows(column.channel.per)
         if column.number > allowed:
@@ -78,7 +78,7 @@ def _columns(names: list[str], sidecar: Sidecar, where: str) -> list[Column]:
     return columns
 
 
-def _known(sidecar: Sidecar) -> list[str]:
+def _known(sidecar: RecordSidecar) -> list[str]:
     return [
         column_name(channel.key, i) for channel in CHANNELS.values() for i in range(1, sidecar.rows(channel.per) + 1)
     ]
@@ -95,7 +95,7 @@ def _telling(message: str) -> str:
     return f"cannot be read as numbers ({message[:120]})"
 
 
-def read_hdf5(path: Path, sidecar: Sidecar, where: str) -> Rows:
+def read_hdf5(path: Path, sidecar: RecordSidecar, where: str) -> Rows:
     """Rows of an HDF5 file; errors as in `read_samples`."""
     import h5py
 
@@ -104,10 +104,10 @@ def read_hdf5(path: Path, sidecar: Sidecar, where: str) -> Rows:
         with h5py.File(path, "r") as file:
             names = list(file)
             for name in names:
-                column = dataset_named(name)
+                column = find_dataset(name)
                 at = f"{where}, dataset {name[:80]!r}"
                 if column is None:
-                    raise InputError(at, "unknown dataset", hint_for(name, [c.key for c in CHANNELS.values()]))
+                    raise InputError(at, "unknown dataset", suggest_column(name, [c.key for c in CHANNELS.values()]))
                 if column.channel.name in rows:
                     raise InputError(at, f"a second dataset of {column.channel.name}", "Keep one of them.")
                 dataset = file[name]
@@ -126,7 +126,9 @@ def read_hdf5(path: Path, sidecar: Sidecar, where: str) -> Rows:
     return rows
 
 
-def _shape(shape: tuple[int, ...] | None, size: int, channel: Channel, sidecar: Sidecar, at: str) -> tuple[int, ...]:
+def _shape(
+    shape: tuple[int, ...] | None, size: int, channel: RecordChannel, sidecar: RecordSidecar, at: str
+) -> tuple[int, ...]:
     """Rows and samples of a dataset, checked before it is read: damaged bytes may claim any size."""
     expected = sidecar.rows(channel.per)
     found = (1, *shape) if shape is not None and len(shape) == 1 else shape

@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 import tomli_w
 
-from pantocheck.conformance.input_files.atomic_writing import digest_of, produce_in_place, write_in_place
+from pantocheck.conformance.input_files.atomic_writing import file_digest, produce_atomically, write_atomically
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_toml
 from pantocheck.conformance.records.record import Array, Record
 from pantocheck.conformance.records.record_channels import column_name
-from pantocheck.conformance.records.record_sidecar import SCHEMA, Sidecar
+from pantocheck.conformance.records.record_sidecar import RECORD_SCHEMA, RecordSidecar
 
 HDF5_SUFFIXES = (".h5", ".hdf5")
 
@@ -44,14 +44,14 @@ def write_record(
     check_record_path(path)
     channels = _channels(record)
     if path.suffix.lower() == ".csv":
-        produce_in_place(path, lambda temporary: _write_csv(temporary, channels))
+        produce_atomically(path, lambda temporary: _write_csv(temporary, channels))
     else:
-        produce_in_place(path, lambda temporary: _write_hdf5(temporary, channels))
+        produce_atomically(path, lambda temporary: _write_hdf5(temporary, channels))
     sidecar: dict[str, Any] = {
-        "schema": SCHEMA,
+        "schema": RECORD_SCHEMA,
         "case": case,
         "file": path.name,
-        "sha256": digest_of(path),
+        "sha256": file_digest(path),
         "speed_km_h": float(f"{3.6 * record.speed:.12g}"),
         "pantographs": record.pantographs,
         "evaluated_m": [float(x) for x in record.evaluated],
@@ -61,9 +61,9 @@ def write_record(
         "run": {key: value for key, value in (run or {}).items() if value is not None},
     }
     said = {key: value for key, value in sidecar.items() if value is not None}
-    Sidecar.model_validate(said)
+    RecordSidecar.model_validate(said)
     target = path.with_suffix(".toml")
-    write_in_place(target, tomli_w.dumps(said).encode())
+    write_atomically(target, tomli_w.dumps(said).encode())
     return target
 
 
@@ -74,7 +74,7 @@ def check_record_path(path: Path) -> None:
             f"record '{path}'", f"the suffix {path.suffix!r} is no format of a record", "Use .csv or .h5 ."
         )
     target = path.with_suffix(".toml")
-    if target.exists() and read_toml(target, "sidecar").get("schema") != SCHEMA:
+    if target.exists() and read_toml(target, "sidecar").get("schema") != RECORD_SCHEMA:
         raise InputError(
             f"record '{path}'",
             f"its sidecar {target.name} would overwrite a file that is none",

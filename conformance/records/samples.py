@@ -6,11 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pantocheck.conformance.records.record import Array, Record, RecordInvalid
-from pantocheck.conformance.records.record_sidecar import Sidecar
+from pantocheck.conformance.records.record_sidecar import RecordSidecar
 
 
 @dataclass(frozen=True)
-class Samples:
+class RecordSamples:
     """Channels of p pantographs and s supports, n samples; None: not in the table.
 
     Parameters
@@ -32,7 +32,7 @@ class Samples:
     uplift: Array | None = None
     support_position: Array | None = None
 
-    def at(self, chosen: NDArray[np.bool_]) -> "Samples":
+    def at(self, chosen: NDArray[np.bool_]) -> "RecordSamples":
         """The samples that a mask chooses."""
         parts = {name: getattr(self, name) for name in _SAMPLED}
         return replace(self, **{name: value[..., chosen] for name, value in parts.items() if value is not None})
@@ -41,7 +41,7 @@ class Samples:
 _SAMPLED = ("force", "time", "speed", "position", "contact_height", "uplift")
 
 
-def completed(samples: Samples, sidecar: Sidecar) -> tuple[Array, Array]:
+def complete_samples(samples: RecordSamples, sidecar: RecordSidecar) -> tuple[Array, Array]:
     """Time [s] (n,) and positions [m] (p, n) of all pantographs; what the table lacks follows from the speed.
 
     Raises
@@ -69,7 +69,7 @@ def _integral(rate: Array, over: Array) -> Array:
     return np.concatenate([[0.0], np.cumsum((rate[1:] + rate[:-1]) / 2 * np.diff(over))])
 
 
-def record_of(samples: Samples, sidecar: Sidecar) -> Record:
+def build_record(samples: RecordSamples, sidecar: RecordSidecar) -> Record:
     """The record of a table without gaps, evenly sampled.
 
     Raises
@@ -81,7 +81,7 @@ def record_of(samples: Samples, sidecar: Sidecar) -> Record:
         if value is not None and not np.isfinite(value).all():
             bad = np.argwhere(~np.isfinite(value.T))[:, 0]
             raise RecordInvalid(name, f"{bad.size} values are not finite, the first at sample {bad[0] + 1}")
-    time, position = completed(samples, sidecar)
+    time, position = complete_samples(samples, sidecar)
     whole = float(position[:, 0].max()), float(position[:, -1].min())
     return Record(
         time=time,

@@ -7,10 +7,10 @@ from typing import Any
 
 import typst
 
-from pantocheck.conformance.input_files.atomic_writing import write_in_place
-from pantocheck.conformance.reports.formats.html import environment
-from pantocheck.conformance.reports.formats.pdf import FONTS, showable
-from pantocheck.conformance.reports.page_text import cleaned
+from pantocheck.conformance.input_files.atomic_writing import write_atomically
+from pantocheck.conformance.reports.formats.html import build_environment
+from pantocheck.conformance.reports.formats.pdf import FONTS, find_showable
+from pantocheck.conformance.reports.page_text import clean_tree
 from pantocheck.conformance.reports.words import TEMPLATES
 
 
@@ -68,8 +68,8 @@ def write_html(document: Document, path: Path) -> None:
     ------
     InputError : it cannot be written
     """
-    text = environment().get_template("document.html").render(document=_plain(document))
-    write_in_place(path, text.encode("utf-8"))
+    text = build_environment().get_template("document.html").render(document=_plain(document))
+    write_atomically(path, text.encode("utf-8"))
 
 
 def write_pdf(document: Document, path: Path) -> None:
@@ -82,10 +82,10 @@ def write_pdf(document: Document, path: Path) -> None:
     # typst takes a dictionary of files, which its type hints do not know.
     sources: Any = {
         "main.typ": (TEMPLATES / "document.typ").read_bytes(),
-        "document.json": json.dumps(showable(_plain(document))).encode("ascii"),
+        "document.json": json.dumps(find_showable(_plain(document))).encode("ascii"),
     }
     made = typst.compile(sources, ignore_system_fonts=True, font_paths=[str(FONTS)])
-    write_in_place(path, bytes(made))
+    write_atomically(path, bytes(made))
 
 
 def _plain(document: Document) -> dict[str, Any]:
@@ -93,7 +93,7 @@ def _plain(document: Document) -> dict[str, Any]:
     data = asdict(document)
     pictures = [[picture.pop("svg") for picture in section["pictures"]] for section in data["sections"]]
     codes = [section.pop("code") for section in data["sections"]]
-    shown: dict[str, Any] = cleaned(data)
+    shown: dict[str, Any] = clean_tree(data)
     for section, svgs, code in zip(shown["sections"], pictures, codes, strict=True):
         section["code"] = code
         for picture, svg in zip(section["pictures"], svgs, strict=True):

@@ -11,7 +11,7 @@ UNSHOWABLE = re.compile("[\ud800-\udfff\ue000-\uf8ff\ufdd0-\ufdef\ufffe\uffff\U0
 BIDIRECTIONAL = re.compile("[\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]")
 
 
-def clean(text: str) -> str:
+def clean_text(text: str) -> str:
     """Text on one line that any page can carry: no control characters, at most `LONGEST` characters.
 
     Escaping is left to each format; this only takes out what no format can hold.
@@ -21,43 +21,43 @@ def clean(text: str) -> str:
     return text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
 
 
-def cleaned(value: Any) -> Any:
+def clean_tree(value: Any) -> Any:
     """The same nest of dictionaries and lists with every text, keys included, made `clean`."""
     if isinstance(value, str):
-        return clean(value)
+        return clean_text(value)
     if isinstance(value, dict):
-        return {clean(str(key)): cleaned(item) for key, item in value.items()}
+        return {clean_text(str(key)): clean_tree(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [cleaned(item) for item in value]
+        return [clean_tree(item) for item in value]
     return value
 
 
-def number(value: float | None, digits: int = 4) -> str:
+def format_value(value: float | None, digits: int = 4) -> str:
     """A measured number with a fixed count of significant digits, as `119.7`; an en dash if there is none."""
     if value is None:
         return "–"
     if value == 0:
         return "0"
     text = f"{value:#.{digits}g}"
-    return minus((f"{value:.{digits - 1}e}" if "e" in text else text).rstrip("."))
+    return replace_minus((f"{value:.{digits - 1}e}" if "e" in text else text).rstrip("."))
 
 
-def plain(value: float | None) -> str:
+def format_plain(value: float | None) -> str:
     """A given number, as short as it can be written: `20`, `0.001`."""
-    return "–" if value is None else minus(f"{value:.12g}")
+    return "–" if value is None else replace_minus(f"{value:.12g}")
 
 
-def minus(text: str) -> str:
+def replace_minus(text: str) -> str:
     """ASCII hyphens before digits as true minus signs."""
     return text.replace("-", "−")
 
 
-def beside_limits(value: float | None, lower: float | None, upper: float | None) -> str:
+def format_beside_limits(value: float | None, lower: float | None, upper: float | None) -> str:
     """`number` with as many digits as it takes to show on which side of its limits the value lies."""
     if value is None:
-        return number(value)
+        return format_value(value)
     for digits in range(4, 16):
-        text = number(value, digits)
+        text = format_value(value, digits)
         shown = float(text.replace("−", "-"))
         if all(limit is None or (shown > limit) - (shown < limit) == (value > limit) - (value < limit)
                for limit in (lower, upper)):  # fmt: skip
@@ -65,12 +65,12 @@ def beside_limits(value: float | None, lower: float | None, upper: float | None)
     return repr(value)
 
 
-def limits(lower: float | None, upper: float | None) -> str:
+def format_limits(lower: float | None, upper: float | None) -> str:
     """Limits in words and signs: `26 to 31`, `≤ 225`, `≥ 30`, `= 0`."""
     if lower is None and upper is None:
         return "none"
     if lower is None:
-        return f"≤ {plain(upper)}"
+        return f"≤ {format_plain(upper)}"
     if upper is None:
-        return f"≥ {plain(lower)}"
-    return f"= {plain(lower)}" if lower == upper else f"{plain(lower)} to {plain(upper)}"
+        return f"≥ {format_plain(lower)}"
+    return f"= {format_plain(lower)}" if lower == upper else f"{format_plain(lower)} to {format_plain(upper)}"

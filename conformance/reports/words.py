@@ -11,17 +11,17 @@ TEMPLATES = files("pantocheck.templates")
 
 
 @cache
-def words() -> dict[str, Any]:
+def read_words() -> dict[str, Any]:
     """All of `words.toml`."""
     return tomllib.loads((TEMPLATES / "words.toml").read_text("utf-8"))
 
 
-def label(quantity: str) -> str:
+def quantity_label(quantity: str) -> str:
     """What a quantity is called; its own name if it has no other."""
-    return str(words()["quantity"].get(quantity, quantity))
+    return str(read_words()["quantity"].get(quantity, quantity))
 
 
-def unit(quantity: str) -> str:
+def quantity_unit(quantity: str) -> str:
     """Unit of a quantity, empty if it has none or is not known."""
     return QUANTITIES[quantity].unit if quantity in QUANTITIES else ""
 

@@ -5,18 +5,18 @@ from collections.abc import Sequence
 from datetime import UTC, datetime
 from importlib.metadata import version
 
-from pantocheck.conformance.grading.verdicts import worst
+from pantocheck.conformance.grading.verdicts import worst_verdict
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.results.results_format import CaseResult, Platform, Results, Suite, SystemIdentity
-from pantocheck.conformance.results.suite_identity import suite_commit
+from pantocheck.conformance.results.suite_identity import find_suite_commit
 
 
-def now() -> str:
+def utc_now() -> str:
     """The time as results state it."""
     return datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
 
 
-def assembled(cases: Sequence[CaseResult], system: SystemIdentity, trust: Trust, started: str) -> Results:
+def build_results(cases: Sequence[CaseResult], system: SystemIdentity, trust: Trust, started: str) -> Results:
     """Results of cases.
 
     Parameters
@@ -27,9 +27,9 @@ def assembled(cases: Sequence[CaseResult], system: SystemIdentity, trust: Trust,
     started : when, from `now`
     """
     return Results(
-        suite=Suite(version=version("pantocheck"), commit=suite_commit()),
+        suite=Suite(version=version("pantocheck"), commit=find_suite_commit()),
         system=system,
-        verdict=worst(case.verdict for case in cases),
+        verdict=worst_verdict(case.verdict for case in cases),
         trust=trust,
         started=started,
         platform=Platform(

@@ -11,28 +11,28 @@ from pydantic import BaseModel, ConfigDict, Field
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.trust import Trust
 
-SCHEMA = "pantocheck.results/1"
+RESULTS_SCHEMA = "pantocheck.results/1"
 STATEMENT = "self-declared conformance report, in the style of EN 50318"
 
-Finite = Annotated[float, Field(ge=-1e15, le=1e15)]
-Number = Finite | list[Finite]
+FiniteNumber = Annotated[float, Field(ge=-1e15, le=1e15)]
+Number = FiniteNumber | list[FiniteNumber]
 Owner = Annotated[str, Field(pattern="^[0-9]{1,2}$", description="number of a pantograph, 0: the line")]
 
 
-class Part(BaseModel):
+class ResultsPart(BaseModel):
     """A part of results.json; numbers are finite, unknown keys refused."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
 
-class Suite(Part):
+class Suite(ResultsPart):
     """The suite that graded."""
 
     version: str
     commit: str | None
 
 
-class SystemIdentity(Part):
+class SystemIdentity(ResultsPart):
     """The system that was graded."""
 
     name: str
@@ -40,7 +40,7 @@ class SystemIdentity(Part):
     kind: Literal["builtin", "record", "command"]
 
 
-class Platform(Part):
+class Platform(ResultsPart):
     """What the run was computed on."""
 
     python: str
@@ -51,7 +51,7 @@ class Platform(Part):
     system: str
 
 
-class InputGroup(Part):
+class InputGroup(ResultsPart):
     """Where a group of inputs comes from."""
 
     group: str
@@ -59,7 +59,7 @@ class InputGroup(Part):
     source: str
 
 
-class Criterion(Part):
+class Criterion(ResultsPart):
     """A value against its limits. `pantograph` is 0 for the line; `item` counts droppers or modes from 1.
 
     `spread` is the largest departure from the value when the evaluated stretch is shifted along the line.
@@ -70,10 +70,10 @@ class Criterion(Part):
     quantity: str
     pantograph: int
     item: int | None = None
-    value: Finite | None
+    value: FiniteNumber | None
     unit: str
-    lower: Finite | None
-    upper: Finite | None
+    lower: FiniteNumber | None
+    upper: FiniteNumber | None
     verdict: Verdict
     trust: Trust
     source: str
@@ -85,7 +85,7 @@ class Criterion(Part):
     baseline: float | None = None
 
 
-class FilterFacts(Part):
+class FilterFacts(ResultsPart):
     """Filter of the graded force."""
 
     kind: str
@@ -94,7 +94,7 @@ class FilterFacts(Part):
     phase: str
 
 
-class RunFacts(Part):
+class RunFacts(ResultsPart):
     """How a case was computed; what a system does not say is null."""
 
     simulated_s: float | None
@@ -107,21 +107,21 @@ class RunFacts(Part):
     evaluated_m: tuple[float, float] | None
 
 
-class Spectrum(Part):
+class Spectrum(ResultsPart):
     """Single-sided amplitude spectrum of the delivered force about its mean, over the evaluated stretch."""
 
     frequency_Hz: list[float]
     amplitude_N: list[float]
 
 
-class Histogram(Part):
+class Histogram(ResultsPart):
     """Share of the samples of the 20 Hz force in each class."""
 
     edges_N: list[float]
     share_pct: list[float]
 
 
-class Traces(Part):
+class Traces(ResultsPart):
     """What is drawn of one pantograph."""
 
     position_m: list[float]
@@ -134,7 +134,7 @@ class Traces(Part):
     histogram: Histogram | None
 
 
-class UpliftTrace(Part):
+class UpliftTrace(ResultsPart):
     """Uplift of the contact wire at one support."""
 
     support_m: float
@@ -142,7 +142,7 @@ class UpliftTrace(Part):
     uplift_mm: list[float]
 
 
-class Series(Part):
+class Series(ResultsPart):
     """Data of a chart. `boxes` draws a box of the values of each x; `bars` stand side by side at the ticks."""
 
     label: str
@@ -153,7 +153,7 @@ class Series(Part):
     """Half the length of each point's error bar."""
 
 
-class Mark(Part):
+class Mark(ResultsPart):
     """A value that a publication prints, or a limit: a line across a chart, or a band where `high` is given."""
 
     label: str
@@ -162,7 +162,7 @@ class Mark(Part):
     high: float | None = None
 
 
-class Chart(Part):
+class Chart(ResultsPart):
     """A figure of a study."""
 
     caption: str
@@ -178,7 +178,7 @@ class Chart(Part):
     wide: bool = True
 
 
-class TextTable(Part):
+class TextTable(ResultsPart):
     """A table of a study, ready to be printed."""
 
     caption: str
@@ -186,7 +186,7 @@ class TextTable(Part):
     rows: list[list[str]]
 
 
-class CaseResult(Part):
+class CaseResult(ResultsPart):
     """All of one case. In `quantities`, `skipped` and `traces`, the key is the pantograph, `0` the line."""
 
     id: str
@@ -215,7 +215,7 @@ class CaseResult(Part):
     tables: list[TextTable] = []
 
 
-class Results(Part):
+class Results(ResultsPart):
     """All of a run of the suite."""
 
     schema_: Annotated[Literal["pantocheck.results/1"], Field(alias="schema")] = "pantocheck.results/1"

@@ -8,7 +8,7 @@ from pydantic import ValidationError
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.results.results_format import Results
 
-LARGEST = 64 * 2**20
+MAX_RESULTS_BYTES = 64 * 2**20
 """Bytes of results; those of two cases have a few hundred thousand."""
 
 
@@ -21,15 +21,15 @@ def read_results(path: Path) -> Results:
     """
     where = f"results '{path.name}'"
     try:
-        if path.stat().st_size > LARGEST:
-            raise InputError(where, f"{path.stat().st_size} bytes", f"Results have at most {LARGEST} bytes.")
+        if path.stat().st_size > MAX_RESULTS_BYTES:
+            raise InputError(where, f"{path.stat().st_size} bytes", f"Results have at most {MAX_RESULTS_BYTES} bytes.")
         content = path.read_bytes()
     except OSError as error:
         raise InputError(where, f"cannot be read from {path} ({error.strerror})", "Check the path.") from None
-    return results_from(content, where)
+    return parse_results(content, where)
 
 
-def results_from(content: bytes, where: str) -> Results:
+def parse_results(content: bytes, where: str) -> Results:
     """Results from the bytes of a results.json.
 
     Parameters
@@ -41,8 +41,8 @@ def results_from(content: bytes, where: str) -> Results:
     ------
     InputError : too large, not JSON, or not what the suite writes
     """
-    if len(content) > LARGEST:
-        raise InputError(where, f"{len(content)} bytes", f"Results have at most {LARGEST} bytes.")
+    if len(content) > MAX_RESULTS_BYTES:
+        raise InputError(where, f"{len(content)} bytes", f"Results have at most {MAX_RESULTS_BYTES} bytes.")
     try:
         data = json.loads(content)
     except (ValueError, RecursionError) as error:

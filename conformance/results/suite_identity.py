@@ -7,7 +7,7 @@ from pathlib import Path
 
 
 @cache
-def suite_commit() -> str | None:
+def find_suite_commit() -> str | None:
     """Commit of the suite when it runs from its own repository, `-dirty` if files were changed; else None."""
     source = Path(str(files("pantocheck.conformance"))).resolve()
     top = _git(source, "rev-parse", "--show-toplevel")

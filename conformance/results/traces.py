@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from pantocheck.conformance.quantities.bands import amplitude_spectrum
 from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE, LowPass
 from pantocheck.conformance.quantities.signals import EXTENDED_CUTOFF_HZ, ForceSignals
-from pantocheck.conformance.quantities.statistics import histogram
+from pantocheck.conformance.quantities.statistics import force_histogram
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.evaluation import line_signals, pantograph_signals
 from pantocheck.conformance.records.record import Record
@@ -20,7 +20,7 @@ LONG_STEP = 10
 """Up to this many samples to one that is drawn, every k-th shows the force well enough."""
 
 
-def pantograph_traces(record: Record, low_pass: LowPass, supports: list[float]) -> dict[str, Traces]:
+def build_pantograph_traces(record: Record, low_pass: LowPass, supports: list[float]) -> dict[str, Traces]:
     """Force, spectrum and histogram of every pantograph over the evaluated stretch; none where it is not covered.
 
     Parameters
@@ -39,13 +39,13 @@ def pantograph_traces(record: Record, low_pass: LowPass, supports: list[float]) 
             continue
         within = [x for x in supports if start - 1e-6 <= x <= end + 1e-6]
         highest = min(EXTENDED_CUTOFF_HZ, HIGHEST_SHARE_OF_RATE * record.rate, record.filter_applied_Hz or np.inf)
-        traces[str(pantograph)] = signal_traces(
+        traces[str(pantograph)] = build_signal_traces(
             signals, signals.position[inside], within, amplitude_spectrum(signals.delivered, record.rate, highest)
         )
     return traces
 
 
-def signal_traces(
+def build_signal_traces(
     signals: ForceSignals, position: Array, supports: list[float], spectrum: tuple[Array, Array]
 ) -> Traces:
     """What is drawn of one pantograph.
@@ -64,18 +64,18 @@ def signal_traces(
     frequency, amplitude = _peaks(*spectrum)
     at = _drawn(signals.delivered)
     return Traces(
-        position_m=thinned(position[at]),
-        force_N=thinned(signals.delivered[at]),
-        force_20_N=None if graded is None else thinned(graded[at]),
+        position_m=thin_series(position[at]),
+        force_N=thin_series(signals.delivered[at]),
+        force_20_N=None if graded is None else thin_series(graded[at]),
         mean_N=float(signals.delivered.mean()),
         std_N=None if graded is None else float(graded.std()),
         supports_m=supports,
-        spectrum=Spectrum(frequency_Hz=thinned(frequency), amplitude_N=thinned(amplitude)),
+        spectrum=Spectrum(frequency_Hz=thin_series(frequency), amplitude_N=thin_series(amplitude)),
         histogram=None if graded is None else _histogram(graded),
     )
 
 
-def uplift_traces(record: Record) -> list[UpliftTrace]:
+def build_uplift_traces(record: Record) -> list[UpliftTrace]:
     """Uplift at every support of the evaluated spans, over the whole record."""
     if record.support_position is None:
         return []
@@ -86,12 +86,12 @@ def uplift_traces(record: Record) -> list[UpliftTrace]:
     except QuantityUnavailable:
         return []
     return [
-        UpliftTrace(support_m=x, time_s=thinned(record.time), uplift_mm=thinned(1e3 * trace))
+        UpliftTrace(support_m=x, time_s=thin_series(record.time), uplift_mm=thin_series(1e3 * trace))
         for x, trace in zip(positions, uplift, strict=True)
     ]
 
 
-def thinned(series: Array) -> list[float]:
+def thin_series(series: Array) -> list[float]:
     """Every k-th value, at most about 1500, rounded to six significant digits."""
     step = max(1, -(-series.size // MOST_POINTS))
     return [float(f"{value:.6g}") for value in series[::step]]
@@ -122,5 +122,5 @@ def _peaks(frequency: Array, amplitude: Array) -> tuple[Array, Array]:
 
 
 def _histogram(force: Array) -> Histogram:
-    edges, share = histogram(force)
-    return Histogram(edges_N=thinned(edges), share_pct=thinned(share))
+    edges, share = force_histogram(force)
+    return Histogram(edges_N=thin_series(edges), share_pct=thin_series(share))

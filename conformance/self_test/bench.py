@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from typing import Final
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.consistency.record_checks import findings
-from pantocheck.conformance.grading.case_grading import criteria_of, graded
-from pantocheck.conformance.grading.extended_band import ABOUT
-from pantocheck.conformance.grading.verdicts import Verdict, worst
+from pantocheck.conformance.consistency.record_checks import check_record
+from pantocheck.conformance.grading.case_grading import grade_case, grade_criteria
+from pantocheck.conformance.grading.extended_band import WARNING_PREFIX
+from pantocheck.conformance.grading.verdicts import Verdict, worst_verdict
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.results.outcome import Outcome
 from pantocheck.conformance.results.results_format import CaseResult
@@ -69,7 +69,7 @@ class SelfTest:
         return all(verdict == "pass" for verdict, _ in self.right.values()) and all(row.caught for row in self.rows)
 
 
-def self_test(cases: Sequence[Case], progress: Callable[[str], None] | None = None) -> SelfTest:
+def run_self_test(cases: Sequence[Case], progress: Callable[[str], None] | None = None) -> SelfTest:
     """Run the right system and all mutants on cases.
 
     Parameters
@@ -89,7 +89,7 @@ def self_test(cases: Sequence[Case], progress: Callable[[str], None] | None = No
         outcome = ReferenceSimulator().run_unrefined(case)
         if outcome.record is None:
             raise NothingToMutate(f"{case.id}: the reference simulator delivered no record")
-        result = graded(case, outcome, TRUST)
+        result = grade_case(case, outcome, TRUST)
         right[case.id] = result.verdict, _reason(result)
         for mutants, found in rows.items():
             for mutant in mutants:
@@ -108,17 +108,17 @@ def _row(mutant: Mutant, case: Case, right: Outcome) -> Row:
     except InputError as error:  # what the suite refuses to read: the same as a case that ends in error
         caught = mutant.caught_by == "record file"
         return Row(mutant, case.id, "error", "skip", (), ("record file",), caught, f"{error.where}: {error.found}")
-    result = graded(case, outcome, TRUST)
-    criteria = criteria_of(case, outcome, TRUST)
+    result = grade_case(case, outcome, TRUST)
+    criteria = grade_criteria(case, outcome, TRUST)
     outside = tuple(item.quantity for item in criteria if item.verdict == "fail")
-    found = findings(case, outcome.record) if outcome.record is not None else []
+    found = check_record(case, outcome.record) if outcome.record is not None else []
     checks = tuple(finding.check for finding in found if finding.kind != "unchecked")
     reasons: tuple[str, ...] = checks if result.verdict == "error" else (*checks, *(["limits"] if outside else []))
     return Row(
         mutant,
         case.id,
         result.verdict,
-        worst(item.verdict for item in criteria),
+        worst_verdict(item.verdict for item in criteria),
         outside,
         checks,
         mutant.caught_by is None or (result.verdict in {"fail", "error"} and mutant.caught_by in reasons),
@@ -128,5 +128,7 @@ def _row(mutant: Mutant, case: Case, right: Outcome) -> Row:
 
 def _reason(result: CaseResult) -> str:
     failed = [f"{item.quantity} {item.reason}" for item in result.criteria if item.verdict == "fail"]
-    own = [warning for warning in result.warnings if not warning.startswith(ABOUT)]  # those are said of any system
+    own = [
+        warning for warning in result.warnings if not warning.startswith(WARNING_PREFIX)
+    ]  # those are said of any system
     return result.reason or "; ".join([*failed, *own])

@@ -12,12 +12,12 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.results.outcome import Outcome
-from pantocheck.conformance.simulation.catenary_model import catenary
-from pantocheck.conformance.systems.record_folder import record_folder
+from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.systems.record_folder import open_record_folder
 from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator, run_line
 from pantocheck.model import discretise, never_slack
 
-Make = Callable[[Case, Record], Outcome]
+MakeMutant = Callable[[Case, Record], Outcome]
 
 SAMPLE_CHANNELS = ("time", "position", "force", "contact_height", "support_uplift")
 
@@ -36,16 +36,16 @@ class Mutant:
 
     name: str
     wrong: str
-    make: Make
+    make: MakeMutant
     caught_by: Literal["coverage", "support passing", "roll-off", "dynamics", "limits", "record file"] | None
 
 
-def _changed(**change: Callable[[Case, Record], Any]) -> Make:
+def _changed(**change: Callable[[Case, Record], Any]) -> MakeMutant:
     """The right record with some of its fields replaced."""
     return lambda case, record: Outcome(replace(record, **{name: of(case, record) for name, of in change.items()}))
 
 
-def _filtered(order: int) -> Make:
+def _filtered(order: int) -> MakeMutant:
     """The force through a zero-phase filter of another order at the cut-off of the case, and said to be filtered."""
 
     def make(case: Case, record: Record) -> Outcome:
@@ -56,12 +56,12 @@ def _filtered(order: int) -> Make:
     return make
 
 
-def _late(seconds: float) -> Make:
+def _late(seconds: float) -> MakeMutant:
     """The force held back against everything else; what runs over the end comes in at the beginning."""
     return _changed(force=lambda _, record: np.roll(record.force, round(seconds * record.rate), axis=1))
 
 
-def _coarse(element: float) -> Make:
+def _coarse(element: float) -> MakeMutant:
     def make(case: Case, record: Record) -> Outcome:
         discretisation = case.file.discretisation.model_copy(update={"element_m": element})
         file = case.file.model_copy(update={"discretisation": discretisation})
@@ -72,7 +72,7 @@ def _coarse(element: float) -> Make:
 
 def _bilateral(case: Case, record: Record) -> Outcome:
     steps = case.file.discretisation
-    line = never_slack(discretise(catenary(case.line), steps.element_m))
+    line = never_slack(discretise(build_catenary(case.line), steps.element_m))
     return run_line(case, line, steps.element_m, steps.time_step_s)[0]
 
 
@@ -90,7 +90,7 @@ def _damaged(case: Case, record: Record) -> Outcome:
         write_record(table, record, case.id)
         content = table.read_bytes()
         table.write_bytes(content[: content.rfind(b"\n", 0, len(content) // 2) + 1])
-        return record_folder(Path(name)).run(case)
+        return open_record_folder(Path(name)).run(case)
 
 
 MUTANTS: tuple[Mutant, ...] = (

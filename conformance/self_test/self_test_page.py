@@ -7,7 +7,7 @@ from jinja2 import Environment, StrictUndefined
 from pantocheck.conformance.self_test.bench import SelfTest
 
 
-def page(test: SelfTest) -> str:
+def build_self_test_page(test: SelfTest) -> str:
     """Markdown of `docs/self-test.md`."""
     environment = Environment(undefined=StrictUndefined, autoescape=False, trim_blocks=True, keep_trailing_newline=True)
     template = (files("pantocheck.templates") / "self-test.md").read_text(encoding="utf-8")

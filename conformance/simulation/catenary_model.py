@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from pantocheck.conformance.cases.damping_file import ComponentDamping
-from pantocheck.conformance.cases.line_file import Line
-from pantocheck.conformance.cases.line_file import Wire as WireFile
+from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.cases.line_file import WireTable as WireFile
 from pantocheck.model import (
     Catenary,
     Clamp,
@@ -24,7 +24,7 @@ COARSE = 5.0
 """Element length that is good enough for dropper lengths, from which their masses follow [m]."""
 
 
-def catenary(line: Line) -> Catenary:
+def build_catenary(line: LineFile) -> Catenary:
     """The line of a line file.
 
     Parameters
@@ -60,17 +60,17 @@ def catenary(line: Line) -> Catenary:
     return built
 
 
-def _supports(line: Line) -> list[float]:
+def _supports(line: LineFile) -> list[float]:
     """Places of the supports; the wires end in anchors one span before the first and after the last [m]."""
     return [line.geometry.span_m * i for i in range(1, line.geometry.spans)]
 
 
-def _names(line: Line, name: str) -> list[str]:
+def _names(line: LineFile, name: str) -> list[str]:
     number = (line.contact_wire if name == "contact wire" else line.messenger_wire).number
     return [name] if number == 1 else [f"{name} {i + 1}" for i in range(number)]
 
 
-def _wires(line: Line, name: str, kind: Kind) -> list[Wire]:
+def _wires(line: LineFile, name: str, kind: Kind) -> list[Wire]:
     file: WireFile = line.contact_wire if kind is Kind.CONTACT_WIRE else line.messenger_wire
     geometry = line.geometry
     stagger = geometry.stagger_contact_wire_m if kind is Kind.CONTACT_WIRE else geometry.stagger_messenger_m
@@ -97,7 +97,7 @@ def _wires(line: Line, name: str, kind: Kind) -> list[Wire]:
     return wires
 
 
-def _messenger_wires(line: Line) -> list[Wire]:
+def _messenger_wires(line: LineFile) -> list[Wire]:
     """Messengers; between the clamps of a stitch wire they are relieved of its tension."""
     wires = _wires(line, "messenger wire", Kind.MESSENGER_WIRE)
     if line.stitch_wire is None:
@@ -107,7 +107,7 @@ def _messenger_wires(line: Line) -> list[Wire]:
     return [replace(wire, tension_changes=changes) for wire in wires]
 
 
-def _stitch_wires(line: Line) -> Iterator[Wire]:
+def _stitch_wires(line: LineFile) -> Iterator[Wire]:
     stitch = line.stitch_wire
     if stitch is not None:
         half = stitch.length_m / 2
@@ -129,7 +129,7 @@ def _stitch_name(messenger: str, support: int) -> str:
     return f"stitch wire of {messenger} at support {support}"
 
 
-def _clamps(line: Line) -> Iterator[Clamp]:
+def _clamps(line: LineFile) -> Iterator[Clamp]:
     stitch = line.stitch_wire
     if stitch is not None:
         for messenger in _names(line, "messenger wire"):
@@ -138,7 +138,7 @@ def _clamps(line: Line) -> Iterator[Clamp]:
                     yield Clamp(end, messenger, _stitch_name(messenger, i), stitch.clamp_kg)
 
 
-def _droppers(line: Line) -> Iterator[Dropper]:
+def _droppers(line: LineFile) -> Iterator[Dropper]:
     file, messengers = line.droppers, _names(line, "messenger wire")
     presag = file.presag_m or (0.0,) * len(file.x_m)
     for span in range(line.geometry.spans):
@@ -158,7 +158,7 @@ def _droppers(line: Line) -> Iterator[Dropper]:
                 )
 
 
-def _upper_wire(line: Line, messenger: str, position: float) -> str:
+def _upper_wire(line: LineFile, messenger: str, position: float) -> str:
     """What a dropper hangs on: the stitch wire if one passes there, else the messenger."""
     if line.stitch_wire is not None:
         for i, x in enumerate(_supports(line), 1):
@@ -167,7 +167,7 @@ def _upper_wire(line: Line, messenger: str, position: float) -> str:
     return messenger
 
 
-def _steady_arms(line: Line) -> Iterator[SteadyArm]:
+def _steady_arms(line: LineFile) -> Iterator[SteadyArm]:
     arm = line.steady_arm
     # A bar that turns about its hinge moves a third of its mass with the claw.
     mass = arm.mass_kg_m * (arm.length_m or 0.0) / 3 + arm.clamp_kg
@@ -185,7 +185,7 @@ def _steady_arms(line: Line) -> Iterator[SteadyArm]:
             )
 
 
-def _messenger_supports(line: Line) -> Iterator[MessengerSupport]:
+def _messenger_supports(line: LineFile) -> Iterator[MessengerSupport]:
     support = line.messenger_support
     for x in _supports(line):
         for messenger in _names(line, "messenger wire"):

@@ -10,12 +10,12 @@ from scipy.signal import firwin, kaiserord, resample_poly
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.drop_test import DropTest, MassDrop
-from pantocheck.conformance.mass_drops.drop_record import Channel, DropRecord
-from pantocheck.conformance.mass_drops.drop_record import Drop as DropFacts
-from pantocheck.conformance.mass_drops.drop_record import Line as LineFacts
-from pantocheck.conformance.simulation.catenary_model import catenary
+from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropRecord
+from pantocheck.conformance.mass_drops.drop_record import DropDescription as DropFacts
+from pantocheck.conformance.mass_drops.drop_record import DropLine as LineFacts
+from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.model import Catenary, Kind
-from pantocheck.model.dynamics.mass_drop import Drop, FreeDecay, drop
+from pantocheck.model.dynamics.mass_drop import FreeDecay, MassDropSetup, simulate_mass_drop
 
 Array = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ class SimulatedDrop:
     decay: FreeDecay
 
 
-def simulated(
+def simulate_drop(
     case: Case, number: int, progress: Callable[[float], None] | None = None, line: Catenary | None = None
 ) -> SimulatedDrop:
     """Simulate one drop of a case.
@@ -56,12 +56,12 @@ def simulated(
     ------
     NoInitialState, NoEquilibrium, DidNotConverge : the simulation has no solution
     """
-    told, steps = mass_drop(case), case.file.discretisation
-    test, own = told.drop[number - 1], line or catenary(case.line)
-    decay = drop(
+    told, steps = require_mass_drop(case), case.file.discretisation
+    test, own = told.drop[number - 1], line or build_catenary(case.line)
+    decay = simulate_mass_drop(
         own,
         steps.element_m,
-        Drop(
+        MassDropSetup(
             mass=test.mass_kg,
             wire=_wire(own, test.wire),
             position=test.x_m,
@@ -74,13 +74,13 @@ def simulated(
         progress,
     )
     motion = decay.motion[:, :, ORDER[told.quantity]].T
-    signals = decimated(motion, round(1 / told.rate_Hz / steps.time_step_s))
+    signals = decimate(motion, round(1 / told.rate_Hz / steps.time_step_s))
     if told.noise_rms:
         signals = signals + told.noise_rms * _generator(test, number).standard_normal(signals.shape)
     return SimulatedDrop(_record(case, told, test, number, signals), decay)
 
 
-def mass_drop(case: Case) -> MassDrop:
+def require_mass_drop(case: Case) -> MassDrop:
     """The mass drop of a case that has one.
 
     Raises
@@ -92,7 +92,7 @@ def mass_drop(case: Case) -> MassDrop:
     return case.file.mass_drop
 
 
-def decimated(signals: Array, every: int) -> Array:
+def decimate(signals: Array, every: int) -> Array:
     """Every k-th sample after a linear-phase low-pass whose delay is taken out.
 
     Passes frequencies below 0.8 of half the new rate, and lowers all above half of it by 90 dB.
@@ -129,7 +129,8 @@ def _record(case: Case, told: MassDrop, test: DropTest, number: int, signals: Ar
         rate=told.rate_Hz,
         signals=signals,
         channels=tuple(
-            Channel(f"S{i}z", i, "z", SHORT_NAME[sensor.wire], sensor.x_m) for i, sensor in enumerate(told.sensor, 1)
+            DropChannel(f"S{i}z", i, "z", SHORT_NAME[sensor.wire], sensor.x_m)
+            for i, sensor in enumerate(told.sensor, 1)
         ),
         quantity=told.quantity,
         drop=DropFacts(test.mass_kg, SHORT_NAME[test.wire], test.x_m, told.hanging_s),

@@ -5,8 +5,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from pantocheck.conformance.reports.figures.force_figures import FULL, GREY, INK, drawn
-from pantocheck.model import Discretised, Kind, Wire
+from pantocheck.conformance.reports.figures.force_figures import FULL, GREY, INK, render_svg
+from pantocheck.model import DiscretisedLine, Kind, Wire
 
 SPANS = 2
 """Spans drawn, half way along the line."""
@@ -17,8 +17,8 @@ WIDTHS = {Kind.CONTACT_WIRE: 1.8, Kind.MESSENGER_WIRE: 1.2, Kind.STITCH_WIRE: 0.
 Array = NDArray[np.float64]
 
 
-@drawn
-def line_drawing(line: Discretised, title: str, span: float) -> Figure:
+@render_svg
+def draw_line(line: DiscretisedLine, title: str, span: float) -> Figure:
     """Side view and plan view of two spans, half a span more on either side.
 
     Parameters
@@ -44,7 +44,7 @@ def line_drawing(line: Discretised, title: str, span: float) -> Figure:
     return figure
 
 
-def _view(axes: Axes, line: Discretised, field: str, shown: tuple[float, float]) -> None:
+def _view(axes: Axes, line: DiscretisedLine, field: str, shown: tuple[float, float]) -> None:
     start, end = shown
     middle = (start + end) / 2
     for wire in line.catenary.wires:
@@ -77,10 +77,10 @@ def _view(axes: Axes, line: Discretised, field: str, shown: tuple[float, float])
     axes.set_aspect(EXAGGERATED, adjustable="datalim" if field == "y" else "box")
 
 
-def _shape(line: Discretised, wire: Wire, field: str) -> tuple[Array, Array]:
+def _shape(line: DiscretisedLine, wire: Wire, field: str) -> tuple[Array, Array]:
     inside = (line.mesh.position >= wire.start - 1e-6) & (line.mesh.position <= wire.end + 1e-6)
     return line.mesh.position[inside], line.state.deflection[line.mesh.row_of[wire.name, field], inside, 0]
 
 
-def _at(line: Discretised, wire: str, field: str, position: float) -> float:
+def _at(line: DiscretisedLine, wire: str, field: str, position: float) -> float:
     return float(line.state.deflection[line.mesh.row_of[wire, field], line.mesh.station(position), 0])

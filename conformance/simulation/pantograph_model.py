@@ -3,12 +3,12 @@
 import numpy as np
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.pantograph_file import Pantograph as PantographFile
-from pantocheck.model import Discretised, Pantograph, chain
+from pantocheck.conformance.cases.pantograph_file import PantographFile
+from pantocheck.model import DiscretisedLine, Pantograph, chain
 from pantocheck.model.pantograph import from_matrices, from_modes
 
 
-def pantograph(file: PantographFile, uplift_force: float, working_height: float) -> Pantograph:
+def build_pantograph(file: PantographFile, uplift_force: float, working_height: float) -> Pantograph:
     """A pantograph pressing with an uplift force.
 
     Parameters
@@ -46,12 +46,12 @@ def pantograph(file: PantographFile, uplift_force: float, working_height: float)
     return from_modes(np.array(modes.frequency_Hz), np.array(modes.damping_ratio), shape, force, uplift_force, contact)
 
 
-def starts(case: Case) -> tuple[float, ...]:
+def start_positions(case: Case) -> tuple[float, ...]:
     """Where each pantograph starts, the leading one first [m]."""
     return tuple(case.start + case.offsets[-1] - offset for offset in case.offsets)
 
 
-def watched_supports(case: Case, line: Discretised) -> tuple[tuple[str, float], ...]:
+def watched_supports(case: Case, line: DiscretisedLine) -> tuple[tuple[str, float], ...]:
     """The first contact wire at the supports within and at the ends of the compared stretch."""
     first, last = case.compared
     wire = line.catenary.contact_wires[0].name

@@ -3,13 +3,13 @@
 import numpy as np
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.line_file import Line
+from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.records.evaluation import Value
-from pantocheck.conformance.simulation.catenary_model import catenary
-from pantocheck.conformance.simulation.pantograph_model import pantograph
-from pantocheck.model import Catenary, Discretised, Kind, discretise
+from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.simulation.pantograph_model import build_pantograph
+from pantocheck.model import Catenary, DiscretisedLine, Kind, discretise
 from pantocheck.model.fem.beam import wave_speed
-from pantocheck.model.modal.modes import Modes, modes
+from pantocheck.model.modal.modes import Modes, compute_modes
 from pantocheck.model.pantograph import apparent_mass
 from pantocheck.model.statics.elasticity import non_uniformity, static_uplift
 from pantocheck.model.statics.string_statics import in_vertical_plane, string_state
@@ -27,7 +27,7 @@ MODES = 10
 """Natural frequencies that are given."""
 
 
-def static_quantities(case: Case, line: Discretised) -> dict[str, Value]:
+def compute_static_quantities(case: Case, line: DiscretisedLine) -> dict[str, Value]:
     """Quantities of a line at rest, in a span half way along it.
 
     Parameters
@@ -42,19 +42,19 @@ def static_quantities(case: Case, line: Discretised) -> dict[str, Value]:
     if case.is_static:
         if case.measured is not None and case.file.apparent_mass is not None:
             response = apparent_mass(
-                pantograph(case.measured, 0.0, 0.0), np.array(case.file.apparent_mass.frequency_Hz)
+                build_pantograph(case.measured, 0.0, 0.0), np.array(case.file.apparent_mass.frequency_Hz)
             )
             found["apparent_mass_kg"] = tuple(map(float, np.abs(response)))
         found["natural_frequency_Hz"] = tuple(map(float, first_modes(case.line, _element(line)).frequency))
     return found
 
 
-def along_span(start: float, span: float) -> np.ndarray:
+def span_positions(start: float, span: float) -> np.ndarray:
     """Places along a span, its end left out [m]."""
     return start + span * np.arange(SAMPLES_PER_SPAN) / SAMPLES_PER_SPAN
 
 
-def first_modes(line: Line, element: float) -> Modes:
+def first_modes(line: LineFile, element: float) -> Modes:
     """The first modes of a few spans of a line in which more than half of the motion is vertical.
 
     Parameters
@@ -63,11 +63,11 @@ def first_modes(line: Line, element: float) -> Modes:
     element : longest element [m]
     """
     few = line.geometry.model_copy(update={"spans": min(line.geometry.spans, SPANS_OF_MODES)})
-    short = discretise(catenary(line.model_copy(update={"geometry": few})), element)
+    short = discretise(build_catenary(line.model_copy(update={"geometry": few})), element)
     lateral = [row for row in range(short.mesh.rows) if short.mesh.row_field[row] == "y"]
     count = MODES * (2 if lateral else 1)
     while True:
-        found = modes(short, count)
+        found = compute_modes(short, count)
         size = (found.shape[..., 0] ** 2).sum(axis=2)
         vertical = np.flatnonzero(size[:, lateral].sum(axis=1) < size.sum(axis=1) / 2)[:MODES]
         if vertical.size == MODES:
@@ -75,26 +75,26 @@ def first_modes(line: Line, element: float) -> Modes:
         count *= 2
 
 
-def _middle(line: Line) -> int:
+def _middle(line: LineFile) -> int:
     return line.geometry.spans // 2
 
 
-def _droppers(line: Line, built: Catenary) -> list[int]:
+def _droppers(line: LineFile, built: Catenary) -> list[int]:
     """Droppers of the middle span."""
     return [i for i, d in enumerate(built.droppers) if d.position // line.geometry.span_m == _middle(line)]
 
 
-def _element(line: Discretised) -> float:
+def _element(line: DiscretisedLine) -> float:
     return float(np.diff(line.mesh.position).max())
 
 
-def _presag(file: Line, line: Discretised) -> tuple[float, ...]:
+def _presag(file: LineFile, line: DiscretisedLine) -> tuple[float, ...]:
     droppers = [line.catenary.droppers[i] for i in _droppers(file, line.catenary)]
     height = [line.state.deflection[line.mesh.row_of[d.lower, "z"], line.mesh.station(d.position), 0] for d in droppers]
     return tuple(float(-1e3 * z) for z in height)
 
 
-def _dropper_lengths(file: Line, line: Discretised) -> dict[str, Value]:
+def _dropper_lengths(file: LineFile, line: DiscretisedLine) -> dict[str, Value]:
     """By string statics, with bending, and with bending and stagger, so that each effect can be seen."""
     droppers = _droppers(file, line.catenary)
     found = {"dropper_length_m": string_state(line.catenary).dropper_length}
@@ -108,8 +108,8 @@ def _dropper_lengths(file: Line, line: Discretised) -> dict[str, Value]:
     return {name: tuple(map(float, length[droppers])) for name, length in found.items()}
 
 
-def _elasticity(file: Line, line: Discretised) -> dict[str, Value]:
-    places = along_span(_middle(file) * file.geometry.span_m, file.geometry.span_m)
+def _elasticity(file: LineFile, line: DiscretisedLine) -> dict[str, Value]:
+    places = span_positions(_middle(file) * file.geometry.span_m, file.geometry.span_m)
     found: dict[str, Value] = {}
     for name, load in (("elasticity", SMALL_LOAD), ("elasticity_200_N", LARGE_LOAD)):
         elasticity = 1e3 * static_uplift(line, places, load) / load

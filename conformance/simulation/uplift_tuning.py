@@ -13,19 +13,19 @@ TOLERANCE = 0.02
 MOST_RUNS = 12
 
 
-class NotTuned(ArithmeticError):
+class TuningFailed(ArithmeticError):
     """The uplift force that gives the target mean was not found; grading another mean would compare the wrong run."""
 
 
-Run = TypeVar("Run")
+TunedRun = TypeVar("TunedRun")
 
 
-def tuned(
-    run: Callable[[tuple[float, ...]], Run],
-    means: Callable[[Run], Array],
+def tune_uplift(
+    run: Callable[[tuple[float, ...]], TunedRun],
+    means: Callable[[TunedRun], Array],
     start: Sequence[float],
     targets: Sequence[float | None],
-) -> tuple[Run, tuple[float, ...]]:
+) -> tuple[TunedRun, tuple[float, ...]]:
     """Secant on every pantograph's own force.
 
     Parameters
@@ -64,4 +64,4 @@ def tuned(
         moved = np.abs(change) > TOLERANCE / 10
         quotient = np.divide(now - found, change, out=slope.copy(), where=moved)
         slope, found = np.clip(quotient, 0.5, 2.0), now
-    raise NotTuned(f"a mean contact force is still {np.nanmax(np.abs(wanted - found)):.2f} N off its target")
+    raise TuningFailed(f"a mean contact force is still {np.nanmax(np.abs(wanted - found)):.2f} N off its target")

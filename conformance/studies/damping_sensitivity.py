@@ -8,10 +8,10 @@ from pantocheck.conformance.cases.damping_file import DampingFile
 from pantocheck.conformance.cases.library import library_folder
 from pantocheck.conformance.cases.study_tables import DampingSensitivity
 from pantocheck.conformance.input_files.toml_file import read_model
-from pantocheck.conformance.records.evaluation import LINE, Value, evaluate
+from pantocheck.conformance.records.evaluation import LINE, Value, evaluate_record
 from pantocheck.conformance.results.outcome import Outcome
 from pantocheck.conformance.results.results_format import TextTable
-from pantocheck.conformance.studies.force_charts import bars
+from pantocheck.conformance.studies.force_charts import draw_band_bars
 from pantocheck.conformance.systems.system import System
 
 MODELS = {name: f"vovan2015/damping/{name}.toml" for name in ("benchmark", "initial", "updated")}
@@ -34,7 +34,7 @@ OWN = "of the case"
 Values = Mapping[int, Mapping[str, Value]]
 
 
-def with_damping_study(case: Case) -> Case:
+def add_damping_study(case: Case) -> Case:
     """A case that is also run with the library's damping models; what has no train, or is a study, stays as it is.
 
     Raises
@@ -52,7 +52,7 @@ def with_damping_study(case: Case) -> Case:
     return replace(case, file=case.file.model_copy(update={"study": study}), dampings=dampings)
 
 
-def damping_sensitivity(case: Case, system: System) -> Outcome:
+def run_damping_sensitivity(case: Case, system: System) -> Outcome:
     """Run a case as it is, and once more with each of its other damping models.
 
     Parameters
@@ -63,17 +63,17 @@ def damping_sensitivity(case: Case, system: System) -> Outcome:
     outcome = system.run(case.without_study())
     if outcome.record is None:
         return outcome
-    values, missing = {OWN: evaluate(outcome.record, case.file.filter.low_pass).values}, []
+    values, missing = {OWN: evaluate_record(outcome.record, case.file.filter.low_pass).values}, []
     for name, damping in case.dampings.items():
         run = _once(system, case.with_damping(name, damping))
         if run.record is None:
             missing.append(f"damping '{name}': {run.errored or run.skipped or 'no record was delivered'}")
         else:
-            values[name] = evaluate(run.record, case.file.filter.low_pass).values
+            values[name] = evaluate_record(run.record, case.file.filter.low_pass).values
     return replace(
         outcome,
         warnings=(*outcome.warnings, *missing),
-        charts=(*outcome.charts, *bars(values, {}, BANDS)),
+        charts=(*outcome.charts, *draw_band_bars(values, {}, BANDS)),
         tables=(*outcome.tables, _table(values)),
     )
 

@@ -7,16 +7,16 @@ import numpy as np
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import DampingChange
-from pantocheck.conformance.quantities.filters import low_passed
+from pantocheck.conformance.quantities.filters import filter_force
 from pantocheck.conformance.quantities.signals import EXTENDED_CUTOFF_HZ
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.evaluation import LINE, Value
 from pantocheck.conformance.results.outcome import Outcome
 from pantocheck.conformance.results.results_format import Chart, Series
-from pantocheck.conformance.results.traces import thinned
+from pantocheck.conformance.results.traces import thin_series
 
 
-def bars(
+def draw_band_bars(
     values: Mapping[str, Mapping[int, Mapping[str, Value]]],
     printed: Mapping[tuple[str, int], Mapping[str, float]],
     bands: Sequence[str],
@@ -72,13 +72,13 @@ def trailing_force(case: Case, study: DampingChange, runs: Mapping[str, Outcome]
                 continue
             try:
                 low_pass = replace(case.file.filter.low_pass, cutoff_Hz=cutoff)
-                force = low_passed(record.force[-1], record.rate, low_pass, record.filter_applied_Hz)
+                force = filter_force(record.force[-1], record.rate, low_pass, record.filter_applied_Hz)
             except QuantityUnavailable:
                 continue
             inside = np.flatnonzero((record.position[-1] >= start) & (record.position[-1] <= end))
             series.append(
                 Series(
-                    label=name, style="line", x=thinned(record.position[-1][inside]), y=thinned(force[inside])
+                    label=name, style="line", x=thin_series(record.position[-1][inside]), y=thin_series(force[inside])
                 )
             )  # fmt: skip
         if series:

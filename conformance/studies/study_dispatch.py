@@ -26,28 +26,28 @@ def run_study(case: Case, system: System) -> Outcome:
         case None if case.file.mass_drop is None or system.kind != "builtin":
             return system.run(case)
         case DampingChange() as study:
-            from pantocheck.conformance.studies.vovan2015.damping_change import damping_change
+            from pantocheck.conformance.studies.vovan2015.damping_change import run_damping_change
 
-            return damping_change(case, study, system)
+            return run_damping_change(case, study, system)
         case DampingSensitivity():
-            from pantocheck.conformance.studies.damping_sensitivity import damping_sensitivity
+            from pantocheck.conformance.studies.damping_sensitivity import run_damping_sensitivity
 
-            return damping_sensitivity(case, system)
+            return run_damping_sensitivity(case, system)
         case _ if system.kind != "builtin":
             return Outcome(skipped=ONLY_BUILTIN)
         case None:
-            from pantocheck.conformance.studies.vovan2015.mass_drop_study import mass_drop_modes
+            from pantocheck.conformance.studies.vovan2015.mass_drop_study import run_mass_drop_study
 
-            return mass_drop_modes(case)
+            return run_mass_drop_study(case)
         case ReleaseVelocity() as study:
-            from pantocheck.conformance.studies.vovan2015.release_velocity import release_velocity
+            from pantocheck.conformance.studies.vovan2015.release_velocity import run_release_velocity
 
-            return release_velocity(case, study)
+            return run_release_velocity(case, study)
         case DropperDamping() as study:
-            from pantocheck.conformance.studies.vovan2015.dropper_damping import dropper_damping
+            from pantocheck.conformance.studies.vovan2015.dropper_damping import run_dropper_damping
 
-            return dropper_damping(case, study)
+            return run_dropper_damping(case, study)
         case SteadyArmDamper() as study:
-            from pantocheck.conformance.studies.vovan2015.steady_arm_damper import steady_arm_damper
+            from pantocheck.conformance.studies.vovan2015.steady_arm_damper import run_steady_arm_damper
 
-            return steady_arm_damper(case, study)
+            return run_steady_arm_damper(case, study)

@@ -8,10 +8,10 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import library_folder, source_text
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_toml
-from pantocheck.conformance.records.record_opening import SCHEMAS, read_either
+from pantocheck.conformance.records.record_opening import RECORD_SCHEMAS, open_record
 from pantocheck.conformance.records.record_reading import read_record
-from pantocheck.conformance.records.record_sidecar import Sidecar
-from pantocheck.conformance.records.record_summary import Summary
+from pantocheck.conformance.records.record_sidecar import RecordSidecar
+from pantocheck.conformance.records.record_summary import RecordSummary
 from pantocheck.conformance.results.outcome import Outcome
 
 
@@ -35,15 +35,15 @@ class RecordFolder:
         path = dict(self.sidecars).get(case.id)
         if path is None:
             return Outcome(skipped="there is no record of this case")
-        said = read_either(path)
-        if isinstance(said, Summary):
+        said = open_record(path)
+        if isinstance(said, RecordSummary):
             return _of_summary(said, case)
         record, sidecar = read_record(path, None if case.is_static else case.evaluated)
         run = sidecar.run
         return Outcome(record, {}, run.simulated_s, run.wall_s, run.dt_s, run.element_m)
 
 
-def _of_summary(summary: Summary, case: Case) -> Outcome:
+def _of_summary(summary: RecordSummary, case: Case) -> Outcome:
     if (mismatch := _mismatch(summary, case)) is not None:
         return Outcome(errored=mismatch)
     source = (summary.source,) if isinstance(summary.source, str) else tuple(summary.source)
@@ -62,7 +62,7 @@ def _of_summary(summary: Summary, case: Case) -> Outcome:
     )
 
 
-def _mismatch(summary: Summary, case: Case) -> str | None:
+def _mismatch(summary: RecordSummary, case: Case) -> str | None:
     """Why a summary is not one of this case."""
     cutoff, speed = case.file.filter.cutoff_Hz, case.file.speed_km_h
     if len(summary.pantograph) != len(case.pantographs):
@@ -80,7 +80,7 @@ def _mismatch(summary: Summary, case: Case) -> str | None:
     return None
 
 
-def record_folder(folder: Path) -> RecordFolder:
+def open_record_folder(folder: Path) -> RecordFolder:
     """Find the records of a folder and the folders below it; a folder of the library may be named by its place there.
 
     Raises
@@ -96,9 +96,9 @@ def record_folder(folder: Path) -> RecordFolder:
     systems = set()
     for path in sorted(folder.rglob("*.toml")):
         schema = read_toml(path, "sidecar").get("schema")
-        if not isinstance(schema, str) or schema not in SCHEMAS:
+        if not isinstance(schema, str) or schema not in RECORD_SCHEMAS:
             continue
-        said: Sidecar | Summary = read_either(path)
+        said: RecordSidecar | RecordSummary = open_record(path)
         if said.case is None:
             continue
         if said.case in found:
@@ -110,7 +110,7 @@ def record_folder(folder: Path) -> RecordFolder:
         found[said.case] = path
         systems.add((said.system.name, said.system.version) if said.system else (folder.resolve().name, ""))
     if not found:
-        schemas = " or ".join(f'"{schema}"' for schema in SCHEMAS)
+        schemas = " or ".join(f'"{schema}"' for schema in RECORD_SCHEMAS)
         raise InputError(where, "no sidecar in it names a case", f'A sidecar says schema = {schemas} and case = "...".')
     name, version = systems.pop() if len(systems) == 1 else (folder.resolve().name, "")
     return RecordFolder(name, version, tuple(found.items()))

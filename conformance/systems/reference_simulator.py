@@ -12,17 +12,17 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.records.evaluation import pantograph_signals
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.results.outcome import Outcome
-from pantocheck.conformance.simulation.catenary_model import catenary
-from pantocheck.conformance.simulation.pantograph_model import pantograph, starts, watched_supports
-from pantocheck.conformance.simulation.static_quantities import along_span, static_quantities
-from pantocheck.conformance.simulation.uplift_tuning import tuned
-from pantocheck.model import Discretised, History, Passage, discretise, run
+from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.simulation.pantograph_model import build_pantograph, start_positions, watched_supports
+from pantocheck.conformance.simulation.static_quantities import compute_static_quantities, span_positions
+from pantocheck.conformance.simulation.uplift_tuning import tune_uplift
+from pantocheck.model import DiscretisedLine, History, Passage, discretise, simulate_passage
 from pantocheck.model.dynamics.active_window import causal_reach
 from pantocheck.model.statics.elasticity import static_uplift
 
 
 @dataclass(frozen=True)
-class Run:
+class PassageRun:
     """One run of a case: its record, and what it took to make it.
 
     Parameters
@@ -60,11 +60,11 @@ class ReferenceSimulator:
 def _outcome(
     case: Case, element: float, step: float, uplift_forces: tuple[float, ...] | None = None
 ) -> tuple[Outcome, tuple[float, ...]]:
-    return run_line(case, discretise(catenary(case.line), element), element, step, uplift_forces)
+    return run_line(case, discretise(build_catenary(case.line), element), element, step, uplift_forces)
 
 
 def run_line(
-    case: Case, line: Discretised, element: float, step: float, uplift_forces: tuple[float, ...] | None = None
+    case: Case, line: DiscretisedLine, element: float, step: float, uplift_forces: tuple[float, ...] | None = None
 ) -> tuple[Outcome, tuple[float, ...]]:
     """Run a case on a line that is discretised already.
 
@@ -79,13 +79,15 @@ def run_line(
     -------
     outcome, uplift forces
     """
-    outcome = Outcome(static=static_quantities(case, line), dt_s=step, element_m=element)
+    outcome = Outcome(static=compute_static_quantities(case, line), dt_s=step, element_m=element)
     if case.is_static:
         return outcome, ()
     uses = case.file.pantograph
     begin = uplift_forces or tuple(use.uplift_force_N or use.target_mean_force_N or 0.0 for use in uses)
-    run(line, replace(passage_of(case, line, step, begin), duration=0.0))  # compiles the kernels, not part of the run
-    made, forces = tuned(
+    simulate_passage(
+        line, replace(build_passage(case, line, step, begin), duration=0.0)
+    )  # compiles the kernels, not part of the run
+    made, forces = tune_uplift(
         lambda forces: _run(case, line, step, forces),
         lambda made: _means(case, made),
         begin,
@@ -94,32 +96,32 @@ def run_line(
     return replace(outcome, record=made.record, simulated_s=made.simulated_s, wall_s=made.wall_s), forces
 
 
-def _run(case: Case, line: Discretised, step: float, uplift_forces: tuple[float, ...]) -> Run:
-    passage = passage_of(case, line, step, uplift_forces)
+def _run(case: Case, line: DiscretisedLine, step: float, uplift_forces: tuple[float, ...]) -> PassageRun:
+    passage = build_passage(case, line, step, uplift_forces)
     begin = time.perf_counter()
-    history = run(line, passage)
-    return Run(record_of(case, passage, history), passage.duration, time.perf_counter() - begin)
+    history = simulate_passage(line, passage)
+    return PassageRun(record_passage(case, passage, history), passage.duration, time.perf_counter() - begin)
 
 
-def _means(case: Case, made: Run) -> NDArray[np.float64]:
+def _means(case: Case, made: PassageRun) -> NDArray[np.float64]:
     """Mean contact force of every pantograph over the samples that are graded [N]."""
     low_pass, numbers = case.file.filter.low_pass, range(1, made.record.pantographs + 1)
     return np.array([pantograph_signals(made.record, i, low_pass).delivered.mean() for i in numbers])
 
 
-def passage_of(case: Case, line: Discretised, step: float, uplift_forces: tuple[float, ...]) -> Passage:
+def build_passage(case: Case, line: DiscretisedLine, step: float, uplift_forces: tuple[float, ...]) -> Passage:
     """The passage of a case with given uplift forces, on a line that is discretised already."""
-    places = along_span(case.evaluated[0], case.line.geometry.span_m)
+    places = span_positions(case.evaluated[0], case.line.geometry.span_m)
     models = []
     for file, force in zip(case.pantographs, uplift_forces, strict=True):
         height = float(static_uplift(line, places, force).mean()) + force / file.contact.stiffness_N_m
-        models.append(pantograph(file, force, height))
+        models.append(build_pantograph(file, force, height))
     duration = (case.end - case.start) / case.speed
     wanted = case.file.discretisation.reach_m
     causal = causal_reach(line, case.speed, duration)
     return Passage(
         pantographs=tuple(models),
-        start=starts(case),
+        start=start_positions(case),
         speed=case.speed,
         duration=duration,
         time_step=step,
@@ -128,7 +130,7 @@ def passage_of(case: Case, line: Discretised, step: float, uplift_forces: tuple[
     )
 
 
-def record_of(case: Case, passage: Passage, history: History) -> Record:
+def record_passage(case: Case, passage: Passage, history: History) -> Record:
     """The record of a case's passage."""
     return Record(
         time=history.time,

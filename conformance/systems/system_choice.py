@@ -10,7 +10,7 @@ TIMEOUT_S = 600.0
 """Time a program may take for a case [s], if nothing else is said."""
 
 
-def system_named(text: str, timeout_s: float = TIMEOUT_S) -> System:
+def choose_system(text: str, timeout_s: float = TIMEOUT_S) -> System:
     """The system under test for `builtin`, `record:DIR` or `command:PROGRAM ARGUMENTS`.
 
     Parameters
@@ -28,13 +28,13 @@ def system_named(text: str, timeout_s: float = TIMEOUT_S) -> System:
         system: System = import_module("pantocheck.conformance.systems.reference_simulator").ReferenceSimulator()
         return system
     if kind == "record" and rest:
-        from pantocheck.conformance.systems.record_folder import record_folder
+        from pantocheck.conformance.systems.record_folder import open_record_folder
 
-        return record_folder(Path(rest))
+        return open_record_folder(Path(rest))
     if kind == "command":
-        from pantocheck.conformance.systems.command.command_system import command
+        from pantocheck.conformance.systems.command.command_system import parse_command
 
-        return command(rest, Path(), timeout_s)
+        return parse_command(rest, Path(), timeout_s)
     raise InputError(
         f"system '{text}'", "there is no such system", "Known are builtin, record:DIR and command:PROGRAM ARGUMENTS ."
     )

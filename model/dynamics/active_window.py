@@ -6,16 +6,16 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from pantocheck.model.discretised_line import Discretised
-from pantocheck.model.dynamics.state import Line, Motion, Train
+from pantocheck.model.discretised_line import DiscretisedLine
+from pantocheck.model.dynamics.state import KernelArrays, Motion, Train
 
 Array = NDArray[np.float64]
 
-NEAR_FIELD = 30.0
+MIN_HALF_WIDTH = 30.0
 """So far around a pantograph all moves from the start: forces reach there in a step, or short waves run ahead [m]."""
 
 
-def fastest_wave(line: Discretised) -> float:
+def max_wave_speed(line: DiscretisedLine) -> float:
     """Speed that no wave of interest exceeds on any wire [m/s].
 
     Bending makes short waves faster: 10 % above sqrt(T / m) holds up to about 60 Hz on a contact wire.
@@ -23,7 +23,7 @@ def fastest_wave(line: Discretised) -> float:
     return 1.1 * math.sqrt(max(wire.tension / wire.mass_per_length for wire in line.catenary.wires))
 
 
-def causal_reach(line: Discretised, speed: float, duration: float) -> float:
+def causal_reach(line: DiscretisedLine, speed: float, duration: float) -> float:
     """How far from the pantographs the line can stand still without them ever feeling it.
 
     A wave of speed c needs R / (c - v) to get R ahead of a pantograph of speed v, and R / (c + v) to come back from
@@ -39,24 +39,24 @@ def causal_reach(line: Discretised, speed: float, duration: float) -> float:
     -------
     the distance; infinite for a train faster than the waves [m]
     """
-    c = fastest_wave(line)
+    c = max_wave_speed(line)
     return duration * (c * c - speed * speed) / (2 * c) if speed < c else math.inf
 
 
 @njit(cache=True)
-def moving_part(line: Line, train: Train) -> tuple[int, int]:
+def active_stations(line: KernelArrays, train: Train) -> tuple[int, int]:
     """First and last of the stations that move: within reach of a pantograph and of its waves, or all without one."""
     first, last = 0, line.position.size - 1
     if train.position.size > 0:
-        spread, run = NEAR_FIELD + line.front * train.elapsed[0], train.speed[0] * train.elapsed[0]
-        behind, ahead = min(line.reach, spread + run), min(line.reach, max(spread - run, NEAR_FIELD))
+        spread, run = MIN_HALF_WIDTH + line.front * train.elapsed[0], train.speed[0] * train.elapsed[0]
+        behind, ahead = min(line.reach, spread + run), min(line.reach, max(spread - run, MIN_HALF_WIDTH))
         first = max(first, np.searchsorted(line.position, train.position.min() - behind))
         last = min(last, np.searchsorted(line.position, train.position.max() + ahead))
     return first, last
 
 
 @njit(cache=True)
-def hold(motion: Motion, first: int, last: int) -> None:
+def hold_outside(motion: Motion, first: int, last: int) -> None:
     """Keep the stations next to the moving part still; a train that comes nearer finds them at rest."""
     for s in (first - 1, last + 1):
         if 0 <= s < motion.w.shape[2]:

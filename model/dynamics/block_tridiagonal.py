@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from pantocheck.model.dynamics.mass_correction import compensation
+from pantocheck.model.dynamics.mass_correction import mass_correction
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.beams import Beams, element_stiffness
 
@@ -41,7 +41,7 @@ class Factor(NamedTuple):
     meeting: Array
 
 
-def effective_blocks(beams: Beams, time_step: float) -> tuple[Array, Array]:
+def build_effective_blocks(beams: Beams, time_step: float) -> tuple[Array, Array]:
     """Diagonal and below-diagonal blocks of A.
 
     Parameters
@@ -61,7 +61,7 @@ def effective_blocks(beams: Beams, time_step: float) -> tuple[Array, Array]:
         on_mass = 1 + half * beams.mass_coefficient[row]
         on_stiffness = quarter + half * beams.stiffness_coefficient[row]
         element = on_mass * beam.mass(beams.length, beams.mass_per_length[row])
-        element += on_stiffness * element_stiffness(beams, row) - compensation(beams, row, time_step)
+        element += on_stiffness * element_stiffness(beams, row) - mass_correction(beams, row, time_step)
         diagonal[row, :-1] += element[:, :2, :2]
         diagonal[row, 1:] += element[:, 2:, 2:]
         below[row, 1:] = element[:, 2:, :2]
@@ -88,7 +88,7 @@ def factorise(beams: Beams, time_step: float) -> Factor:
     -------
     its block factors
     """
-    diagonal, below = effective_blocks(beams, time_step)
+    diagonal, below = build_effective_blocks(beams, time_step)
     rows, stations = diagonal.shape[:2]
     inverse, link = np.zeros((2, rows, stations, 3)), np.zeros((2, rows, stations, 4))
     meeting = np.zeros((rows, stations, 3))
@@ -129,7 +129,7 @@ def _invert(blocks: Array, free: NDArray[np.bool_], inverse: Array) -> None:
 
 
 @njit(cache=True)
-def solve(factor: Factor, first: int, last: int, w: Array, r: Array) -> None:
+def solve_line(factor: Factor, first: int, last: int, w: Array, r: Array) -> None:
     """Solve A x = f for a stretch of all rows, in place; f is zero and x negligible outside it.
 
     Parameters
@@ -228,7 +228,7 @@ def inverse_column(factor: Factor, row: int, station: int, slope: int, half_widt
     return tail / peak if peak > 0 else 0.0
 
 
-def half_width(factor: Factor, loads: list[tuple[int, int]]) -> int:
+def column_half_width(factor: Factor, loads: list[tuple[int, int]]) -> int:
     """Stations either side after which every column asked for is negligible.
 
     Parameters
@@ -285,6 +285,6 @@ def solve_rows(factor: Factor, force: Array) -> Array:
     solved = np.empty_like(force)
     for n in range(force.shape[0]):
         w, r = force[n, :, :, 0].copy(), force[n, :, :, 1].copy()
-        solve(factor, 0, w.shape[1] - 1, w, r)
+        solve_line(factor, 0, w.shape[1] - 1, w, r)
         solved[n, :, :, 0], solved[n, :, :, 1] = w, r
     return solved

@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from pantocheck.model.dynamics.state import Line, Motion, Workspace
+from pantocheck.model.dynamics.state import KernelArrays, Motion, Workspace
 
 Array = NDArray[np.float64]
 
@@ -18,7 +18,7 @@ NEGLIGIBLE_FORCE = 1e-11
 
 
 @njit(cache=True)
-def predict_connectors(line: Line, motion: Motion, work: Workspace, first: int, last: int) -> None:
+def predict_connectors(line: KernelArrays, motion: Motion, work: Workspace, first: int, last: int) -> None:
     """Predicted tensions; the connectors pull with their tensions of the last step to begin with."""
     for n in range(line.station.size):
         s = line.station[n]
@@ -54,7 +54,9 @@ def larger(a: float, b: float) -> float:
 
 
 @njit(cache=True)
-def turn_connectors(line: Line, motion: Motion, work: Workspace, w: Array, r: Array, first: int, last: int) -> float:
+def sweep_connectors(
+    line: KernelArrays, motion: Motion, work: Workspace, w: Array, r: Array, first: int, last: int
+) -> float:
     """Solve every connector between two stations once, the others held; returns the largest change of a tension [N]."""
     largest = 0.0
     for n in range(line.station.size):

@@ -5,14 +5,14 @@ from numba import njit
 from numpy.typing import NDArray
 
 from pantocheck.model.dynamics.connector_step import NEGLIGIBLE_FORCE, add_column, larger
-from pantocheck.model.dynamics.state import Line, Motion, Train, Workspace
+from pantocheck.model.dynamics.state import KernelArrays, Motion, Train, Workspace
 from pantocheck.model.fem.residual_flexibility import local_flexibility
 
 Array = NDArray[np.float64]
 
 
 @njit(cache=True)
-def predict_train(line: Line, motion: Motion, train: Train, work: Workspace) -> None:
+def predict_train(line: KernelArrays, motion: Motion, train: Train, work: Workspace) -> None:
     """Move the pantographs on, predict them, and press with the contact forces of the last step to begin with."""
     dt = line.time_step
     unknowns = train.z.shape[2]
@@ -42,7 +42,14 @@ def predict_train(line: Line, motion: Motion, train: Train, work: Workspace) -> 
 
 @njit(cache=True)
 def _predict_contact(
-    line: Line, motion: Motion, train: Train, work: Workspace, p: int, k: int, head: float, head_compliance: float
+    line: KernelArrays,
+    motion: Motion,
+    train: Train,
+    work: Workspace,
+    p: int,
+    k: int,
+    head: float,
+    head_compliance: float,
 ) -> None:
     """Where a head touches a wire, how far it has closed on it, and what a newton between them would do."""
     half = line.columns.shape[2] // 2
@@ -70,7 +77,9 @@ def _predict_contact(
 
 
 @njit(cache=True)
-def turn_contacts(line: Line, train: Train, work: Workspace, w: Array, r: Array, first: int, last: int) -> float:
+def sweep_contacts(
+    line: KernelArrays, train: Train, work: Workspace, w: Array, r: Array, first: int, last: int
+) -> float:
     """Solve every contact once, the other forces held; returns the largest change of a contact force [N]."""
     dt = line.time_step
     largest = 0.0

@@ -6,13 +6,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pantocheck.model.discretised_line import Discretised
-from pantocheck.model.dynamics.active_window import fastest_wave
-from pantocheck.model.dynamics.block_tridiagonal import factorise, half_width, inverse_columns, solve_rows
-from pantocheck.model.dynamics.state import Line
+from pantocheck.model.discretised_line import DiscretisedLine
+from pantocheck.model.dynamics.active_window import max_wave_speed
+from pantocheck.model.dynamics.block_tridiagonal import column_half_width, factorise, inverse_columns, solve_rows
+from pantocheck.model.dynamics.state import KernelArrays
 from pantocheck.model.fem.beams import Beams, element_stiffness
-from pantocheck.model.fem.residual_flexibility import bubble_flexibility
-from pantocheck.model.modal.modal_damping import modal_terms
+from pantocheck.model.fem.residual_flexibility import condensed_bubbles
+from pantocheck.model.modal.modal_damping import build_modal_terms
 
 Array = NDArray[np.float64]
 
@@ -29,7 +29,9 @@ class Load(NamedTuple):
     station: int
 
 
-def time_stepping(line: Discretised, time_step: float, reach: float = math.inf, load: Load | None = None) -> Line:
+def build_kernel_arrays(
+    line: DiscretisedLine, time_step: float, reach: float = math.inf, load: Load | None = None
+) -> KernelArrays:
     """Arrays of the time step: factors, local columns, connectors.
 
     Parameters
@@ -46,7 +48,7 @@ def time_stepping(line: Discretised, time_step: float, reach: float = math.inf, 
     """
     beams, connectors, stations = line.beams, line.connectors, line.mesh.position.size
     factor = factorise(beams, time_step)
-    modal = modal_terms(line)
+    modal = build_modal_terms(line)
     response = solve_rows(factor, modal.weight)
     if modal.damping.size:
         reach = math.inf  # a mode moves the whole line
@@ -61,7 +63,7 @@ def time_stepping(line: Discretised, time_step: float, reach: float = math.inf, 
             loads.append((int(row), int(connectors.station[n])))
     contact_row = np.array(line.contact_rows, dtype=np.int64)
     contact_loads = [(int(row), s) for row in contact_row for s in range(stations)]
-    width = half_width(factor, loads + contact_loads[:: max(1, stations // 200)])
+    width = column_half_width(factor, loads + contact_loads[:: max(1, stations // 200)])
     rows_, stations_ = (np.array([load[i] for load in loads], dtype=np.int64) for i in range(2))
     columns = inverse_columns(factor, rows_, stations_, np.zeros_like(rows_), width)
     lumped = np.nonzero((beams.lumped_stiffness != 0) | (beams.lumped_damping != 0))
@@ -69,10 +71,10 @@ def time_stepping(line: Discretised, time_step: float, reach: float = math.inf, 
     contact = np.repeat(np.array(contact_loads, dtype=np.int64).reshape(-1, 2), 2, axis=0)
     slopes = np.tile(np.arange(2), len(contact_loads))
     contact_columns = inverse_columns(factor, contact[:, 0].copy(), contact[:, 1].copy(), slopes, width)
-    return Line(
+    return KernelArrays(
         time_step=time_step,
         reach=reach,
-        front=fastest_wave(line) if math.isfinite(reach) else math.inf,
+        front=max_wave_speed(line) if math.isfinite(reach) else math.inf,
         position=line.mesh.position,
         length=beams.length,
         stiffness_entries=_stiffness_entries(beams),
@@ -129,6 +131,6 @@ def _bubbles(beams: Beams, rows: list[int]) -> Array:
             data = (float(beams.length[e]), float(beams.tension[row, e]), float(beams.bending_stiffness[row, e]))
             key = (round(data[0], 9), *data[1:])
             if key not in known:
-                known[key] = bubble_flexibility(*data)
+                known[key] = condensed_bubbles(*data)
             bubbles[k, e] = known[key]
     return bubbles

@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 STABLE_SHARE = 1 / 40
 
 
-def compensation(beams: Beams, row: int, time_step: float) -> Array:
+def mass_correction(beams: Beams, row: int, time_step: float) -> Array:
     """What a time step takes off the mass of every element of one row.
 
     Parameters

@@ -8,11 +8,17 @@ from numpy.typing import NDArray
 
 from pantocheck.model.catenary import GRAVITY, Catenary
 from pantocheck.model.discretised_line import discretise
-from pantocheck.model.dynamics.kernel_arrays import Load, time_stepping
+from pantocheck.model.dynamics.kernel_arrays import Load, build_kernel_arrays
 from pantocheck.model.dynamics.newmark import march
-from pantocheck.model.dynamics.simulation import DidNotConverge, no_train, still, watched_stations, workspace
+from pantocheck.model.dynamics.simulation import (
+    DidNotConverge,
+    build_workspace,
+    empty_train,
+    motion_at_rest,
+    recorded_stations,
+)
 from pantocheck.model.fem.assembly import point_load
-from pantocheck.model.statics.static_solver import Statics
+from pantocheck.model.statics.static_solver import StaticSolver
 
 Array = NDArray[np.float64]
 
@@ -21,7 +27,7 @@ BLOCK = 5000
 
 
 @dataclass(frozen=True)
-class Drop:
+class MassDropSetup:
     """What is hung where, how it is let go, and what is recorded.
 
     Parameters
@@ -64,8 +70,8 @@ class FreeDecay:
     slack_at_start: int
 
 
-def drop(
-    catenary: Catenary, element_length: float, test: Drop, progress: Callable[[float], None] | None = None
+def simulate_mass_drop(
+    catenary: Catenary, element_length: float, test: MassDropSetup, progress: Callable[[float], None] | None = None
 ) -> FreeDecay:
     """Simulate a mass drop.
 
@@ -88,17 +94,17 @@ def drop(
     places = (test.position, *(position for _, position in test.sensors))
     line = discretise(catenary, element_length, places)
     load = Load(line.mesh.row_of[test.wire, "z"], line.mesh.station(test.position))
-    stepping = time_stepping(line, test.time_step, load=load)
+    stepping = build_kernel_arrays(line, test.time_step, load=load)
     weight = -test.mass * GRAVITY
-    hanging = Statics(line).deflection(weight * point_load(line, load.row, test.position))
-    motion, train = still(hanging, stepping.modal_damping.size), no_train(len(line.contact_rows))
+    hanging = StaticSolver(line).deflection(weight * point_load(line, load.row, test.position))
+    motion, train = motion_at_rest(hanging, stepping.modal_damping.size), empty_train(len(line.contact_rows))
     before, after = (round(duration / test.time_step) for duration in (test.hanging, test.duration))
     time: Array = test.time_step * np.arange(1 - before, after + 1).astype(np.float64)
     history = weight * _share_left(time, test.release_duration)
-    rows, stations = watched_stations(line, test.sensors)
+    rows, stations = recorded_stations(line, test.sensors)
     recorded = np.zeros((time.size, rows.size, 3))
     droppers = len(catenary.droppers)
-    work = workspace(stepping, train)
+    work = build_workspace(stepping, train)
     last_slack = None
     for first in range(0, time.size, BLOCK):
         part = slice(first, min(first + BLOCK, time.size))

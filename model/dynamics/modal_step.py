@@ -5,13 +5,13 @@ from numba import njit
 from numpy.typing import NDArray
 
 from pantocheck.model.dynamics.connector_step import NEGLIGIBLE_FORCE, larger
-from pantocheck.model.dynamics.state import Line, Motion, Workspace
+from pantocheck.model.dynamics.state import KernelArrays, Motion, Workspace
 
 Array = NDArray[np.float64]
 
 
 @njit(cache=True)
-def predict_modes(line: Line, motion: Motion, work: Workspace) -> None:
+def predict_modes(line: KernelArrays, motion: Motion, work: Workspace) -> None:
     """Predicted velocities of the modes; they are damped with the forces of the last step to begin with."""
     for j in range(line.modal_damping.size):
         work.modal_velocity[j] = _share(line.modal_weight[j], motion.w[1], motion.r[1])
@@ -19,7 +19,7 @@ def predict_modes(line: Line, motion: Motion, work: Workspace) -> None:
 
 
 @njit(cache=True)
-def turn_modes(line: Line, motion: Motion, work: Workspace, w: Array, r: Array) -> float:
+def sweep_modes(line: KernelArrays, motion: Motion, work: Workspace, w: Array, r: Array) -> float:
     """Solve the damping force on every mode of its own damping once, the others held; returns the largest change."""
     dt = line.time_step
     largest = 0.0

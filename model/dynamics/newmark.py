@@ -9,12 +9,12 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from pantocheck.model.dynamics.active_window import hold, moving_part
-from pantocheck.model.dynamics.block_tridiagonal import solve
-from pantocheck.model.dynamics.connector_step import larger, predict_connectors, turn_connectors
-from pantocheck.model.dynamics.contact_step import correct_train, predict_train, turn_contacts
-from pantocheck.model.dynamics.modal_step import predict_modes, turn_modes
-from pantocheck.model.dynamics.state import Line, Motion, Train, Workspace
+from pantocheck.model.dynamics.active_window import active_stations, hold_outside
+from pantocheck.model.dynamics.block_tridiagonal import solve_line
+from pantocheck.model.dynamics.connector_step import larger, predict_connectors, sweep_connectors
+from pantocheck.model.dynamics.contact_step import correct_train, predict_train, sweep_contacts
+from pantocheck.model.dynamics.modal_step import predict_modes, sweep_modes
+from pantocheck.model.dynamics.state import KernelArrays, Motion, Train, Workspace
 from pantocheck.model.dynamics.wire_step import correct_wires, predict_wires, wire_forces
 
 Array = NDArray[np.float64]
@@ -22,12 +22,12 @@ Indices = NDArray[np.int64]
 
 FORCE_TOLERANCE = 1e-9
 """A step has converged when no force changed by more than this in a turn [N]; forces are of the order of 100 N."""
-MOST_TURNS = 200
+MAX_SWEEPS = 200
 """After so many turns a step is given up."""
 
 
 @njit(cache=True)
-def step(line: Line, motion: Motion, train: Train, work: Workspace) -> int:
+def step(line: KernelArrays, motion: Motion, train: Train, work: Workspace) -> int:
     """Advance line and pantographs by one time step, in place.
 
     Parameters
@@ -43,21 +43,21 @@ def step(line: Line, motion: Motion, train: Train, work: Workspace) -> int:
     """
     dt = line.time_step
     w, r = motion.w[2], motion.r[2]
-    first, last = moving_part(line, train)
+    first, last = active_stations(line, train)
     predict_wires(dt, motion, first, last)
     wire_forces(line, motion, work, first, last)
-    hold(motion, first, last)
+    hold_outside(motion, first, last)
     predict_connectors(line, motion, work, first, last)
     predict_train(line, motion, train, work)
     w[line.load_row, line.load_station] += motion.load[0]
     predict_modes(line, motion, work)
-    solve(line.factor, first, last, w, r)
+    solve_line(line.factor, first, last, w, r)
     turns = 0
-    while turns < MOST_TURNS:
+    while turns < MAX_SWEEPS:
         turns += 1
-        largest = turn_contacts(line, train, work, w, r, first, last)
-        largest = larger(largest, turn_connectors(line, motion, work, w, r, first, last))
-        largest = larger(largest, turn_modes(line, motion, work, w, r))
+        largest = sweep_contacts(line, train, work, w, r, first, last)
+        largest = larger(largest, sweep_connectors(line, motion, work, w, r, first, last))
+        largest = larger(largest, sweep_modes(line, motion, work, w, r))
         if largest < FORCE_TOLERANCE:
             break
     correct_wires(dt, motion, first, last)
@@ -68,7 +68,7 @@ def step(line: Line, motion: Motion, train: Train, work: Workspace) -> int:
 
 @njit(cache=True)
 def march(
-    line: Line,
+    line: KernelArrays,
     motion: Motion,
     train: Train,
     work: Workspace,

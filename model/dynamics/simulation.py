@@ -7,15 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pantocheck.model.discretised_line import Discretised
-from pantocheck.model.dynamics.kernel_arrays import time_stepping
+from pantocheck.model.discretised_line import DiscretisedLine
+from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays
 from pantocheck.model.dynamics.newmark import march
-from pantocheck.model.dynamics.state import PIECE, Line, Motion, Train, Workspace
+from pantocheck.model.dynamics.state import PIECE, KernelArrays, Motion, Train, Workspace
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.assembly import point_load
 from pantocheck.model.fem.residual_flexibility import local_flexibility
 from pantocheck.model.pantograph import Pantograph
-from pantocheck.model.statics.static_solver import Deflection, Statics
+from pantocheck.model.statics.static_solver import Deflection, StaticSolver
 
 Array = NDArray[np.float64]
 
@@ -76,7 +76,9 @@ class History:
     motion: Array
 
 
-def run(line: Discretised, passage: Passage, progress: Callable[[float], None] | None = None) -> History:
+def simulate_passage(
+    line: DiscretisedLine, passage: Passage, progress: Callable[[float], None] | None = None
+) -> History:
     """Drive pantographs along a line from rest.
 
     Parameters
@@ -95,13 +97,13 @@ def run(line: Discretised, passage: Passage, progress: Callable[[float], None] |
     DidNotConverge : a time step has no solution
     """
     _check(line, passage)
-    stepping = time_stepping(line, passage.time_step, passage.reach)
-    motion, train = start(line, stepping, passage)
+    stepping = build_kernel_arrays(line, passage.time_step, passage.reach)
+    motion, train = start_motion(line, stepping, passage)
     steps = round(passage.duration / passage.time_step)
-    rows, stations = watched_stations(line, passage.watched)
+    rows, stations = recorded_stations(line, passage.watched)
     force, height = np.zeros((steps, len(passage.pantographs))), np.zeros((steps, len(passage.pantographs)))
     motion_there, no_load, nothing = np.zeros((steps, rows.size, 3)), np.zeros(steps), np.zeros((steps, 0))
-    work = workspace(stepping, train)
+    work = build_workspace(stepping, train)
     for first in range(0, max(steps, 1), BLOCK):
         part = slice(first, min(first + BLOCK, steps))
         outputs = (force[part], height[part], motion_there[part], nothing[part])
@@ -115,7 +117,7 @@ def run(line: Discretised, passage: Passage, progress: Callable[[float], None] |
     return History(time, position, force.T.copy(), height.T.copy(), motion_there.transpose(1, 0, 2).copy())
 
 
-def _check(line: Discretised, passage: Passage) -> None:
+def _check(line: DiscretisedLine, passage: Passage) -> None:
     if not passage.pantographs:
         raise ImpossiblePassage("there is no pantograph to run")
     first, last = line.mesh.position[0], line.mesh.position[-1]
@@ -126,7 +128,7 @@ def _check(line: Discretised, passage: Passage) -> None:
         )
 
 
-def start(line: Discretised, stepping: Line, passage: Passage) -> tuple[Motion, Train]:
+def start_motion(line: DiscretisedLine, stepping: KernelArrays, passage: Passage) -> tuple[Motion, Train]:
     """Line and pantographs at rest, each pantograph pressing with its static force.
 
     Parameters
@@ -144,11 +146,11 @@ def start(line: Discretised, stepping: Line, passage: Passage) -> tuple[Motion, 
     for pantograph, x in zip(passage.pantographs, passage.start, strict=True):
         for row in line.contact_rows:
             load += share * pantograph.static_force * point_load(line, row, x)
-    at_rest = Statics(line).deflection(load)
-    return still(at_rest, stepping.modal_damping.size), _train(line, stepping, passage, at_rest)
+    at_rest = StaticSolver(line).deflection(load)
+    return motion_at_rest(at_rest, stepping.modal_damping.size), _train(line, stepping, passage, at_rest)
 
 
-def still(deflection: Deflection, modes: int = 0) -> Motion:
+def motion_at_rest(deflection: Deflection, modes: int = 0) -> Motion:
     """A line held at rest in a static deflection; `modes` of its modes have a damping of their own."""
     w, r = (np.zeros((3, *deflection.displacement.shape[:2])) for _ in range(2))
     # Far from the loads the deflection fades into denormal numbers, which processors handle a hundred times slower.
@@ -157,15 +159,15 @@ def still(deflection: Deflection, modes: int = 0) -> Motion:
     return Motion(w, r, deflection.tension.copy(), np.zeros(modes), np.zeros(1))
 
 
-def watched_stations(
-    line: Discretised, watched: tuple[tuple[str, float], ...]
+def recorded_stations(
+    line: DiscretisedLine, watched: tuple[tuple[str, float], ...]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Rows and stations of the places whose motion is recorded."""
     rows = np.array([line.mesh.row_of[wire, "z"] for wire, _ in watched], dtype=np.int64)
     return rows, np.array([line.mesh.station(position) for _, position in watched], dtype=np.int64)
 
 
-def no_train(contact_wires: int) -> Train:
+def empty_train(contact_wires: int) -> Train:
     """No pantograph at all, for a line left to itself."""
     return Train(
         position=np.zeros(0),
@@ -182,7 +184,7 @@ def no_train(contact_wires: int) -> Train:
     )
 
 
-def _train(line: Discretised, stepping: Line, passage: Passage, at_rest: Deflection) -> Train:
+def _train(line: DiscretisedLine, stepping: KernelArrays, passage: Passage, at_rest: Deflection) -> Train:
     count, most = len(passage.pantographs), max(p.head.size for p in passage.pantographs)
     wires = len(line.contact_rows)
     inverse, damping, stiffness = (np.zeros((count, most, most)) for _ in range(3))
@@ -215,7 +217,7 @@ def _train(line: Discretised, stepping: Line, passage: Passage, at_rest: Deflect
     )
 
 
-def _under_head(stepping: Line, profile: Array, wire: int, position: float) -> tuple[float, float]:
+def _under_head(stepping: KernelArrays, profile: Array, wire: int, position: float) -> tuple[float, float]:
     """Height of a contact wire at one place in a static deflection, and its local flexibility there [m, m/N]."""
     x = stepping.position
     e = int(np.clip(np.searchsorted(x, position) - 1, 0, x.size - 2))
@@ -234,7 +236,7 @@ def _rest(pantograph: Pantograph, head_height: float) -> Array:
     return np.asarray(np.linalg.solve(system, np.append(pantograph.force, head_height))[:n])
 
 
-def workspace(line: Line, train: Train) -> Workspace:
+def build_workspace(line: KernelArrays, train: Train) -> Workspace:
     """Arrays for the time step of one run."""
     pantographs, wires = train.contact.shape
     return Workspace(

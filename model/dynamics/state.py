@@ -14,7 +14,7 @@ PIECE = 256
 """Elements of a row that are worked on together."""
 
 
-class Line(NamedTuple):
+class KernelArrays(NamedTuple):
     """What stays the same during a run; B rows, S stations, N connectors with E ends, W contact wires.
 
     Parameters

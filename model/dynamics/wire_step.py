@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from pantocheck.model.dynamics.state import PIECE, Line, Motion, Workspace
+from pantocheck.model.dynamics.state import PIECE, KernelArrays, Motion, Workspace
 
 Array = NDArray[np.float64]
 
@@ -34,7 +34,7 @@ def correct_wires(dt: float, motion: Motion, first: int, last: int) -> None:
 
 
 @njit(cache=True)
-def wire_forces(line: Line, motion: Motion, work: Workspace, first: int, last: int) -> None:
+def wire_forces(line: KernelArrays, motion: Motion, work: Workspace, first: int, last: int) -> None:
     """Forces and moments that wires and lumped parts exert on the stations, in place of their accelerations.
 
     Each element pushes its ends alike (drag) and apart (shear), and turns them alike (tilt) and apart (bend). The line

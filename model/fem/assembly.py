@@ -9,17 +9,17 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from pantocheck.model.discretised_line import Discretised
-from pantocheck.model.dynamics.mass_correction import compensation
+from pantocheck.model.discretised_line import DiscretisedLine
+from pantocheck.model.dynamics.mass_correction import mass_correction
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.beams import by_station, wire_matrices
-from pantocheck.model.fem.residual_flexibility import bubble_flexibility, local_flexibility
+from pantocheck.model.fem.residual_flexibility import condensed_bubbles, local_flexibility
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Matrices:
+class GlobalMatrices:
     """Matrices of the free unknowns with every dropper taut.
 
     Parameters
@@ -34,27 +34,27 @@ class Matrices:
     free: NDArray[np.int64]
 
 
-def unknown(line: Discretised, row: int, station: int, slope: int = 0) -> int:
+def unknown(line: DiscretisedLine, row: int, station: int, slope: int = 0) -> int:
     """Index of an unknown among all of them."""
     return 2 * (station * line.mesh.rows + row) + slope
 
 
-def order(line: Discretised) -> NDArray[np.int64]:
+def bandwidth_order(line: DiscretisedLine) -> NDArray[np.int64]:
     """For every unknown in global order, its place in a (rows, stations, 2) array laid flat."""
     rows, stations = line.mesh.rows, line.mesh.position.size
     return np.arange(rows * stations * 2).reshape(rows, stations, 2).transpose(1, 0, 2).ravel()
 
 
-def free_unknowns(line: Discretised) -> NDArray[np.int64]:
+def free_unknowns(line: DiscretisedLine) -> NDArray[np.int64]:
     """Indices of the unknowns that can move and that some wire carries."""
     carried = np.zeros_like(line.beams.free)
     present = line.beams.mass_per_length > 0
     carried[:, :-1] |= present[:, :, None]
     carried[:, 1:] |= present[:, :, None]
-    return np.flatnonzero((line.beams.free & carried).ravel()[order(line)])
+    return np.flatnonzero((line.beams.free & carried).ravel()[bandwidth_order(line)])
 
 
-def assemble(line: Discretised) -> Matrices:
+def assemble_matrices(line: DiscretisedLine) -> GlobalMatrices:
     """Mass, damping and stiffness of the line with every dropper taut.
 
     Parameters
@@ -67,7 +67,7 @@ def assemble(line: Discretised) -> Matrices:
     """
     beams, free = line.beams, free_unknowns(line)
     wires = [wire_matrices(beams, row) for row in range(line.mesh.rows)]
-    place = order(line)
+    place = bandwidth_order(line)
     stiffness = sp.block_diag([k for k, _ in wires], format="csr")
     mass = sp.block_diag([m for _, m in wires], format="csr")
     damping = sp.block_diag(
@@ -84,7 +84,7 @@ def assemble(line: Discretised) -> Matrices:
         whole = (wire + sp.diags_array(on_deflections))[place][:, place] + joint @ sp.diags_array(connector) @ joint.T
         return sp.csc_array(whole[free][:, free])
 
-    return Matrices(
+    return GlobalMatrices(
         mass=keep(mass, beams.lumped_mass, np.zeros_like(line.connectors.stiffness)),
         damping=keep(damping, beams.lumped_damping, line.connectors.damping),
         stiffness=keep(stiffness, beams.lumped_stiffness, line.connectors.stiffness),
@@ -92,7 +92,7 @@ def assemble(line: Discretised) -> Matrices:
     )
 
 
-def stepping_mass(line: Discretised, time_step: float) -> sp.csc_array:
+def stepping_mass(line: DiscretisedLine, time_step: float) -> sp.csc_array:
     """Mass of the line that a time step works with, see `dispersion`; for steps that are written out plainly.
 
     Parameters
@@ -105,12 +105,12 @@ def stepping_mass(line: Discretised, time_step: float) -> sp.csc_array:
     (n, n) for the free unknowns [kg]
     """
     rows = range(line.mesh.rows)
-    taken = sp.block_diag([by_station(compensation(line.beams, row, time_step)) for row in rows], format="csr")
-    matrices, place = assemble(line), order(line)
+    taken = sp.block_diag([by_station(mass_correction(line.beams, row, time_step)) for row in rows], format="csr")
+    matrices, place = assemble_matrices(line), bandwidth_order(line)
     return sp.csc_array(matrices.mass - taken[place][:, place][matrices.free][:, matrices.free])
 
 
-def connector_directions(line: Discretised) -> sp.csr_array:
+def connector_directions(line: DiscretisedLine) -> sp.csr_array:
     """Elongation of each connector per unknown, over all unknowns: (unknowns, connectors)."""
     connectors = line.connectors
     number, row = np.nonzero(connectors.coefficient)
@@ -119,7 +119,7 @@ def connector_directions(line: Discretised) -> sp.csr_array:
     return sp.csr_array((connectors.coefficient[number, row], (at, number)), shape=(size, len(connectors.station)))
 
 
-def point_load(line: Discretised, row: int, position: float) -> Array:
+def point_load(line: DiscretisedLine, row: int, position: float) -> Array:
     """Unknowns' shares in the deflection of one row at any place; as a load: a unit force there.
 
     Parameters
@@ -143,7 +143,7 @@ def point_load(line: Discretised, row: int, position: float) -> Array:
     return share
 
 
-def contact_stiffness(line: Discretised, row: int, position: float, penalty: float) -> float:
+def contact_stiffness(line: DiscretisedLine, row: int, position: float, penalty: float) -> float:
     """Penalty and local flexibility of the element under a place, in series: what a step written out plainly needs.
 
     Parameters
@@ -160,5 +160,5 @@ def contact_stiffness(line: Discretised, row: int, position: float, penalty: flo
     x, beams = line.mesh.position, line.beams
     e = int(np.clip(np.searchsorted(x, position) - 1, 0, x.size - 2))
     h = float(x[e + 1] - x[e])
-    bubble = bubble_flexibility(h, float(beams.tension[row, e]), float(beams.bending_stiffness[row, e]))
+    bubble = condensed_bubbles(h, float(beams.tension[row, e]), float(beams.bending_stiffness[row, e]))
     return 1 / (1 / penalty + local_flexibility(bubble, (position - float(x[e])) / h))

@@ -177,7 +177,7 @@ def arm_direction(arm: SteadyArm, force: Array) -> tuple[float, float, float]:
     return sign * float(force[0]) / size, sign * float(force[1]) / size, sign * size
 
 
-def lump(catenary: Catenary, mesh: Mesh, beams: Beams) -> None:
+def add_lumped(catenary: Catenary, mesh: Mesh, beams: Beams) -> None:
     """Add masses, springs and dampers that act on one row at one station to the rows, in place.
 
     Parameters

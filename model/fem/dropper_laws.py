@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from pantocheck.model.discretised_line import Discretised
+from pantocheck.model.discretised_line import DiscretisedLine
 
 
-def with_viscous_part_kept(line: Discretised) -> Discretised:
+def with_viscous_part_kept(line: DiscretisedLine) -> DiscretisedLine:
     """The line with its droppers' dashpots acting both ways, slack or not; only the elastic force slackens.
 
     By itself a slack dropper carries nothing at all. Where a code keeps the damping matrix constant and compensates the

@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 FUNCTIONS = 3
 
 
-def bubble_flexibility(h: float, tension: float, bending_stiffness: float) -> Array:
+def condensed_bubbles(h: float, tension: float, bending_stiffness: float) -> Array:
     """Flexibility of the Ritz functions of one element.
 
     Parameters

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pantocheck.model.discretised_line import Discretised
-from pantocheck.model.fem.assembly import assemble, order
-from pantocheck.model.modal.modes import Modes, modes
+from pantocheck.model.discretised_line import DiscretisedLine
+from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order
+from pantocheck.model.modal.modes import Modes, compute_modes
 
 Array = NDArray[np.float64]
 
@@ -30,7 +30,7 @@ class ModalTerms:
     weight: Array
 
 
-def modal_terms(line: Discretised) -> ModalTerms:
+def build_modal_terms(line: DiscretisedLine) -> ModalTerms:
     """The low-rank part of a line's damping; of rank zero when the line asks for none.
 
     Parameters
@@ -44,9 +44,9 @@ def modal_terms(line: Discretised) -> ModalTerms:
     bands = line.catenary.modal_damping
     if not bands:
         return ModalTerms(np.zeros(0), np.zeros((0, *line.beams.free.shape)))
-    matrices = assemble(line)
+    matrices = assemble_matrices(line)
     shapes = modes_below(line, max(band.to_frequency for band in bands))
-    place = order(line)[matrices.free]
+    place = bandwidth_order(line)[matrices.free]
     vectors = shapes.shape.reshape(len(shapes.frequency), -1)[:, place]
     damping, weight = [], []
     for frequency, vector in zip(shapes.frequency, vectors, strict=True):
@@ -60,7 +60,7 @@ def modal_terms(line: Discretised) -> ModalTerms:
     return ModalTerms(np.array(damping), np.array(weight).reshape(-1, *line.beams.free.shape))
 
 
-def modes_below(line: Discretised, frequency: float) -> Modes:
+def modes_below(line: DiscretisedLine, frequency: float) -> Modes:
     """All modes of a line below a frequency.
 
     Parameters
@@ -72,9 +72,9 @@ def modes_below(line: Discretised, frequency: float) -> Modes:
     -------
     the modes
     """
-    count, most = 16, assemble(line).free.size - 2
+    count, most = 16, assemble_matrices(line).free.size - 2
     while True:
-        found = modes(line, min(count, most))
+        found = compute_modes(line, min(count, most))
         if found.frequency[-1] >= frequency or count >= most:
             inside = found.frequency < frequency
             return Modes(found.frequency[inside], found.shape[inside])

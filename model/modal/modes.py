@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 from scipy.sparse.linalg import eigsh
 
 from pantocheck.model.catenary import Kind, Rayleigh
-from pantocheck.model.discretised_line import Discretised, with_damping
-from pantocheck.model.fem.assembly import assemble, order
+from pantocheck.model.discretised_line import DiscretisedLine, with_damping
+from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order
 
 Array = NDArray[np.float64]
 
@@ -43,7 +43,7 @@ class ComponentEnergies:
     mass: Array
 
 
-def modes(line: Discretised, count: int) -> Modes:
+def compute_modes(line: DiscretisedLine, count: int) -> Modes:
     """The lowest modes of a line.
 
     Parameters
@@ -55,13 +55,13 @@ def modes(line: Discretised, count: int) -> Modes:
     -------
     the modes
     """
-    matrices = assemble(line)
+    matrices = assemble_matrices(line)
     # A fixed start vector makes the iteration, and with it the last digits, the same every time.
     begin = np.ones(matrices.free.size)
     w2, vectors = eigsh(matrices.stiffness, count, matrices.mass, sigma=0.0, v0=begin)
     ascending = np.argsort(w2)
     shape = np.zeros((count, line.beams.free.size))
-    shape[:, order(line)[matrices.free]] = _signed(vectors[:, ascending].T)
+    shape[:, bandwidth_order(line)[matrices.free]] = _signed(vectors[:, ascending].T)
     return Modes(np.sqrt(w2[ascending]) / (2 * np.pi), shape.reshape(count, *line.beams.free.shape))
 
 
@@ -72,7 +72,7 @@ def _signed(vectors: Array) -> Array:
     return signed
 
 
-def deflection_at(line: Discretised, shapes: Modes, row: int, position: float) -> Array:
+def deflection_at(line: DiscretisedLine, shapes: Modes, row: int, position: float) -> Array:
     """Deflection of every mode at one place of one row.
 
     Parameters
@@ -89,7 +89,7 @@ def deflection_at(line: Discretised, shapes: Modes, row: int, position: float) -
     return np.asarray(shapes.shape[:, row, line.mesh.station(position), 0])
 
 
-def component_energies(line: Discretised, shapes: Modes) -> ComponentEnergies:
+def component_energies(line: DiscretisedLine, shapes: Modes) -> ComponentEnergies:
     """Share of every kind of component in the energies of the modes.
 
     Parameters
@@ -101,8 +101,8 @@ def component_energies(line: Discretised, shapes: Modes) -> ComponentEnergies:
     -------
     the energies; a damping model a_e K_e + b_e M_e gives mode j the ratio sum (a_e k_ej + b_e m_ej) / (2 omega_j)
     """
-    free = assemble(line).free
-    vectors = shapes.shape.reshape(len(shapes.frequency), -1)[:, order(line)[free]]
+    free = assemble_matrices(line).free
+    vectors = shapes.shape.reshape(len(shapes.frequency), -1)[:, bandwidth_order(line)[free]]
     kinds = tuple(Kind)
     stiffness, mass = (np.zeros((len(vectors), len(kinds))) for _ in range(2))
     dampers = _energy(with_damping(line, {}), vectors)
@@ -113,11 +113,11 @@ def component_energies(line: Discretised, shapes: Modes) -> ComponentEnergies:
     return ComponentEnergies(kinds, stiffness, mass)
 
 
-def _energy(line: Discretised, vectors: Array) -> Array:
-    return np.asarray(np.einsum("ji,ij->j", vectors, assemble(line).damping @ vectors.T))
+def _energy(line: DiscretisedLine, vectors: Array) -> Array:
+    return np.asarray(np.einsum("ji,ij->j", vectors, assemble_matrices(line).damping @ vectors.T))
 
 
-def damping_ratios(line: Discretised, shapes: Modes) -> Array:
+def damping_ratios(line: DiscretisedLine, shapes: Modes) -> Array:
     """Damping ratio of every mode, its coupling with others through the damping left out: phi' C phi / (2 omega).
 
     Parameters
@@ -129,6 +129,6 @@ def damping_ratios(line: Discretised, shapes: Modes) -> Array:
     -------
     (n,) [-]
     """
-    free = assemble(line).free
-    vectors = shapes.shape.reshape(len(shapes.frequency), -1)[:, order(line)[free]]
+    free = assemble_matrices(line).free
+    vectors = shapes.shape.reshape(len(shapes.frequency), -1)[:, bandwidth_order(line)[free]]
     return _energy(line, vectors) / (4 * np.pi * shapes.frequency)

@@ -3,14 +3,14 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from pantocheck.model.discretised_line import Discretised
+from pantocheck.model.discretised_line import DiscretisedLine
 from pantocheck.model.fem.assembly import point_load
-from pantocheck.model.statics.static_solver import Statics
+from pantocheck.model.statics.static_solver import StaticSolver
 
 Array = NDArray[np.float64]
 
 
-def static_uplift(line: Discretised, position: Array, force: float) -> Array:
+def static_uplift(line: DiscretisedLine, position: Array, force: float) -> Array:
     """Uplift of the contact wire under a static force at each place in turn, droppers slackening as they do.
 
     Parameters
@@ -23,7 +23,7 @@ def static_uplift(line: Discretised, position: Array, force: float) -> Array:
     -------
     (n,) uplift where the force acts, the mean over the contact wires [m]
     """
-    statics = Statics(line)
+    statics = StaticSolver(line)
     rows = line.contact_rows
     uplift = np.empty(len(position))
     for i, x in enumerate(position):

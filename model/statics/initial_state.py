@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from pantocheck.model.catenary import GRAVITY, Catenary, Kind
 from pantocheck.model.fem.beams import Beams, weight, wire_stiffness
 from pantocheck.model.fem.mesh import Mesh
-from pantocheck.model.statics.lateral_state import lateral_state
-from pantocheck.model.statics.prescribed_displacements import solve_held
+from pantocheck.model.statics.lateral_state import compute_lateral_state
+from pantocheck.model.statics.prescribed_displacements import solve_with_prescribed_displacements
 
 Array = NDArray[np.float64]
 Stiffness = Callable[[Beams, int], sp.csr_array]
@@ -49,7 +49,9 @@ class InitialState:
     arm_force: Array
 
 
-def initial_state(catenary: Catenary, mesh: Mesh, beams: Beams, stiffness: Stiffness = wire_stiffness) -> InitialState:
+def compute_initial_state(
+    catenary: Catenary, mesh: Mesh, beams: Beams, stiffness: Stiffness = wire_stiffness
+) -> InitialState:
     """Equilibrium of the line under its weight.
 
     Parameters
@@ -97,7 +99,7 @@ def initial_state(catenary: Catenary, mesh: Mesh, beams: Beams, stiffness: Stiff
             arm_force[n, 1] = reaction[mesh.row_of[arm.wire, "z"], mesh.station(arm.position)]
     run = np.zeros_like(rise)
     if catenary.has_lateral_field:
-        lateral = lateral_state(catenary, mesh, beams, tension / rise)
+        lateral = compute_lateral_state(catenary, mesh, beams, tension / rise)
         deflection[lateral.rows], clamp_force[:, 0], arm_force[:, 0] = lateral.shape, lateral.clamps, lateral.arms
         run = _difference(catenary, mesh, deflection, "y")
     length = np.hypot(rise, run)
@@ -133,7 +135,7 @@ def _hold_contact_wire(
     for at, height in held.items():
         free[at, 0] = False
         shape[at, 0] = height
-    solved = solve_held(stiffness, load, free.ravel(), shape.ravel())
+    solved = solve_with_prescribed_displacements(stiffness, load, free.ravel(), shape.ravel())
     return solved.reshape(-1, 2), (stiffness @ solved - load)[::2]
 
 
@@ -164,7 +166,7 @@ def _hang_upper_wires(
     join = sp.csr_array((np.ones(free.size), (np.arange(free.size), merge)), shape=(free.size, free.size))
     flat = free.ravel().copy()
     flat[merge != np.arange(free.size)] = False
-    solved = join @ solve_held(join.T @ stiffness @ join, join.T @ load, flat, shape.ravel())
+    solved = join @ solve_with_prescribed_displacements(join.T @ stiffness @ join, join.T @ load, flat, shape.ravel())
     residual = load - stiffness @ solved
     clamp_tension = np.array([-residual[deflection_index(c.lower, c.position)] for c in catenary.clamps])
     return np.reshape(solved, (len(rows), stations, 2)), clamp_tension

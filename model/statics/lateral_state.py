@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from pantocheck.model.catenary import Catenary
 from pantocheck.model.fem.beams import Beams, wire_matrices
 from pantocheck.model.fem.mesh import Mesh
-from pantocheck.model.statics.prescribed_displacements import solve_held
+from pantocheck.model.statics.prescribed_displacements import solve_with_prescribed_displacements
 
 Array = NDArray[np.float64]
 
@@ -43,7 +43,7 @@ class LateralState:
     arms: Array
 
 
-def lateral_state(catenary: Catenary, mesh: Mesh, beams: Beams, dropper_stiffness: Array) -> LateralState:
+def compute_lateral_state(catenary: Catenary, mesh: Mesh, beams: Beams, dropper_stiffness: Array) -> LateralState:
     """Equilibrium of the lateral rows.
 
     Parameters
@@ -82,7 +82,7 @@ def lateral_state(catenary: Catenary, mesh: Mesh, beams: Beams, dropper_stiffnes
             free[row, station, 0] = False
             shape[row, station, 0] = y
     stiffness = sp.csr_array(wires + joint @ sp.diags_array(bars) @ joint.T)
-    solved = solve_held(stiffness, np.zeros(shape.size), free.ravel(), shape.ravel())
+    solved = solve_with_prescribed_displacements(stiffness, np.zeros(shape.size), free.ravel(), shape.ravel())
     force = bars * (joint.T @ solved)
     reaction = stiffness @ solved
     return LateralState(

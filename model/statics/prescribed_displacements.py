@@ -8,7 +8,9 @@ from scipy.sparse.linalg import splu
 Array = NDArray[np.float64]
 
 
-def solve_held(stiffness: sp.csr_array, load: Array, free: NDArray[np.bool_], held: Array) -> Array:
+def solve_with_prescribed_displacements(
+    stiffness: sp.csr_array, load: Array, free: NDArray[np.bool_], held: Array
+) -> Array:
     """Solve K q = f for the free unknowns, the others held.
 
     Parameters

@@ -7,8 +7,8 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.sparse.linalg import splu
 
-from pantocheck.model.discretised_line import Discretised
-from pantocheck.model.fem.assembly import assemble, connector_directions, order
+from pantocheck.model.discretised_line import DiscretisedLine
+from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, connector_directions
 
 Array = NDArray[np.float64]
 
@@ -36,7 +36,7 @@ class Deflection:
         return np.equal(self.tension, 0.0)
 
 
-class Statics:
+class StaticSolver:
     """Static solver of one line, factored once; slack droppers enter as low-rank corrections.
 
     Parameters
@@ -44,9 +44,9 @@ class Statics:
     line : the discretised line
     """
 
-    def __init__(self, line: Discretised) -> None:
+    def __init__(self, line: DiscretisedLine) -> None:
         self.line = line
-        matrices = assemble(line)
+        matrices = assemble_matrices(line)
         self._free = matrices.free
         self._factor = splu(matrices.stiffness)
         self._direction = sp.csc_array(connector_directions(line)[self._free])
@@ -89,5 +89,5 @@ class Statics:
 
     def _expand(self, solution: Array, tension: Array) -> Deflection:
         full = np.zeros(self.line.beams.free.size)
-        full[order(self.line)[self._free]] = solution
+        full[bandwidth_order(self.line)[self._free]] = solution
         return Deflection(full.reshape(self.line.beams.free.shape), tension)

@@ -15,7 +15,7 @@ from pantocheck.model.catenary import Catenary
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.beams import Beams, build_beams, by_station
 from pantocheck.model.fem.mesh import build_mesh
-from pantocheck.model.statics.initial_state import InitialState, initial_state
+from pantocheck.model.statics.initial_state import InitialState, compute_initial_state
 
 Array = NDArray[np.float64]
 
@@ -37,7 +37,7 @@ def string_state(catenary: Catenary) -> InitialState:
     """
     vertical = in_vertical_plane(catenary)
     mesh = build_mesh(vertical, math.inf)
-    return initial_state(vertical, mesh, build_beams(vertical, mesh), string_stiffness)
+    return compute_initial_state(vertical, mesh, build_beams(vertical, mesh), string_stiffness)
 
 
 def in_vertical_plane(catenary: Catenary) -> Catenary:

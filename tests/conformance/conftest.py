@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import library_folder, load
-from pantocheck.conformance.cases.pantograph_file import Pantograph
+from pantocheck.conformance.cases.library import library_folder, load_case
+from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.results.outcome import Outcome
-from pantocheck.conformance.simulation.pantograph_model import pantograph
+from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 
 MEAN, SIGMA, UPLIFT_MM = 119.0, 28.0, 50.0
 
@@ -45,9 +45,9 @@ class Wave:
         height = np.array([self.height(*of, case.speed, span) for of in zip(case.pantographs, position, strict=True)])
         return Record(time, case.speed, position, force, case.evaluated, None, height, supports, uplift)
 
-    def height(self, file: Pantograph, position: np.ndarray, speed: float, span: float) -> np.ndarray:
+    def height(self, file: PantographFile, position: np.ndarray, speed: float, span: float) -> np.ndarray:
         """Motion of a pantograph's head under that force, once it has settled."""
-        model, omega = pantograph(file, 0.0, 0.0), 2 * np.pi * speed / span
+        model, omega = build_pantograph(file, 0.0, 0.0), 2 * np.pi * speed / span
         stiffness = model.stiffness + 1j * omega * model.damping - omega**2 * model.mass
         compliance = model.head @ np.linalg.solve(stiffness, model.head)
         return -np.imag(compliance * np.sqrt(2) * self.sigma * np.exp(2j * np.pi * position / span))
@@ -60,7 +60,7 @@ def wave() -> type[Wave]:
 
 @pytest.fixture
 def case_250() -> Case:
-    return load(library_folder() / "en50318-2002" / "250.toml")
+    return load_case(library_folder() / "en50318-2002" / "250.toml")
 
 
 @pytest.fixture

@@ -6,9 +6,9 @@ import sys
 
 import pytest
 
-from pantocheck.conformance.cases.library import select
+from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.pytest_plugin import collection  # noqa: F401 - once here, or anew in every session below
-from pantocheck.conformance.pytest_plugin.campaign import Campaign
+from pantocheck.conformance.pytest_plugin.campaign import PlanSession
 from pantocheck.conformance.records.record_writing import write_record
 
 pytest_plugins = ["pytester"]
@@ -45,7 +45,7 @@ def process(pytester, *arguments):
 def plan(pytester, wave):
     """A plan on records of both cases: sines, whose extremes fail."""
     pytester.path.joinpath("records").mkdir()
-    for case in select(["en50318-2002/*"]):
+    for case in select_cases(["en50318-2002/*"]):
         write_record(pytester.path / "records" / f"{case.file.speed_km_h:g}.csv", wave().record(case), case.id)
     path = pytester.path / "conformance.toml"
     path.write_text(
@@ -97,7 +97,7 @@ def test_items_are_chosen_by_id_and_options_go_before_the_plan(pytester, plan):
 def test_plan_with_a_damping_study_runs_it(tmp_path):
     path = tmp_path / "conformance.toml"
     path.write_text("cases = ['en50318-2002/250']\ndamping_study = true\n")
-    campaign = Campaign.of_plan(path, tmp_path, str(tmp_path / "out"), None, None)
+    campaign = PlanSession.of_plan(path, tmp_path, str(tmp_path / "out"), None, None)
     assert campaign.cases[0].file.study is not None
 
 

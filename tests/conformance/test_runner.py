@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from pantocheck.conformance.cases.library import select, source_text
+from pantocheck.conformance.cases.library import select_cases, source_text
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.results.outcome import Outcome
 from pantocheck.conformance.results.results_format import Results
-from pantocheck.conformance.runner import RunInterrupted, run
+from pantocheck.conformance.runner import RunInterrupted, run_cases
 from pantocheck.conformance.schemas import schema_of
-from pantocheck.conformance.systems.record_folder import record_folder
+from pantocheck.conformance.systems.record_folder import open_record_folder
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Scripted:
 
 @pytest.fixture
 def cases():
-    return select(["en50318-2002/*"])
+    return select_cases(["en50318-2002/*"])
 
 
 def limited(case, *bounds, trust="secondary"):
@@ -50,7 +50,7 @@ def limited(case, *bounds, trust="secondary"):
 
 
 def test_results_follow_their_schema_and_hold_the_numbers(cases, wave):
-    results = run(cases, wave())
+    results = run_cases(cases, wave())
     content = json.loads(results.to_json())
     jsonschema.validate(content, schema_of("results"))
     assert content["schema"] == "pantocheck.results/1"
@@ -86,7 +86,7 @@ def test_results_follow_their_schema_and_hold_the_numbers(cases, wave):
 
 
 def test_same_input_gives_the_same_bytes_but_for_times(cases, wave):
-    first, second = (re.sub(rb'"started": "[^"]*"', b"", run(cases, wave()).to_json()) for _ in "ab")
+    first, second = (re.sub(rb'"started": "[^"]*"', b"", run_cases(cases, wave()).to_json()) for _ in "ab")
     assert first == second
 
 
@@ -99,23 +99,23 @@ def test_verdicts_of_cases(case_250, wave):
         "skip": limited(case_250, inside, ("elasticity_mm_N", None, 0.5)),
     }
     for verdict, case in given.items():
-        results = run([case], wave())
+        results = run_cases([case], wave())
         assert (results.cases[0].verdict, results.verdict) == (verdict, verdict)
-    assert run([limited(case_250)], wave()).verdict == "info"
+    assert run_cases([limited(case_250)], wave()).verdict == "info"
 
 
 def test_provisional_limit_says_what_it_would_have_been_and_counts_when_asked(case_250, wave):
     case = limited(case_250, ("std_force_N", 40.0, 50.0), trust="provisional")
-    (criterion,) = run([case], wave()).cases[0].criteria
+    (criterion,) = run_cases([case], wave()).cases[0].criteria
     assert criterion.verdict == "info"
     assert criterion.reason == "would fail: 12 N below the lower limit; the limit is provisional and does not count"
-    assert run([case], wave(), trust="provisional").verdict == "fail"
-    assert run([limited(case_250, ("std_force_N", 40.0, 50.0))], wave(), trust="primary").verdict == "info"
+    assert run_cases([case], wave(), trust="provisional").verdict == "fail"
+    assert run_cases([limited(case_250, ("std_force_N", 40.0, 50.0))], wave(), trust="primary").verdict == "info"
 
 
 def test_one_broken_case_leaves_the_others(cases, wave):
     good = Outcome(wave().record(cases[1]))
-    results = run(cases, Scripted({cases[0].id: ZeroDivisionError("no mass\n at all"), cases[1].id: good}))
+    results = run_cases(cases, Scripted({cases[0].id: ZeroDivisionError("no mass\n at all"), cases[1].id: good}))
     assert [case.verdict for case in results.cases] == ["error", "fail"]
     assert results.cases[0].reason == "ZeroDivisionError: no mass at all"
     assert results.verdict == "error"
@@ -133,7 +133,7 @@ def test_skipped_errored_and_foreign_outcomes(cases, wave):
         (Outcome(wave().record(case), {"beauty": 1.0}), "error", "unknown quantity 'beauty'"),
         (Outcome(wave().record(case), {"max_uplift_at_support_mm": 52.0}), "error", "it follows from the record"),
     ):
-        (result,) = run([case], Scripted({case.id: outcome})).cases
+        (result,) = run_cases([case], Scripted({case.id: outcome})).cases
         assert result.verdict == verdict
         assert reason in (result.reason or "")
 
@@ -145,7 +145,7 @@ def test_truncated_record_never_passes(case_250, wave):
         whole, time=whole.time[:n], position=whole.position[:, :n], force=whole.force[:, :n],
         contact_height=None, support_uplift=whole.support_uplift[:, :n],
     )  # fmt: skip
-    (result,) = run([case_250], Scripted({case_250.id: Outcome(cut)})).cases
+    (result,) = run_cases([case_250], Scripted({case_250.id: Outcome(cut)})).cases
     assert result.verdict == "error"
     assert result.quantities.keys() == {"0"}
     assert not result.criteria
@@ -162,15 +162,15 @@ def test_short_run_out_is_warned_of(case_250, wave):
         record, time=record.time[:n], position=record.position[:, :n], force=record.force[:, :n],
         contact_height=None, support_uplift=record.support_uplift[:, :n],
     )  # fmt: skip
-    (result,) = run([case_250], Scripted({case_250.id: Outcome(cut)})).cases
+    (result,) = run_cases([case_250], Scripted({case_250.id: Outcome(cut)})).cases
     assert any("run-out" in warning for warning in result.warnings)
-    assert not any("run-out" in warning for warning in run([case_250], wave()).cases[0].warnings)
+    assert not any("run-out" in warning for warning in run_cases([case_250], wave()).cases[0].warnings)
 
 
 def test_value_nearer_to_its_limit_than_its_discretisation_error_is_warned_of(case_250, wave):
     """Sigma is 28 with an error of 0.28."""
     for upper, warned in ((28.2, True), (28.4, False)):
-        (result,) = run([limited(case_250, ("std_force_N", None, upper))], wave()).cases
+        (result,) = run_cases([limited(case_250, ("std_force_N", None, upper))], wave()).cases
         assert result.verdict == "pass"
         assert any("discretisation error" in warning for warning in result.warnings) == warned
 
@@ -182,15 +182,15 @@ def test_list_valued_static_quantity_is_graded_item_by_item(case_250, wave):
         for i, x in enumerate((1.017, 0.9, 0.81, 0.7), 1)
     )
     outcome = Outcome(wave().record(case_250), {"dropper_length_m": lengths})
-    (result,) = run([replace(case_250, limits=limits)], Scripted({case_250.id: outcome})).cases
+    (result,) = run_cases([replace(case_250, limits=limits)], Scripted({case_250.id: outcome})).cases
     assert [item.verdict for item in result.criteria] == ["pass", "fail", "pass", "skip"]
     assert result.quantities["0"]["dropper_length_m"] == list(lengths)
 
 
 def test_unknown_quantity_of_a_line_at_rest_is_an_error():
     """Passed over, a misspelt name would end as a case without values, which is skipped."""
-    (case,) = select(["en50318-2018/ac-simple/static"])
-    (result,) = run([case], Scripted({case.id: Outcome(static={"dropper_lenght_m": (1.0,)})})).cases
+    (case,) = select_cases(["en50318-2018/ac-simple/static"])
+    (result,) = run_cases([case], Scripted({case.id: Outcome(static={"dropper_lenght_m": (1.0,)})})).cases
     assert (result.verdict, result.reason) == ("error", "the system delivered an unknown quantity 'dropper_lenght_m'")
 
 
@@ -202,26 +202,26 @@ def test_close_call_of_the_line_is_not_called_a_pantograph(case_250, wave):
         {"dropper_length_m": (1.017, 0.896)},
         refined=Outcome(wave().record(case_250), {"dropper_length_m": (1.017, 0.897)}),
     )
-    (result,) = run([replace(case_250, limits=(limit,))], Scripted({case_250.id: outcome})).cases
+    (result,) = run_cases([replace(case_250, limits=(limit,))], Scripted({case_250.id: outcome})).cases
     assert any(text.startswith("dropper_length_m[2] of the line lies 0.0004 m") for text in result.warnings)
 
 
 def test_failed_precondition_skips_what_builds_on_it(cases, wave):
     first = limited(cases[0], ("mean_force_N", 0.0, 1.0))
     second = replace(cases[1], file=cases[1].file.model_copy(update={"requires": (first.id,)}))
-    results = run([second, first], wave())
+    results = run_cases([second, first], wave())
     assert [case.verdict for case in results.cases] == ["skip", "fail"]
     assert results.cases[0].reason == f"requires {first.id}, which ended in fail"
-    passing = run([second, limited(cases[0], ("mean_force_N", 110.0, 120.0))], wave())
+    passing = run_cases([second, limited(cases[0], ("mean_force_N", 110.0, 120.0))], wave())
     assert passing.cases[0].criteria
-    assert run([second], wave()).cases[0].reason == f"requires {first.id}, which was not run"
+    assert run_cases([second], wave()).cases[0].reason == f"requires {first.id}, which was not run"
 
 
 def test_interrupted_run_keeps_what_was_finished(cases, wave):
     system = Scripted({cases[0].id: Outcome(wave().record(cases[0])), cases[1].id: KeyboardInterrupt()})
     seen = []
     with pytest.raises(RunInterrupted) as caught:
-        run(cases, system, progress=lambda result: seen.append(result.id))
+        run_cases(cases, system, progress=lambda result: seen.append(result.id))
     results = caught.value.results
     assert seen == [cases[0].id]
     assert len(results.cases[0].criteria) == 8
@@ -237,13 +237,13 @@ def recorded(cases, wave, tmp_path):
     for case in cases:
         path = tmp_path / f"{case.file.speed_km_h:g}.csv"
         write_record(path, wave().record(case), case.id, {"name": "w", "version": "2"})
-    return record_folder(tmp_path)
+    return open_record_folder(tmp_path)
 
 
 def test_side_by_side_gives_what_one_after_the_other_gives(cases, recorded):
     after = replace(cases[0], file=cases[0].file.model_copy(update={"id": "after", "requires": (cases[1].id,)}))
     given = [after, *cases]
-    alone, together = run(given, recorded), run(given, recorded, jobs=2)
+    alone, together = run_cases(given, recorded), run_cases(given, recorded, jobs=2)
     assert together.model_copy(update={"started": None}) == alone.model_copy(update={"started": None})
     assert alone.cases[0].reason == f"requires {cases[1].id}, which ended in fail"
     assert alone.system.name == "w"
@@ -255,4 +255,4 @@ def test_cases_that_require_each_other_end(cases, recorded):
         for case, other in zip(cases, cases[::-1], strict=True)
     ]
     for jobs in (1, 2):
-        assert [case.verdict for case in run(loop, recorded, jobs=jobs).cases] == ["skip", "skip"]
+        assert [case.verdict for case in run_cases(loop, recorded, jobs=jobs).cases] == ["skip", "skip"]

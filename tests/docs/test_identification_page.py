@@ -6,7 +6,7 @@ from pathlib import Path
 
 from jsonschema import validate
 
-from pantocheck.conformance.mass_drops.drop_sidecar import read_sidecar
+from pantocheck.conformance.mass_drops.drop_sidecar import read_drop_sidecar
 from pantocheck.conformance.schemas import schema_of
 
 PAGE = Path(__file__).parents[2] / "docs" / "identification.md"
@@ -15,7 +15,7 @@ PAGE = Path(__file__).parents[2] / "docs" / "identification.md"
 def test_the_sidecar_is_read_and_agrees_with_its_schema(tmp_path):
     text = re.search(r"```toml\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)[1]
     (tmp_path / "drop.toml").write_text(text, encoding="utf-8")
-    sidecar = read_sidecar(tmp_path / "drop.csv")
+    sidecar = read_drop_sidecar(tmp_path / "drop.csv")
     assert (sidecar.drop.mass_kg, sidecar.record.trigger_nominal_s) == (40.0, 6.0)
     assert [channel.unit for channel in sidecar.channel] == ["m/s2"]
     validate(tomllib.loads(text), schema_of("mass-drop"))

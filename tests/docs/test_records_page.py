@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record_reading import read_record
-from pantocheck.conformance.records.record_summary import read_summary
+from pantocheck.conformance.records.record_summary import read_record_summary
 
 PAGE = (Path(__file__).parents[2] / "docs" / "records.md").read_text(encoding="utf-8")
 
@@ -57,7 +57,7 @@ def test_matlab_writes_the_same_sidecar(written):
 
 def test_summary_of_the_page_is_read(tmp_path):
     (tmp_path / "s.toml").write_text(blocks("toml")[0])
-    assert read_summary(tmp_path / "s.toml").quantities == {"max_uplift_at_support_mm": 52.2}
+    assert read_record_summary(tmp_path / "s.toml").quantities == {"max_uplift_at_support_mm": 52.2}
 
 
 def test_messages_of_the_page_are_those_that_are_printed(written):
@@ -79,7 +79,7 @@ def test_messages_of_the_page_are_those_that_are_printed(written):
 
 
 def test_tables_name_every_key_of_the_sidecar():
-    from pantocheck.conformance.records.record_sidecar import Sidecar
+    from pantocheck.conformance.records.record_sidecar import RecordSidecar
 
-    for name, field in Sidecar.model_fields.items():
+    for name, field in RecordSidecar.model_fields.items():
         assert f"`{field.alias or name}`" in PAGE or f"`[{name}]`" in PAGE

@@ -9,12 +9,18 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from helpers.lines import Array, without_connectors
-from pantocheck.model import Discretised, Passage
-from pantocheck.model.fem.assembly import assemble, connector_directions, contact_stiffness, order, point_load
-from pantocheck.model.statics.static_solver import Statics
+from pantocheck.model import DiscretisedLine, Passage
+from pantocheck.model.fem.assembly import (
+    assemble_matrices,
+    bandwidth_order,
+    connector_directions,
+    contact_stiffness,
+    point_load,
+)
+from pantocheck.model.statics.static_solver import StaticSolver
 
 
-def contact_force(line: Discretised, passage: Passage) -> Array:
+def contact_force(line: DiscretisedLine, passage: Passage) -> Array:
     """Contact force of one pantograph of two masses, both started at rest as the production run is.
 
     Parameters
@@ -27,16 +33,16 @@ def contact_force(line: Discretised, passage: Passage) -> Array:
     (T,) [N]
     """
     (model,) = passage.pantographs
-    matrices = assemble(without_connectors(line))
+    matrices = assemble_matrices(without_connectors(line))
     free, dt, connectors = matrices.free, passage.time_step, line.connectors
-    row, place = line.contact_rows[0], order(line)[matrices.free]
-    rest = line.state.deflection.ravel()[order(line)]
+    row, place = line.contact_rows[0], bandwidth_order(line)[matrices.free]
+    rest = line.state.deflection.ravel()[bandwidth_order(line)]
     solve = splu(matrices.mass).solve
     stiffness, damping = sp.csr_array(matrices.stiffness), sp.csr_array(matrices.damping)
     bars = sp.csr_array(connector_directions(line)[free])
     pull = sp.csr_array(bars.T)
     load = model.static_force * point_load(line, row, passage.start[0])
-    q = Statics(line).deflection(load).displacement.ravel()[place]
+    q = StaticSolver(line).deflection(load).displacement.ravel()[place]
     v = np.zeros(q.size)
     head_height = point_load(line, row, passage.start[0])[free] @ q + point_load(line, row, passage.start[0]) @ rest
     n = model.head.size

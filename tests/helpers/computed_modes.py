@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.grading.case_grading import graded
+from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.identification.mode import Mode
-from pantocheck.conformance.mass_drops.drop_record import Channel
+from pantocheck.conformance.mass_drops.drop_record import DropChannel
 from pantocheck.conformance.results.outcome import Outcome
 from pantocheck.conformance.results.results_format import Criterion
-from pantocheck.conformance.studies.vovan2015.damping_models import model_ratios
+from pantocheck.conformance.studies.vovan2015.damping_models import computed_damping_ratios
 from pantocheck.model import Catenary, discretise
 from pantocheck.model.modal.modal_damping import modes_below
 
@@ -27,7 +27,7 @@ def computed_modes(line: Catenary, spans: int, highest: float) -> list[Mode]:
             frequency_std=1e-5,
             damping_ratio=float(z),
             damping_ratio_std=1e-6,
-            channels=(Channel("S1_z", 1, "z"),),
+            channels=(DropChannel("S1_z", 1, "z"),),
             shape=np.ones(1, dtype=complex),
             shape_std=np.zeros(1),
             amplitude=1.0,
@@ -36,13 +36,13 @@ def computed_modes(line: Catenary, spans: int, highest: float) -> list[Mode]:
             record="computed",
             group=1 + i // spans,
         )
-        for i, (f, z) in enumerate(zip(shapes.frequency, model_ratios(mesh, shapes, line), strict=True))
+        for i, (f, z) in enumerate(zip(shapes.frequency, computed_damping_ratios(mesh, shapes, line), strict=True))
     ]
 
 
 def verdicts(case: Case, findings: dict) -> dict[tuple[str, int | None], Criterion]:
     """Criteria of a case for findings, by quantity and item (or pantograph where there is one)."""
-    result = graded(
+    result = grade_case(
         replace(case, file=case.file.model_copy(update={"speed_km_h": None})), Outcome(findings=findings), "primary"
     )
     return {(row.quantity, row.item or row.pantograph or None): row for row in result.criteria}

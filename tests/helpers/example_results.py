@@ -299,16 +299,16 @@ def hostile() -> dict[str, Any]:
 @pytest.fixture(scope="session")
 def page_text() -> str:
     """The example as HTML."""
-    return html.render(example())
+    return html.render_html(example())
 
 
 @pytest.fixture(scope="session")
 def hostile_text() -> str:
     """The example with hostile text as HTML."""
-    return html.render(with_hostile_text())
+    return html.render_html(with_hostile_text())
 
 
 @pytest.fixture(scope="session")
 def certificate() -> bytes:
     """The example as PDF."""
-    return pdf.render(example(), 1_700_000_000)
+    return pdf.render_pdf(example(), 1_700_000_000)

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from pantocheck.model import (
     Catenary,
-    Discretised,
+    DiscretisedLine,
     Dropper,
     Kind,
     MessengerSupport,
@@ -61,7 +61,7 @@ def simple_line(
     )
 
 
-def without_connectors(line: Discretised) -> Discretised:
+def without_connectors(line: DiscretisedLine) -> DiscretisedLine:
     """The same rows of beams with every dropper and clamp taken out of the matrices."""
     nothing = np.zeros_like(line.connectors.stiffness)
     return replace(line, connectors=line.connectors._replace(stiffness=nothing, damping=nothing))

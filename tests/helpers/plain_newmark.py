@@ -13,14 +13,14 @@ import numpy as np
 from scipy.linalg import solve
 
 from helpers.lines import Array, without_connectors
-from pantocheck.model.discretised_line import Discretised
+from pantocheck.model.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.simulation import Passage
 from pantocheck.model.dynamics.state import Motion, Train
 from pantocheck.model.fem.assembly import (
-    assemble,
+    assemble_matrices,
+    bandwidth_order,
     connector_directions,
     contact_stiffness,
-    order,
     point_load,
     stepping_mass,
 )
@@ -47,8 +47,8 @@ class PlainNewmark:
     passage : pantographs and their journey
     """
 
-    def __init__(self, line: Discretised, passage: Passage) -> None:
-        matrices = assemble(without_connectors(line))
+    def __init__(self, line: DiscretisedLine, passage: Passage) -> None:
+        matrices = assemble_matrices(without_connectors(line))
         self.line, self.passage = line, passage
         self.free = matrices.free
         pantographs = passage.pantographs
@@ -66,11 +66,11 @@ class PlainNewmark:
             self.force[own] = p.force
         self.elongation = np.zeros((at[-1], line.connectors.station.size))
         self.elongation[inner] = connector_directions(line)[self.free].toarray()
-        self.rest = line.state.deflection.ravel()[order(line)]
+        self.rest = line.state.deflection.ravel()[bandwidth_order(line)]
 
     def take(self, motion: Motion, train: Train) -> State:
         """The state that the kernel starts from."""
-        place = order(self.line)[self.free]
+        place = bandwidth_order(self.line)[self.free]
         fields = [
             np.concatenate(
                 [

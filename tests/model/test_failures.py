@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from helpers.lines import simple_line
-from pantocheck.model import Dropper, MessengerSupport, Passage, SteadyArm, chain, run
+from pantocheck.model import Dropper, MessengerSupport, Passage, SteadyArm, chain, simulate_passage
 from pantocheck.model.discretised_line import discretise
-from pantocheck.model.dynamics.kernel_arrays import time_stepping
+from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays
 from pantocheck.model.dynamics.newmark import step
-from pantocheck.model.dynamics.simulation import DidNotConverge, start, workspace
+from pantocheck.model.dynamics.simulation import DidNotConverge, build_workspace, start_motion
 from pantocheck.model.statics.initial_state import NoInitialState
 
 PANTOGRAPH = chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.array([90.0, 10.0]), 120.0, 0, 50e3)
@@ -64,15 +64,15 @@ def test_nan_in_a_pantograph_does_not_pass_in_silence(where: str) -> None:
         given["contact"],
     )
     with pytest.raises((DidNotConverge, ValueError, np.linalg.LinAlgError)):
-        run(discretise(simple_line(), 1.0), replace(PASSAGE, pantographs=(pantograph,)))
+        simulate_passage(discretise(simple_line(), 1.0), replace(PASSAGE, pantographs=(pantograph,)))
 
 
 @pytest.mark.parametrize("where", ["w", "r", "tension", "z", "contact", "far away"])
 def test_step_reports_a_state_that_is_not_a_number(where: str) -> None:
     """The kernel returns no turns, wherever the NaN stands."""
     line = discretise(simple_line(), 1.0)
-    stepping = time_stepping(line, 1e-3)
-    motion, train = start(line, stepping, PASSAGE)
+    stepping = build_kernel_arrays(line, 1e-3)
+    motion, train = start_motion(line, stepping, PASSAGE)
     spot = {
         "w": motion.w[0, 0, 20:21],
         "r": motion.r[1, 1, 20:21],
@@ -82,5 +82,5 @@ def test_step_reports_a_state_that_is_not_a_number(where: str) -> None:
         "far away": motion.w[0, 0, -3:-2],
     }
     spot[where][:] = np.nan
-    work = workspace(stepping, train)
+    work = build_workspace(stepping, train)
     assert step(stepping, motion, train, work) == 0

@@ -7,9 +7,9 @@ import pytest
 
 from helpers.central_differences import contact_force
 from helpers.lines import Array, simple_line
-from pantocheck.model import Catenary, Kind, Passage, Rayleigh, Wire, chain, discretise, run
+from pantocheck.model import Catenary, Kind, Passage, Rayleigh, Wire, chain, discretise, simulate_passage
 from pantocheck.model.fem.beam import pinned_frequencies
-from pantocheck.model.modal.modes import modes
+from pantocheck.model.modal.modes import compute_modes
 
 PANTOGRAPH = chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.array([90.0, 10.0]), 120.0, 0, 50e3, 0.06)
 RATE = 500.0
@@ -28,7 +28,7 @@ def test_explicit_integration_gives_the_same_force_in_every_band() -> None:
     line = discretise(simple_line(3, damping=damping), 0.5)
     explicit = Passage((PANTOGRAPH,), (60.0,), 250 / 3.6, 1.1, 2e-4)
     theirs = contact_force(line, explicit)[:: round(1 / (RATE * 2e-4))]
-    ours = run(line, replace(explicit, time_step=2.5e-4)).force[0][:: round(1 / (RATE * 2.5e-4))]
+    ours = simulate_passage(line, replace(explicit, time_step=2.5e-4)).force[0][:: round(1 / (RATE * 2.5e-4))]
     settled = slice(round(0.1 * RATE), None)
     assert band_rms(ours[settled]) == pytest.approx(band_rms(theirs[settled]), rel=0.01)
     assert np.abs(ours[settled]).max() == pytest.approx(np.abs(theirs[settled]).max(), rel=0.01)
@@ -37,7 +37,7 @@ def test_explicit_integration_gives_the_same_force_in_every_band() -> None:
 def test_frequencies_of_a_tensioned_beam_are_the_closed_form() -> None:
     """Hermite elements of 0.2 m on 30 m converge with h^4: the first 20 modes within 1e-6."""
     wire = Wire("contact", Kind.CONTACT_WIRE, 0.0, 30.0, 22e3, 1.35, 195.0)
-    found = modes(discretise(Catenary((wire,)), 0.2), 20).frequency
+    found = compute_modes(discretise(Catenary((wire,)), 0.2), 20).frequency
     assert found == pytest.approx(pinned_frequencies(20, 30.0, 22e3, 195.0, 1.35), rel=1e-6)
 
 
@@ -92,4 +92,4 @@ def test_frequencies_of_a_whole_line_by_general_assembly() -> None:
     keep = np.setdiff1d(np.arange(K.shape[0]), ends)
     reduced = sp.csc_matrix(K)[keep][:, keep]
     w2 = np.sort(eigsh(reduced, 30, M[keep][:, keep], sigma=0.0, return_eigenvectors=False))
-    assert modes(line, 30).frequency == pytest.approx(np.sqrt(w2) / (2 * np.pi), rel=1e-6)
+    assert compute_modes(line, 30).frequency == pytest.approx(np.sqrt(w2) / (2 * np.pi), rel=1e-6)

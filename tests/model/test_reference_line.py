@@ -7,7 +7,7 @@ import pytest
 from scipy.signal import butter, sosfiltfilt
 
 from helpers.lines import Array, simple_line
-from pantocheck.model import History, Kind, Passage, Rayleigh, chain, run
+from pantocheck.model import History, Kind, Passage, Rayleigh, chain, simulate_passage
 from pantocheck.model.discretised_line import discretise
 from pantocheck.model.dynamics.active_window import causal_reach
 
@@ -22,7 +22,7 @@ def passage(speed_km_h: float, element_length: float = 0.5, time_step: float = 1
     speed = speed_km_h / 3.6
     supports = tuple(("contact", x) for x in (240.0, 300.0, 360.0))
     journey = Passage((PANTOGRAPH,), (20.0,), speed, 400.0 / speed, time_step, supports, reach)
-    return run(discretise(simple_line(spans=10, damping=DAMPING), element_length), journey)
+    return simulate_passage(discretise(simple_line(spans=10, damping=DAMPING), element_length), journey)
 
 
 def evaluated(history: History) -> Array:
@@ -84,6 +84,6 @@ def test_resting_pantograph_stays_at_rest() -> None:
     """At speed zero and without a base spring the start is an equilibrium: the force stays 120 N, the line still."""
     free = chain(np.array([15.0, 7.2]), np.array([0.0, 4200.0]), np.array([90.0, 10.0]), 120.0, 0, 50e3)
     line = discretise(simple_line(spans=3, damping=DAMPING), 0.5)
-    history = run(line, Passage((free,), (83.7,), 0.0, 0.5, 1e-3, (("contact", 60.0),)))
+    history = simulate_passage(line, Passage((free,), (83.7,), 0.0, 0.5, 1e-3, (("contact", 60.0),)))
     np.testing.assert_allclose(history.force, 120.0, rtol=1e-8)
     np.testing.assert_allclose(history.motion[:, :, 0], history.motion[:, :1, 0].repeat(500, axis=1), rtol=0, atol=1e-9)

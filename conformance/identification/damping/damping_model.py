@@ -23,7 +23,7 @@ from pantocheck.conformance.input_files.input_error import InputError
 Real = NDArray[np.float64]
 
 MODEL_ERROR = 0.01  # relative error of a computed damping ratio by the line model alone
-REPLICATES = 400
+FIT_REPLICATES = 400
 WIRES = ("contact_wire", "messenger_wire")
 MATRICES = ("stiffness", "mass")
 
@@ -53,7 +53,7 @@ class ModalEnergies:
 
 
 @dataclass(frozen=True)
-class Measured:
+class MeasuredMode:
     """Measured modes that have a computed counterpart, in the order of the energies.
 
     Parameters
@@ -110,9 +110,9 @@ class DampingFit:
         return next((c.value for c in self.coefficients if (c.kind, c.matrix) == (kind, matrix)), 0.0)
 
 
-def fit_damping(
+def fit_damping_model(
     energies: ModalEnergies,
-    measured: Measured,
+    measured: MeasuredMode,
     kinds: tuple[str, ...] = WIRES,
 ) -> DampingFit:
     """Coefficients of the chosen kinds by non-negative least squares.
@@ -138,13 +138,13 @@ def fit_damping(
             f"{measured.frequency.size} modes for {len(chosen)} coefficients",
             "Identify more modes, or check that the line of the case is the one measured.",
         )
-    target, std = measured.damping_ratio, deviation(measured)
+    target, std = measured.damping_ratio, fit_deviation(measured)
     used = np.ones(target.size, dtype=np.bool_)
     for _ in range(3):
-        values = solve_weighted(columns[:, chosen], target, weights(std, measured.group, used))
+        values = solve_weighted(columns[:, chosen], target, fit_weights(std, measured.group, used))
         used = _near_their_group(target - columns[:, chosen] @ values, std, measured.group)
     # The values are those of the modes said to be used.
-    values = solve_weighted(columns[:, chosen], target, weights(std, measured.group, used))
+    values = solve_weighted(columns[:, chosen], target, fit_weights(std, measured.group, used))
     predicted = columns[:, chosen] @ values
     low, high = _interval(columns[:, chosen], target, std, measured.std, measured.group, used)
     relative = (target - predicted) / target
@@ -159,12 +159,12 @@ def fit_damping(
     )
 
 
-def deviation(measured: Measured) -> Real:
+def fit_deviation(measured: MeasuredMode) -> Real:
     """Standard deviation of measured less computed damping ratios, (m,): that of the measurement and of the model."""
     return np.hypot(measured.std, MODEL_ERROR * measured.damping_ratio)
 
 
-def weights(std: Real, group: NDArray[np.int64], used: NDArray[np.bool_]) -> Real:
+def fit_weights(std: Real, group: NDArray[np.int64], used: NDArray[np.bool_]) -> Real:
     """Square roots of the weights: 1 / std, over the root of the number of modes used in the mode's group.
 
     Parameters
@@ -208,17 +208,17 @@ def _interval(
     random = np.random.default_rng(20150817)
     numbers = [np.flatnonzero((group == number) & used) for number in np.unique(group)]
     numbers = [members for members in numbers if members.size]
-    drawn = np.empty((REPLICATES, columns.shape[1]))
-    for r in range(REPLICATES):
+    drawn = np.empty((FIT_REPLICATES, columns.shape[1]))
+    for r in range(FIT_REPLICATES):
         rows = np.concatenate([random.choice(members, members.size) for members in numbers])
         noisy = target[rows] + noise[rows] * random.standard_normal(rows.size)
         everything = np.ones(rows.size, dtype=np.bool_)
-        drawn[r] = solve_weighted(columns[rows], noisy, weights(std[rows], group[rows], everything))
+        drawn[r] = solve_weighted(columns[rows], noisy, fit_weights(std[rows], group[rows], everything))
     return np.percentile(drawn, 2.5, axis=0), np.percentile(drawn, 97.5, axis=0)
 
 
 @dataclass(frozen=True)
-class ModalBand:
+class FittedModalBand:
     """Damping ratio of one group: measured median over a band around it [Hz]."""
 
     low: float
@@ -226,7 +226,7 @@ class ModalBand:
     damping_ratio: float
 
 
-def modal_bands(measured: Measured, last_group: int = 3) -> tuple[ModalBand, ...]:
+def fit_modal_bands(measured: MeasuredMode, last_group: int = 3) -> tuple[FittedModalBand, ...]:
     """Measured medians of the first groups, each over a band that ends half-way to the next group.
 
     Parameters
@@ -246,11 +246,11 @@ def modal_bands(measured: Measured, last_group: int = 3) -> tuple[ModalBand, ...
         below = (edges[number - 1][1] + low) / 2 if number - 1 in edges else low - width / 2
         above = (high + edges[number + 1][0]) / 2 if number + 1 in edges else high + width / 2
         median = float(np.median(measured.damping_ratio[measured.group == number]))
-        bands.append(ModalBand(float(below), float(above), median))
+        bands.append(FittedModalBand(float(below), float(above), median))
     return tuple(bands)
 
 
-def with_modal(frequency: Real, rayleigh: Real, bands: tuple[ModalBand, ...]) -> Real:
+def add_modal_damping(frequency: Real, rayleigh: Real, bands: tuple[FittedModalBand, ...]) -> Real:
     """Damping ratios of Rayleigh + modal: the bands' own ratio inside them, Rayleigh elsewhere, (m,)."""
     ratio = rayleigh.copy()
     for band in bands:

@@ -9,17 +9,17 @@ from numpy.typing import NDArray
 
 from pantocheck.conformance.identification.damping.damping_model import (
     DampingFit,
-    Measured,
+    MeasuredMode,
     ModalEnergies,
-    fit_damping,
-    modal_bands,
-    with_modal,
+    add_modal_damping,
+    fit_damping_model,
+    fit_modal_bands,
 )
-from pantocheck.conformance.identification.damping.mode_pairing import Pair, pair
-from pantocheck.conformance.identification.damping.observability import PLAUSIBLE, observability
-from pantocheck.conformance.identification.identification_files import ModeRow, rounded
+from pantocheck.conformance.identification.damping.mode_pairing import ModePair, pair_modes
+from pantocheck.conformance.identification.damping.observability import PLAUSIBLE, compute_observability
+from pantocheck.conformance.identification.identification_files import ModeRow, round_significant
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.model import Catenary, Discretised, Kind, discretise
+from pantocheck.model import Catenary, DiscretisedLine, Kind, discretise
 from pantocheck.model.modal.modal_damping import modes_below
 from pantocheck.model.modal.modes import Modes, component_energies, damping_ratios, deflection_at
 
@@ -30,7 +30,7 @@ TABLE = {"dropper": "droppers", "steady_arm": "steady_arms", "messenger_support"
 KEY = {"mass": "mass_coefficient_1_s", "stiffness": "stiffness_coefficient_s"}
 
 
-def damping_results(rows: tuple[ModeRow, ...], line: Catenary, element: float, source: str) -> dict[str, Any]:
+def build_damping_results(rows: tuple[ModeRow, ...], line: Catenary, element: float, source: str) -> dict[str, Any]:
     """Fit a damping model to identified modes; everything that damping.json holds.
 
     Parameters
@@ -52,7 +52,9 @@ def damping_results(rows: tuple[ModeRow, ...], line: Catenary, element: float, s
     shapes = modes_below(mesh, 1.1 * max(row.frequency_Hz for row in usable))
     energies = component_energies(mesh, shapes)
     measured_shapes, computed_shapes = _shapes_at_sensors(usable, mesh, shapes, placed)
-    pairs = pair(np.array([row.frequency_Hz for row in usable]), measured_shapes, shapes.frequency, computed_shapes)
+    pairs = pair_modes(
+        np.array([row.frequency_Hz for row in usable]), measured_shapes, shapes.frequency, computed_shapes
+    )
     computed = np.array([p.computed for p in pairs], dtype=np.int64)
     paired = [usable[p.measured] for p in pairs]
     if len(paired) < 6:
@@ -65,24 +67,28 @@ def damping_results(rows: tuple[ModeRow, ...], line: Catenary, element: float, s
     measured = _measured(paired)
     everything = ModalEnergies(shapes.frequency, kinds, energies.stiffness, energies.mass)
     own = ModalEnergies(shapes.frequency[computed], kinds, energies.stiffness[computed], energies.mass[computed])
-    fit = fit_damping(own, measured)
-    bands = modal_bands(measured)
+    fit = fit_damping_model(own, measured)
+    bands = fit_modal_bands(measured)
     rayleigh = _rayleigh(everything, fit)
     return {
         "modes_file": source,
-        "residual": rounded(fit.residual),
+        "residual": round_significant(fit.residual),
         "coefficients": [
             {
                 "kind": c.kind,
                 "matrix": c.matrix,
-                "value": rounded(c.value),
-                "low_95": rounded(c.low),
-                "high_95": rounded(c.high),
+                "value": round_significant(c.value),
+                "low_95": round_significant(c.low),
+                "high_95": round_significant(c.high),
             }
             for c in fit.coefficients
         ],
         "modal": [
-            {"from_Hz": rounded(b.low), "to_Hz": rounded(b.high), "damping_ratio": rounded(b.damping_ratio)}
+            {
+                "from_Hz": round_significant(b.low),
+                "to_Hz": round_significant(b.high),
+                "damping_ratio": round_significant(b.damping_ratio),
+            }
             for b in bands
         ],
         "observability": _observability(own, measured, fit),
@@ -95,11 +101,13 @@ def damping_results(rows: tuple[ModeRow, ...], line: Catenary, element: float, s
                 "damping_ratio": [row.damping_ratio for row in paired],
                 "std": [row.damping_ratio_std for row in paired],
             },
-            "frequency_Hz": [rounded(f) for f in shapes.frequency],
+            "frequency_Hz": [round_significant(f) for f in shapes.frequency],
             "models": {
-                "line as it is": [rounded(z) for z in damping_ratios(mesh, shapes)],
-                "Rayleigh": [rounded(z) for z in rayleigh],
-                "Rayleigh + modal": [rounded(z) for z in with_modal(shapes.frequency, rayleigh, bands)],
+                "line as it is": [round_significant(z) for z in damping_ratios(mesh, shapes)],
+                "Rayleigh": [round_significant(z) for z in rayleigh],
+                "Rayleigh + modal": [
+                    round_significant(z) for z in add_modal_damping(shapes.frequency, rayleigh, bands)
+                ],
             },
         },
         "unpaired": [row.frequency_Hz for i, row in enumerate(usable) if i not in {p.measured for p in pairs}],
@@ -120,7 +128,7 @@ def _places_of_sensors(usable: list[ModeRow], line: Catenary, source: str) -> se
 
 
 def _shapes_at_sensors(
-    usable: list[ModeRow], mesh: Discretised, shapes: Modes, placed: set[tuple[str, float]]
+    usable: list[ModeRow], mesh: DiscretisedLine, shapes: Modes, placed: set[tuple[str, float]]
 ) -> tuple[list[NDArray[np.complex128]], list[Real]]:
     """Measured and computed mode shapes at the sensors of each identified mode."""
     rows_of = {name: mesh.mesh.row_of[_wire(mesh.catenary, KIND_OF_WIRE[name]), "z"] for name, _ in placed}
@@ -134,8 +142,8 @@ def _shapes_at_sensors(
     return measured, computed
 
 
-def _measured(paired: list[ModeRow]) -> Measured:
-    return Measured(
+def _measured(paired: list[ModeRow]) -> MeasuredMode:
+    return MeasuredMode(
         np.array([row.frequency_Hz for row in paired]),
         np.array([row.damping_ratio for row in paired]),
         np.array([row.damping_ratio_std for row in paired]),
@@ -143,7 +151,7 @@ def _measured(paired: list[ModeRow]) -> Measured:
     )
 
 
-def damping_toml(results: dict[str, Any], modal: Sequence[dict[str, float]] = ()) -> str:
+def write_damping_toml(results: dict[str, Any], modal: Sequence[dict[str, float]] = ()) -> str:
     """The table `damping` that a line file takes as it is.
 
     Parameters
@@ -175,31 +183,31 @@ def _rayleigh(energies: ModalEnergies, fit: DampingFit) -> Real:
     return np.asarray(columns @ np.array([fit.value(*name) for name in names]))
 
 
-def _observability(energies: ModalEnergies, measured: Measured, fit: DampingFit) -> list[dict[str, Any]]:
+def _observability(energies: ModalEnergies, measured: MeasuredMode, fit: DampingFit) -> list[dict[str, Any]]:
     return [
         {
             "kind": one.kind,
             "matrix": one.matrix,
-            "largest_share": rounded(one.share),
-            "variance_inflation": rounded(one.inflation) if np.isfinite(one.inflation) else None,
-            "std": rounded(one.std) if np.isfinite(one.std) else None,
+            "largest_share": round_significant(one.share),
+            "variance_inflation": round_significant(one.inflation) if np.isfinite(one.inflation) else None,
+            "std": round_significant(one.std) if np.isfinite(one.std) else None,
             "plausible": PLAUSIBLE[one.matrix],
-            "plausible_over_std": rounded(PLAUSIBLE[one.matrix] / one.std) if np.isfinite(one.std) else 0.0,
-            "residual_without": rounded(one.growth),
+            "plausible_over_std": round_significant(PLAUSIBLE[one.matrix] / one.std) if np.isfinite(one.std) else 0.0,
+            "residual_without": round_significant(one.growth),
             "observable": one.observable,
         }
-        for one in observability(energies, measured, fit)
+        for one in compute_observability(energies, measured, fit)
         if one.share > 0
     ]
 
 
-def _pair_row(p: Pair, row: ModeRow, fit: DampingFit, i: int, frequency: Real) -> dict[str, Any]:
+def _pair_row(p: ModePair, row: ModeRow, fit: DampingFit, i: int, frequency: Real) -> dict[str, Any]:
     return {
         "measured_Hz": row.frequency_Hz,
-        "computed_Hz": rounded(float(frequency[p.computed])),
-        "mac": rounded(p.mac),
+        "computed_Hz": round_significant(float(frequency[p.computed])),
+        "mac": round_significant(p.mac),
         "group": row.group,
         "measured": row.damping_ratio,
-        "fitted": rounded(float(fit.predicted[i])),
+        "fitted": round_significant(float(fit.predicted[i])),
         "used": bool(fit.used[i]),
     }

@@ -9,12 +9,12 @@ from scipy.optimize import linear_sum_assignment
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-FAR = 0.05  # relative distance in frequency beyond which two modes are not the same
+LARGEST_FREQUENCY_GAP = 0.05  # relative distance in frequency beyond which two modes are not the same
 LEAST_MAC = 0.5
 
 
 @dataclass(frozen=True)
-class Pair:
+class ModePair:
     """A measured mode and its computed counterpart, by their indices, and how alike their shapes are (0 to 1)."""
 
     measured: int
@@ -22,15 +22,15 @@ class Pair:
     mac: float
 
 
-def assurance(measured: Complex, computed: Real) -> float:
+def modal_assurance(measured: Complex, computed: Real) -> float:
     """Modal assurance criterion of two shapes at the same sensors; 1 if they are multiples of each other."""
     norm = float(np.sum(np.abs(measured) ** 2) * np.sum(computed**2))
     return float(np.abs(np.vdot(measured, computed)) ** 2) / norm if norm > 0 else 0.0
 
 
-def pair(
+def pair_modes(
     measured_frequency: Real, measured_shapes: list[Complex], computed_frequency: Real, computed_shapes: list[Real]
-) -> tuple[Pair, ...]:
+) -> tuple[ModePair, ...]:
     """Pairs of least total distance.
 
     A line model is off by a common factor in frequency more than by anything else, so that factor is removed first.
@@ -46,23 +46,24 @@ def pair(
     if m == 0 or n == 0:
         return ()
     likeness = np.array(
-        [[assurance(measured_shapes[i], computed_shapes[i][j]) for j in range(n)] for i in range(m)], dtype=np.float64
+        [[modal_assurance(measured_shapes[i], computed_shapes[i][j]) for j in range(n)] for i in range(m)],
+        dtype=np.float64,
     )
     single = np.array([shape.size < 2 for shape in measured_shapes])
     likeness[single] = 1.0
     factor = _common_factor(measured_frequency, computed_frequency, likeness)
     distance = np.abs(np.log(measured_frequency[:, None] / (factor * computed_frequency[None, :])))
-    cost = np.where(distance < FAR, (distance / 0.01) ** 2 + 4 * (1 - likeness), 1e6)
+    cost = np.where(distance < LARGEST_FREQUENCY_GAP, (distance / 0.01) ** 2 + 4 * (1 - likeness), 1e6)
     rows, columns = linear_sum_assignment(cost)
     return tuple(
-        Pair(int(i), int(j), float(likeness[i, j]))
+        ModePair(int(i), int(j), float(likeness[i, j]))
         for i, j in zip(rows, columns, strict=True)
         if cost[i, j] < 1e6 and likeness[i, j] >= LEAST_MAC
     )
 
 
 def _common_factor(measured: Real, computed: Real, likeness: Real) -> float:
-    trials = np.linspace(1 - FAR, 1 + FAR, 201)
+    trials = np.linspace(1 - LARGEST_FREQUENCY_GAP, 1 + LARGEST_FREQUENCY_GAP, 201)
 
     def misfit(factor: float) -> float:
         distance = np.abs(np.log(measured[:, None] / (factor * computed[None, :]))) / 0.01

@@ -7,11 +7,11 @@ from numpy.typing import NDArray
 
 from pantocheck.conformance.identification.damping.damping_model import (
     DampingFit,
-    Measured,
+    MeasuredMode,
     ModalEnergies,
-    deviation,
+    fit_deviation,
+    fit_weights,
     solve_weighted,
-    weights,
 )
 
 Real = NDArray[np.float64]
@@ -44,7 +44,9 @@ class Observability:
     observable: bool
 
 
-def observability(energies: ModalEnergies, measured: Measured, fit: DampingFit) -> tuple[Observability, ...]:
+def compute_observability(
+    energies: ModalEnergies, measured: MeasuredMode, fit: DampingFit
+) -> tuple[Observability, ...]:
     """Observability of the stiffness and mass coefficient of every kind of component.
 
     Parameters
@@ -53,7 +55,7 @@ def observability(energies: ModalEnergies, measured: Measured, fit: DampingFit) 
     fit : with all fitted kinds
     """
     names, columns = energies.columns()
-    weighted = columns / deviation(measured)[:, None]
+    weighted = columns / fit_deviation(measured)[:, None]
     fitted = {(c.kind, c.matrix) for c in fit.coefficients}
     found = []
     for i, (kind, matrix) in enumerate(names):
@@ -68,7 +70,7 @@ def observability(energies: ModalEnergies, measured: Measured, fit: DampingFit) 
         else:
             std, inflation = 1 / float(np.sqrt(remaining)), length / remaining
         growth = (
-            residual_without(energies, measured, fit, (kind, matrix)) / max(fit.residual, np.finfo(float).tiny)
+            residual_without_column(energies, measured, fit, (kind, matrix)) / max(fit.residual, np.finfo(float).tiny)
             if (kind, matrix) in fitted
             else 1.0
         )
@@ -77,11 +79,13 @@ def observability(energies: ModalEnergies, measured: Measured, fit: DampingFit) 
     return tuple(found)
 
 
-def residual_without(energies: ModalEnergies, measured: Measured, fit: DampingFit, left_out: tuple[str, str]) -> float:
+def residual_without_column(
+    energies: ModalEnergies, measured: MeasuredMode, fit: DampingFit, left_out: tuple[str, str]
+) -> float:
     """Root mean square of the relative residual of a fit without one coefficient, over the modes used."""
     names, columns = energies.columns()
     kept = [names.index((c.kind, c.matrix)) for c in fit.coefficients if (c.kind, c.matrix) != left_out]
-    target, weight = measured.damping_ratio, weights(deviation(measured), measured.group, fit.used)
+    target, weight = measured.damping_ratio, fit_weights(fit_deviation(measured), measured.group, fit.used)
     relative = (target - columns[:, kept] @ solve_weighted(columns[:, kept], target, weight)) / target
     return float(np.sqrt(np.mean(relative[fit.used] ** 2)))
 

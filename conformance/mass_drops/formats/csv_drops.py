@@ -6,13 +6,13 @@ from pathlib import Path
 import numpy as np
 
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.mass_drops.drop_assembly import Column, Table
-from pantocheck.conformance.mass_drops.drop_sidecar import Sidecar
+from pantocheck.conformance.mass_drops.drop_assembly import DropColumn, DropColumns
+from pantocheck.conformance.mass_drops.drop_sidecar import DropSidecar
 
-TIME_NAMES = ("time", "time_s", "t", "t_s", "zeit", "temps")
+CSV_TIME_NAMES = ("time", "time_s", "t", "t_s", "zeit", "temps")
 
 
-def read(path: Path, sidecar: Sidecar | None) -> list[Table]:
+def read_csv_drops(path: Path, sidecar: DropSidecar | None) -> list[DropColumns]:
     """The one run of a CSV file; errors as in `read_records`."""
     del sidecar  # a CSV file is read the same way with and without
     source = path.name
@@ -30,12 +30,12 @@ def read(path: Path, sidecar: Sidecar | None) -> list[Table]:
     body = [line for line in lines[first + has_head :] if line.strip()]
     _check_widths(body, delimiter, len(head), first + has_head, source)
     values = _numbers(body, delimiter, decimal, first + has_head, source)
-    has_time = has_head and head[0].lower() in TIME_NAMES
+    has_time = has_head and head[0].lower() in CSV_TIME_NAMES
     names = head if has_head else [None] * len(head)
-    columns = tuple(Column(name) for name in names[has_time:])
+    columns = tuple(DropColumn(name) for name in names[has_time:])
     if not columns:
         raise InputError(source, "has no column beside the time", "A record has at least one channel.")
-    return [Table(values[:, int(has_time) :], columns, time=values[:, 0] if has_time else None)]
+    return [DropColumns(values[:, int(has_time) :], columns, time=values[:, 0] if has_time else None)]
 
 
 def _dialect(lines: list[str]) -> tuple[str, str]:

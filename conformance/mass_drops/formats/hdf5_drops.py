@@ -7,14 +7,14 @@ import h5py
 import numpy as np
 
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.mass_drops.drop_assembly import Column, Table
-from pantocheck.conformance.mass_drops.drop_record import Drop, Line
-from pantocheck.conformance.mass_drops.drop_sidecar import ChannelTable, Sidecar
+from pantocheck.conformance.mass_drops.drop_assembly import DropColumn, DropColumns
+from pantocheck.conformance.mass_drops.drop_record import DropDescription, DropLine
+from pantocheck.conformance.mass_drops.drop_sidecar import DropChannelTable, DropSidecar
 
-QUANTITIES = ("acceleration", "velocity", "displacement")
+MOTION_QUANTITIES = ("acceleration", "velocity", "displacement")
 
 
-def read(path: Path, sidecar: Sidecar | None) -> list[Table]:
+def read_hdf5_drops(path: Path, sidecar: DropSidecar | None) -> list[DropColumns]:
     """All runs of an HDF5 file in the order of their numbers; errors as in `read_records`."""
     source = path.name
     try:
@@ -35,13 +35,13 @@ def _number(name: str) -> tuple[int, str]:
     return (int(tail) if tail.isdecimal() else 0, tail)
 
 
-def _columns(file: h5py.File, described: bool, source: str) -> tuple[Column, ...] | None:
+def _columns(file: h5py.File, described: bool, source: str) -> tuple[DropColumn, ...] | None:
     if "channels" not in file:
         return None
     group = file["channels"]
     names = _texts(group["name"])
     if described:
-        return tuple(Column(name, unit) for name, unit in zip(names, _texts(group["unit"]), strict=True))
+        return tuple(DropColumn(name, unit) for name, unit in zip(names, _texts(group["unit"]), strict=True))
     listed = zip(
         names,
         group["sensor"][()],
@@ -54,7 +54,7 @@ def _columns(file: h5py.File, described: bool, source: str) -> tuple[Column, ...
     tables = []
     for column, (name, sensor, wire, position, direction, unit) in enumerate(listed, 1):
         tables.append(
-            ChannelTable(
+            DropChannelTable(
                 column=column,
                 name=name,
                 sensor=int(sensor),
@@ -66,11 +66,11 @@ def _columns(file: h5py.File, described: bool, source: str) -> tuple[Column, ...
         )
     if not tables:
         raise InputError(source, "describes no channel", "Fill the group 'channels', or write a sidecar.")
-    return tuple(Column(table.name, None, table) for table in tables)
+    return tuple(DropColumn(table.name, None, table) for table in tables)
 
 
-def _run(file: h5py.File, name: str, run: int, columns: tuple[Column, ...] | None, source: str) -> Table:
-    data = next((file[name][quantity] for quantity in QUANTITIES if quantity in file[name]), None)
+def _run(file: h5py.File, name: str, run: int, columns: tuple[DropColumn, ...] | None, source: str) -> DropColumns:
+    data = next((file[name][quantity] for quantity in MOTION_QUANTITIES if quantity in file[name]), None)
     if not isinstance(data, h5py.Dataset) or data.ndim != 2:
         raise InputError(
             f"{source}, {name}", "holds no table of samples", f"Store {name}/acceleration (channel, sample)."
@@ -84,19 +84,19 @@ def _run(file: h5py.File, name: str, run: int, columns: tuple[Column, ...] | Non
         )
     facts = dict(file.attrs)
     rate = facts.get("sampling_rate_hz")
-    return Table(
+    return DropColumns(
         values,
-        columns if columns is not None else (Column(),) * values.shape[1],
+        columns if columns is not None else (DropColumn(),) * values.shape[1],
         rate=float(rate) if rate is not None else None,
         title=_text(facts.get("test", "")),
         run=run,
-        drop=Drop(
+        drop=DropDescription(
             _maybe(facts.get("drop_mass_kg")),
             _text(facts.get("drop_wire", "")).upper(),
             _maybe(facts.get("drop_position_m")),
             _maybe(facts.get("trigger_nominal_s")),
         ),
-        line=Line(
+        line=DropLine(
             tuple(float(span) for span in np.atleast_1d(facts.get("spans_m", ()))),
             _maybe(facts.get("cw_tension_n")),
             _maybe(facts.get("mw_tension_n")),

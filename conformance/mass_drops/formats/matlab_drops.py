@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from scipy.io.matlab import MatReadError
 
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.mass_drops.drop_assembly import Column, Table
-from pantocheck.conformance.mass_drops.drop_sidecar import Sidecar
+from pantocheck.conformance.mass_drops.drop_assembly import DropColumn, DropColumns
+from pantocheck.conformance.mass_drops.drop_sidecar import DropSidecar
 
-TIME_NAMES = ("time", "time_s", "t")
+MATLAB_TIME_NAMES = ("time", "time_s", "t")
 RATE_NAMES = ("sampling_rate_hz", "fs", "rate")
-DAMAGE = (
+MATLAB_DAMAGE = (
     ValueError,
     TypeError,
     KeyError,
@@ -33,25 +33,25 @@ DAMAGE = (
 Real = NDArray[np.float64]
 
 
-def read(path: Path, sidecar: Sidecar | None) -> list[Table]:
+def read_matlab_drops(path: Path, sidecar: DropSidecar | None) -> list[DropColumns]:
     """The one run of a MATLAB file; errors as in `read_records`."""
     source = path.name
     arrays = _version_7_3(path, source) if h5py.is_hdf5(path) else _version_5(path, source)
-    time = next((array.ravel() for array in _named(arrays, TIME_NAMES) if array.size > 1), None)
+    time = next((array.ravel() for array in _named(arrays, MATLAB_TIME_NAMES) if array.size > 1), None)
     rate = next((float(array.ravel()[0]) for array in _named(arrays, RATE_NAMES) if array.size), None)
-    data = {name: array for name, array in arrays.items() if name.lower() not in TIME_NAMES + RATE_NAMES}
+    data = {name: array for name, array in arrays.items() if name.lower() not in MATLAB_TIME_NAMES + RATE_NAMES}
     names = [channel.name for channel in sorted(sidecar.channel, key=lambda one: one.column)] if sidecar else []
     if names and all(name in data for name in names):
         vectors = [data[name].ravel() for name in names]
         if len({vector.size for vector in vectors}) > 1:
             raise InputError(source, "its channels differ in length", "The channels must be sampled together.")
-        values, columns = np.column_stack(vectors), tuple(Column(name) for name in names)
+        values, columns = np.column_stack(vectors), tuple(DropColumn(name) for name in names)
     else:
         values = _largest_table(data, source)
-        columns = (Column(),) * values.shape[1]
+        columns = (DropColumn(),) * values.shape[1]
     if time is not None and time.size != values.shape[0]:
         raise InputError(source, f"{time.size} times for {values.shape[0]} samples", "Export the record again.")
-    return [Table(values, columns, time=time, rate=rate)]
+    return [DropColumns(values, columns, time=time, rate=rate)]
 
 
 def _named(arrays: dict[str, Real], names: tuple[str, ...]) -> list[Real]:
@@ -83,7 +83,7 @@ def _largest_table(data: dict[str, Real], source: str) -> Real:
 def _version_5(path: Path, source: str) -> dict[str, Real]:
     try:
         content = scipy.io.loadmat(path, struct_as_record=True)
-    except DAMAGE as error:
+    except MATLAB_DAMAGE as error:
         raise InputError(source, f"is damaged or not a MATLAB file ({str(error)[:100]})", "Export it again.") from None
     return {
         name: np.asarray(value, dtype=np.float64)

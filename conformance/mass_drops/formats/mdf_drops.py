@@ -5,13 +5,13 @@ from pathlib import Path
 import numpy as np
 
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.mass_drops.drop_assembly import Column, Table
-from pantocheck.conformance.mass_drops.drop_sidecar import Sidecar
+from pantocheck.conformance.mass_drops.drop_assembly import DropColumn, DropColumns
+from pantocheck.conformance.mass_drops.drop_sidecar import DropSidecar
 
 SAME_TIME = 1e-6  # between the samples of two channels; a hundredth of an interval at 10 kHz [s]
 
 
-def read(path: Path, sidecar: Sidecar | None) -> list[Table]:
+def read_mdf_drops(path: Path, sidecar: DropSidecar | None) -> list[DropColumns]:
     """The one run of an MDF file; errors as in `read_records`."""
     source = path.name
     try:
@@ -46,5 +46,5 @@ def read(path: Path, sidecar: Sidecar | None) -> list[Table]:
             source, "its channels differ in sampling interval", "The channels of a record must be sampled together."
         )
     values = np.column_stack([np.asarray(signal.samples, dtype=np.float64) for signal in signals])
-    columns = tuple(Column(signal.name, str(signal.unit) or None) for signal in signals)
-    return [Table(values, columns, time=time)]
+    columns = tuple(DropColumn(signal.name, str(signal.unit) or None) for signal in signals)
+    return [DropColumns(values, columns, time=time)]

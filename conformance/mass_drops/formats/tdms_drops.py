@@ -6,14 +6,14 @@ from pathlib import Path
 import numpy as np
 
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.mass_drops.drop_assembly import Column, Table
-from pantocheck.conformance.mass_drops.drop_sidecar import Sidecar
+from pantocheck.conformance.mass_drops.drop_assembly import DropColumn, DropColumns
+from pantocheck.conformance.mass_drops.drop_sidecar import DropSidecar
 
-DAMAGE = (ValueError, KeyError, TypeError, EOFError, OSError, IndexError, NotImplementedError, struct.error)
+TDMS_DAMAGE = (ValueError, KeyError, TypeError, EOFError, OSError, IndexError, NotImplementedError, struct.error)
 """What nptdms raises for files that are damaged."""
 
 
-def read(path: Path, sidecar: Sidecar | None) -> list[Table]:
+def read_tdms_drops(path: Path, sidecar: DropSidecar | None) -> list[DropColumns]:
     """The one run of a TDMS file, its channels in the order of the file; errors as in `read_records`."""
     del sidecar  # the assembly compares the two
     source = path.name
@@ -26,7 +26,7 @@ def read(path: Path, sidecar: Sidecar | None) -> list[Table]:
     try:
         channels = [channel for group in TdmsFile.read(path).groups() for channel in group.channels()]
         vectors = [np.asarray(channel[:], dtype=np.float64) for channel in channels]
-    except DAMAGE as error:
+    except TDMS_DAMAGE as error:
         raise InputError(source, f"is damaged or not TDMS ({str(error)[:100]})", "Export it again.") from None
     kept = [(channel, vector) for channel, vector in zip(channels, vectors, strict=True) if vector.size]
     if not kept:
@@ -39,9 +39,9 @@ def read(path: Path, sidecar: Sidecar | None) -> list[Table]:
             source, "its channels differ in sampling interval", "The channels of a record must be sampled together."
         )
     (step,) = steps
-    columns = tuple(Column(channel.name, _unit(channel.properties.get("unit_string"))) for channel, _ in kept)
+    columns = tuple(DropColumn(channel.name, _unit(channel.properties.get("unit_string"))) for channel, _ in kept)
     rate = 1 / float(step) if step else None
-    return [Table(np.column_stack([vector for _, vector in kept]), columns, rate=rate)]
+    return [DropColumns(np.column_stack([vector for _, vector in kept]), columns, rate=rate)]
 
 
 def _unit(text: object) -> str | None:

@@ -9,9 +9,9 @@ import numpy as np
 import pyuff
 
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.mass_drops.drop_assembly import Column, Table
-from pantocheck.conformance.mass_drops.drop_record import Drop
-from pantocheck.conformance.mass_drops.drop_sidecar import ChannelTable, Sidecar
+from pantocheck.conformance.mass_drops.drop_assembly import DropColumn, DropColumns
+from pantocheck.conformance.mass_drops.drop_record import DropDescription
+from pantocheck.conformance.mass_drops.drop_sidecar import DropChannelTable, DropSidecar
 
 TIME_RESPONSE = 1
 DIRECTIONS = {1: "+x", 2: "+y", 3: "+z", -1: "-x", -2: "-y", -3: "-z"}
@@ -22,7 +22,7 @@ DROP_LINE = re.compile(
 )
 
 
-def read(path: Path, sidecar: Sidecar | None) -> list[Table]:
+def read_uff_drops(path: Path, sidecar: DropSidecar | None) -> list[DropColumns]:
     """The one run of a universal file; errors as in `read_records`."""
     source = path.name
     sets = [one for one in _sets(path, source) if one.get("func_type") == TIME_RESPONSE]
@@ -41,7 +41,7 @@ def read(path: Path, sidecar: Sidecar | None) -> list[Table]:
         raise InputError(source, f"sampling interval {step:g} s", "Export evenly spaced time histories.")
     values = np.column_stack([np.real(one["data"]) for one in sets]).astype(np.float64)
     columns = tuple(_column(one, number, sidecar is not None, source) for number, one in enumerate(sets, 1))
-    return [Table(values, columns, rate=1 / step, title=str(sets[0].get("id1", "")).strip(), drop=_drop(sets[0]))]
+    return [DropColumns(values, columns, rate=1 / step, title=str(sets[0].get("id1", "")).strip(), drop=_drop(sets[0]))]
 
 
 def _sets(path: Path, source: str) -> list[dict[str, Any]]:
@@ -70,13 +70,13 @@ def _sets(path: Path, source: str) -> list[dict[str, Any]]:
     return sets
 
 
-def _column(one: dict[str, Any], number: int, described: bool, source: str) -> Column:
+def _column(one: dict[str, Any], number: int, described: bool, source: str) -> DropColumn:
     named = CHANNEL_LINE.fullmatch(str(one.get("id3", "")).strip())
     label = str(one.get("ordinate_axis_units_lab", "")).strip()
     unit = label if label.upper() not in ("", "NONE") else UNIT_OF_DATA_TYPE.get(int(one["ordinate_spec_data_type"]))
     name = named["name"] if named else None
     if described:
-        return Column(name, label if label.upper() not in ("", "NONE") else None)
+        return DropColumn(name, label if label.upper() not in ("", "NONE") else None)
     direction = named["direction"] if named else DIRECTIONS.get(int(one["rsp_dir"]))
     if direction is None or unit is None:
         raise InputError(
@@ -85,7 +85,7 @@ def _column(one: dict[str, Any], number: int, described: bool, source: str) -> C
             "Give direction and unit of every channel in a sidecar.",
         )
     sensor = int(one["rsp_node"])
-    table = ChannelTable(
+    table = DropChannelTable(
         column=number,
         name=name or f"S{sensor}_{direction[1]}",
         sensor=sensor,
@@ -94,15 +94,15 @@ def _column(one: dict[str, Any], number: int, described: bool, source: str) -> C
         direction=direction,
         unit=unit,
     )
-    return Column(name, None, table)
+    return DropColumn(name, None, table)
 
 
-def _drop(one: dict[str, Any]) -> Drop:
+def _drop(one: dict[str, Any]) -> DropDescription:
     found = DROP_LINE.fullmatch(str(one.get("id2", "")).strip())
     if found is None:
-        return Drop()
+        return DropDescription()
     trigger = float(found["trigger"]) if found["trigger"] else None
-    return Drop(float(found["mass"]), found["wire"].upper(), float(found["position"]), trigger)
+    return DropDescription(float(found["mass"]), found["wire"].upper(), float(found["position"]), trigger)
 
 
 def _few(values: set[Any]) -> str:

@@ -14,7 +14,7 @@ from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.measured.pooled_signals import PooledSignals
 from pantocheck.conformance.records.record import Array
 
-REPLICATES = 1000
+BOOTSTRAP_REPLICATES = 1000
 FEWEST_BLOCKS = 5
 """Blocks a record must hold: from fewer, the spread of a statistic cannot be told."""
 
@@ -30,7 +30,7 @@ class _Draws:
     length: int
 
 
-def uncertainties(signals: PooledSignals, block_s: float, digest: str) -> dict[str, float]:
+def bootstrap_uncertainties(signals: PooledSignals, block_s: float, digest: str) -> dict[str, float]:
     """Half-width of the 95 % interval of the statistics of a record, by quantity; none if the record is too short.
 
     For the largest and smallest value it says how much depends on single events of the record; that a longer record
@@ -84,7 +84,7 @@ def _draws(sizes: list[int], block: float, digest: str) -> _Draws | None:
     if blocks < FEWEST_BLOCKS or not starts:
         return None
     random = np.random.default_rng(int(digest[:16], 16))
-    return _Draws(random.choice(np.concatenate(starts), size=(REPLICATES, blocks)), length)
+    return _Draws(random.choice(np.concatenate(starts), size=(BOOTSTRAP_REPLICATES, blocks)), length)
 
 
 def _means(series: Array, draws: _Draws) -> Array:

@@ -16,7 +16,7 @@ The force of the reference simulator has 0.26 to 0.40 there (EN 50318:2002 at 25
 the numbers above 20 Hz is lost."""
 
 
-def as_filtered(pooled: PooledSignals, who: str, warnings: list[str]) -> PooledSignals:
+def detect_filtered(pooled: PooledSignals, who: str, warnings: list[str]) -> PooledSignals:
     """Signals with the filter they have really been through: a sidecar may not know of the measuring chain's.
 
     Parameters

@@ -16,7 +16,7 @@ LEAST_N = 50.0
 """Distance below which nothing is called an outlier [N]."""
 
 
-def outliers(force: Array) -> NDArray[np.intp]:
+def find_outliers(force: Array) -> NDArray[np.intp]:
     """Indices of the samples that stand out of their neighbours.
 
     Parameters

@@ -7,20 +7,20 @@ from numpy.typing import NDArray
 
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.quantities.signals import LineSignals, PantographSignals
-from pantocheck.conformance.records.measured.filtered_force import as_filtered
-from pantocheck.conformance.records.measured.outliers import outliers
+from pantocheck.conformance.records.measured.filtered_force import detect_filtered
+from pantocheck.conformance.records.measured.outliers import find_outliers
 from pantocheck.conformance.records.measured.pooled_signals import PooledSignals
-from pantocheck.conformance.records.measured.sample_positions import placed, share
+from pantocheck.conformance.records.measured.sample_positions import missing_share, place_samples
 from pantocheck.conformance.records.measured.usable_sections import (
     SHORTEST_S,
-    Stretch,
+    UsableSection,
+    cut_section,
+    find_usable_sections,
     local_speed,
-    stretch_of,
-    usable_runs,
 )
 from pantocheck.conformance.records.record import MAX_SAMPLES, Array, RecordInvalid
-from pantocheck.conformance.records.record_sidecar import Sidecar
-from pantocheck.conformance.records.samples import Samples
+from pantocheck.conformance.records.record_sidecar import RecordSidecar
+from pantocheck.conformance.records.samples import RecordSamples
 
 SETTLING_PERIODS = 2.0
 """Periods of the cut-off after which the transient at the end of a filtered stretch has died out."""
@@ -33,7 +33,7 @@ FULLY_COVERED = 0.97
 
 
 @dataclass(frozen=True)
-class Prepared:
+class PreparedRecord:
     """What can be evaluated of a record.
 
     Parameters
@@ -58,7 +58,9 @@ class Prepared:
     warnings: tuple[str, ...]
 
 
-def prepared(samples: Samples, sidecar: Sidecar, low_pass: LowPass, speed_tolerance_pct: float) -> Prepared:
+def prepare_record(
+    samples: RecordSamples, sidecar: RecordSidecar, low_pass: LowPass, speed_tolerance_pct: float
+) -> PreparedRecord:
     """Cut a record into stretches that can be evaluated, evenly sampled in time.
 
     Parameters
@@ -74,7 +76,7 @@ def prepared(samples: Samples, sidecar: Sidecar, low_pass: LowPass, speed_tolera
     """
     notes: list[str] = []
     warnings: list[str] = []
-    samples, time, position = placed(samples, sidecar, warnings)
+    samples, time, position = place_samples(samples, sidecar, warnings)
     rate = _round(1 / float(np.median(np.diff(time))))
     if (time[-1] - time[0]) * rate > MAX_SAMPLES:
         raise RecordInvalid("time", f"{time[-1] - time[0]:.4g} s at {rate:.4g} Hz are more than {MAX_SAMPLES} samples")
@@ -89,7 +91,7 @@ def prepared(samples: Samples, sidecar: Sidecar, low_pass: LowPass, speed_tolera
         notes.append(f"The record was not evenly sampled; it was resampled to {rate:g} samples per second.")
     if not steady.all():
         warnings.append(
-            f"{share(~steady)} of the record was cut: the speed is more than {speed_tolerance_pct:g} % off "
+            f"{missing_share(~steady)} of the record was cut: the speed is more than {speed_tolerance_pct:g} % off "
             f"{sidecar.speed_km_h:g} km/h, first at {position[0][np.argmin(steady)]:.1f} m"
         )
     start, end = _stretch_asked(sidecar, position)
@@ -102,7 +104,7 @@ def prepared(samples: Samples, sidecar: Sidecar, low_pass: LowPass, speed_tolera
         for i in range(samples.force.shape[0])
     }
     first = pantographs[1]
-    return Prepared(
+    return PreparedRecord(
         pantographs=pantographs,
         line=_line(samples, (start, end), warnings),
         rate=rate,
@@ -114,14 +116,14 @@ def prepared(samples: Samples, sidecar: Sidecar, low_pass: LowPass, speed_tolera
     )
 
 
-def _stretch_asked(sidecar: Sidecar, position: Array) -> tuple[float, float]:
+def _stretch_asked(sidecar: RecordSidecar, position: Array) -> tuple[float, float]:
     if sidecar.evaluated_m is not None:
         return sidecar.evaluated_m[0], sidecar.evaluated_m[1]
     return float(position[:, 0].max()), float(position[:, -1].min())
 
 
 def _pantograph(
-    samples: Samples,
+    samples: RecordSamples,
     at: int,
     time: Array,
     position: Array,
@@ -134,10 +136,12 @@ def _pantograph(
     height = None if samples.contact_height is None else samples.contact_height[at]
     present = np.isfinite(force)
     if not present.all():
-        warnings.append(f"{share(~present)} of the force of {who} is missing, first at {position[~present][0]:.1f} m")
+        warnings.append(
+            f"{missing_share(~present)} of the force of {who} is missing, first at {position[~present][0]:.1f} m"
+        )
     _mark_outliers(force[present], position[present], who, warnings)
-    runs = usable_runs(time, present & steady)
-    stretches = [stretch_of(run, time, position, force, height, asked.rate) for run in runs]
+    runs = find_usable_sections(time, present & steady)
+    stretches = [cut_section(run, time, position, force, height, asked.rate) for run in runs]
     parts = [part for stretch in stretches for part in _evaluated_part(stretch, asked)]
     if len(runs) > 1:
         warnings.append(f"{who} is evaluated over {len(parts)} stretches between gaps, each filtered on its own")
@@ -155,10 +159,10 @@ def _pantograph(
         f"no stretch of {SHORTEST_S:g} s inside {asked.evaluated[0]:.6g} m to {asked.evaluated[1]:.6g} m is without "
         "gaps and at the nominal speed",
     )
-    return as_filtered(pooled, who, warnings)
+    return detect_filtered(pooled, who, warnings)
 
 
-def _evaluated_part(stretch: Stretch, asked: PantographSignals) -> list[PantographSignals]:
+def _evaluated_part(stretch: UsableSection, asked: PantographSignals) -> list[PantographSignals]:
     """The part of a stretch that is evaluated: away from its ends, where the filter's transients are."""
     settling = round(SETTLING_PERIODS / asked.low_pass.cutoff_Hz * asked.rate)
     if stretch.position.size <= 2 * settling + 2:
@@ -177,7 +181,7 @@ def _evaluated_part(stretch: Stretch, asked: PantographSignals) -> list[Pantogra
 
 
 def _mark_outliers(force: Array, position: Array, who: str, warnings: list[str]) -> None:
-    found = outliers(force)
+    found = find_outliers(force)
     if found.size:
         places = ", ".join(f"{force[i]:.4g} N at {position[i]:.1f} m" for i in found[:5])
         warnings.append(
@@ -186,14 +190,16 @@ def _mark_outliers(force: Array, position: Array, who: str, warnings: list[str])
         )
 
 
-def _line(samples: Samples, evaluated: tuple[float, float], warnings: list[str]) -> LineSignals:
+def _line(samples: RecordSamples, evaluated: tuple[float, float], warnings: list[str]) -> LineSignals:
     """Uplift where it was measured; a missing value is taken as low, and said: it could have been the largest."""
     uplift = samples.uplift
     if uplift is None or samples.support_position is None:
         return LineSignals(evaluated)
     missing = ~np.isfinite(uplift)
     if missing.any():
-        warnings.append(f"{share(missing)} of the uplift is missing: the largest uplift may not have been recorded")
+        warnings.append(
+            f"{missing_share(missing)} of the uplift is missing: the largest uplift may not have been recorded"
+        )
     measured = ~missing.all(axis=1)
     lowest = np.where(missing[measured], np.inf, uplift[measured]).min(axis=1, keepdims=True)
     filled = np.where(missing[measured], lowest, uplift[measured])

@@ -4,11 +4,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pantocheck.conformance.records.record import Array, RecordInvalid
-from pantocheck.conformance.records.record_sidecar import Sidecar
-from pantocheck.conformance.records.samples import Samples, completed
+from pantocheck.conformance.records.record_sidecar import RecordSidecar
+from pantocheck.conformance.records.samples import RecordSamples, complete_samples
 
 
-def placed(samples: Samples, sidecar: Sidecar, warnings: list[str]) -> tuple[Samples, Array, Array]:
+def place_samples(
+    samples: RecordSamples, sidecar: RecordSidecar, warnings: list[str]
+) -> tuple[RecordSamples, Array, Array]:
     """Samples that say when and where they are, their times [s] (n,) and positions [m] (p, n), both growing.
 
     Parameters
@@ -25,14 +27,14 @@ def placed(samples: Samples, sidecar: Sidecar, warnings: list[str]) -> tuple[Sam
     if known.sum() < 2:
         raise RecordInvalid("time", "fewer than two samples say when or where they are")
     if not known.all():
-        warnings.append(f"{share(~known)} of the samples do not say when or where they are, and were left out")
+        warnings.append(f"{missing_share(~known)} of the samples do not say when or where they are, and were left out")
         samples = samples.at(known)
     if samples.time is None and samples.speed is not None and not (samples.speed > 0).all():
-        warnings.append(f"{share(samples.speed <= 0)} of the samples were left out: the train stands there")
+        warnings.append(f"{missing_share(samples.speed <= 0)} of the samples were left out: the train stands there")
         samples = samples.at(samples.speed > 0)
     if samples.force.shape[1] < 2:
         raise RecordInvalid("speed", "the train stands at nearly every sample")
-    time, position = completed(samples, sidecar)
+    time, position = complete_samples(samples, sidecar)
     if samples.time is not None:
         samples, time, position = _without_steps(samples, time, position)
     for name, axis in (("time", time[None]), ("position", position)):
@@ -42,7 +44,7 @@ def placed(samples: Samples, sidecar: Sidecar, warnings: list[str]) -> tuple[Sam
     return samples, time, position
 
 
-def _without_steps(samples: Samples, time: Array, position: Array) -> tuple[Samples, Array, Array]:
+def _without_steps(samples: RecordSamples, time: Array, position: Array) -> tuple[RecordSamples, Array, Array]:
     """Positions that grow: a counter of wheel turns stands still for some samples and then steps forwards."""
     grown = np.diff(position[0], prepend=-np.inf) > 0
     if grown.all() or (np.diff(position, axis=1) < 0).any() or grown.sum() < 2:
@@ -53,5 +55,5 @@ def _without_steps(samples: Samples, time: Array, position: Array) -> tuple[Samp
     return samples.at(within), time[within], smooth
 
 
-def share(chosen: NDArray[np.bool_]) -> str:
+def missing_share(chosen: NDArray[np.bool_]) -> str:
     return f"{100 * chosen.mean():.2g} %"

@@ -23,7 +23,7 @@ SPEED_AVERAGED_S = 1.0
 
 
 @dataclass(frozen=True)
-class Stretch:
+class UsableSection:
     """A part of one pantograph's record, evenly sampled.
 
     Parameters
@@ -45,7 +45,7 @@ def local_speed(time: Array, position: Array) -> Array:
     return np.asarray(uniform_filter1d(speed, min(width, speed.size), mode="nearest"))
 
 
-def usable_runs(time: Array, usable: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
+def find_usable_sections(time: Array, usable: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
     """Indices of the usable samples between each two gaps; a gap of up to `SHORT_GAP_S` is no gap.
 
     Parameters
@@ -62,9 +62,9 @@ def usable_runs(time: Array, usable: NDArray[np.bool_]) -> list[NDArray[np.intp]
     return [run for run in np.split(chosen, breaks + 1) if time[run[-1]] - time[run[0]] >= SHORTEST_S]
 
 
-def stretch_of(
+def cut_section(
     run: NDArray[np.intp], time: Array, position: Array, force: Array, height: Array | None, rate: float
-) -> Stretch:
+) -> UsableSection:
     """The samples of a run on a uniform time axis.
 
     Samples that are evenly spaced are taken as they are. Others are interpolated by monotone cubics, which do not
@@ -79,11 +79,11 @@ def stretch_of(
     at, height = time[run], None if height is None or not np.isfinite(height[run]).all() else height[run]
     uniform = np.linspace(at[0], at[-1], at.size)
     if np.abs(at - uniform).max() <= 0.01 / rate and abs((at.size - 1) / (at[-1] - at[0]) / rate - 1) < 1e-3:
-        return Stretch(position[run], force[run], height)
+        return UsableSection(position[run], force[run], height)
     even = at[0] + np.arange(int(np.floor((at[-1] - at[0]) * rate * (1 + 1e-12))) + 1) / rate
     even[-1] = min(even[-1], at[-1])
 
     def resampled(values: Array) -> Array:
         return np.asarray(PchipInterpolator(at, values)(even))
 
-    return Stretch(resampled(position[run]), resampled(force[run]), None if height is None else resampled(height))
+    return UsableSection(resampled(position[run]), resampled(force[run]), None if height is None else resampled(height))

@@ -7,50 +7,50 @@ from typing import Any
 from pantocheck.conformance.reports.certificate import case_facts as facts
 from pantocheck.conformance.reports.certificate import quantity_tables as tables
 from pantocheck.conformance.reports.certificate import verdict_reasons as reasons
-from pantocheck.conformance.reports.certificate.criteria_rows import criterion
-from pantocheck.conformance.reports.certificate.page_content import Case, Figure, Input, Page, TextTable
+from pantocheck.conformance.reports.certificate.criteria_rows import build_criterion_row
+from pantocheck.conformance.reports.certificate.page_content import CaseSection, Figure, InputRow, Page, PlainTable
 from pantocheck.conformance.reports.figures import charts
 from pantocheck.conformance.reports.figures import force_figures as figures
-from pantocheck.conformance.reports.page_text import cleaned, number, plain
-from pantocheck.conformance.reports.words import words
+from pantocheck.conformance.reports.page_text import clean_tree, format_plain, format_value
+from pantocheck.conformance.reports.words import read_words
 
 TITLE = "Conformance report"
 
 
-def page(results: dict[str, Any]) -> Page:
+def build_certificate(results: dict[str, Any]) -> Page:
     """Everything a certificate says.
 
     Parameters
     ----------
     results : results.json as a dictionary
     """
-    results = cleaned(results)
+    results = clean_tree(results)
     trust = results.get("trust") or ""
-    meaning = words()["trust"].get(trust, {}).get("meaning")
+    meaning = read_words()["trust"].get(trust, {}).get("meaning")
     return Page(
         title=TITLE,
         statement=results.get("statement") or "",
         verdict=results["verdict"],
-        headline=reasons.headline(results),
+        headline=reasons.build_headline(results),
         trust=trust,
         trust_sentence=f"Lowest trust of the limits that count: {trust} ({meaning})." if meaning else "",
-        system=facts.system(results),
-        suite=facts.suite(results),
-        reasons=reasons.reasons(results),
+        system=facts.name_system(results),
+        suite=facts.name_suite(results),
+        reasons=reasons.build_reasons(results),
         cases=tuple(_case(case, at) for at, case in enumerate(results["cases"], start=1)),
-        facts=facts.of_suite(results),
+        facts=facts.list_suite_facts(results),
     )
 
 
-def _case(case: dict[str, Any], at: int) -> Case:
+def _case(case: dict[str, Any], at: int) -> CaseSection:
     sources: list[str] = []
-    rows = tuple(criterion(row, sources) for row in case["criteria"])
-    return Case(
+    rows = tuple(build_criterion_row(row, sources) for row in case["criteria"])
+    return CaseSection(
         anchor=f"case-{at}",
         id=case["id"],
         title=case.get("title") or case["id"],
         verdict=case["verdict"],
-        sentence=reasons.of_case(case),
+        sentence=reasons.build_case_reasons(case),
         criteria=rows,
         error_name=error_name(case),
         sources=tuple(sources),
@@ -58,14 +58,14 @@ def _case(case: dict[str, Any], at: int) -> Case:
         quantities=tables.quantities(case),
         skipped=tables.skipped(case),
         tables=tuple(
-            TextTable(one["caption"], tuple(one["columns"]), tuple(tuple(row) for row in one["rows"]))
+            PlainTable(one["caption"], tuple(one["columns"]), tuple(tuple(row) for row in one["rows"]))
             for one in case.get("tables") or []
         ),
         figures=_figures(case),
-        inputs=tuple(Input(one["group"], one["trust"], one.get("source") or "") for one in case.get("inputs") or []),
+        inputs=tuple(InputRow(one["group"], one["trust"], one.get("source") or "") for one in case.get("inputs") or []),
         notes=tuple(case.get("notes") or []),
         warnings=tuple(case.get("warnings") or []),
-        facts=facts.of_case(case),
+        facts=facts.list_case_facts(case),
     )
 
 
@@ -84,7 +84,8 @@ def _drawn(content: str) -> tuple[Figure, ...]:
     """Figures of the parts of a case that are drawn. Drawing takes most of a page's time, so HTML and PDF share it."""
     case = json.loads(content)
     drawn = [
-        Figure(charts.chart(one), one["alternative"], one["caption"], one["wide"]) for one in case.get("charts") or []
+        Figure(charts.draw_chart(one), one["alternative"], one["caption"], one["wide"])
+        for one in case.get("charts") or []
     ]
     for key, trace in sorted((case.get("traces") or {}).items(), key=lambda item: (len(item[0]), item[0])):
         rows = [row for row in case["criteria"] if str(row.get("pantograph")) == key]
@@ -96,37 +97,39 @@ def _drawn(content: str) -> tuple[Figure, ...]:
             drawn.append(_histogram(key, trace))
     supports = [support for support in case.get("uplift") or [] if support["time_s"]]
     if supports:
-        peaks = ", ".join(f"{number(max(s['uplift_mm']), 3)} mm at {plain(s['support_m'])} m" for s in supports)
+        peaks = ", ".join(
+            f"{format_value(max(s['uplift_mm']), 3)} mm at {format_plain(s['support_m'])} m" for s in supports
+        )
         caption = f"Uplift at the supports. Largest: {peaks}."
-        drawn.append(Figure(figures.uplift(supports, case["criteria"]), caption, caption, wide=True))
+        drawn.append(Figure(figures.draw_uplift(supports, case["criteria"]), caption, caption, wide=True))
     return tuple(drawn)
 
 
 def _force(key: str, trace: dict[str, Any], rows: list[dict[str, Any]]) -> Figure:
     start, end = trace["position_m"][0], trace["position_m"][-1]
     mean, std = trace.get("mean_N"), trace.get("std_N")
-    text = f"Pantograph {key}: contact force from {plain(start)} m to {plain(end)} m"
+    text = f"Pantograph {key}: contact force from {format_plain(start)} m to {format_plain(end)} m"
     if mean is not None and std is not None:
-        low, high = number(mean - 3 * std), number(mean + 3 * std)
-        text += f"; mean {number(mean)} N, mean ± 3 σ from {low} N to {high} N"
+        low, high = format_value(mean - 3 * std), format_value(mean + 3 * std)
+        text += f"; mean {format_value(mean)} N, mean ± 3 σ from {low} N to {high} N"
     limited = figures.limited_rows(rows)
     strip = " On the right: the limits of the force's statistics, and where the values lie." if limited else ""
-    return Figure(figures.force(trace, limited), f"{text}.", f"{text}.{strip}", wide=True)
+    return Figure(figures.draw_force(trace, limited), f"{text}.", f"{text}.{strip}", wide=True)
 
 
 def _spectrum(key: str, trace: dict[str, Any], quantities: dict[str, Any]) -> Figure:
     bands = [
-        f"{low} to {high} Hz: {number(quantities[name])} N"
+        f"{low} to {high} Hz: {format_value(quantities[name])} N"
         for low, high, name in figures.BANDS_Hz
         if quantities.get(name) is not None
     ]
     caption = f"Pantograph {key}: amplitude spectrum of the force, with the RMS of its bands."
     alternative = f"{caption} {'; '.join(bands)}." if bands else caption
-    return Figure(figures.spectrum(trace, quantities), alternative, caption, wide=False)
+    return Figure(figures.draw_spectrum(trace, quantities), alternative, caption, wide=False)
 
 
 def _histogram(key: str, trace: dict[str, Any]) -> Figure:
     edges = trace["histogram"]["edges_N"]
     caption = f"Pantograph {key}: histogram of the 20 Hz force."
-    alternative = f"{caption} From {number(edges[0])} N to {number(edges[-1])} N."
-    return Figure(figures.histogram(trace), alternative, caption, wide=False)
+    alternative = f"{caption} From {format_value(edges[0])} N to {format_value(edges[-1])} N."
+    return Figure(figures.draw_histogram(trace), alternative, caption, wide=False)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Criterion:
+class CriterionRow:
     """A row of the table of criteria; `source` counts from 1 in the case's `sources`."""
 
     quantity: str
@@ -27,7 +27,7 @@ class Criterion:
 
 
 @dataclass(frozen=True)
-class Table:
+class QuantityTable:
     """A plain table: names of the columns, rows of (label, name of the quantity, unit, cells)."""
 
     columns: tuple[str, ...]
@@ -35,7 +35,7 @@ class Table:
 
 
 @dataclass(frozen=True)
-class TextTable:
+class PlainTable:
     """A table of a study: names of the columns, rows of texts."""
 
     caption: str
@@ -54,7 +54,7 @@ class Figure:
 
 
 @dataclass(frozen=True)
-class Input:
+class InputRow:
     """Where a group of inputs comes from."""
 
     group: str
@@ -63,7 +63,7 @@ class Input:
 
 
 @dataclass(frozen=True)
-class Case:
+class CaseSection:
     """One case of a certificate."""
 
     anchor: str
@@ -71,15 +71,15 @@ class Case:
     title: str
     verdict: str
     sentence: str
-    criteria: tuple[Criterion, ...]
+    criteria: tuple[CriterionRow, ...]
     error_name: str
     sources: tuple[str, ...]
-    bands: Table
-    quantities: Table
+    bands: QuantityTable
+    quantities: QuantityTable
     skipped: tuple[tuple[str, str, str], ...]
-    tables: tuple[TextTable, ...]
+    tables: tuple[PlainTable, ...]
     figures: tuple[Figure, ...]
-    inputs: tuple[Input, ...]
+    inputs: tuple[InputRow, ...]
     notes: tuple[str, ...]
     warnings: tuple[str, ...]
     facts: tuple[tuple[str, str], ...]
@@ -106,5 +106,5 @@ class Page:
     system: str
     suite: str
     reasons: tuple[Reasons, ...]
-    cases: tuple[Case, ...]
+    cases: tuple[CaseSection, ...]
     facts: tuple[tuple[str, str], ...]

@@ -2,9 +2,9 @@
 
 from typing import Any
 
-from pantocheck.conformance.reports.certificate.page_content import Table
-from pantocheck.conformance.reports.page_text import number
-from pantocheck.conformance.reports.words import holder, label, unit, words
+from pantocheck.conformance.reports.certificate.page_content import QuantityTable
+from pantocheck.conformance.reports.page_text import format_value
+from pantocheck.conformance.reports.words import holder, quantity_label, quantity_unit, read_words
 
 
 def columns(case: dict[str, Any]) -> list[str]:
@@ -18,7 +18,7 @@ def heading(key: str) -> str:
     return holder(key).capitalize()
 
 
-def bands(case: dict[str, Any]) -> Table:
+def bands(case: dict[str, Any]) -> QuantityTable:
     """The extended band table: each cell with its verdict where graded, else marked informative."""
     pantographs = [key for key in columns(case) if key != "0"]
     graded = {
@@ -32,23 +32,23 @@ def bands(case: dict[str, Any]) -> Table:
         if value is None:
             return "not available"
         verdict = graded.get((name, key))
-        return f"{number(value)} ({words()['verdict'][verdict]['word'] if verdict else 'informative'})"
+        return f"{format_value(value)} ({read_words()['verdict'][verdict]['word'] if verdict else 'informative'})"
 
-    return Table(
+    return QuantityTable(
         tuple(heading(key) for key in pantographs),
         tuple(
-            (label(name), name, unit(name), tuple(cell(name, key) for key in pantographs))
-            for name in words()["bands"]["rows"]
+            (quantity_label(name), name, quantity_unit(name), tuple(cell(name, key) for key in pantographs))
+            for name in read_words()["bands"]["rows"]
         )
         if pantographs
         else (),
     )
 
 
-def quantities(case: dict[str, Any]) -> Table:
+def quantities(case: dict[str, Any]) -> QuantityTable:
     """Every quantity of a case; what is neither there nor skipped is left blank."""
     keys = columns(case)
-    order = list(words()["quantity"])
+    order = list(read_words()["quantity"])
     names = {name for key in keys for name in (*case["quantities"].get(key, {}), *case["skipped"].get(key, {}))}
     ordered = sorted(names, key=lambda name: (order.index(name) if name in order else len(order), name))
 
@@ -57,19 +57,22 @@ def quantities(case: dict[str, Any]) -> Table:
         if value is None:
             return "skipped" if name in case["skipped"].get(key, {}) else ""
         error = (case.get("uncertainty") or {}).get(key, {}).get(name)
-        shown = ", ".join(number(one, 5) for one in (value if isinstance(value, list) else [value]))
-        return shown if error is None else f"{shown} ± {number(error, 2)}"
+        shown = ", ".join(format_value(one, 5) for one in (value if isinstance(value, list) else [value]))
+        return shown if error is None else f"{shown} ± {format_value(error, 2)}"
 
-    return Table(
+    return QuantityTable(
         tuple(heading(key) for key in keys),
-        tuple((label(name), name, unit(name), tuple(cell(name, key) for key in keys)) for name in ordered),
+        tuple(
+            (quantity_label(name), name, quantity_unit(name), tuple(cell(name, key) for key in keys))
+            for name in ordered
+        ),
     )
 
 
 def skipped(case: dict[str, Any]) -> tuple[tuple[str, str, str], ...]:
     """What was skipped: whose, which quantity, why."""
     return tuple(
-        (heading(key), label(name), reason)
+        (heading(key), quantity_label(name), reason)
         for key in columns(case)
         for name, reason in sorted(case["skipped"].get(key, {}).items())
     )

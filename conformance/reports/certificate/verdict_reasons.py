@@ -3,15 +3,20 @@
 from collections import Counter
 from typing import Any
 
-from pantocheck.conformance.reports.certificate.criteria_rows import error_of, signed, title, unresolved
+from pantocheck.conformance.reports.certificate.criteria_rows import (
+    criterion_title,
+    format_signed,
+    is_unresolved,
+    total_error,
+)
 from pantocheck.conformance.reports.certificate.page_content import Reasons
-from pantocheck.conformance.reports.page_text import beside_limits, limits
-from pantocheck.conformance.reports.words import owner, words
+from pantocheck.conformance.reports.page_text import format_beside_limits, format_limits
+from pantocheck.conformance.reports.words import owner, read_words
 
 CLOSEST = 3
 
 
-def headline(results: dict[str, Any]) -> str:
+def build_headline(results: dict[str, Any]) -> str:
     """The verdict in one sentence with its count."""
     verdicts = Counter(row["verdict"] for case in results["cases"] for row in case["criteria"])
     counted = sum(verdicts[v] for v in ("pass", "fail", "skip", "error"))
@@ -31,7 +36,7 @@ def headline(results: dict[str, Any]) -> str:
     return f"{verdicts['pass']} of {counted} counted criteria in {cases} lie inside their limits."
 
 
-def reasons(results: dict[str, Any]) -> tuple[Reasons, ...]:
+def build_reasons(results: dict[str, Any]) -> tuple[Reasons, ...]:
     """Sentences under headings, the gravest first; empty groups are left out."""
     cases = results["cases"]
     rows = [(case, row) for case in cases for row in case["criteria"]]
@@ -47,8 +52,8 @@ def reasons(results: dict[str, Any]) -> tuple[Reasons, ...]:
 
     unsure: dict[str, list[str]] = {}
     for case, row in rows:
-        if unresolved(row):
-            unsure.setdefault(error_of(row)[1], []).append(_where(case, row))
+        if is_unresolved(row):
+            unsure.setdefault(total_error(row)[1], []).append(_where(case, row))
     groups = (
         ("What could not be run", [*whole("error"), *(_why(case, row) for case, row in of("error"))]),
         ("What failed", [*whole("fail"), *(_where(case, row) for case, row in of("fail"))]),
@@ -59,12 +64,12 @@ def reasons(results: dict[str, Any]) -> tuple[Reasons, ...]:
     return tuple(Reasons(name, tuple(sentences)) for name, sentences in groups if sentences)
 
 
-def of_case(case: dict[str, Any]) -> str:
+def build_case_reasons(case: dict[str, Any]) -> str:
     """The verdict of one case in one sentence."""
     if case.get("reason"):
         return str(case["reason"])
     verdicts = Counter(row["verdict"] for row in case["criteria"])
-    words_of = words()["verdict"]
+    words_of = read_words()["verdict"]
     parts = [
         f"{verdicts[v]} {words_of[v]['meaning'] if v != 'info' else 'informative'}"
         for v in ("error", "fail", "skip", "pass", "info")
@@ -73,9 +78,9 @@ def of_case(case: dict[str, Any]) -> str:
     return f"{sum(verdicts.values())} criteria: {', '.join(parts)}." if parts else "No criteria."
 
 
-def who(row: dict[str, Any]) -> str:
+def criterion_subject(row: dict[str, Any]) -> str:
     """The owner of a value and the quantity's name in words."""
-    return f"{owner(row)}, {title(row)}"
+    return f"{owner(row)}, {criterion_title(row)}"
 
 
 def _has_width(row: dict[str, Any]) -> bool:
@@ -84,11 +89,11 @@ def _has_width(row: dict[str, Any]) -> bool:
 
 
 def _where(case: dict[str, Any], row: dict[str, Any]) -> str:
-    value = beside_limits(row["value"], row["lower"], row["upper"])
-    margin = "" if row.get("margin") is None else f", margin {signed(row['margin'])}"
-    text = f"{case['id']}, {who(row)}: {value} {row.get('unit') or ''}".rstrip()
-    return f"{text}, limits {limits(row['lower'], row['upper'])}{margin}."
+    value = format_beside_limits(row["value"], row["lower"], row["upper"])
+    margin = "" if row.get("margin") is None else f", margin {format_signed(row['margin'])}"
+    text = f"{case['id']}, {criterion_subject(row)}: {value} {row.get('unit') or ''}".rstrip()
+    return f"{text}, limits {format_limits(row['lower'], row['upper'])}{margin}."
 
 
 def _why(case: dict[str, Any], row: dict[str, Any]) -> str:
-    return f"{case['id']}, {who(row)}: {row.get('reason') or 'no reason given'}"
+    return f"{case['id']}, {criterion_subject(row)}: {row.get('reason') or 'no reason given'}"

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from pantocheck.conformance.reports.figures.force_figures import FULL, HALF, INK, LINES, SHADES, box, drawn
+from pantocheck.conformance.reports.figures.force_figures import FULL, HALF, INK, LINES, SHADES, draw_box, render_svg
 
 MARKERS = "os^Dv"
 FILLS = ("#3a424a", "#aab3bc", "white", "white")
@@ -15,8 +15,8 @@ HATCHES = ("", "", "////", "....")
 TICK_WIDTH = 10  # characters on a line of a tick's name
 
 
-@drawn
-def chart(data: dict[str, Any]) -> Figure:
+@render_svg
+def draw_chart(data: dict[str, Any]) -> Figure:
     """A chart of a study.
 
     Parameters
@@ -73,7 +73,7 @@ def _boxes(axes: Axes, series: dict[str, Any], at: int) -> None:
     x, y = np.array(series["x"]), np.array(series["y"])
     for place in np.unique(x):
         values = y[x == place]
-        box(axes, values, place)
+        draw_box(axes, values, place)
         axes.plot(np.full(values.size, place + 0.36), values, "o", color=INK, markersize=3, markerfacecolor="white")
     axes.set_xlim(x.min() - 0.6, x.max() + 0.6)
     axes.set_xticks(np.unique(x))

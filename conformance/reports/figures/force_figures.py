@@ -13,7 +13,7 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from pantocheck.conformance.reports.page_text import number
+from pantocheck.conformance.reports.page_text import format_value
 from pantocheck.conformance.reports.words import TEMPLATES
 
 INK, GREY, PALE = "#1a1d21", "#8a929b", "#e9edf1"
@@ -44,7 +44,7 @@ def _style() -> Any:
     return {key: value for key, value in settings.items() if not key.startswith("backend")}
 
 
-def drawn(paint: Callable[P, Figure]) -> Callable[P, str]:
+def render_svg(paint: Callable[P, Figure]) -> Callable[P, str]:
     """Make a function that paints a figure one that returns its SVG text, in the house's style."""
 
     @wraps(paint)
@@ -61,8 +61,8 @@ def drawn(paint: Callable[P, Figure]) -> Callable[P, str]:
     return svg
 
 
-@drawn
-def force(trace: dict[str, Any], limited: list[dict[str, Any]]) -> Figure:
+@render_svg
+def draw_force(trace: dict[str, Any], limited: list[dict[str, Any]]) -> Figure:
     """Contact force over the evaluated stretch; on the right, where its statistics lie between their limits.
 
     Parameters
@@ -126,8 +126,8 @@ def _limit_strip(axes: Axes, rows: list[dict[str, Any]]) -> None:
     axes.spines["left"].set_visible(False)
 
 
-@drawn
-def spectrum(trace: dict[str, Any], quantities: dict[str, Any]) -> Figure:
+@render_svg
+def draw_spectrum(trace: dict[str, Any], quantities: dict[str, Any]) -> Figure:
     """Single-sided amplitude spectrum of the unfiltered force with the three bands and their RMS."""
     frequency, amplitude = trace["spectrum"]["frequency_Hz"], trace["spectrum"]["amplitude_N"]
     figure = Figure(figsize=(HALF, 2.3))
@@ -137,7 +137,7 @@ def spectrum(trace: dict[str, Any], quantities: dict[str, Any]) -> Figure:
         axes.axvspan(low, high, color=PALE if at % 2 == 0 else "white", zorder=0)
         axes.axvline(high, color=GREY, linewidth=0.8, linestyle="--")
         rms = quantities.get(name)
-        text = f"{low}–{high}" + (f"\n{number(rms, 3)}" if rms is not None else "")
+        text = f"{low}–{high}" + (f"\n{format_value(rms, 3)}" if rms is not None else "")
         axes.text(
             (low + high) / 2, 1.02, text, ha="center", va="bottom", fontsize=7, transform=axes.get_xaxis_transform()
         )
@@ -150,8 +150,8 @@ def spectrum(trace: dict[str, Any], quantities: dict[str, Any]) -> Figure:
     return figure
 
 
-@drawn
-def histogram(trace: dict[str, Any]) -> Figure:
+@render_svg
+def draw_histogram(trace: dict[str, Any]) -> Figure:
     """Histogram of the 20 Hz force with its mean and mean plus and minus three standard deviations."""
     edges, share = trace["histogram"]["edges_N"], trace["histogram"]["share_pct"]
     figure = Figure(figsize=(HALF, 2.3))
@@ -170,8 +170,8 @@ def histogram(trace: dict[str, Any]) -> Figure:
     return figure
 
 
-@drawn
-def uplift(supports: list[dict[str, Any]], criteria: list[dict[str, Any]]) -> Figure:
+@render_svg
+def draw_uplift(supports: list[dict[str, Any]], criteria: list[dict[str, Any]]) -> Figure:
     """Uplift at each support over time, with the limits of the maximum where it is graded."""
     figure = Figure(figsize=(FULL, 2.1))
     axes = figure.subplots()
@@ -213,7 +213,7 @@ def _legend(axes: Axes) -> None:
     axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=5, borderaxespad=0.2, columnspacing=1.4)
 
 
-def box(axes: Axes, values: NDArray[np.float64], at: float) -> None:
+def draw_box(axes: Axes, values: NDArray[np.float64], at: float) -> None:
     """Quartiles and median of some values as a box at a place of the other axis, which keeps its ticks."""
     axes.boxplot(
         values,

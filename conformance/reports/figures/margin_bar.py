@@ -11,12 +11,12 @@ beyond the drawing is an arrow at its edge. The whisker is the discretisation er
 WIDTH, HEIGHT = 100.0, 18.0
 MIDDLE = HEIGHT / 2
 # The band between two limits takes this share of half the width; a single limit stands this far from the middle.
-REACH = 0.56
+BAR_REACH = 0.56
 # Closer to an edge than this, a value is drawn as an arrow.
 EDGE = 6.0
 
 
-def margin_bar(value: float, lower: float | None, upper: float | None, error: float | None, verdict: str) -> str:
+def draw_margin_bar(value: float, lower: float | None, upper: float | None, error: float | None, verdict: str) -> str:
     """An SVG picture without text, size `WIDTH` by `HEIGHT`.
 
     Parameters
@@ -27,7 +27,7 @@ def margin_bar(value: float, lower: float | None, upper: float | None, error: fl
     centre, half = _scale(lower, upper)
 
     def across(x: float) -> float:
-        return WIDTH / 2 * (1 + REACH * (x - centre) / half)
+        return WIDTH / 2 * (1 + BAR_REACH * (x - centre) / half)
 
     left = 0.0 if lower is None else across(lower)
     right = WIDTH if upper is None else across(upper)

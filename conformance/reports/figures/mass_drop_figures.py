@@ -7,11 +7,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from pantocheck.conformance.identification.damping.observability import RATIO_NEEDED, SHARE_NEEDED
-from pantocheck.conformance.reports.figures.force_figures import FULL, GREY, INK, LINES, SHADES, box, drawn
+from pantocheck.conformance.reports.figures.force_figures import FULL, GREY, INK, LINES, SHADES, draw_box, render_svg
 
 
-@drawn
-def overlay(runs: list[dict[str, Any]], channel: str, unit: str) -> Figure:
+@render_svg
+def draw_overlay(runs: list[dict[str, Any]], channel: str, unit: str) -> Figure:
     """Repeats of one drop laid over each other at the start and a minute later.
 
     Parameters
@@ -35,8 +35,8 @@ def overlay(runs: list[dict[str, Any]], channel: str, unit: str) -> Figure:
     return figure
 
 
-@drawn
-def spectra(data: dict[str, Any], unit: str) -> Figure:
+@render_svg
+def draw_spectra(data: dict[str, Any], unit: str) -> Figure:
     """Transforms of every sensor, the fit over them, what it leaves, and the identified modes."""
     n = len(data["channels"])
     figure = Figure(figsize=(FULL, 0.6 + 1.6 * n))
@@ -58,8 +58,8 @@ def spectra(data: dict[str, Any], unit: str) -> Figure:
     return figure
 
 
-@drawn
-def responses(data: dict[str, Any]) -> Figure:
+@render_svg
+def draw_responses(data: dict[str, Any]) -> Figure:
     """Accelerance of every sensor: magnitude and phase, measured and of the identified modes."""
     n = len(data["channels"])
     figure = Figure(figsize=(FULL, 0.6 + 2.2 * n))
@@ -80,8 +80,8 @@ def responses(data: dict[str, Any]) -> Figure:
     return figure
 
 
-@drawn
-def boxes(modes: list[dict[str, Any]]) -> Figure:
+@render_svg
+def draw_boxes(modes: list[dict[str, Any]]) -> Figure:
     """Damping ratios per group of span modes: quartiles, median, every mode, outliers as crosses."""
     groups = sorted({mode["group"] for mode in modes if mode["group"] is not None})
     figure = Figure(figsize=(FULL, 2.8))
@@ -91,7 +91,7 @@ def boxes(modes: list[dict[str, Any]]) -> Figure:
         values = np.array([100 * mode["damping_ratio"] for mode in members])
         if not values.size:
             continue
-        box(axes, values, number)
+        draw_box(axes, values, number)
         for mode, value in zip(members, values, strict=True):
             axes.plot(
                 number + 0.36, value, "x" if mode["outlier"] else "o", color=INK, markersize=4, markerfacecolor="white"
@@ -104,8 +104,8 @@ def boxes(modes: list[dict[str, Any]]) -> Figure:
     return figure
 
 
-@drawn
-def damping(modes: list[dict[str, Any]]) -> Figure:
+@render_svg
+def draw_damping(modes: list[dict[str, Any]]) -> Figure:
     """Damping ratio against frequency with 95 % intervals; open where it is uncertain."""
     figure = Figure(figsize=(FULL, 2.8))
     axes = figure.subplots()
@@ -138,8 +138,8 @@ def damping(modes: list[dict[str, Any]]) -> Figure:
     return figure
 
 
-@drawn
-def observability(rows: list[dict[str, Any]]) -> Figure:
+@render_svg
+def draw_observability(rows: list[dict[str, Any]]) -> Figure:
     """For each coefficient: its largest share of a mode's damping, and its plausible value over its uncertainty."""
     names = [f"{row['kind'].replace('_', ' ')}, {row['matrix']}" for row in rows]
     places = np.arange(len(rows))
@@ -159,8 +159,8 @@ def observability(rows: list[dict[str, Any]]) -> Figure:
     return figure
 
 
-@drawn
-def comparison(data: dict[str, Any]) -> Figure:
+@render_svg
+def draw_comparison(data: dict[str, Any]) -> Figure:
     """Measured damping ratios and those of the models at the computed modes."""
     figure = Figure(figsize=(FULL, 3.2))
     axes = figure.subplots()

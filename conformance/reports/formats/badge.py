@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any
 from xml.sax.saxutils import escape
 
-from pantocheck.conformance.input_files.atomic_writing import write_in_place
-from pantocheck.conformance.reports.words import words
+from pantocheck.conformance.input_files.atomic_writing import write_atomically
+from pantocheck.conformance.reports.words import read_words
 
 LABEL = "EN 50318 style"
 COLOURS = {"pass": "#1b5e3a", "fail": "#8c1d18", "info": "#24496e", "skip": "#625000", "error": "#5a1a66"}
@@ -15,7 +15,7 @@ COLOURS = {"pass": "#1b5e3a", "fail": "#8c1d18", "info": "#24496e", "skip": "#62
 LETTER, MARGIN = 6.6, 8
 
 
-def write(results: dict[str, Any], path: Path) -> None:
+def write_badge(results: dict[str, Any], path: Path) -> None:
     """Write a badge: SVG if the name of the file ends in `.svg`, else JSON for a shields.io endpoint.
 
     Parameters
@@ -27,14 +27,14 @@ def write(results: dict[str, Any], path: Path) -> None:
     ------
     InputError : the file cannot be written
     """
-    write_in_place(path, (svg(results) if path.suffix.lower() == ".svg" else endpoint(results)).encode("utf-8"))
+    write_atomically(path, (svg(results) if path.suffix.lower() == ".svg" else endpoint(results)).encode("utf-8"))
 
 
 def message(results: dict[str, Any]) -> str:
     """The verdict, and how many of the counted criteria are inside their limits."""
     verdicts = Counter(row["verdict"] for case in results["cases"] for row in case["criteria"])
     counted = sum(count for verdict, count in verdicts.items() if verdict != "info")
-    word = words()["verdict"][results["verdict"]]["word"].lower()
+    word = read_words()["verdict"][results["verdict"]]["word"].lower()
     return f"{word} {verdicts['pass']}/{counted}" if counted else word
 
 

@@ -6,7 +6,7 @@ from typing import Any
 NAME = "results.json"
 
 
-def timeless(results: dict[str, Any]) -> dict[str, Any]:
+def strip_times(results: dict[str, Any]) -> dict[str, Any]:
     """Results whose times are null, so that two runs of the same input give the same certificate."""
     return results | {
         "started": None,
@@ -17,6 +17,6 @@ def timeless(results: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def encoded(results: dict[str, Any]) -> bytes:
+def encode_attachment(results: dict[str, Any]) -> bytes:
     """JSON text in ASCII with sorted keys: one dictionary, one byte string."""
     return (json.dumps(results, indent=1, sort_keys=True, allow_nan=False) + "\n").encode("ascii")

@@ -7,12 +7,12 @@ from typing import Any
 from jinja2 import Environment, FunctionLoader, StrictUndefined
 from markupsafe import Markup
 
-from pantocheck.conformance.input_files.atomic_writing import write_in_place
-from pantocheck.conformance.reports.certificate.certificate_page import page
-from pantocheck.conformance.reports.words import TEMPLATES, words
+from pantocheck.conformance.input_files.atomic_writing import write_atomically
+from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
+from pantocheck.conformance.reports.words import TEMPLATES, read_words
 
 
-def write(results: dict[str, Any], path: Path) -> None:
+def write_certificate_html(results: dict[str, Any], path: Path) -> None:
     """Write `certificate.html`.
 
     Parameters
@@ -24,20 +24,20 @@ def write(results: dict[str, Any], path: Path) -> None:
     ------
     InputError : the file cannot be written
     """
-    write_in_place(path, render(results).encode("utf-8"))
+    write_atomically(path, render_html(results).encode("utf-8"))
 
 
-def render(results: dict[str, Any]) -> str:
+def render_html(results: dict[str, Any]) -> str:
     """The certificate's HTML text."""
-    made = environment()
+    made = build_environment()
     # The bars are made here from numbers alone, so they may enter the page as markup; nothing else may.
     made.filters["inline_svg"] = Markup
     return made.get_template("certificate.html").render(
-        page=page(results), verdicts=words()["verdict"], trusts=words()["trust"]
+        page=build_certificate(results), verdicts=read_words()["verdict"], trusts=read_words()["trust"]
     )
 
 
-def environment() -> Environment:
+def build_environment() -> Environment:
     """The template engine of every page: it escapes all texts, and knows the stylesheet and pictures as addresses."""
     made = Environment(
         loader=FunctionLoader(lambda name: (TEMPLATES / name).read_text("utf-8")),

@@ -4,16 +4,16 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
-from pantocheck.conformance.input_files.atomic_writing import write_in_place
-from pantocheck.conformance.reports.certificate.case_facts import system
-from pantocheck.conformance.reports.page_text import cleaned
+from pantocheck.conformance.input_files.atomic_writing import write_atomically
+from pantocheck.conformance.reports.certificate.case_facts import name_system
+from pantocheck.conformance.reports.page_text import clean_tree
 from pantocheck.conformance.reports.words import owner
 
 # What a verdict is called in JUnit; `pass` and `info` have no element of their own.
 ELEMENTS = {"fail": "failure", "error": "error", "skip": "skipped"}
 
 
-def write(results: dict[str, Any], path: Path) -> None:
+def write_junit(results: dict[str, Any], path: Path) -> None:
     """Write `junit.xml`.
 
     Parameters
@@ -25,12 +25,12 @@ def write(results: dict[str, Any], path: Path) -> None:
     ------
     InputError : the file cannot be written
     """
-    write_in_place(path, render(results))
+    write_atomically(path, render_junit(results))
 
 
-def render(results: dict[str, Any]) -> bytes:
+def render_junit(results: dict[str, Any]) -> bytes:
     """The XML document."""
-    results = cleaned(results)
+    results = clean_tree(results)
     suites = [_suite(case, results) for case in results["cases"]]
     total = {name: str(sum(int(suite.get(name, "0")) for suite in suites)) for name in _counters()}
     root = ElementTree.Element("testsuites", {"name": "pantocheck", **total})
@@ -64,7 +64,7 @@ def _suite(case: dict[str, Any], results: dict[str, Any]) -> ElementTree.Element
         "statement": results.get("statement"),
         "suite_version": results["suite"].get("version"),
         "suite_commit": results["suite"].get("commit"),
-        "system": system(results),
+        "system": name_system(results),
         "input_digest": case.get("input_digest"),
         **{f"platform_{name}": text for name, text in (results.get("platform") or {}).items()},
     }.items():

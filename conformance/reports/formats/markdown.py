@@ -6,19 +6,19 @@ from typing import Any
 
 from jinja2 import Environment, FunctionLoader, StrictUndefined
 
-from pantocheck.conformance.input_files.atomic_writing import write_in_place
+from pantocheck.conformance.input_files.atomic_writing import write_atomically
 from pantocheck.conformance.reports.certificate import case_facts as facts
 from pantocheck.conformance.reports.certificate import verdict_reasons as reasons
 from pantocheck.conformance.reports.certificate.certificate_page import error_name
-from pantocheck.conformance.reports.certificate.criteria_rows import criterion
-from pantocheck.conformance.reports.page_text import cleaned
-from pantocheck.conformance.reports.words import TEMPLATES, words
+from pantocheck.conformance.reports.certificate.criteria_rows import build_criterion_row
+from pantocheck.conformance.reports.page_text import clean_tree
+from pantocheck.conformance.reports.words import TEMPLATES, read_words
 
 # Everything that means something in GitHub's or GitLab's Markdown, mentions (@) and references (#, !) included.
 SPECIAL = re.compile(r"([\\`*_{}\[\]()#+!|~$@])")
 
 
-def write(results: dict[str, Any], path: Path) -> None:
+def write_markdown(results: dict[str, Any], path: Path) -> None:
     """Write `summary.md`.
 
     Parameters
@@ -30,16 +30,16 @@ def write(results: dict[str, Any], path: Path) -> None:
     ------
     InputError : the file cannot be written
     """
-    write_in_place(path, render(results).encode("utf-8"))
+    write_atomically(path, render_markdown(results).encode("utf-8"))
 
 
-def render(results: dict[str, Any]) -> str:
+def render_markdown(results: dict[str, Any]) -> str:
     """The Markdown text; whatever the template prints is escaped."""
-    results = cleaned(results)
+    results = clean_tree(results)
     environment = Environment(
         loader=FunctionLoader(lambda name: (TEMPLATES / name).read_text("utf-8")),
         autoescape=False,  # HTML's escaping does not suit Markdown: `finalize` escapes every printed value instead
-        finalize=escaped,
+        finalize=escape_markdown,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
@@ -47,16 +47,19 @@ def render(results: dict[str, Any]) -> str:
     )
     return environment.get_template("summary.md").render(
         results=results,
-        headline=reasons.headline(results),
-        reasons=reasons.reasons(results),
-        system=facts.system(results),
-        suite=facts.suite(results),
-        cases=[(case, [criterion(row, []) for row in case["criteria"]], error_name(case)) for case in results["cases"]],
-        words={name: of["word"] for name, of in words()["verdict"].items()},
+        headline=reasons.build_headline(results),
+        reasons=reasons.build_reasons(results),
+        system=facts.name_system(results),
+        suite=facts.name_suite(results),
+        cases=[
+            (case, [build_criterion_row(row, []) for row in case["criteria"]], error_name(case))
+            for case in results["cases"]
+        ],
+        words={name: of["word"] for name, of in read_words()["verdict"].items()},
     )
 
 
-def escaped(value: Any) -> str:
+def escape_markdown(value: Any) -> str:
     """Text that Markdown shows as it is, in a table as well."""
     text = str(value).replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
     text = SPECIAL.sub(r"\\\1", text)

@@ -12,17 +12,17 @@ import matplotlib
 import typst
 from matplotlib.ft2font import FT2Font
 
-from pantocheck.conformance.input_files.atomic_writing import write_in_place
+from pantocheck.conformance.input_files.atomic_writing import write_atomically
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.reports.certificate.certificate_page import page
-from pantocheck.conformance.reports.formats.embedding import NAME, encoded, timeless
-from pantocheck.conformance.reports.words import TEMPLATES, words
+from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
+from pantocheck.conformance.reports.formats.embedding import NAME, encode_attachment, strip_times
+from pantocheck.conformance.reports.words import TEMPLATES, read_words
 
 # Typst brings Libertinus Serif and DejaVu Sans Mono, matplotlib DejaVu Sans. No font of the machine is used.
 FONTS = Path(matplotlib.get_data_path(), "fonts", "ttf")
 
 
-def write(results: dict[str, Any], path: Path) -> None:
+def write_certificate_pdf(results: dict[str, Any], path: Path) -> None:
     """Write `certificate.pdf`.
 
     The same results give the same bytes if the environment sets `SOURCE_DATE_EPOCH`; without it the document bears the
@@ -37,23 +37,23 @@ def write(results: dict[str, Any], path: Path) -> None:
     ------
     InputError : the file cannot be written, or `SOURCE_DATE_EPOCH` is not a number of seconds
     """
-    write_in_place(path, render(results, moment(results)))
+    write_atomically(path, render_pdf(results, parse_moment(results)))
 
 
-def render(results: dict[str, Any], seconds: int) -> bytes:
+def render_pdf(results: dict[str, Any], seconds: int) -> bytes:
     """The certificate's PDF, dated `seconds` after 1970 [s]."""
-    results = timeless(results)
+    results = strip_times(results)
     data = {
-        "page": asdict(page(results)),
+        "page": asdict(build_certificate(results)),
         "date": f"{datetime.fromtimestamp(seconds, UTC):%Y-%m-%d %H:%M:%S} UTC" if seconds else "",
-        "verdicts": words()["verdict"],
-        "trusts": words()["trust"],
+        "verdicts": read_words()["verdict"],
+        "trusts": read_words()["trust"],
     }
     # typst takes a dictionary of files, which its type hints do not know.
     sources: Any = {
         "main.typ": (TEMPLATES / "certificate.typ").read_bytes(),
-        "page.json": json.dumps(showable(data)).encode("ascii"),
-        NAME: encoded(results),
+        "page.json": json.dumps(find_showable(data)).encode("ascii"),
+        NAME: encode_attachment(results),
     }
     made = typst.compile(
         sources, pdf_standards="a-3a", ignore_system_fonts=True, font_paths=[str(FONTS)], timestamp=seconds
@@ -61,7 +61,7 @@ def render(results: dict[str, Any], seconds: int) -> bytes:
     return bytes(made)
 
 
-def moment(results: dict[str, Any]) -> int:
+def parse_moment(results: dict[str, Any]) -> int:
     """The date of the document [s since 1970]: `SOURCE_DATE_EPOCH`, else the start of the run, else 0."""
     given = os.environ.get("SOURCE_DATE_EPOCH")
     if given is not None:
@@ -80,14 +80,14 @@ def _glyphs() -> frozenset[int]:
     return frozenset(FT2Font(str(FONTS / "DejaVuSans.ttf")).get_charmap())
 
 
-def showable(value: Any) -> Any:
+def find_showable(value: Any) -> Any:
     """The same nest of dictionaries and lists with every character that has no glyph replaced by U+FFFD."""
     if isinstance(value, str):
         if value.isascii():
             return value
         return "".join(c if c.isascii() or ord(c) in _glyphs() else "\N{REPLACEMENT CHARACTER}" for c in value)
     if isinstance(value, dict):
-        return {key: showable(item) for key, item in value.items()}
+        return {key: find_showable(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [showable(item) for item in value]
+        return [find_showable(item) for item in value]
     return value

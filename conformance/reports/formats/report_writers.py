@@ -5,9 +5,9 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from pantocheck.conformance.input_files.atomic_writing import write_in_place
+from pantocheck.conformance.input_files.atomic_writing import write_atomically
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.suggestions import nearest
+from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.results.results_format import Results
 
 FILES = {
@@ -20,10 +20,17 @@ FILES = {
 }
 """File that each format is written to."""
 
-_MODULES = {"html": "html", "pdf": "pdf", "junit": "junit", "md": "markdown", "badge": "badge"}
+_WRITERS = {
+    "html": ("html", "write_certificate_html"),
+    "pdf": ("pdf", "write_certificate_pdf"),
+    "junit": ("junit", "write_junit"),
+    "md": ("markdown", "write_markdown"),
+    "badge": ("badge", "write_badge"),
+}
+"""Module and function that write each format; a module is loaded only when its format is asked for."""
 
 
-def checked_formats(names: Sequence[str]) -> tuple[str, ...]:
+def check_formats(names: Sequence[str]) -> tuple[str, ...]:
     """Formats in the order they are written; results.json always is.
 
     Raises
@@ -32,15 +39,16 @@ def checked_formats(names: Sequence[str]) -> tuple[str, ...]:
     """
     for name in names:
         if name not in FILES:
-            raise InputError(f"format '{name}'", "there is no such format", nearest(name, list(FILES)))
+            raise InputError(f"format '{name}'", "there is no such format", suggest_names(name, list(FILES)))
     return ("json", *(name for name in FILES if name in names and name != "json"))
 
 
-def writer(name: str) -> Callable[[dict[str, Any], Path], None]:
+def find_writer(name: str) -> Callable[[dict[str, Any], Path], None]:
     """Function that writes results in a format other than json."""
-    write: Callable[[dict[str, Any], Path], None] = import_module(
-        f"pantocheck.conformance.reports.formats.{_MODULES[name]}"
-    ).write
+    module, function = _WRITERS[name]
+    write: Callable[[dict[str, Any], Path], None] = getattr(
+        import_module(f"pantocheck.conformance.reports.formats.{module}"), function
+    )
     return write
 
 
@@ -54,7 +62,7 @@ def write_all(results: Results, folder: Path, formats: Sequence[str]) -> list[Pa
     content = results.to_dict()
     for name in formats:
         if name == "json":
-            write_in_place(folder / FILES[name], results.to_json())
+            write_atomically(folder / FILES[name], results.to_json())
         else:
-            writer(name)(content, folder / FILES[name])
+            find_writer(name)(content, folder / FILES[name])
     return [folder / FILES[name] for name in formats]

@@ -5,12 +5,12 @@ from typing import Any
 from pantocheck.conformance.identification.damping.observability import RATIO_NEEDED, SHARE_NEEDED
 from pantocheck.conformance.reports.document import Document, Grid, Picture, Section
 from pantocheck.conformance.reports.figures import mass_drop_figures as figures
-from pantocheck.conformance.reports.page_text import number
+from pantocheck.conformance.reports.page_text import format_value
 
-UNIT = {"stiffness": "s", "mass": "1/s"}
+COEFFICIENT_UNITS = {"stiffness": "s", "mass": "1/s"}
 
 
-def damping_document(results: dict[str, Any], block: str) -> Document:
+def build_damping_document(results: dict[str, Any], block: str) -> Document:
     """The report.
 
     Parameters
@@ -24,7 +24,7 @@ def damping_document(results: dict[str, Any], block: str) -> Document:
         f"Rayleigh damping fitted to {len(results['pairs'])} modes leaves {100 * results['residual']:.2g} % "
         f"of their damping ratios. Observable: {', '.join(kinds) or 'nothing'}."
     )
-    without = ", ".join(number(f) for f in results["unpaired"])
+    without = ", ".join(format_value(f) for f in results["unpaired"])
     warnings = (f"measured modes without a counterpart in the line's model: {without} Hz",) if without else ()
     return Document(
         "Damping model from mass drops",
@@ -55,8 +55,8 @@ def _coefficients(results: dict[str, Any]) -> Grid:
         (
             c["kind"].replace("_", " "),
             c["matrix"],
-            f"{number(c['value'])} {UNIT[c['matrix']]}",
-            f"{number(c['low_95'], 3)} to {number(c['high_95'], 3)}",
+            f"{format_value(c['value'])} {COEFFICIENT_UNITS[c['matrix']]}",
+            f"{format_value(c['low_95'], 3)} to {format_value(c['high_95'], 3)}",
         )
         for c in results["coefficients"]
     ]
@@ -65,7 +65,7 @@ def _coefficients(results: dict[str, Any]) -> Grid:
 
 def _comparison(results: dict[str, Any]) -> Picture:
     return Picture(
-        figures.comparison(results["comparison"]),
+        figures.draw_comparison(results["comparison"]),
         "Damping ratio over frequency, measured and of the models; the pairs are in the table.",
         "Damping ratio: measured (95 % intervals), of the line as it is, of Rayleigh, and of Rayleigh + modal damping.",
     )
@@ -76,11 +76,11 @@ def _observability(results: dict[str, Any]) -> Grid:
         (
             row["kind"].replace("_", " "),
             row["matrix"],
-            number(100 * row["largest_share"], 3),
-            number(row["std"], 2),
-            number(row["plausible_over_std"], 3),
-            number(row["variance_inflation"], 3),
-            number(row["residual_without"], 3),
+            format_value(100 * row["largest_share"], 3),
+            format_value(row["std"], 2),
+            format_value(row["plausible_over_std"], 3),
+            format_value(row["variance_inflation"], 3),
+            format_value(row["residual_without"], 3),
             "yes" if row["observable"] else "no",
         )
         for row in results["observability"]
@@ -100,7 +100,7 @@ def _observability(results: dict[str, Any]) -> Grid:
 
 def _observability_picture(results: dict[str, Any]) -> Picture:
     return Picture(
-        figures.observability(results["observability"]),
+        figures.draw_observability(results["observability"]),
         "Bars of the numbers in the table; filled bars are observable.",
         "Observability: filled bars are observable, dashed lines are the thresholds.",
     )
@@ -109,12 +109,12 @@ def _observability_picture(results: dict[str, Any]) -> Picture:
 def _pairs(results: dict[str, Any]) -> Grid:
     rows = [
         (
-            number(p["measured_Hz"], 5),
-            number(p["computed_Hz"], 5),
-            number(p["mac"], 4),
+            format_value(p["measured_Hz"], 5),
+            format_value(p["computed_Hz"], 5),
+            format_value(p["mac"], 4),
             str(p["group"]),
-            number(100 * p["measured"], 4),
-            number(100 * p["fitted"], 4),
+            format_value(100 * p["measured"], 4),
+            format_value(100 * p["fitted"], 4),
             "yes" if p["used"] else "no: outlier of its group",
         )
         for p in results["pairs"]

@@ -4,12 +4,12 @@ from typing import Any
 
 from pantocheck.conformance.reports.document import Document, Grid, Picture, Section
 from pantocheck.conformance.reports.figures import mass_drop_figures as figures
-from pantocheck.conformance.reports.page_text import number
+from pantocheck.conformance.reports.page_text import format_value
 
 UNIT = {"acceleration": "m/s²", "velocity": "m/s", "displacement": "m"}
 
 
-def identification_document(lines: list[dict[str, Any]]) -> Document:
+def build_identification_document(lines: list[dict[str, Any]]) -> Document:
     """The report.
 
     Parameters
@@ -50,7 +50,7 @@ MODES_TEXT = (
 
 def _fit_text(line: dict[str, Any]) -> str:
     return (
-        f"The squared residual is {number(line['misfit'], 3)} times what noise alone would leave "
+        f"The squared residual is {format_value(line['misfit'], 3)} times what noise alone would leave "
         f"(1 for a complete model); modes between {line['band_Hz'][0]:g} and {line['band_Hz'][1]:g} Hz."
     )
 
@@ -60,12 +60,12 @@ def _damping_pictures(line: dict[str, Any]) -> tuple[Picture, ...]:
         return ()
     return (
         Picture(
-            figures.boxes(line["modes"]),
+            figures.draw_boxes(line["modes"]),
             "Box plots of the damping ratio of each group of span modes; the numbers are in the table of groups.",
             "Damping ratio per group of span modes: quartiles, median, modes, outliers; without uncertain modes.",
         ),
         Picture(
-            figures.damping(line["modes"]),
+            figures.draw_damping(line["modes"]),
             "Damping ratio over frequency with error bars; the numbers are in the table of modes.",
             "Damping ratio of every mode with its 95 % interval.",
         ),
@@ -76,7 +76,7 @@ def _groups(line: dict[str, Any]) -> Grid:
     rows = [
         (
             str(group["group"]),
-            f"{number(group['from_Hz'])}–{number(group['to_Hz'])}",
+            f"{format_value(group['from_Hz'])}–{format_value(group['to_Hz'])}",
             f"{group['certain']} of {group['modes']}",
             _percent(group["median_damping_ratio"]),
             f"{_percent(group['lowest'])} to {_percent(group['highest'])}",
@@ -90,13 +90,13 @@ def _groups(line: dict[str, Any]) -> Grid:
 def _modes(line: dict[str, Any]) -> Grid:
     rows = [
         (
-            number(mode["frequency_Hz"], 6),
-            number(1e3 * mode["frequency_std_Hz"], 2),
+            format_value(mode["frequency_Hz"], 6),
+            format_value(1e3 * mode["frequency_std_Hz"], 2),
             _percent(mode["damping_ratio"]),
-            number(100 * mode["damping_ratio_std"] / mode["damping_ratio"], 2),
+            format_value(100 * mode["damping_ratio_std"] / mode["damping_ratio"], 2),
             "–" if mode["group"] is None else str(mode["group"]),
-            number(mode["phase_collinearity"], 4),
-            number(100 * mode["error"], 2),
+            format_value(mode["phase_collinearity"], 4),
+            format_value(100 * mode["error"], 2),
             "; ".join(_short(text) for text in mode["warnings"]) or "–",
         )
         for mode in line["modes"]
@@ -111,7 +111,7 @@ def _short(text: str) -> str:
 
 def _spectrum(data: dict[str, Any], unit: str) -> Picture:
     return Picture(
-        figures.spectra(data, unit),
+        figures.draw_spectra(data, unit),
         f"Spectra of the vertical sensors of {data['record']} with the identified fit over them.",
         f"{data['record']}: transform of the free decay, the identified modes and what they leave.",
     )
@@ -127,10 +127,10 @@ def _repeatability(line: dict[str, Any], suffix: str, unit: str) -> list[Section
             (
                 f"{c['first']} / {c['second']}",
                 c["channel"],
-                number(c["correlation_at_start"], 5),
-                number(c["correlation_later"], 5),
-                number(100 * c["residual_at_start"], 3),
-                number(None if c["residual_later"] is None else 100 * c["residual_later"], 3),
+                format_value(c["correlation_at_start"], 5),
+                format_value(c["correlation_later"], 5),
+                format_value(100 * c["residual_at_start"], 3),
+                format_value(None if c["residual_later"] is None else 100 * c["residual_later"], 3),
             )
             for c in one["comparisons"]
         ]
@@ -138,7 +138,7 @@ def _repeatability(line: dict[str, Any], suffix: str, unit: str) -> list[Section
         grids.append(Grid(heads, tuple(rows), "Repeats compared below 6 Hz over ten seconds"))
     pictures = tuple(
         Picture(
-            figures.overlay(overlay["runs"], overlay["channel"], unit),
+            figures.draw_overlay(overlay["runs"], overlay["channel"], unit),
             "Repeats of the drop laid over each other; their correlations are in the table.",
             f"Repeats at {overlay['channel']} at the start and a minute later.",
         )
@@ -150,7 +150,7 @@ def _repeatability(line: dict[str, Any], suffix: str, unit: str) -> list[Section
 def _responses(line: dict[str, Any], suffix: str) -> list[Section]:
     pictures = tuple(
         Picture(
-            figures.responses(data),
+            figures.draw_responses(data),
             f"Magnitude and phase of the frequency responses of {data['record']}, measured and identified.",
             f"{data['record']}: accelerance, the release taken as a step force m g.",
         )
@@ -163,10 +163,11 @@ def _records(line: dict[str, Any]) -> Grid:
     rows = [
         (
             record["name"],
-            f"{number(record['mass_kg'], 3)} kg, {record['drop_wire'] or '?'} at {number(record['drop_position_m'])} m",
-            f"{number(record['length_s'])} s at {record['sampling_rate_Hz']:g} Hz",
-            f"{number(record['used_from_s'] - record['release_s'], 3)}–"
-            f"{number(record['used_to_s'] - record['release_s'])} s",
+            f"{format_value(record['mass_kg'], 3)} kg, {record['drop_wire'] or '?'} "
+            f"at {format_value(record['drop_position_m'])} m",
+            f"{format_value(record['length_s'])} s at {record['sampling_rate_Hz']:g} Hz",
+            f"{format_value(record['used_from_s'] - record['release_s'], 3)}–"
+            f"{format_value(record['used_to_s'] - record['release_s'])} s",
             ", ".join(record["channels"]),
         )
         for record in line["records"]
@@ -176,4 +177,4 @@ def _records(line: dict[str, Any]) -> Grid:
 
 
 def _percent(ratio: float | None) -> str:
-    return number(None if ratio is None else 100 * ratio, 4)
+    return format_value(None if ratio is None else 100 * ratio, 4)

@@ -5,12 +5,12 @@ from dataclasses import replace
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import DampingChange
-from pantocheck.conformance.records.evaluation import LINE, Value, evaluate
+from pantocheck.conformance.records.evaluation import LINE, Value, evaluate_record
 from pantocheck.conformance.results.outcome import Outcome
 from pantocheck.conformance.results.results_format import TextTable
-from pantocheck.conformance.studies.force_charts import bars, trailing_force
-from pantocheck.conformance.studies.vovan2015.findings_table import findings_table
-from pantocheck.conformance.studies.vovan2015.provenance_table import origins
+from pantocheck.conformance.studies.force_charts import draw_band_bars, trailing_force
+from pantocheck.conformance.studies.vovan2015.findings_table import build_findings_table
+from pantocheck.conformance.studies.vovan2015.provenance_table import build_provenance_table
 from pantocheck.conformance.systems.system import System
 
 BANDS = ("rms_0_5_N", "rms_5_20_N", "rms_20_50_N")
@@ -19,7 +19,7 @@ ROWS = ("cov_20", "cov_50", *BANDS)
 Values = Mapping[int, Mapping[str, Value]]
 
 
-def damping_change(case: Case, study: DampingChange, system: System) -> Outcome:
+def run_damping_change(case: Case, study: DampingChange, system: System) -> Outcome:
     """Run a passage with the damping before and with that of the case, and compare.
 
     Parameters
@@ -35,10 +35,10 @@ def damping_change(case: Case, study: DampingChange, system: System) -> Outcome:
             reason = run.errored or run.skipped or "no record was delivered"
             return Outcome(skipped=run.skipped and f"{of}: {reason}", errored=run.errored and f"{of}: {reason}")
     values = {name: _values(case, before), study.after: _values(case, after)}
-    found = changes(values[name], values[study.after])
+    found = band_changes(values[name], values[study.after])
     refined = after.refined
     if refined is not None and before.refined is not None:
-        fine = changes(_values(case, before.refined), _values(case, refined))
+        fine = band_changes(_values(case, before.refined), _values(case, refined))
         refined = replace(refined, findings=fine)
     printed = {(one.model, one.pantograph): one.values for one in study.printed}
     paper = _printed_changes(printed, name, study.after)
@@ -46,12 +46,19 @@ def damping_change(case: Case, study: DampingChange, system: System) -> Outcome:
         after,
         findings=found,
         refined=refined,
-        charts=(*bars(values, printed, BANDS), *trailing_force(case, study, {name: before, study.after: after})),
-        tables=(findings_table(case.limits, found, paper), _beside(values, printed), origins(case)),
+        charts=(
+            *draw_band_bars(values, printed, BANDS),
+            *trailing_force(case, study, {name: before, study.after: after}),
+        ),
+        tables=(
+            build_findings_table(case.limits, found, paper),
+            _beside(values, printed),
+            build_provenance_table(case),
+        ),
     )
 
 
-def changes(before: Values, after: Values) -> dict[int, dict[str, Value]]:
+def band_changes(before: Values, after: Values) -> dict[int, dict[str, Value]]:
     """Changes of the bands' RMS, by pantograph (0: between the first and the last) and name.
 
     Parameters
@@ -77,13 +84,15 @@ def changes(before: Values, after: Values) -> dict[int, dict[str, Value]]:
 def _values(case: Case, outcome: Outcome) -> Values:
     if outcome.record is None:
         return {}
-    return evaluate(outcome.record, case.file.filter.low_pass).values
+    return evaluate_record(outcome.record, case.file.filter.low_pass).values
 
 
 def _printed_changes(
     printed: Mapping[tuple[str, int], Mapping[str, float]], before: str, after: str
 ) -> dict[int, dict[str, Value]]:
-    return changes(*({p: dict(v) for (model, p), v in printed.items() if model == name} for name in (before, after)))
+    return band_changes(
+        *({p: dict(v) for (model, p), v in printed.items() if model == name} for name in (before, after))
+    )
 
 
 def _beside(values: Mapping[str, Values], printed: Mapping[tuple[str, int], Mapping[str, float]]) -> TextTable:

@@ -4,20 +4,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.simulation.catenary_model import catenary
-from pantocheck.model import Catenary, Discretised
+from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.model import Catenary, DiscretisedLine
 from pantocheck.model.discretised_line import with_damping
 from pantocheck.model.modal.modes import Modes, damping_ratios
 
 Array = NDArray[np.float64]
 
 
-def lines(case: Case) -> dict[str, Catenary]:
+def build_lines(case: Case) -> dict[str, Catenary]:
     """The case's line under each of the other damping models it names."""
-    return {name: catenary(case.with_damping(name, damping).line) for name, damping in case.dampings.items()}
+    return {name: build_catenary(case.with_damping(name, damping).line) for name, damping in case.dampings.items()}
 
 
-def model_ratios(mesh: Discretised, shapes: Modes, line: Catenary) -> Array:
+def computed_damping_ratios(mesh: DiscretisedLine, shapes: Modes, line: Catenary) -> Array:
     """Damping ratio that a line's damping gives to the modes of the undamped line, modal bands in place of the rest.
 
     Parameters

@@ -20,12 +20,12 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.evaluation import LINE, Value
 from pantocheck.conformance.results.outcome import Outcome
 from pantocheck.conformance.results.results_format import Chart, Mark, Series
-from pantocheck.conformance.results.traces import thinned
-from pantocheck.conformance.simulation.catenary_model import catenary
-from pantocheck.conformance.studies.vovan2015.findings_table import findings_table
-from pantocheck.conformance.studies.vovan2015.provenance_table import origins
-from pantocheck.conformance.systems.reference_simulator import passage_of, record_of
-from pantocheck.model import Catenary, Discretised, Kind, Passage, Rayleigh, discretise, run
+from pantocheck.conformance.results.traces import thin_series
+from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.studies.vovan2015.findings_table import build_findings_table
+from pantocheck.conformance.studies.vovan2015.provenance_table import build_provenance_table
+from pantocheck.conformance.systems.reference_simulator import build_passage, record_passage
+from pantocheck.model import Catenary, DiscretisedLine, Kind, Passage, Rayleigh, discretise, simulate_passage
 from pantocheck.model.discretised_line import with_damping
 from pantocheck.model.fem.dropper_laws import with_viscous_part_kept
 
@@ -47,7 +47,7 @@ class Law:
     viscous_share : share of the viscous force that is compensated with the elastic one
     """
 
-    line: Callable[[Discretised], Discretised]
+    line: Callable[[DiscretisedLine], DiscretisedLine]
     viscous_share: float
 
 
@@ -58,7 +58,7 @@ LAWS = {
 GRADED = "only the elastic force is compensated"
 
 
-def dropper_damping(case: Case, study: DropperDamping) -> Outcome:
+def run_dropper_damping(case: Case, study: DropperDamping) -> Outcome:
     """Run the case's passage once for every coefficient and law.
 
     Parameters
@@ -71,30 +71,30 @@ def dropper_damping(case: Case, study: DropperDamping) -> Outcome:
     InputError : there is no dropper at that place, or an uplift force is to be tuned
     """
     begin = time.perf_counter()
-    steps, line = case.file.discretisation, catenary(case.line)
+    steps, line = case.file.discretisation, build_catenary(case.line)
     at = _dropper(line, study, case.id)
     forces = tuple(use.uplift_force_N or 0.0 for use in case.file.pantograph)
     if not all(forces):
         raise InputError(f"case '{case.id}', key pantograph", "no uplift_force_N", "This study tunes no forces.")
     mesh = discretise(line, steps.element_m)
-    passage = passage_of(case, mesh, steps.time_step_s, forces)
-    at_rest = run(mesh, passage)
+    passage = build_passage(case, mesh, steps.time_step_s, forces)
+    at_rest = simulate_passage(mesh, passage)
     coefficients = np.array(study.coefficients_s)
     force = {
         name: np.array([_largest(mesh, passage, at, value, law) for value in coefficients])
         for name, law in LAWS.items()
     }
-    findings = {LINE: transition(coefficients, force[GRADED])}
+    findings = {LINE: find_transition(coefficients, force[GRADED])}
     runs = 1 + len(LAWS) * coefficients.size
     return Outcome(
-        record=record_of(case, passage, at_rest),
+        record=record_passage(case, passage, at_rest),
         simulated_s=runs * passage.duration,
         wall_s=time.perf_counter() - begin,
         dt_s=steps.time_step_s,
         element_m=steps.element_m,
         findings=findings,
         charts=(_chart(case, study, force),),
-        tables=(findings_table(case.limits, findings, {}), origins(case)),
+        tables=(build_findings_table(case.limits, findings, {}), build_provenance_table(case)),
         notes=(
             "Which force the study compensates is not printed. Graded is the law that compensates the elastic force "
             "only: it locks the dropper as the study describes; the law of the reference simulator does not lock it.",
@@ -102,7 +102,7 @@ def dropper_damping(case: Case, study: DropperDamping) -> Outcome:
     )
 
 
-def transition(coefficient: Array, force: Array) -> dict[str, Value]:
+def find_transition(coefficient: Array, force: Array) -> dict[str, Value]:
     """Where the largest compensation force leaves the value it has without damping, and what is left of it.
 
     Parameters
@@ -145,13 +145,13 @@ def _dropper(line: Catenary, study: DropperDamping, name: str) -> int:
     raise InputError(f"case '{name}', key study.x_m", f"no dropper at {study.x_m:g} m", "Name a dropper's place.")
 
 
-def _largest(mesh: Discretised, passage: Passage, at: int, coefficient: float, law: Law) -> float:
+def _largest(mesh: DiscretisedLine, passage: Passage, at: int, coefficient: float, law: Law) -> float:
     """Largest force that compensates the taut dropper while it is slack [N]."""
     damping = dict(mesh.catenary.damping) | {Kind.DROPPER: Rayleigh(stiffness_coefficient=coefficient)}
     line = with_damping(mesh, damping)
     dropper, bars = mesh.catenary.droppers[at], line.connectors
     watched = ((dropper.upper, dropper.position), (dropper.lower, dropper.position))
-    history = run(law.line(line), replace(passage, watched=watched))
+    history = simulate_passage(law.line(line), replace(passage, watched=watched))
     change = history.motion[0] - history.motion[1]
     taut = bars.preload[at] + bars.stiffness[at] * change[:, 0]
     taut += law.viscous_share * bars.damping[at] * change[:, 1]
@@ -179,8 +179,8 @@ def _chart(case: Case, study: DropperDamping, force: dict[str, Array]) -> Chart:
             Series(
                 label=name,
                 style="line",
-                x=thinned(np.array(study.coefficients_s)),
-                y=thinned(np.maximum(values, LEAST_DRAWN)),
+                x=thin_series(np.array(study.coefficients_s)),
+                y=thin_series(np.maximum(values, LEAST_DRAWN)),
             )
             for name, values in force.items()
         ],

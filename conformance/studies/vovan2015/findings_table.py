@@ -3,8 +3,8 @@
 from collections.abc import Mapping, Sequence
 
 from pantocheck.conformance.cases.limits import Limit
-from pantocheck.conformance.grading.case_grading import value_of
-from pantocheck.conformance.grading.verdicts import verdict_of
+from pantocheck.conformance.grading.case_grading import find_value
+from pantocheck.conformance.grading.verdicts import judge
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.records.evaluation import Value
 from pantocheck.conformance.results.results_format import TextTable
@@ -12,7 +12,7 @@ from pantocheck.conformance.results.results_format import TextTable
 Values = Mapping[int, Mapping[str, Value]]
 
 
-def findings_table(limits: Sequence[Limit], computed: Values, printed: Values) -> TextTable:
+def build_findings_table(limits: Sequence[Limit], computed: Values, printed: Values) -> TextTable:
     """One row per limit of a case: the finding in words, printed and computed value, reproduced or not.
 
     Parameters
@@ -22,11 +22,11 @@ def findings_table(limits: Sequence[Limit], computed: Values, printed: Values) -
     """
     rows = []
     for limit in limits:
-        value = value_of(limit, computed)
-        verdict = "not evaluated" if value is None else verdict_of(value, limit.lower, limit.upper)
+        value = find_value(limit, computed)
+        verdict = "not evaluated" if value is None else judge(value, limit.lower, limit.upper)
         said = {"pass": "reproduced", "fail": "not reproduced"}.get(verdict, verdict)
         unit = QUANTITIES[limit.quantity].unit
-        rows.append([limit.note or limit.quantity, _text(value_of(limit, printed), unit), _text(value, unit), said])
+        rows.append([limit.note or limit.quantity, _text(find_value(limit, printed), unit), _text(value, unit), said])
     return TextTable(caption="Findings", columns=["Finding", "Printed", "Computed", "Verdict"], rows=rows)
 
 

@@ -3,20 +3,20 @@
 from typing import Any
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.identification.damping.damping_results import damping_results
+from pantocheck.conformance.identification.damping.damping_results import build_damping_results
 from pantocheck.conformance.identification.damping.observability import RATIO_NEEDED, SHARE_NEEDED
-from pantocheck.conformance.identification.identification_files import ModeRow, mode_row
+from pantocheck.conformance.identification.identification_files import ModeRow, build_mode_row
 from pantocheck.conformance.identification.identify import Identification
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.results.results_format import Chart, Mark, Series, TextTable
-from pantocheck.conformance.simulation.catenary_model import catenary
+from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.model import Catenary, Kind
 
 LEAST_DRAWN = 1e-3
 """Ratio at which smaller ones, nought among them, are drawn on a logarithmic scale [-]."""
 
 
-def fit_report(case: Case, found: Identification) -> tuple[tuple[TextTable, ...], tuple[Chart, ...]]:
+def build_fit_report(case: Case, found: Identification) -> tuple[tuple[TextTable, ...], tuple[Chart, ...]]:
     """Table of the coefficients put in and fitted, and the observability of every coefficient (the study's Figure 6).
 
     Parameters
@@ -24,24 +24,24 @@ def fit_report(case: Case, found: Identification) -> tuple[tuple[TextTable, ...]
     case : whose line was simulated
     found : modes identified from its drops
     """
-    line = catenary(case.line)
+    line = build_catenary(case.line)
     try:
-        results = fitted_damping(case, found)
+        results = fit_identified_damping(case, found)
     except InputError as error:
         return (TextTable(caption="Fitted damping", columns=["Why there is none"], rows=[[str(error)]]),), ()
     return (_coefficients(results, line),), (_observability(results),)
 
 
-def fitted_damping(case: Case, found: Identification) -> dict[str, Any]:
+def fit_identified_damping(case: Case, found: Identification) -> dict[str, Any]:
     """Damping model fitted to the modes identified from a case's drops, as `pantocheck fit-damping` has it.
 
     Raises
     ------
     InputError : too few modes
     """
-    rows = tuple(ModeRow.model_validate(mode_row(mode)) for mode in found.modes)
+    rows = tuple(ModeRow.model_validate(build_mode_row(mode)) for mode in found.modes)
     element = case.file.discretisation.element_m
-    return damping_results(rows, catenary(case.line), element, f"the modes of {case.id}")
+    return build_damping_results(rows, build_catenary(case.line), element, f"the modes of {case.id}")
 
 
 def _coefficients(results: dict[str, Any], line: Catenary) -> TextTable:

@@ -11,7 +11,7 @@ HIGHEST_HZ = 6.0
 """Up to here the study sees no variation of damping after the third group."""
 
 
-def group_findings(modes: Sequence[Mode]) -> dict[str, Value]:
+def compute_group_findings(modes: Sequence[Mode]) -> dict[str, Value]:
     """Quantities of the groups of identified modes; what too few modes cannot tell is left out.
 
     Parameters

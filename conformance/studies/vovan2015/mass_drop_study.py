@@ -5,22 +5,22 @@ import time
 import numpy as np
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.identification.identify import Identification, identify
+from pantocheck.conformance.identification.identify import Identification, identify_modes
 from pantocheck.conformance.records.evaluation import LINE
 from pantocheck.conformance.results.outcome import Outcome
 from pantocheck.conformance.results.results_format import Chart, Mark, Series
-from pantocheck.conformance.results.traces import thinned
-from pantocheck.conformance.simulation.catenary_model import catenary
-from pantocheck.conformance.simulation.drop_simulation import mass_drop, simulated
-from pantocheck.conformance.studies.vovan2015.damping_models import lines, model_ratios
-from pantocheck.conformance.studies.vovan2015.fit_comparison import fit_report
-from pantocheck.conformance.studies.vovan2015.group_findings import group_findings
-from pantocheck.conformance.studies.vovan2015.provenance_table import origins
+from pantocheck.conformance.results.traces import thin_series
+from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.simulation.drop_simulation import require_mass_drop, simulate_drop
+from pantocheck.conformance.studies.vovan2015.damping_models import build_lines, computed_damping_ratios
+from pantocheck.conformance.studies.vovan2015.fit_comparison import build_fit_report
+from pantocheck.conformance.studies.vovan2015.group_findings import compute_group_findings
+from pantocheck.conformance.studies.vovan2015.provenance_table import build_provenance_table
 from pantocheck.model import discretise
 from pantocheck.model.modal.modal_damping import modes_below
 
 
-def mass_drop_modes(case: Case) -> Outcome:
+def run_mass_drop_study(case: Case) -> Outcome:
     """Simulate a case's drops, identify the modes from their records, and report on groups, models and fit.
 
     Parameters
@@ -28,11 +28,11 @@ def mass_drop_modes(case: Case) -> Outcome:
     case : with a mass drop
     """
     begin = time.perf_counter()
-    told, steps = mass_drop(case), case.file.discretisation
-    drops = [simulated(case, number) for number in range(1, len(told.drop) + 1)]
-    (found,) = identify(tuple(one.record for one in drops), told.highest_Hz)
+    told, steps = require_mass_drop(case), case.file.discretisation
+    drops = [simulate_drop(case, number) for number in range(1, len(told.drop) + 1)]
+    (found,) = identify_modes(tuple(one.record for one in drops), told.highest_Hz)
     bound = next((limit.upper for limit in case.limits if limit.quantity == "largest_damping_ratio"), None)
-    fit_tables, fit_charts = fit_report(case, found)
+    fit_tables, fit_charts = build_fit_report(case, found)
     slack = [one.decay.last_slack for one in drops]
     notes = [
         f"Drop {i}: {test.mass_kg:g} kg on the {test.wire.replace('_', ' ')} at {test.x_m:g} m; "
@@ -46,19 +46,19 @@ def mass_drop_modes(case: Case) -> Outcome:
         element_m=steps.element_m,
         notes=tuple(notes),
         warnings=found.warnings,
-        findings={LINE: group_findings(found.modes)},
+        findings={LINE: compute_group_findings(found.modes)},
         charts=(_against_frequency(case, found, bound), _boxes(found, bound), *fit_charts),
-        tables=(origins(case), *fit_tables),
+        tables=(build_provenance_table(case), *fit_tables),
     )
 
 
 def _against_frequency(case: Case, found: Identification, bound: float | None) -> Chart:
     """Identified damping, and that of the models computed from the line (the study's Figure 7)."""
-    told = mass_drop(case)
-    own = catenary(case.line)
+    told = require_mass_drop(case)
+    own = build_catenary(case.line)
     mesh = discretise(own, case.file.discretisation.element_m)
     shapes = modes_below(mesh, told.highest_Hz)
-    models = lines(case) or {"damping of the case": own}
+    models = build_lines(case) or {"damping of the case": own}
     certain = [mode for mode in found.modes if mode.certain and not mode.lateral]
     return Chart(
         caption="Damping ratio against frequency: identified from the drops with 95 % intervals, and computed from "
@@ -70,16 +70,16 @@ def _against_frequency(case: Case, found: Identification, bound: float | None) -
             Series(
                 label="identified",
                 style="points",
-                x=thinned(np.array([mode.frequency for mode in certain])),
-                y=thinned(np.array([100 * mode.damping_ratio for mode in certain])),
-                error=thinned(np.array([196 * mode.damping_ratio_std for mode in certain])),
+                x=thin_series(np.array([mode.frequency for mode in certain])),
+                y=thin_series(np.array([100 * mode.damping_ratio for mode in certain])),
+                error=thin_series(np.array([196 * mode.damping_ratio_std for mode in certain])),
             ),
             *(
                 Series(
                     label=name,
                     style="line",
-                    x=thinned(shapes.frequency),
-                    y=thinned(100 * model_ratios(mesh, shapes, line)),
+                    x=thin_series(shapes.frequency),
+                    y=thin_series(100 * computed_damping_ratios(mesh, shapes, line)),
                 )
                 for name, line in models.items()
             ),
@@ -110,7 +110,7 @@ def _boxes(found: Identification, bound: float | None) -> Chart:
                 label="identified",
                 style="boxes",
                 x=[float(mode.group or 0) for mode in grouped],
-                y=thinned(np.array([100 * mode.damping_ratio for mode in grouped])),
+                y=thin_series(np.array([100 * mode.damping_ratio for mode in grouped])),
             )
         ],
         marks=_bound(bound),

@@ -14,7 +14,7 @@ FITTED = "fitted"
 """Begin of the source of a damping model that was fitted to identified modes."""
 
 
-def origins(case: Case) -> TextTable:
+def build_provenance_table(case: Case) -> TextTable:
     """Where every group of inputs and every limit of a study comes from.
 
     Parameters

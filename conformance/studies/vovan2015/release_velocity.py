@@ -9,13 +9,13 @@ from pantocheck.conformance.cases.study_tables import ReleaseVelocity
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.results.outcome import Outcome
 from pantocheck.conformance.results.results_format import Chart, Series, TextTable
-from pantocheck.conformance.results.traces import thinned
-from pantocheck.conformance.simulation.drop_simulation import ORDER, SimulatedDrop, mass_drop, simulated
-from pantocheck.conformance.studies.vovan2015.damping_models import lines
-from pantocheck.conformance.studies.vovan2015.provenance_table import origins
+from pantocheck.conformance.results.traces import thin_series
+from pantocheck.conformance.simulation.drop_simulation import ORDER, SimulatedDrop, require_mass_drop, simulate_drop
+from pantocheck.conformance.studies.vovan2015.damping_models import build_lines
+from pantocheck.conformance.studies.vovan2015.provenance_table import build_provenance_table
 
 
-def release_velocity(case: Case, study: ReleaseVelocity) -> Outcome:
+def run_release_velocity(case: Case, study: ReleaseVelocity) -> Outcome:
     """Simulate the case's first drop under each damping model and draw the velocity in every window.
 
     Parameters
@@ -28,7 +28,7 @@ def release_velocity(case: Case, study: ReleaseVelocity) -> Outcome:
     InputError : there is no such sensor, or a window lies outside the record
     """
     begin = time.perf_counter()
-    told, steps = mass_drop(case), case.file.discretisation
+    told, steps = require_mass_drop(case), case.file.discretisation
     if study.sensor > len(told.sensor):
         raise InputError(f"case '{case.id}', key study.sensor", f"there is no sensor {study.sensor}", "Count from 1.")
     latest = max(end for _, end in study.windows_s)
@@ -36,7 +36,7 @@ def release_velocity(case: Case, study: ReleaseVelocity) -> Outcome:
         raise InputError(
             f"case '{case.id}', key study.windows_s", f"a window ends at {latest:g} s", "Lengthen mass_drop.record_s."
         )
-    runs = {name: simulated(case, 1, line=line) for name, line in lines(case).items()}
+    runs = {name: simulate_drop(case, 1, line=line) for name, line in build_lines(case).items()}
     sensor = told.sensor[study.sensor - 1]
     where = f"{sensor.wire.replace('_', ' ')} at {sensor.x_m:g} m"
     rows = []
@@ -55,7 +55,7 @@ def release_velocity(case: Case, study: ReleaseVelocity) -> Outcome:
                 columns=["Damping", *(f"{start:g} s to {end:g} s" for start, end in study.windows_s)],
                 rows=rows,
             ),
-            origins(case),
+            build_provenance_table(case),
         ),
     )
 
@@ -72,7 +72,7 @@ def _chart(runs: dict[str, SimulatedDrop], study: ReleaseVelocity, window: tuple
     series = []
     for name, run in runs.items():
         moment, velocity = _window(run, study, window)
-        series.append(Series(label=name, style="line", x=thinned(moment), y=thinned(1e3 * velocity)))
+        series.append(Series(label=name, style="line", x=thin_series(moment), y=thin_series(1e3 * velocity)))
     return Chart(
         caption=f"Velocity of the {where} after the release, {window[0]:g} s to {window[1]:g} s.",
         alternative="Velocity over time under each damping model; the RMS of each is in the table.",

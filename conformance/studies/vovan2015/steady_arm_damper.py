@@ -7,20 +7,20 @@ import numpy as np
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import SteadyArmDamper
-from pantocheck.conformance.identification.identify import Identification, identify
+from pantocheck.conformance.identification.identify import Identification, identify_modes
 from pantocheck.conformance.records.evaluation import LINE, Value
 from pantocheck.conformance.results.outcome import Outcome
 from pantocheck.conformance.results.results_format import Chart, Mark, Series, TextTable
-from pantocheck.conformance.results.traces import thinned
-from pantocheck.conformance.simulation.catenary_model import catenary
-from pantocheck.conformance.simulation.drop_simulation import mass_drop, simulated
-from pantocheck.conformance.studies.vovan2015.findings_table import findings_table
-from pantocheck.conformance.studies.vovan2015.provenance_table import origins
+from pantocheck.conformance.results.traces import thin_series
+from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.simulation.drop_simulation import require_mass_drop, simulate_drop
+from pantocheck.conformance.studies.vovan2015.findings_table import build_findings_table
+from pantocheck.conformance.studies.vovan2015.provenance_table import build_provenance_table
 
 Bands = tuple[tuple[float, float], ...]
 
 
-def steady_arm_damper(case: Case, study: SteadyArmDamper) -> Outcome:
+def run_steady_arm_damper(case: Case, study: SteadyArmDamper) -> Outcome:
     """Simulate and identify the case's drops without and with the damper, and compare band by band.
 
     Parameters
@@ -29,16 +29,16 @@ def steady_arm_damper(case: Case, study: SteadyArmDamper) -> Outcome:
     study : the damper and the bands
     """
     begin = time.perf_counter()
-    told, steps = mass_drop(case), case.file.discretisation
-    plain = catenary(case.line)
+    told, steps = require_mass_drop(case), case.file.discretisation
+    plain = build_catenary(case.line)
     arms = tuple(replace(arm, vertical_damper=study.damper_N_s_m) for arm in plain.steady_arms)
     found = {}
     for name, line in (("without damper", plain), ("with damper", replace(plain, steady_arms=arms))):
-        records = [simulated(case, n, line=line).record for n in range(1, len(told.drop) + 1)]
-        (found[name],) = identify(tuple(records), told.highest_Hz)
+        records = [simulate_drop(case, n, line=line).record for n in range(1, len(told.drop) + 1)]
+        (found[name],) = identify_modes(tuple(records), told.highest_Hz)
     without, damped = found.values()
     medians = tuple(_medians(one, study.bands_Hz) for one in (without, damped))
-    findings = {LINE: gains(*medians)}
+    findings = {LINE: damping_gains(*medians)}
     return Outcome(
         simulated_s=2 * len(told.drop) * (told.hanging_s + told.record_s),
         wall_s=time.perf_counter() - begin,
@@ -47,11 +47,15 @@ def steady_arm_damper(case: Case, study: SteadyArmDamper) -> Outcome:
         warnings=tuple(dict.fromkeys(text for one in found.values() for text in one.warnings)),
         findings=findings,
         charts=(_chart(found, study.bands_Hz[-1][0]),),
-        tables=(findings_table(case.limits, findings, {}), _table(study.bands_Hz, *medians), origins(case)),
+        tables=(
+            build_findings_table(case.limits, findings, {}),
+            _table(study.bands_Hz, *medians),
+            build_provenance_table(case),
+        ),
     )
 
 
-def gains(without: list[float], damped: list[float]) -> dict[str, Value]:
+def damping_gains(without: list[float], damped: list[float]) -> dict[str, Value]:
     """Gains of the bands' median damping [%], up to the first band without modes.
 
     Parameters
@@ -94,9 +98,9 @@ def _chart(found: dict[str, Identification], last: float) -> Chart:
             Series(
                 label=name,
                 style="points",
-                x=thinned(np.array([mode.frequency for mode in certain])),
-                y=thinned(np.array([100 * mode.damping_ratio for mode in certain])),
-                error=thinned(np.array([196 * mode.damping_ratio_std for mode in certain])),
+                x=thin_series(np.array([mode.frequency for mode in certain])),
+                y=thin_series(np.array([100 * mode.damping_ratio for mode in certain])),
+                error=thin_series(np.array([196 * mode.damping_ratio_std for mode in certain])),
             )
         )
     return Chart(

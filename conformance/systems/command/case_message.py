@@ -2,11 +2,11 @@
 
 from typing import Any
 
-from pantocheck.conformance.cases.case import Case, without_keys
+from pantocheck.conformance.cases.case import Case, drop_keys
 from pantocheck.conformance.input_files.sourced_table import PROVENANCE
 
 
-def given(case: Case) -> object:
+def build_case_message(case: Case) -> object:
     """A case as its `run` message holds it, see `messages.GivenCase`.
 
     Notes and sources are withheld with the limits, because they speak of results.
@@ -31,4 +31,4 @@ def given(case: Case) -> object:
             for use, model, behind in zip(file.pantograph, case.pantographs, case.offsets, strict=True)
         ],
     }
-    return without_keys(content, PROVENANCE)
+    return drop_keys(content, PROVENANCE)

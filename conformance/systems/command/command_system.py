@@ -10,19 +10,19 @@ from typing import Literal
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.results.outcome import Outcome
-from pantocheck.conformance.systems.command.case_message import given
-from pantocheck.conformance.systems.command.delivery import DeliveryRefused, outcome_of
+from pantocheck.conformance.systems.command.case_message import build_case_message
+from pantocheck.conformance.systems.command.delivery import DeliveryRefused, read_delivery
 from pantocheck.conformance.systems.command.program import Program, ProgramFailed
-from pantocheck.conformance.systems.command.program_arguments import arguments
+from pantocheck.conformance.systems.command.program_arguments import split_arguments
 from pantocheck.conformance.systems.command.protocol_messages import (
     PROTOCOL,
     AnswerRefused,
-    Delivered,
-    Errored,
-    Skipped,
+    DeliveredAnswer,
+    ErroredAnswer,
+    SkippedAnswer,
     Started,
-    parsed,
-    written,
+    encode_message,
+    parse_message,
 )
 
 START_LIMIT = 120.0
@@ -32,7 +32,7 @@ RUN = 1
 
 
 @dataclass(frozen=True)
-class Command:
+class CommandSystem:
     """A program that speaks the protocol.
 
     Parameters
@@ -58,14 +58,20 @@ class Command:
             folder = Path(name)
             try:
                 with Program(self.arguments, folder) as program:
-                    started(program, self.timeout_s)
+                    start_program(program, self.timeout_s)
                     begin = time.monotonic()
                     program.send(
-                        written("run", id=RUN, folder=str(folder), time_limit_s=self.timeout_s, case=given(case))
+                        encode_message(
+                            "run",
+                            id=RUN,
+                            folder=str(folder),
+                            time_limit_s=self.timeout_s,
+                            case=build_case_message(case),
+                        )
                     )
                     answer = _answer(program.line(self.timeout_s))
                     wall = time.monotonic() - begin
-                    program.send(written("stop"))
+                    program.send(encode_message("stop"))
                     warnings = () if program.ended() else (f"{self.name} did not end when told to, and was ended",)
                 return replace(_outcome(case, answer, folder, wall), warnings=warnings)
             except (ProgramFailed, AnswerRefused, DeliveryRefused) as error:
@@ -74,8 +80,8 @@ class Command:
                 return Outcome(errored=f"{self.name}: {error.where}: {error.found}")
 
 
-def _answer(line: bytes) -> Delivered | Skipped | Errored:
-    answer = parsed(line)
+def _answer(line: bytes) -> DeliveredAnswer | SkippedAnswer | ErroredAnswer:
+    answer = parse_message(line)
     if isinstance(answer, Started):
         raise AnswerRefused("its answer to 'run' is 'started'")
     if answer.id != RUN:
@@ -83,23 +89,23 @@ def _answer(line: bytes) -> Delivered | Skipped | Errored:
     return answer
 
 
-def _outcome(case: Case, answer: Delivered | Skipped | Errored, folder: Path, wall: float) -> Outcome:
-    if isinstance(answer, Skipped):
+def _outcome(case: Case, answer: DeliveredAnswer | SkippedAnswer | ErroredAnswer, folder: Path, wall: float) -> Outcome:
+    if isinstance(answer, SkippedAnswer):
         return Outcome(skipped=answer.reason)
-    if isinstance(answer, Errored):
+    if isinstance(answer, ErroredAnswer):
         return Outcome(errored=answer.reason)
-    return outcome_of(case, answer, folder, wall)
+    return read_delivery(case, answer, folder, wall)
 
 
-def started(program: Program, limit: float) -> Started:
+def start_program(program: Program, limit: float) -> Started:
     """Greet a program.
 
     Raises
     ------
     ProgramFailed, AnswerRefused : it did not answer as it should
     """
-    program.send(written("start", protocol=PROTOCOL, suite_version=version("pantocheck")))
-    answer = parsed(program.line(min(limit, START_LIMIT)))
+    program.send(encode_message("start", protocol=PROTOCOL, suite_version=version("pantocheck")))
+    answer = parse_message(program.line(min(limit, START_LIMIT)))
     if not isinstance(answer, Started):
         raise AnswerRefused(f"its first answer is {answer.message!r}, not 'started'")
     if answer.protocol != PROTOCOL:
@@ -107,7 +113,7 @@ def started(program: Program, limit: float) -> Started:
     return answer
 
 
-def command(text: str, base: Path, timeout: float) -> Command:
+def parse_command(text: str, base: Path, timeout: float) -> CommandSystem:
     """The program of a command line, started once to learn its name.
 
     Parameters
@@ -120,16 +126,16 @@ def command(text: str, base: Path, timeout: float) -> Command:
     ------
     InputError : there is no such program
     """
-    parts = arguments(text, base)
+    parts = split_arguments(text, base)
     name = Path(parts[0]).name
     try:
         with (
             tempfile.TemporaryDirectory(prefix="pantocheck-", ignore_cleanup_errors=True) as folder,
             Program(parts, Path(folder)) as program,
         ):
-            identity = started(program, timeout)
-            program.send(written("stop"))
+            identity = start_program(program, timeout)
+            program.send(encode_message("stop"))
             program.ended()
     except (ProgramFailed, AnswerRefused) as error:
-        return Command(parts, timeout, name, "", broken=f"{name}: {error}")
-    return Command(parts, timeout, identity.name, identity.version)
+        return CommandSystem(parts, timeout, name, "", broken=f"{name}: {error}")
+    return CommandSystem(parts, timeout, identity.name, identity.version)

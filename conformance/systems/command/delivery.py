@@ -3,18 +3,18 @@
 from pathlib import Path
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.input_files.atomic_writing import digest_of
+from pantocheck.conformance.input_files.atomic_writing import file_digest
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.records.record_reading import LARGEST_FILE, read_record
+from pantocheck.conformance.records.record_reading import MAX_RECORD_BYTES, read_record
 from pantocheck.conformance.results.outcome import Outcome
-from pantocheck.conformance.systems.command.protocol_messages import Delivered, File
+from pantocheck.conformance.systems.command.protocol_messages import DeliveredAnswer, File
 
 
 class DeliveryRefused(ValueError):
     """Files are missing, changed, out of place or of another case: graded, they would speak for a run they are not."""
 
 
-def outcome_of(case: Case, answer: Delivered, folder: Path, wall: float) -> Outcome:
+def read_delivery(case: Case, answer: DeliveredAnswer, folder: Path, wall: float) -> Outcome:
     """Read what was delivered; to be called when the program has ended and can change its files no more.
 
     Parameters
@@ -57,9 +57,9 @@ def _checked(file: File, folder: Path) -> Path:
             raise DeliveryRefused(f"the file {file.file!r} lies outside the folder of the run")
         if not path.is_file():
             raise DeliveryRefused(f"there is no file {file.file!r} in the folder of the run")
-        if path.stat().st_size > LARGEST_FILE:
-            raise InputError(f"record '{path.name}'", "too large", f"A record has at most {LARGEST_FILE} bytes.")
-        digest = digest_of(path)
+        if path.stat().st_size > MAX_RECORD_BYTES:
+            raise InputError(f"record '{path.name}'", "too large", f"A record has at most {MAX_RECORD_BYTES} bytes.")
+        digest = file_digest(path)
     except (OSError, ValueError) as error:
         if isinstance(error, DeliveryRefused | InputError):
             raise

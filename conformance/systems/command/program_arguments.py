@@ -8,7 +8,7 @@ from pathlib import Path
 from pantocheck.conformance.input_files.input_error import InputError
 
 
-def arguments(text: str, base: Path) -> tuple[str, ...]:
+def split_arguments(text: str, base: Path) -> tuple[str, ...]:
     """Split a command as a shell would, without its expansions, and find its files.
 
     A program runs in a working folder of its own, so an argument that names an existing file is made absolute.

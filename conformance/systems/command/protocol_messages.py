@@ -6,9 +6,9 @@ from typing import Annotated, Any, Final, Literal
 from pydantic import Field, TypeAdapter, ValidationError
 
 from pantocheck.conformance.cases.case_file import Discretisation, Filter
-from pantocheck.conformance.cases.line_file import Line
-from pantocheck.conformance.cases.pantograph_file import Chain, Contact, Matrices, Modes
-from pantocheck.conformance.input_files.sourced_table import PROVENANCE, Table
+from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.cases.pantograph_file import ChainTable, ContactTable, MatricesTable, ModesTable
+from pantocheck.conformance.input_files.sourced_table import PROVENANCE, InputTable
 
 PROTOCOL: Final = "pantocheck.command/1"
 
@@ -19,7 +19,7 @@ class AnswerRefused(ValueError):
     """A program answered with something that is no message: whatever it meant must not become a number."""
 
 
-class Start(Table):
+class Start(InputTable):
     """The first message."""
 
     message: Literal["start"] = "start"
@@ -27,13 +27,13 @@ class Start(Table):
     suite_version: Annotated[str, Field(description="version of Pantocheck")]
 
 
-class GivenPantograph(Table):
+class GivenPantograph(InputTable):
     """One pantograph of a run, in running order; one of chain, matrices and modes says what it is."""
 
-    chain: Chain | None
-    matrices: Matrices | None
-    modes: Modes | None
-    contact: Contact
+    chain: ChainTable | None
+    matrices: MatricesTable | None
+    modes: ModesTable | None
+    contact: ContactTable
     uplift_force_N: Annotated[float | None, Field(description="constant uplift force, or where tuning starts [N]")]
     target_mean_force_N: Annotated[
         float | None,
@@ -43,7 +43,7 @@ class GivenPantograph(Table):
     end_m: Annotated[float, Field(description="where it is at the end of the run [m]")]
 
 
-class GivenCase(Table):
+class GivenCase(InputTable):
     """A case without its limits: all of its numbers, defaults filled in."""
 
     id: Annotated[str, Field(description="to be named in the sidecar of the record")]
@@ -52,11 +52,11 @@ class GivenCase(Table):
     evaluated_m: Annotated[tuple[float, float], Field(description="start and end of the evaluated stretch [m]")]
     filter: Annotated[Filter, Field(description="filter of the graded force; best deliver the force unfiltered")]
     discretisation: Annotated[Discretisation, Field(description="that of the reference simulator, as a hint")]
-    line: Line
+    line: LineFile
     pantographs: tuple[GivenPantograph, ...]
 
 
-class Run(Table):
+class RunRequest(InputTable):
     """A case to run."""
 
     message: Literal["run"] = "run"
@@ -66,13 +66,13 @@ class Run(Table):
     case: GivenCase
 
 
-class Stop(Table):
+class Stop(InputTable):
     """The last message: the program ends."""
 
     message: Literal["stop"] = "stop"
 
 
-class Started(Table):
+class Started(InputTable):
     """Answer to `start`."""
 
     message: Literal["started"]
@@ -83,21 +83,21 @@ class Started(Table):
     version: Annotated[str, Field(max_length=200, description="of the simulator")]
 
 
-class File(Table):
+class File(InputTable):
     """A file that was written."""
 
     file: Annotated[str, Field(min_length=1, max_length=500, description="its name, relative to the run's folder")]
     sha256: Annotated[str, Field(pattern="^[0-9a-f]{64}$", description="digest of its content")]
 
 
-class RecordFiles(Table):
+class RecordFiles(InputTable):
     """A record: its table of samples and the sidecar; see `pantocheck schema record`."""
 
     sidecar: File
     table: File
 
 
-class Delivered(Table):
+class DeliveredAnswer(InputTable):
     """Answer to `run`: it was done."""
 
     message: Literal["delivered"]
@@ -116,7 +116,7 @@ class Delivered(Table):
     ] = ()
 
 
-class Skipped(Table):
+class SkippedAnswer(InputTable):
     """Answer to `run`: the system does not do such cases."""
 
     message: Literal["skipped"]
@@ -124,7 +124,7 @@ class Skipped(Table):
     reason: Text
 
 
-class Errored(Table):
+class ErroredAnswer(InputTable):
     """Answer to `run`: it was tried and went wrong."""
 
     message: Literal["errored"]
@@ -132,18 +132,20 @@ class Errored(Table):
     reason: Text
 
 
-Answer = Started | Delivered | Skipped | Errored
+Answer = Started | DeliveredAnswer | SkippedAnswer | ErroredAnswer
 
 _ANSWER: TypeAdapter[Answer] = TypeAdapter(Annotated[Answer, Field(discriminator="message")])
-_REQUEST: TypeAdapter[Start | Run | Stop] = TypeAdapter(Annotated[Start | Run | Stop, Field(discriminator="message")])
+_REQUEST: TypeAdapter[Start | RunRequest | Stop] = TypeAdapter(
+    Annotated[Start | RunRequest | Stop, Field(discriminator="message")]
+)
 
 
-def written(message: str, **content: object) -> bytes:
+def encode_message(message: str, **content: object) -> bytes:
     """A message to a program, on one line."""
     return json.dumps({"message": message, **content}, allow_nan=False).encode()
 
 
-def parsed(line: bytes) -> Answer:
+def parse_message(line: bytes) -> Answer:
     """A line of a program as a message.
 
     Raises

@@ -10,13 +10,13 @@ from pypdf import PdfWriter
 from typer.testing import CliRunner
 
 from pantocheck.conformance.authenticity import attachment
-from pantocheck.conformance.authenticity.recomputation import discrepancies
-from pantocheck.conformance.authenticity.verification import verify
+from pantocheck.conformance.authenticity.recomputation import find_discrepancies
+from pantocheck.conformance.authenticity.verification import verify_certificate
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.reports.formats import pdf
 from pantocheck.conformance.results import results_reading as results_file
-from pantocheck.conformance.runner import run
+from pantocheck.conformance.runner import run_cases
 
 
 @pytest.fixture
@@ -27,16 +27,16 @@ def certificate_file(certificate, tmp_path):
 
 
 def test_consistent(certificate_file):
-    found = verify(certificate_file)
+    found = verify_certificate(certificate_file)
     assert found.consistent
     assert (found.verdict, found.cases, found.criteria) == ("fail", 3, 22)
 
 
 def test_what_the_runner_grades_is_consistent(wave, case_250):
     """Results of the suite's own grading, spectrum and thinned traces included, contradict themselves nowhere."""
-    results = run([case_250], wave(), "secondary").to_dict()
+    results = run_cases([case_250], wave(), "secondary").to_dict()
     assert len(results["cases"][0]["criteria"]) == 8
-    assert discrepancies(results) == []
+    assert find_discrepancies(results) == []
 
 
 def row(results, case=0, at=0):
@@ -74,26 +74,26 @@ def quantity(results, name, value):
 
 @pytest.mark.parametrize("name", TAMPERINGS)
 def test_tampering_is_found(results, name):
-    assert discrepancies(results) == []
+    assert find_discrepancies(results) == []
     tamper, expected = TAMPERINGS[name]
     tamper(results)
-    assert any(expected in text for text in discrepancies(results))
+    assert any(expected in text for text in find_discrepancies(results))
 
 
 def test_a_whole_certificate_made_from_changed_results(results, tmp_path):
     row(results, 1, 1)["verdict"] = "pass"
     results["cases"][1]["verdict"] = "pass"
-    (tmp_path / "a.pdf").write_bytes(pdf.render(results, 1))
-    found = verify(tmp_path / "a.pdf")
+    (tmp_path / "a.pdf").write_bytes(pdf.render_pdf(results, 1))
+    found = verify_certificate(tmp_path / "a.pdf")
     assert len(found.discrepancies) == 3  # the row, its case, the suite
 
 
 def test_pages_that_say_other_than_the_results(results, passing, tmp_path, monkeypatch):
     """Pages of a failing run with the results of a passing one: consistent in themselves, but not with each other."""
-    encoded = pdf.encoded
-    monkeypatch.setattr(pdf, "encoded", lambda _: encoded(passing))
-    (tmp_path / "a.pdf").write_bytes(pdf.render(results, 1))
-    found = verify(tmp_path / "a.pdf")
+    encode_attachment = pdf.encode_attachment
+    monkeypatch.setattr(pdf, "encode_attachment", lambda _: encode_attachment(passing))
+    (tmp_path / "a.pdf").write_bytes(pdf.render_pdf(results, 1))
+    found = verify_certificate(tmp_path / "a.pdf")
     assert found.verdict == "pass"
     assert len(found.discrepancies) == 2
     assert all("PASS" in text for text in found.discrepancies)
@@ -141,7 +141,7 @@ def test_garbage_is_refused(tmp_path, content, found):
     path = tmp_path / "a.pdf"
     path.write_bytes(content)
     with pytest.raises(InputError, match=found):
-        verify(path)
+        verify_certificate(path)
 
 
 @pytest.mark.parametrize(
@@ -159,20 +159,20 @@ def test_results_of_another_format_are_refused(results, tmp_path, change, key):
     path = tmp_path / "a.pdf"
     path.write_bytes(pdf_with(("results.json", changed(results, change))))
     with pytest.raises(InputError, match=key):
-        verify(path)
+        verify_certificate(path)
 
 
 def test_no_file_and_too_large_a_file(certificate_file, tmp_path, monkeypatch):
     with pytest.raises(InputError, match="cannot be read"):
-        verify(tmp_path / "none.pdf")
+        verify_certificate(tmp_path / "none.pdf")
     with pytest.raises(InputError, match="cannot be read"):
-        verify(tmp_path)
-    monkeypatch.setattr(results_file, "LARGEST", 1000)
+        verify_certificate(tmp_path)
+    monkeypatch.setattr(results_file, "MAX_RESULTS_BYTES", 1000)
     with pytest.raises(InputError, match=r"attachment results\.json: .* bytes"):
-        verify(certificate_file)
-    monkeypatch.setattr(attachment, "LARGEST_FILE", 1000)
+        verify_certificate(certificate_file)
+    monkeypatch.setattr(attachment, "MAX_DOCUMENT_BYTES", 1000)
     with pytest.raises(InputError, match="bytes"):
-        verify(certificate_file)
+        verify_certificate(certificate_file)
 
 
 def test_damage_never_ends_in_a_traceback(certificate, tmp_path):
@@ -186,7 +186,7 @@ def test_damage_never_ends_in_a_traceback(certificate, tmp_path):
             damaged[chance.randrange(len(damaged))] = chance.randrange(256)
         path.write_bytes(damaged)
         try:
-            verify(path)
+            verify_certificate(path)
         except InputError:
             refused += 1
     assert refused > 5
@@ -197,7 +197,7 @@ def test_command(certificate_file, results, tmp_path):
     good = runner.invoke(app, ["verify", str(certificate_file)])
     assert (good.exit_code, good.stdout.split(":")[0]) == (0, "consistent")
     row(results, 1, 1)["margin"] = 0.5
-    (tmp_path / "bad.pdf").write_bytes(pdf.render(results, 1))
+    (tmp_path / "bad.pdf").write_bytes(pdf.render_pdf(results, 1))
     bad = runner.invoke(app, ["verify", str(tmp_path / "bad.pdf")])
     assert bad.exit_code == 1
     assert "en50318-2002/300, std_force_N of pantograph 1: margin 0.5 stated, -0.32" in bad.stdout

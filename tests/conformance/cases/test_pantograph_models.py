@@ -5,12 +5,12 @@ import pytest
 from scipy.linalg import eigh
 
 from pantocheck.conformance.cases.library import library_folder
-from pantocheck.conformance.cases.pantograph_file import Pantograph
+from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_model
-from pantocheck.conformance.simulation.catenary_model import catenary
-from pantocheck.conformance.simulation.pantograph_model import pantograph
-from pantocheck.model import Passage, discretise, run
+from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.simulation.pantograph_model import build_pantograph
+from pantocheck.model import Passage, discretise, simulate_passage
 from pantocheck.model.pantograph import apparent_mass
 
 HEAD = 'title = "measured"\n[contact]\nstiffness_N_m = 5e4\ntrust = "primary"\nsource = "rig"\n'
@@ -18,13 +18,13 @@ SAID = 'trust = "primary"\nsource = "rig"\n'
 
 
 def of_the_library():
-    return read_model(library_folder() / "en50318-2018" / "pantograph.toml", Pantograph, "pantograph")
+    return read_model(library_folder() / "en50318-2018" / "pantograph.toml", PantographFile, "pantograph")
 
 
 def written(folder, text):
     path = folder / "pantograph.toml"
     path.write_text(HEAD + text)
-    return read_model(path, Pantograph, "pantograph")
+    return read_model(path, PantographFile, "pantograph")
 
 
 def rows(matrix):
@@ -44,24 +44,24 @@ def test_matrices_repeat_the_chain_in_frequency_and_on_a_line(tmp_path, case_250
     """
     file = of_the_library()
     free = file.chain.model_copy(update={"stiffness_N_m": (0.0, 15500.0, 7000.0)})
-    chain = pantograph(file.model_copy(update={"chain": free}), 150.0, 0.05)
-    matrices = pantograph(by_matrices(tmp_path, chain), 150.0, 0.05)
+    chain = build_pantograph(file.model_copy(update={"chain": free}), 150.0, 0.05)
+    matrices = build_pantograph(by_matrices(tmp_path, chain), 150.0, 0.05)
     frequency = np.linspace(0.2, 50, 40)
     assert apparent_mass(matrices, frequency) == pytest.approx(apparent_mass(chain, frequency), rel=1e-9)
     geometry = case_250.line.geometry.model_copy(update={"spans": 3})
-    line = discretise(catenary(case_250.line.model_copy(update={"geometry": geometry})), 1.0)
-    one, other = (run(line, Passage((p,), (60.0,), 60.0, 0.3, 1e-3)).force for p in (chain, matrices))
+    line = discretise(build_catenary(case_250.line.model_copy(update={"geometry": geometry})), 1.0)
+    one, other = (simulate_passage(line, Passage((p,), (60.0,), 60.0, 0.3, 1e-3)).force for p in (chain, matrices))
     assert np.ptp(one) > 10
     assert np.abs(one - other).max() < 1e-6
 
 
 def test_modes_repeat_an_undamped_chain(tmp_path):
-    chain = pantograph(of_the_library(), 150.0, 0.0)
+    chain = build_pantograph(of_the_library(), 150.0, 0.0)
     w2, shapes = eigh(chain.stiffness, chain.mass)
     text = f"frequency_Hz = {list(np.sqrt(w2) / (2 * np.pi))}\ndamping_ratio = [0.0, 0.0, 0.0]\n"
     text = text.replace("np.float64(", "").replace(")", "")
     shape = [float(x) for x in chain.head @ shapes]
-    modes = pantograph(written(tmp_path, f"[modes]\n{text}head_shape = {shape}\n{SAID}"), 150.0, 0.05)
+    modes = build_pantograph(written(tmp_path, f"[modes]\n{text}head_shape = {shape}\n{SAID}"), 150.0, 0.05)
     undamped = np.zeros_like(chain.damping)
     by_hand = type(chain)(chain.mass, undamped, chain.stiffness, chain.head, chain.force, 150.0, 5e4)
     frequency = np.array([0.3, 1.5, 4.0, 12.0, 30.0])
@@ -72,11 +72,11 @@ def test_modes_repeat_an_undamped_chain(tmp_path):
 def test_at_rest_it_presses_with_its_static_force_at_working_height(tmp_path, model):
     """The bordered static system has the static force as its multiplier."""
     if model == "matrices":
-        file = by_matrices(tmp_path, pantograph(of_the_library(), 1.0, 0.0))
+        file = by_matrices(tmp_path, build_pantograph(of_the_library(), 1.0, 0.0))
     else:
         text = "frequency_Hz = [0.9, 7.0]\ndamping_ratio = [0.2, 0.05]\nhead_shape = [0.2, 0.3]\n"
         file = written(tmp_path, f"[modes]\n{text}{SAID}")
-    made = pantograph(file, 170.0, 0.06)
+    made = build_pantograph(file, 170.0, 0.06)
     n = made.head.size
     system = np.block([[made.stiffness, made.head[:, None]], [made.head[None], np.zeros((1, 1))]])
     solution = np.linalg.solve(system, np.append(made.force, 0.06))

@@ -4,8 +4,8 @@ import pytest
 from pydantic import ValidationError
 
 from pantocheck.conformance.cases.damping_file import Damping
-from pantocheck.conformance.cases.line_file import Line
-from pantocheck.conformance.cases.pantograph_file import Pantograph
+from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.cases.pantograph_file import PantographFile
 
 PROVENANCE = {"trust": "secondary", "source": "pcmui"}
 
@@ -39,10 +39,10 @@ STITCH = {"length_m": 18.0, "tension_N": 3500.0, "mass_kg_m": 0.31, "clamp_kg": 
 
 
 def test_simple_stitched_and_twin_lines_fit():
-    assert Line.model_validate(AC_SIMPLE).geometry.stagger_contact_wire_m == 0.2
-    assert Line.model_validate(AC_SIMPLE | {"stitch_wire": STITCH}).stitch_wire is not None
+    assert LineFile.model_validate(AC_SIMPLE).geometry.stagger_contact_wire_m == 0.2
+    assert LineFile.model_validate(AC_SIMPLE | {"stitch_wire": STITCH}).stitch_wire is not None
     twin = AC_SIMPLE["contact_wire"] | {"number": 2, "spacing_m": 0.04}
-    assert Line.model_validate(AC_SIMPLE | {"contact_wire": twin}).contact_wire.number == 2
+    assert LineFile.model_validate(AC_SIMPLE | {"contact_wire": twin}).contact_wire.number == 2
 
 
 @pytest.mark.parametrize(
@@ -55,7 +55,7 @@ def test_simple_stitched_and_twin_lines_fit():
 )
 def test_impossible_lines_are_refused(change, message):
     with pytest.raises(ValidationError, match=message):
-        Line.model_validate(AC_SIMPLE | change)
+        LineFile.model_validate(AC_SIMPLE | change)
 
 
 def test_modal_damping_bands_must_not_overlap():
@@ -75,5 +75,5 @@ def test_three_mass_pantograph_fits():
         **PROVENANCE,
     }
     contact = {"stiffness_N_m": 50e3, **PROVENANCE}
-    pantograph = Pantograph.model_validate({"title": "2018", "chain": chain, "contact": contact})
+    pantograph = PantographFile.model_validate({"title": "2018", "chain": chain, "contact": contact})
     assert pantograph.chain.uplift_mass == 0

@@ -12,9 +12,9 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from pantocheck.conformance.cases.library import library_folder, select
+from pantocheck.conformance.cases.library import library_folder, select_cases
 from pantocheck.conformance.command_line.app import app
-from pantocheck.conformance.command_line.guard import guarded
+from pantocheck.conformance.command_line.guard import guard_command
 from pantocheck.conformance.records.record_reading import read_record
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.schemas import NAMES, schema_of
@@ -30,7 +30,7 @@ def pantocheck(*arguments: object):
 @pytest.fixture
 def records(wave, tmp_path) -> Path:
     """Records of both cases: sines, whose extremes fail."""
-    for case in select(["en50318-2002/*"]):
+    for case in select_cases(["en50318-2002/*"]):
         write_record(tmp_path / "records" / f"{case.file.speed_km_h:g}.csv", wave().record(case), case.id)
     return tmp_path / "records"
 
@@ -126,7 +126,7 @@ def test_self_test_of_no_run_at_all_is_not_passed():
 def test_self_test_notices_a_folder_that_cannot_be_written_before_it_computes(tmp_path, monkeypatch):
     from pantocheck.conformance.self_test import bench as self_test
 
-    monkeypatch.setattr(self_test, "self_test", lambda *_: pytest.fail("computed"))
+    monkeypatch.setattr(self_test, "run_self_test", lambda *_: pytest.fail("computed"))
     (tmp_path / "file").write_text("")
     done = pantocheck("self-test", "--markdown", tmp_path / "file" / "page.md")
     assert done.exit_code == 2
@@ -136,7 +136,7 @@ def test_self_test_notices_a_folder_that_cannot_be_written_before_it_computes(tm
 def test_self_test_prints_no_control_characters_of_a_path(tmp_path, monkeypatch):
     from pantocheck.conformance.self_test import bench as self_test
 
-    monkeypatch.setattr(self_test, "self_test", lambda *_: self_test.SelfTest({}, (), ()))
+    monkeypatch.setattr(self_test, "run_self_test", lambda *_: self_test.SelfTest({}, (), ()))
     done = pantocheck("self-test", "--markdown", tmp_path / "[red]page\x1b.md")
     assert "[red]page?.md" in done.output
 
@@ -159,7 +159,7 @@ def test_error_of_the_program_itself_is_not_taken_for_one_of_the_input():
         raise ValueError("a mistake of the program")
 
     with pytest.raises(ValueError, match="a mistake of the program"):
-        guarded(broken)()
+        guard_command(broken)()
 
 
 @pytest.mark.parametrize(
@@ -172,14 +172,14 @@ def test_every_failure_of_the_simulation_is_a_message(error, capsys):
         raise error
 
     with pytest.raises(typer.Exit) as ended:
-        guarded(fails)()
+        guard_command(fails)()
     assert ended.value.exit_code == 2
     assert capsys.readouterr().err == "no state\n  Check the line's data.\n"
 
 
 def test_folder_that_cannot_be_written_is_noticed_before_anything_is_computed(records, tmp_path, monkeypatch):
     (tmp_path / "file").write_text("in the way")
-    monkeypatch.setattr("pantocheck.conformance.runner.run", None)  # calling it would be a TypeError
+    monkeypatch.setattr("pantocheck.conformance.runner.run_cases", None)  # calling it would be a TypeError
     done = pantocheck("run", "--system", f"record:{records}", "--out", tmp_path / "file" / "out")
     assert done.exit_code == 2
     assert "cannot be written" in done.stderr

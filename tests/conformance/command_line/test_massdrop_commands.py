@@ -8,13 +8,13 @@ import pytest
 from typer.testing import CliRunner
 
 from pantocheck.conformance.cases.damping_file import Damping
-from pantocheck.conformance.cases.library import select
+from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.command_line.app import app
-from pantocheck.conformance.mass_drops.drop_record import Channel, Drop, DropRecord, Line
-from pantocheck.conformance.mass_drops.drop_writing import write_csv
-from pantocheck.conformance.simulation.catenary_model import catenary
+from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
+from pantocheck.conformance.mass_drops.drop_writing import write_drop_csv
+from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.model import discretise
-from pantocheck.model.modal.modes import damping_ratios, deflection_at, modes
+from pantocheck.model.modal.modes import compute_modes, damping_ratios, deflection_at
 
 CASE = "en50318-2002/250"
 SENSORS = (("contact wire", "CW", 130.0), ("contact wire", "CW", 205.5), ("messenger wire", "MW", 77.0))
@@ -31,8 +31,8 @@ def identified(folder, name):
 def folder(tmp_path_factory):
     """A record of the line's own modes, superposed: 24 modes hit at one place, ringing at three sensors."""
     folder = tmp_path_factory.mktemp("drop")
-    line = discretise(catenary(select([CASE])[0].line), 2.0, tuple(x for _, _, x in SENSORS))
-    shapes = modes(line, 24)
+    line = discretise(build_catenary(select_cases([CASE])[0].line), 2.0, tuple(x for _, _, x in SENSORS))
+    shapes = compute_modes(line, 24)
     ratio = damping_ratios(line, shapes)
     at = np.array([deflection_at(line, shapes, line.mesh.row_of[wire, "z"], x) for wire, _, x in SENSORS])
     omega = 2 * np.pi * shapes.frequency
@@ -43,9 +43,11 @@ def folder(tmp_path_factory):
     for j, pole in enumerate(poles):
         signal += np.outer(np.where(t >= 0, np.exp(pole * np.maximum(t, 0)).real, 0), at[:, j] * random.choice([-1, 1]))
     signal += 1e-4 * random.standard_normal(signal.shape)
-    channels = tuple(Channel(f"S{i}_z", i, "z", wire, x) for i, (_, wire, x) in enumerate(SENSORS, 1))
-    record = DropRecord("T", "T", RATE, signal, channels, drop=Drop(20, "CW", 150.0, RELEASE), line=Line((60.0,) * 10))
-    write_csv(record, folder / "T.csv")
+    channels = tuple(DropChannel(f"S{i}_z", i, "z", wire, x) for i, (_, wire, x) in enumerate(SENSORS, 1))
+    record = DropRecord(
+        "T", "T", RATE, signal, channels, drop=DropDescription(20, "CW", 150.0, RELEASE), line=DropLine((60.0,) * 10)
+    )
+    write_drop_csv(record, folder / "T.csv")
     identified(folder, "out")
     return folder
 

@@ -7,9 +7,9 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.signal import lsim
 
-from pantocheck.conformance.consistency.force_dynamics import fitted
-from pantocheck.conformance.consistency.record_checks import findings
-from pantocheck.conformance.grading.case_grading import graded
+from pantocheck.conformance.consistency.force_dynamics import fit_motion
+from pantocheck.conformance.consistency.record_checks import check_record
+from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.results.outcome import Outcome
 
@@ -28,36 +28,36 @@ def rough(record):
 
 
 def of(case, record):
-    return [(finding.check, finding.kind) for finding in findings(case, record)]
+    return [(finding.check, finding.kind) for finding in check_record(case, record)]
 
 
 def test_right_record_raises_nothing(case_250, record):
-    assert findings(case_250, record) == []
+    assert check_record(case_250, record) == []
 
 
 def test_right_record_rounded_or_given_at_the_wire_raises_nothing(case_250, record):
     """Heights in whole millimetres; and the wire, into which the head sinks by force over contact stiffness."""
-    assert findings(case_250, replace(record, contact_height=np.round(record.contact_height, 3))) == []
+    assert check_record(case_250, replace(record, contact_height=np.round(record.contact_height, 3))) == []
     wire = record.contact_height - record.force / case_250.pantographs[0].contact.stiffness_N_m
-    assert findings(case_250, replace(record, contact_height=wire + 5.5)) == []
+    assert check_record(case_250, replace(record, contact_height=wire + 5.5)) == []
 
 
 @pytest.mark.parametrize("gain", [1e-3, 0.05, 0.9, 1.05, 1000.0, -1.0])
 def test_gain_of_the_force_is_seen_and_named(case_250, record, gain):
-    (finding,) = findings(case_250, replace(record, force=gain * record.force))
+    (finding,) = check_record(case_250, replace(record, force=gain * record.force))
     assert (finding.check, finding.kind) == ("dynamics", "contradiction")
     assert f"follows from {1 / gain:.3g} times the force" in finding.text
 
 
 def test_force_that_does_not_move_what_moves_is_seen(case_250, record):
     """A dead channel: 119 N throughout, while the contact point goes up and down."""
-    (finding,) = findings(case_250, replace(record, force=np.full_like(record.force, 119.0)))
+    (finding,) = check_record(case_250, replace(record, force=np.full_like(record.force, 119.0)))
     assert (finding.check, finding.kind) == ("dynamics", "contradiction")
 
 
 @pytest.mark.parametrize("gain", [0.98, 1.02])
 def test_gain_within_the_tolerance_is_not(case_250, record, gain):
-    assert findings(case_250, replace(record, force=gain * record.force)) == []
+    assert check_record(case_250, replace(record, force=gain * record.force)) == []
 
 
 @pytest.mark.parametrize(("samples", "said"), [(100, "0.1 s later"), (-50, "0.05 s earlier")])
@@ -75,7 +75,7 @@ def test_shift_in_time_is_seen_and_named(case_250, record, samples, said):
     height = lsim(system, slow, time)[1]
     whole = replace(record, force=force[None], contact_height=height[None])
     assert of(case_250, whole) == []
-    (finding,) = findings(case_250, replace(whole, force=np.roll(force, samples)[None]))
+    (finding,) = check_record(case_250, replace(whole, force=np.roll(force, samples)[None]))
     assert (finding.check, finding.kind) == ("dynamics", "contradiction")
     assert f"about {said}" in finding.text
     # A filter that only runs forwards delays the force by 0.02 s at 20 Hz: that is no contradiction.
@@ -86,7 +86,7 @@ def test_shift_in_time_is_seen_and_named(case_250, record, samples, said):
 
 def test_fit_of_a_record_of_its_own_is_exact(case_250, record):
     """The response to straight lines between samples is exact up to (w dt)^2/12 = 4e-6 at 1.16 Hz and 1 ms."""
-    fit = fitted(case_250.pantographs[0], record.force[0], record.contact_height[0], 1e-3)
+    fit = fit_motion(case_250.pantographs[0], record.force[0], record.contact_height[0], 1e-3)
     assert_allclose([fit.gain, fit.misfit], [1.0, 0.0], atol=1e-4)
 
 
@@ -120,10 +120,10 @@ def test_positions_against_speed_supports_and_stretch(case_250, record):
 
 
 def test_contradiction_is_the_error_of_its_case_and_a_missing_channel_a_note(case_250, record):
-    wrong = graded(case_250, Outcome(replace(record, force=1.05 * record.force)), "secondary")
+    wrong = grade_case(case_250, Outcome(replace(record, force=1.05 * record.force)), "secondary")
     assert (wrong.verdict, wrong.criteria) == ("error", [])
     assert "is its gain or unit right?" in (wrong.reason or "")
     assert wrong.quantities["1"]["mean_force_N"] == pytest.approx(1.05 * 119.0, rel=1e-4)
-    bare = graded(case_250, Outcome(replace(record, contact_height=None)), "secondary")
+    bare = grade_case(case_250, Outcome(replace(record, contact_height=None)), "secondary")
     assert bare.criteria
     assert any(note.startswith("not checked, force against motion") for note in bare.notes)

@@ -10,12 +10,12 @@ import tomli_w
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from pantocheck.conformance.cases.library import library_folder, select
+from pantocheck.conformance.cases.library import library_folder, select_cases
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.records.record_opening import read_either
+from pantocheck.conformance.records.record_opening import open_record
 from pantocheck.conformance.records.record_reading import read_samples
-from pantocheck.conformance.runner import run
-from pantocheck.conformance.systems.record_folder import record_folder
+from pantocheck.conformance.runner import run_cases
+from pantocheck.conformance.systems.record_folder import open_record_folder
 
 FUZZ = Path(__file__).parents[3] / "benchmarks" / "fuzz.py"
 ROUNDS = 12
@@ -68,7 +68,7 @@ def test_damaged_file_is_read_or_refused(fuzz, targets, name, tmp_path):
 def test_fuzzer_sees_a_false_pass(fuzz, targets, tmp_path):
     """The check that watches over all this can fail: a verdict turned to pass is a falsehood."""
     (tmp_path / "a.toml").write_bytes(targets["failing summary record"].files["a.toml"])
-    results = run(select(["en50318-2002/250"]), record_folder(tmp_path))
+    results = run_cases(select_cases(["en50318-2002/250"]), open_record_folder(tmp_path))
     assert results.verdict == "fail"
     fuzz.check(results)
     with pytest.raises(fuzz.Falsehood):
@@ -90,12 +90,12 @@ VALUES = {
 @settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.fixed_dictionaries(VALUES), st.floats(40, 60))
 def test_summary_passes_exactly_if_every_value_is_inside(tmp_path, values, uplift):
-    (case,) = select(["en50318-2002/250"])
+    (case,) = select_cases(["en50318-2002/250"])
     text = (library_folder() / "en50318-2002" / "known-passing-code" / "250.toml").read_text()
     head = text.split("[[pantograph]]")[0]
     content = {"pantograph": [values], "quantities": {"max_uplift_at_support_mm": uplift}}
     (tmp_path / "a.toml").write_text(head + tomli_w.dumps(content))
-    (result,) = run([case], record_folder(tmp_path)).cases
+    (result,) = run_cases([case], open_record_folder(tmp_path)).cases
     everything = {**values, "max_uplift_at_support_mm": uplift}
     inside = all(limit.lower <= everything[limit.quantity] <= limit.upper for limit in case.limits)
     assert (result.verdict == "pass") == inside
@@ -129,7 +129,7 @@ KEYS = st.sampled_from(
 def test_any_toml_is_a_record_or_refused_with_its_key(tmp_path, schema, said):
     base = SOUND if schema == "pantocheck.record/1" else {}
     (tmp_path / "a.toml").write_text(tomli_w.dumps({"schema": schema, **base, **said}), encoding="utf-8")
-    refusal = refused(read_either, tmp_path / "a.toml")
+    refusal = refused(open_record, tmp_path / "a.toml")
     if refusal is not None:
         assert refusal.where.startswith(("sidecar 'a.toml'", "summary record 'a.toml'", "record 'a.toml'"))
         assert refusal.hint

@@ -6,22 +6,22 @@ from dataclasses import replace
 import pytest
 from typer.testing import CliRunner
 
-from pantocheck.conformance.authenticity.recomputation import discrepancies
-from pantocheck.conformance.cases.library import select
+from pantocheck.conformance.authenticity.recomputation import find_discrepancies
+from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.command_line.app import app
-from pantocheck.conformance.grading.baseline import against_baseline
+from pantocheck.conformance.grading.baseline import compare_with_baseline
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.reports.formats import junit
 from pantocheck.conformance.results.results_reading import read_results
-from pantocheck.conformance.runner import run
-from pantocheck.conformance.systems.system_choice import system_named
+from pantocheck.conformance.runner import run_cases
+from pantocheck.conformance.systems.system_choice import choose_system
 
 PASSING = "record:en50318-2002/known-passing-code"
 
 
 @pytest.fixture
 def results():
-    return run(select(["en50318-2002/*"]), system_named(PASSING))
+    return run_cases(select_cases(["en50318-2002/*"]), choose_system(PASSING))
 
 
 def changed(results, name, value):
@@ -34,7 +34,7 @@ def changed(results, name, value):
 
 
 def test_same_values_do_not_drift(results):
-    compared = against_baseline(results, results, 0.1, "b.json")
+    compared = compare_with_baseline(results, results, 0.1, "b.json")
     assert compared.verdict == "pass"
     assert [len(case.criteria) for case in compared.cases] == [8, 8]
     assert compared.cases[0].notes[-1].startswith("Compared with baseline b.json: 8 values, of which 0 drifted")
@@ -42,7 +42,7 @@ def test_same_values_do_not_drift(results):
 
 @pytest.mark.parametrize(("was", "drifts"), [(27.6 / 1.019, False), (27.6 / 1.021, True), (27.6 / 0.979, True)])
 def test_value_that_drifts_fails_within_its_limits(results, was, drifts):
-    compared = against_baseline(results, changed(results, "std_force_N", was), 2.0, "b.json")
+    compared = compare_with_baseline(results, changed(results, "std_force_N", was), 2.0, "b.json")
     assert compared.verdict == ("fail" if drifts else "pass")
     if drifts:
         (finding,) = (row for row in compared.cases[0].criteria if row.verdict == "fail")
@@ -50,39 +50,39 @@ def test_value_that_drifts_fails_within_its_limits(results, was, drifts):
         assert "% from the baseline of" in finding.reason
         # To a hundredth of the drift of 0.54 N: four decimals, not twelve.
         assert (finding.lower, finding.upper) == (round(0.98 * was, 4), round(1.02 * was, 4))
-        assert discrepancies(compared.to_dict()) == []
-        assert b'name="drift of std_force_N of pantograph 1"' in junit.render(compared.to_dict())
+        assert find_discrepancies(compared.to_dict()) == []
+        assert b'name="drift of std_force_N of pantograph 1"' in junit.render_junit(compared.to_dict())
         assert compared.cases[1].verdict == "pass"
 
 
 def test_value_near_zero_drifts_by_its_unit(results):
     """No contact loss in the baseline: 1 % of one percent is allowed."""
     lossy = changed(results, "contact_loss_pct", 0.02)
-    assert against_baseline(results, lossy, 1.0, "b").verdict == "fail"
-    assert against_baseline(results, lossy, 3.0, "b").verdict == "pass"
+    assert compare_with_baseline(results, lossy, 1.0, "b").verdict == "fail"
+    assert compare_with_baseline(results, lossy, 3.0, "b").verdict == "pass"
 
 
 def test_value_that_vanished_is_skipped(results):
-    compared = against_baseline(results, changed(results, "rms_20_50_N", 20.0), 1.0, "b.json")
+    compared = compare_with_baseline(results, changed(results, "rms_20_50_N", 20.0), 1.0, "b.json")
     (finding,) = (row for row in compared.cases[0].criteria if row.verdict == "skip")
     assert finding.reason == "the baseline has 20 N; now: the summary record does not give it"
     assert compared.verdict == "skip"
-    assert discrepancies(compared.to_dict()) == []
+    assert find_discrepancies(compared.to_dict()) == []
 
 
 def test_other_cases_and_other_inputs_are_warned_of(results):
     first = results.cases[0]
     other = results.model_copy(update={"cases": [first.model_copy(update={"input_digest": "sha256:0"})]})
-    compared = against_baseline(results, other, 1.0, "b.json")
+    compared = compare_with_baseline(results, other, 1.0, "b.json")
     assert any("inputs of the case have changed" in text for text in compared.cases[0].warnings)
     assert any("baseline b.json has no case en50318-2002/300" in text for text in compared.cases[1].warnings)
 
 
 def test_ungraded_case_stays_what_it_is(results):
-    case = replace(select(["en50318-2002/250"])[0], limits=())
+    case = replace(select_cases(["en50318-2002/250"])[0], limits=())
     unknown = replace(case, file=case.file.model_copy(update={"id": "none"}))
-    skipped = run([unknown], system_named(PASSING))
-    assert against_baseline(skipped, results, 1.0, "b").verdict == "skip"
+    skipped = run_cases([unknown], choose_system(PASSING))
+    assert compare_with_baseline(skipped, results, 1.0, "b").verdict == "skip"
 
 
 def pantocheck(*arguments):

@@ -6,7 +6,7 @@ import numpy as np
 
 from pantocheck.conformance.grading.extended_band import NOT_VALIDATED
 from pantocheck.conformance.results.outcome import Outcome
-from pantocheck.conformance.runner import run
+from pantocheck.conformance.runner import run_cases
 
 
 def rippled(wave, case, amplitude):
@@ -22,7 +22,7 @@ def warnings(wave, case, fine, **facts):
             refined = None if fine is None else Outcome(rippled(wave, case, fine))
             return Outcome(rippled(wave, case, 10.0), refined=refined, **facts)
 
-    (result,) = run([case], Rippled()).cases
+    (result,) = run_cases([case], Rippled()).cases
     return [text for text in result.warnings if text.startswith("20-50 Hz")]
 
 
@@ -51,6 +51,6 @@ def test_no_warning_where_there_is_no_such_band(case_250, wave):
         def run(self, case):
             return Outcome(replace(wave().record(case), filter_applied_Hz=20.0))
 
-    (result,) = run([case_250], Filtered()).cases
+    (result,) = run_cases([case_250], Filtered()).cases
     assert not [text for text in result.warnings if text.startswith("20-50 Hz")]
     assert "20 Hz" in result.skipped["1"]["rms_20_50_N"]

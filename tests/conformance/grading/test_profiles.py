@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from pantocheck.conformance.authenticity.recomputation import discrepancies
+from pantocheck.conformance.authenticity.recomputation import find_discrepancies
 from pantocheck.conformance.cases.library import library_folder
 from pantocheck.conformance.cases.limits import Limit
-from pantocheck.conformance.cases.profile_file import NoBound, SpeedFormula, bounds, profile_named
+from pantocheck.conformance.cases.profile_file import BoundMissing, SpeedFormula, load_profile, resolve_bounds
 from pantocheck.conformance.command_line.app import app
-from pantocheck.conformance.grading.assessed_record import subject_of
-from pantocheck.conformance.grading.profile_grading import assess
+from pantocheck.conformance.grading.assessed_record import load_assessed_record
+from pantocheck.conformance.grading.profile_grading import assess_record
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record_sidecar import LineTable
 from pantocheck.conformance.schemas import schema_of
@@ -53,8 +53,8 @@ def train(tmp_path):
 
 
 def graded(path, name="acceptance-ac", **keys):
-    profile = profile_named(name)
-    return assess(subject_of(path, profile, LineTable()), profile, **keys)
+    profile = load_profile(name)
+    return assess_record(load_assessed_record(path, profile, LineTable()), profile, **keys)
 
 
 def by_quantity(results):
@@ -67,7 +67,7 @@ def test_shipped_profiles_follow_their_schema(name):
 
     text = (library_folder() / "profiles" / f"{name}.toml").read_text()
     jsonschema.validate(tomllib.loads(text), schema_of("profile"))
-    assert profile_named(name).name == name
+    assert load_profile(name).name == name
 
 
 @pytest.mark.parametrize(
@@ -92,7 +92,7 @@ def test_good_line_is_accepted_with_its_uncertainty(train):
     assert rows["max_uplift_at_support_mm"].value == pytest.approx(55, abs=0.1)
     assert 0 < rows["cov_20"].uncertainty < 0.02
     assert results.cases[0].uncertainty["1"]["cov_20"] == rows["cov_20"].uncertainty
-    assert discrepancies(results.to_dict()) == []
+    assert find_discrepancies(results.to_dict()) == []
     jsonschema.validate(results.to_dict(), schema_of("results"))
 
 
@@ -128,7 +128,7 @@ def test_rule_outside_its_range_is_skipped_and_opens_no_gate(train):
     results = graded(train(speed=180.0))
     assert results.verdict == "skip"
     assert by_quantity(results)["mean_force_N"].reason == "the rule holds above 200 km/h, the record is of 180 km/h"
-    assert discrepancies(results.to_dict()) == []
+    assert find_discrepancies(results.to_dict()) == []
 
 
 def test_what_is_not_known_of_the_line_is_left_out_and_said(train):
@@ -158,49 +158,49 @@ def test_verdict_within_the_uncertainty_is_warned_of(train):
 
 
 def test_line_test_compares_with_the_measured_record(train, tmp_path):
-    profile = profile_named("line-test")
-    measured = subject_of(PASSING / "250.toml", profile, LineTable())
-    simulated = subject_of(train(mean=119.0, sigma=28.0), profile, LineTable())
-    informative = assess(simulated, profile, "secondary", measured)
+    profile = load_profile("line-test")
+    measured = load_assessed_record(PASSING / "250.toml", profile, LineTable())
+    simulated = load_assessed_record(train(mean=119.0, sigma=28.0), profile, LineTable())
+    informative = assess_record(simulated, profile, "secondary", measured)
     assert informative.verdict == "info"  # every tolerance is provisional
-    results = assess(simulated, profile, "provisional", measured)
+    results = assess_record(simulated, profile, "provisional", measured)
     rows = by_quantity(results)
     assert results.verdict == "pass"
     assert (rows["mean_force_N"].lower, rows["mean_force_N"].upper) == pytest.approx((115.7, 120.7))
     assert (rows["std_force_N"].lower, rows["std_force_N"].upper) == pytest.approx((0.8 * 27.6, 1.2 * 27.6))
     assert "about the measured 27.6 of 250" in rows["std_force_N"].source
     assert any("contact_height_range_mm is not graded" in text for text in results.cases[0].warnings)
-    worse = subject_of(train(mean=119.0, sigma=34.0), profile, LineTable())
-    assert assess(worse, profile, "provisional", measured).verdict == "fail"
+    worse = load_assessed_record(train(mean=119.0, sigma=34.0), profile, LineTable())
+    assert assess_record(worse, profile, "provisional", measured).verdict == "fail"
 
 
 def test_rule_without_a_bound_for_this_speed_goes_with_a_comparison(train):
     """One rule compares, so that the measured record's uncertainty is there; the other holds above 260 km/h only."""
-    profile = profile_named("line-test")
-    rule = next(rule for rule in profile_named("acceptance-ac").rule if isinstance(rule.upper, SpeedFormula))
+    profile = load_profile("line-test")
+    rule = next(rule for rule in load_profile("acceptance-ac").rule if isinstance(rule.upper, SpeedFormula))
     above = rule.model_copy(update={"upper": rule.upper.model_copy(update={"above_km_h": 260.0}), "lower": None})
     mixed = profile.model_copy(update={"rule": (*profile.rule, above)})
-    subject = subject_of(train(), mixed, LineTable())
-    rows = assess(subject, mixed, "provisional", subject).cases[0].criteria
+    subject = load_assessed_record(train(), mixed, LineTable())
+    rows = assess_record(subject, mixed, "provisional", subject).cases[0].criteria
     assert any(row.verdict == "skip" and "above 260 km/h" in (row.reason or "") for row in rows)
 
 
 def test_bounds_in_the_wrong_order_are_no_bounds():
-    rule = profile_named("acceptance-ac").rule[0].model_copy(update={"lower": 10.0, "upper": 5.0})
-    with pytest.raises(NoBound, match="its lower bound of 10 lies above its upper bound of 5"):
-        bounds(rule, 250.0, {}, None)
+    rule = load_profile("acceptance-ac").rule[0].model_copy(update={"lower": 10.0, "upper": 5.0})
+    with pytest.raises(BoundMissing, match="its lower bound of 10 lies above its upper bound of 5"):
+        resolve_bounds(rule, 250.0, {}, None)
 
 
 def test_line_test_needs_a_fitting_pair(train):
-    profile = profile_named("line-test")
-    simulated = subject_of(train(), profile, LineTable())
+    profile = load_profile("line-test")
+    simulated = load_assessed_record(train(), profile, LineTable())
     with pytest.raises(InputError, match="compares with a measured record, and none is given"):
-        assess(simulated, profile)
-    faster = subject_of(PASSING / "300.toml", profile, LineTable())
+        assess_record(simulated, profile)
+    faster = load_assessed_record(PASSING / "300.toml", profile, LineTable())
     with pytest.raises(InputError, match="it is of 300 km/h, train of 250 km/h"):
-        assess(simulated, profile, measured=faster)
+        assess_record(simulated, profile, measured=faster)
     with pytest.raises(InputError, match="does not compare"):
-        assess(simulated, profile_named("acceptance-ac"), measured=simulated)
+        assess_record(simulated, load_profile("acceptance-ac"), measured=simulated)
 
 
 def test_same_record_same_results(train):
@@ -273,4 +273,4 @@ def test_wrong_profile_names_its_key(tmp_path, old, new, message):
     assert old in text
     (tmp_path / "own.toml").write_text(text.replace(old, new))
     with pytest.raises(InputError, match=message):
-        profile_named(str(tmp_path / "own.toml"))
+        load_profile(str(tmp_path / "own.toml"))

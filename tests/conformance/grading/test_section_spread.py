@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from pantocheck.conformance.cases.limits import Limit
-from pantocheck.conformance.grading.case_grading import graded
-from pantocheck.conformance.grading.section_spread import spread
-from pantocheck.conformance.records.evaluation import evaluate
+from pantocheck.conformance.grading.case_grading import grade_case
+from pantocheck.conformance.grading.section_spread import section_spread
+from pantocheck.conformance.records.evaluation import evaluate_record
 from pantocheck.conformance.reports.certificate.criteria_rows import shifted
 from pantocheck.conformance.results.outcome import Outcome
 
@@ -32,8 +32,8 @@ def test_stretches_are_shifted_span_by_span(growing):
 def test_spread_is_the_largest_departure(growing):
     """Spans 3-4 to 7-8 about 5-6: two spans, 2 N, either way; a sample of 0.07 m more or less gives 1e-3 N."""
     case, record = growing
-    values = evaluate(record, case.file.filter.low_pass).values
-    found = spread(record, case.shifted, case.file.filter.low_pass, values)
+    values = evaluate_record(record, case.file.filter.low_pass).values
+    found = section_spread(record, case.shifted, case.file.filter.low_pass, values)
     assert found[1]["mean_force_N"] == pytest.approx(2.0, abs=5e-3)
     assert found[1]["contact_loss_pct"] == 0.0
 
@@ -50,16 +50,16 @@ def test_record_that_covers_too_few_stretches_has_no_spread(growing):
         support_position=None,
         support_uplift=None,
     )
-    values = evaluate(short, case.file.filter.low_pass).values
-    assert spread(short, case.shifted, case.file.filter.low_pass, values) == {}
+    values = evaluate_record(short, case.file.filter.low_pass).values
+    assert section_spread(short, case.shifted, case.file.filter.low_pass, values) == {}
 
 
 def test_verdict_that_another_stretch_could_turn_is_named(growing):
     case, record = growing
-    value = evaluate(record, case.file.filter.low_pass).values[1]["mean_force_N"]
+    value = evaluate_record(record, case.file.filter.low_pass).values[1]["mean_force_N"]
     assert isinstance(value, float)
     limit = Limit(quantity="mean_force_N", lower=value - 1.0, upper=value + 50, trust="secondary", source="test")
-    result = graded(replace(case, limits=(limit,)), Outcome(record), "secondary")
+    result = grade_case(replace(case, limits=(limit,)), Outcome(record), "secondary")
     (row,) = result.criteria
     assert row.spread == result.spread["1"]["mean_force_N"]
     assert any("less than its spread over stretches of 2 N" in text for text in result.warnings)
@@ -69,7 +69,7 @@ def test_verdict_that_another_stretch_could_turn_is_named(growing):
 
 
 def test_case_that_does_not_ask_has_none(case_250, wave):
-    result = graded(case_250, Outcome(wave().record(case_250)), "secondary")
+    result = grade_case(case_250, Outcome(wave().record(case_250)), "secondary")
     assert result.spread == {}
     assert all(row.spread is None for row in result.criteria)
     assert np.isfinite([row.value for row in result.criteria]).all()

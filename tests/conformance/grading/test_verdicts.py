@@ -4,9 +4,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pantocheck.conformance.cases.library import library_folder, load
-from pantocheck.conformance.grading.verdicts import margin, verdict_of, worst
-from pantocheck.conformance.input_files.trust import counts
+from pantocheck.conformance.cases.library import library_folder, load_case
+from pantocheck.conformance.grading.verdicts import judge, margin, worst_verdict
+from pantocheck.conformance.input_files.trust import limit_counts
 
 NAMES = """mean_force_N std_force_N statistical_max_N statistical_min_N
 max_force_N min_force_N max_uplift_at_support_mm contact_loss_pct"""
@@ -22,7 +22,7 @@ bounds = st.floats(-1e4, 1e4)
 def test_margin_is_negative_exactly_where_the_verdict_is_fail(value, a, b):
     lower, upper = min(a, b), max(a, b)
     for low, high in ((lower, upper), (lower, None), (None, upper), (lower, lower)):
-        assert (margin(value, low, high) < 0) == (verdict_of(value, low, high) == "fail")
+        assert (margin(value, low, high) < 0) == (judge(value, low, high) == "fail")
 
 
 @given(a=bounds, width=st.floats(1e-3, 1e3), share=st.floats(0, 1))
@@ -60,12 +60,12 @@ def test_margin_needs_a_limit():
 
 @pytest.mark.parametrize("speed", ["250", "300"])
 def test_published_passing_code_passes_and_each_value_pushed_outside_fails_alone(speed):
-    limits = {limit.quantity: limit for limit in load(library_folder() / "en50318-2002" / f"{speed}.toml").limits}
+    limits = {limit.quantity: limit for limit in load_case(library_folder() / "en50318-2002" / f"{speed}.toml").limits}
     known = dict(zip(NAMES.split(), KNOWN_PASSING_CODE[speed], strict=True))
     assert set(limits) == set(known)
 
     def failing(values: dict[str, float]) -> list[str]:
-        return [name for name, limit in limits.items() if verdict_of(values[name], limit.lower, limit.upper) == "fail"]
+        return [name for name, limit in limits.items() if judge(values[name], limit.lower, limit.upper) == "fail"]
 
     assert failing(known) == []
     for name, limit in limits.items():
@@ -74,17 +74,17 @@ def test_published_passing_code_passes_and_each_value_pushed_outside_fails_alone
 
 
 def test_worst_verdict_decides():
-    assert worst(["pass", "info", "pass"]) == "pass"
-    assert worst(["info", "info"]) == "info"
-    assert worst(["pass", "skip"]) == "skip"
-    assert worst(["skip", "fail", "pass"]) == "fail"
-    assert worst(["fail", "error"]) == "error"
-    assert worst([]) == "info"
+    assert worst_verdict(["pass", "info", "pass"]) == "pass"
+    assert worst_verdict(["info", "info"]) == "info"
+    assert worst_verdict(["pass", "skip"]) == "skip"
+    assert worst_verdict(["skip", "fail", "pass"]) == "fail"
+    assert worst_verdict(["fail", "error"]) == "error"
+    assert worst_verdict([]) == "info"
 
 
 def test_trust_counts_from_its_level_up():
-    assert counts("primary", "secondary")
-    assert counts("secondary", "secondary")
-    assert not counts("provisional", "secondary")
-    assert not counts("secondary", "primary")
-    assert counts("provisional", "provisional")
+    assert limit_counts("primary", "secondary")
+    assert limit_counts("secondary", "secondary")
+    assert not limit_counts("provisional", "secondary")
+    assert not limit_counts("secondary", "primary")
+    assert limit_counts("provisional", "provisional")

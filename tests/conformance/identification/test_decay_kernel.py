@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pantocheck.conformance.identification.decay_kernel import (
+    decay_kernel,
     drift_columns,
-    kernel,
     kernel_and_derivative,
     real_columns,
 )
@@ -25,8 +25,8 @@ def test_model_is_the_transform_of_the_decay(frequency, damping_ratio, amplitude
     pole = np.array([2 * np.pi * frequency * (-damping_ratio + 1j)])
     omega = 2 * np.pi * np.arange(1, N // 2) / (N * DT)
     decay = 2 * (amplitude * np.exp(pole * DT * np.arange(N))).real
-    modelled = amplitude * kernel(pole, omega, DT, N)[:, 0]
-    modelled += np.conj(amplitude) * kernel(pole.conj(), omega, DT, N)[:, 0]
+    modelled = amplitude * decay_kernel(pole, omega, DT, N)[:, 0]
+    modelled += np.conj(amplitude) * decay_kernel(pole.conj(), omega, DT, N)[:, 0]
     measured = np.fft.rfft(decay)[1 : N // 2]
     assert np.abs(modelled - measured).max() < 1e-10 * np.abs(measured).max()
 
@@ -37,14 +37,14 @@ def test_derivative_is_that_of_the_kernel():
     omega = 2 * np.pi * np.arange(5, 60) / (N * DT)
     h = 1e-4
     slope = kernel_and_derivative(poles, omega, DT, N)[1]
-    difference = (kernel(poles + h, omega, DT, N) - kernel(poles - h, omega, DT, N)) / (2 * h)
+    difference = (decay_kernel(poles + h, omega, DT, N) - decay_kernel(poles - h, omega, DT, N)) / (2 * h)
     assert np.abs(slope - difference).max() < 1e-5 * np.abs(slope).max()
 
 
 def test_real_columns_carry_residues_as_real_numbers():
     poles, residue = np.array([-0.1 + 5.0j]), 0.7 - 1.9j
     omega = 2 * np.pi * np.arange(1, 50) / (N * DT)
-    towards, away = kernel(poles, omega, DT, N), kernel(poles.conj(), omega, DT, N)
+    towards, away = decay_kernel(poles, omega, DT, N), decay_kernel(poles.conj(), omega, DT, N)
     expected = (residue * towards + np.conj(residue) * away)[:, 0]
     rows = real_columns(towards, away) @ np.array([residue.real, residue.imag])
     assert rows == pytest.approx(np.concatenate([expected.real, expected.imag]), rel=1e-12, abs=1e-12)

@@ -8,29 +8,31 @@ from scipy.optimize import linear_sum_assignment
 
 from helpers.synthetic_drops import drop, span_modes
 from pantocheck.conformance.identification.hand_placed_poles import read_poles
-from pantocheck.conformance.identification.identification_files import summary
-from pantocheck.conformance.identification.identify import identify
-from pantocheck.conformance.identification.linear_decay import Band, find_stretch
-from pantocheck.conformance.identification.mode_groups import group_numbers, outliers
-from pantocheck.conformance.identification.model_order import whitened
-from pantocheck.conformance.identification.pole_refinement import refine
+from pantocheck.conformance.identification.identification_files import summarise_identification
+from pantocheck.conformance.identification.identify import identify_modes
+from pantocheck.conformance.identification.linear_decay import FrequencyBand, find_linear_decay
+from pantocheck.conformance.identification.mode_groups import find_group_outliers, number_groups
+from pantocheck.conformance.identification.model_order import whiten
+from pantocheck.conformance.identification.pole_refinement import refine_poles
 from pantocheck.conformance.identification.release import find_release
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.mass_drops.drop_reading import read_records
-from pantocheck.conformance.mass_drops.drop_record import Channel, Drop, DropRecord, Line
-from pantocheck.conformance.mass_drops.drop_writing import write_csv
+from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
+from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
+from pantocheck.conformance.mass_drops.drop_writing import write_drop_csv
 
 SPANS = (60.0,) * 6
 
 
 def record_of(made, name="made up", lateral=None):
     count = made.samples.shape[1]
-    channels = tuple(Channel(f"S{i}_z", i, "z", "CW", 20.0 * i) for i in range(1, count + 1))
+    channels = tuple(DropChannel(f"S{i}_z", i, "z", "CW", 20.0 * i) for i in range(1, count + 1))
     signals = made.samples
     if lateral is not None:
-        channels += (Channel("S1_y", 1, "y", "CW", 20.0),)
+        channels += (DropChannel("S1_y", 1, "y", "CW", 20.0),)
         signals = np.column_stack([signals, lateral])
-    return DropRecord(name, name, made.rate, signals.copy(), channels, drop=Drop(20, "CW", 100, 5.0), line=Line(SPANS))
+    return DropRecord(
+        name, name, made.rate, signals.copy(), channels, drop=DropDescription(20, "CW", 100, 5.0), line=DropLine(SPANS)
+    )
 
 
 def complex_poles(modes):
@@ -44,10 +46,10 @@ def test_blind_identification_reaches_the_bound(seed):
     random = np.random.default_rng(seed)
     true = span_modes(random, 24, pairs=2)
     made = drop(random, true, duration=100.0, rate=50.0, noise=0.002)
-    (found,) = identify((record_of(made),), highest=4.6)
+    (found,) = identify_modes((record_of(made),), highest=4.6)
     true = true[true.imag < 2 * np.pi * 4.5]
-    white = whitened(list(found.blocks), list(found.noise))
-    bound = np.sqrt(np.diag(refine(true, white, iterations=0).covariance))[: true.size] / -true.real
+    white = whiten(list(found.blocks), list(found.noise))
+    bound = np.sqrt(np.diag(refine_poles(true, white, iterations=0).covariance))[: true.size] / -true.real
     poles = complex_poles(found.modes)
     rows, columns = linear_sum_assignment(np.minimum(np.abs(true[:, None] - poles[None, :]), 1.0))
     ratios = []
@@ -71,7 +73,7 @@ def test_weak_mode_comes_out_as_uncertain_or_not_at_all():
     t = np.arange(made.samples.shape[0]) / made.rate - made.release
     weak = 2 * np.pi * 1.9 * (-0.003 + 1j)
     made.samples[t > 0] += 0.012 * np.exp(weak * t[t > 0]).real[:, None]
-    (found,) = identify((record_of(made),), highest=4.0)
+    (found,) = identify_modes((record_of(made),), highest=4.0)
     for mode in found.modes:
         if abs(mode.frequency - 1.9) < 0.1:
             assert not mode.certain
@@ -85,7 +87,7 @@ def test_disturbance_ends_the_stretch_and_slack_droppers_begin_it():
     made = drop(random, true, duration=120.0, rate=50.0, noise=0.002, nonlinear=1.5, weak=0.0)
     wind = np.arange(made.samples.shape[0]) / made.rate > 80.0
     made.samples[wind] += 0.02 * random.standard_normal((int(wind.sum()), 4))
-    (found,) = identify((record_of(made),), highest=4.0)
+    (found,) = identify_modes((record_of(made),), highest=4.0)
     stretch = found.prepared[0].stretch
     assert 60 < stretch.end < 81.5  # a window of four seconds decides, a little of the wind may enter
     assert stretch.start > made.release + 1.3
@@ -100,7 +102,7 @@ def test_lateral_modes_are_told_by_the_lateral_channel():
     sideways = np.where(t > 0, 2.0 * np.exp(2 * np.pi * 1.45 * (-0.003 + 1j) * np.maximum(t, 0)).real, 0.0)
     made.samples[:, 0] += 0.008 * sideways
     lateral = sideways + 0.002 * random.standard_normal(t.size)
-    (found,) = identify((record_of(made, lateral=lateral),), highest=4.0)
+    (found,) = identify_modes((record_of(made, lateral=lateral),), highest=4.0)
     (mode,) = [m for m in found.modes if abs(m.frequency - 1.45) < 0.02]
     assert mode.lateral
     assert mode.group is None
@@ -110,7 +112,7 @@ def test_repeats_of_different_length_are_used_together_and_said():
     random = np.random.default_rng(40)
     true = span_modes(random, 6)
     made = [drop(random, true, duration=length, rate=50.0, noise=0.003, weak=0.0) for length in (60.0, 90.0)]
-    (found,) = identify(tuple(record_of(one, f"run {k}") for k, one in enumerate(made)), highest=4.0)
+    (found,) = identify_modes(tuple(record_of(one, f"run {k}") for k, one in enumerate(made)), highest=4.0)
     assert len(found.blocks) == 2
     assert any("differ in length" in text for text in found.warnings)
     poles = complex_poles(found.modes)
@@ -126,8 +128,8 @@ def test_drops_of_one_name_keep_their_own_sensors(sensors):
     noisy = drop(random, true, sensors=sensors, duration=60.0, rate=50.0, noise=0.03, weak=0.0)
     quiet = record_of(drop(random, true, duration=60.0, rate=50.0, noise=0.003, weak=0.0), "one name")
     away = replace(quiet, channels=tuple(replace(c, position=c.position + 200.0) for c in quiet.channels))
-    (found,) = identify((record_of(noisy, "one name"), away), highest=4.0)
-    rows = summary(found)["modes"]
+    (found,) = identify_modes((record_of(noisy, "one name"), away), highest=4.0)
+    rows = summarise_identification(found)["modes"]
     assert len(rows) >= 6
     for row in rows:
         assert [part["position_m"] for part in row["sensor_shape"]] == [220.0, 240.0, 260.0, 280.0]
@@ -147,8 +149,8 @@ def test_amplitude_at_release_is_that_of_one_record_where_stretches_begin_apart(
     gust = (t > made.release) & (t < made.release + 8.0)
     made.samples[gust] += 0.5 * random.standard_normal((int(gust.sum()), 4))
     gusty = record_of(made, "gusty")
-    (alone,) = identify((noisy,), highest=4.0)
-    (both,) = identify((noisy, gusty), highest=4.0)
+    (alone,) = identify_modes((noisy,), highest=4.0)
+    (both,) = identify_modes((noisy, gusty), highest=4.0)
     assert both.prepared[1].stretch.start > both.prepared[0].stretch.start + 3.0
     expected = {mode.frequency: mode.amplitude for mode in alone.modes if mode.certain}
     strong = [mode for mode in both.modes if mode.certain and mode.record == "gusty"]
@@ -164,17 +166,17 @@ def test_files_of_one_name_that_do_not_tell_their_line_are_of_two(tmp_path):
     for folder in ("a", "b"):
         (tmp_path / folder).mkdir()
         record = record_of(drop(random, span_modes(random, 6), duration=40.0, rate=50.0, weak=0.0))
-        write_csv(replace(record, line=Line()), tmp_path / folder / "T1.csv")
-        records += read_records(tmp_path / folder / "T1.csv")
+        write_drop_csv(replace(record, line=DropLine()), tmp_path / folder / "T1.csv")
+        records += read_drop_records(tmp_path / folder / "T1.csv")
     assert [record.source for record in records] == ["T1.csv", "T1.csv"]
-    assert len(identify(tuple(records), highest=4.0)) == 2
+    assert len(identify_modes(tuple(records), highest=4.0)) == 2
 
 
 def test_hand_placed_poles_are_refined_and_kept():
     random = np.random.default_rng(50)
     true = span_modes(random, 6)
     made = drop(random, true, duration=60.0, rate=50.0, noise=0.002, weak=0.0)
-    (found,) = identify((record_of(made),), highest=4.0, poles=true * (1 + 0.0005j))
+    (found,) = identify_modes((record_of(made),), highest=4.0, poles=true * (1 + 0.0005j))
     assert complex_poles(found.modes) == pytest.approx(true, rel=1e-4)
 
 
@@ -186,7 +188,7 @@ def test_short_records_are_refused(duration, message):
     random = np.random.default_rng(60)
     made = drop(random, span_modes(random, 6), duration=duration, rate=50.0)
     with pytest.raises(InputError, match=message):
-        identify((record_of(made),))
+        identify_modes((record_of(made),))
 
 
 def test_sampling_rate_too_low_for_any_mode_is_refused():
@@ -194,13 +196,13 @@ def test_sampling_rate_too_low_for_any_mode_is_refused():
     made = record_of(drop(np.random.default_rng(64), span_modes(np.random.default_rng(64), 6), rate=50.0))
     for rate in (0.5, 1.0):
         with pytest.raises(InputError, match=r"sampling rate of .* is too low"):
-            identify((replace(made, rate=rate),))
+            identify_modes((replace(made, rate=rate),))
 
 
 def test_low_wanted_frequency_is_no_fault_of_the_rate():
     random = np.random.default_rng(65)
     made = drop(random, 2 * np.pi * np.array([0.4 * (-0.004 + 1j), 0.8 * (-0.004 + 1j)]), rate=50.0, weak=0.0)
-    (found,) = identify((record_of(made),), highest=0.5)
+    (found,) = identify_modes((record_of(made),), highest=0.5)
     assert [mode.frequency for mode in found.modes] == pytest.approx([0.4], abs=0.002)
 
 
@@ -208,8 +210,8 @@ def test_repeats_at_a_low_rate_are_compared():
     """At 12 Hz the usual low-pass of 6 Hz would lie on half the rate."""
     random = np.random.default_rng(66)
     made = drop(random, span_modes(random, 6), duration=60.0, rate=12.0, weak=0.0)
-    (found,) = identify((record_of(made, "first"), record_of(made, "second")), highest=2.0)
-    (repeats,) = summary(found)["repeatability"]
+    (found,) = identify_modes((record_of(made, "first"), record_of(made, "second")), highest=2.0)
+    (repeats,) = summarise_identification(found)["repeatability"]
     assert repeats["verdict"] == "repeatable"
 
 
@@ -218,14 +220,14 @@ def test_channel_lost_at_the_release_is_named():
     made = drop(random, span_modes(random, 6), duration=40.0, rate=50.0)
     made.samples[int(made.release * made.rate) + 10 :, 2] = 0.0
     with pytest.raises(InputError, match=r"channel 'S3_z'.*never changes after the release"):
-        identify((record_of(made),))
+        identify_modes((record_of(made),))
 
 
 def test_record_shorter_than_a_window_of_rest_is_refused():
     signals = np.random.default_rng(68).standard_normal((60, 1))
-    short = DropRecord("short", "short", 200.0, signals, (Channel("S1_z", 1, "z"),))
+    short = DropRecord("short", "short", 200.0, signals, (DropChannel("S1_z", 1, "z"),))
     with pytest.raises(InputError, match="has no rest before the release"):
-        identify((short,))
+        identify_modes((short,))
 
 
 def test_list_of_no_modes_places_no_poles(tmp_path):
@@ -237,9 +239,11 @@ def test_list_of_no_modes_places_no_poles(tmp_path):
 def test_record_without_vertical_channel_is_refused():
     random = np.random.default_rng(61)
     made = drop(random, span_modes(random, 6), duration=40.0, rate=50.0, sensors=1)
-    sideways = DropRecord("x", "x", 50.0, made.samples, (Channel("S1_y", 1, "y"),), drop=Drop(trigger_nominal=5.0))
+    sideways = DropRecord(
+        "x", "x", 50.0, made.samples, (DropChannel("S1_y", 1, "y"),), drop=DropDescription(trigger_nominal=5.0)
+    )
     with pytest.raises(InputError, match="no vertical channel"):
-        identify((sideways,))
+        identify_modes((sideways,))
 
 
 def test_clipped_start_is_left_out():
@@ -247,7 +251,7 @@ def test_clipped_start_is_left_out():
     made = drop(random, span_modes(random, 6), duration=60.0, rate=50.0, weak=0.0)
     top = 0.6 * np.abs(made.samples).max()
     made.samples[:] = np.clip(made.samples, -top, top)
-    (found,) = identify((record_of(made),), highest=4.0)
+    (found,) = identify_modes((record_of(made),), highest=4.0)
     clipped = np.flatnonzero((np.abs(made.samples) >= top).any(axis=1))
     assert found.prepared[0].stretch.start * made.rate > clipped[0]
     assert found.misfit < 1.3
@@ -257,12 +261,12 @@ def test_stretch_begins_after_the_last_clipped_sample():
     """A clean decay, of which only the clipping told to the search is wrong: without it the stretch begins at 1-2 s."""
     random = np.random.default_rng(62)
     made = record_of(drop(random, span_modes(random, 6), duration=60.0, rate=50.0, weak=0.0))
-    band = Band.up_to(4.0, made.rate)
+    band = FrequencyBand.up_to(4.0, made.rate)
     release = find_release(made.signals, made.rate, 5.0, "clean")
     names = tuple(channel.name for channel in made.channels)
     last = release.time + 4.0
-    free = find_stretch(made.signals, made.rate, release, band, "clean", names)
-    late = find_stretch(made.signals, made.rate, release, band, "clean", names, last)
+    free = find_linear_decay(made.signals, made.rate, release, band, "clean", names)
+    late = find_linear_decay(made.signals, made.rate, release, band, "clean", names, last)
     assert free.start < release.time + 2.1
     assert late.start >= last
 
@@ -270,7 +274,7 @@ def test_stretch_begins_after_the_last_clipped_sample():
 def test_single_sensor_is_marked():
     random = np.random.default_rng(63)
     made = drop(random, span_modes(random, 6), duration=60.0, rate=50.0, sensors=1, weak=0.0)
-    (found,) = identify((record_of(made),), highest=4.0)
+    (found,) = identify_modes((record_of(made),), highest=4.0)
     assert any("single sensor" in text for text in found.warnings)
     assert all(mode.collinearity is None for mode in found.modes)
 
@@ -283,10 +287,10 @@ def test_groups_hold_one_mode_per_span_even_where_they_touch():
     )
     expected = np.repeat(np.arange(1, 7), 6)
     order = np.argsort(frequencies)
-    found = group_numbers(frequencies[order], frequencies[order], 6)
+    found = number_groups(frequencies[order], frequencies[order], 6)
     assert np.mean(found == expected[order]) > 0.95
 
 
 def test_outliers_by_quartiles():
-    assert list(outliers(np.array([1.0, 1.1, 0.9, 1.05, 3.0]))) == [False, False, False, False, True]
-    assert not outliers(np.array([1.0, 9.0, 1.0])).any()
+    assert list(find_group_outliers(np.array([1.0, 1.1, 0.9, 1.05, 3.0]))) == [False, False, False, False, True]
+    assert not find_group_outliers(np.array([1.0, 9.0, 1.0])).any()

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from pantocheck.conformance.identification.model_order import noise_of, settle, whitened
-from pantocheck.conformance.identification.pole_refinement import refine
-from pantocheck.conformance.identification.projection import block, normal_equations, solve
-from pantocheck.conformance.identification.start_poles import start_poles
+from pantocheck.conformance.identification.model_order import estimate_noise, select_poles, whiten
+from pantocheck.conformance.identification.pole_refinement import refine_poles
+from pantocheck.conformance.identification.projection import build_block, build_normal_equations, solve_residues
+from pantocheck.conformance.identification.start_poles import find_start_poles
 
 DT = 0.05
 
@@ -27,15 +27,15 @@ def test_gradient_is_that_of_the_cost():
     """Half the cost's central difference; the residual is orthogonal to the model, so Kaufman's gradient is exact."""
     random = np.random.default_rng(1)
     true = poles_of((0.9, 0.005), (0.95, 0.004), (1.7, 0.003))
-    data = [block(decays(random, true, 60, 2, 0.01), DT, 0.3, 6.0)]
+    data = [build_block(decays(random, true, 60, 2, 0.01), DT, 0.3, 6.0)]
     at = true * (1 + 1e-4)
-    gradient = normal_equations(at, data).gradient
+    gradient = build_normal_equations(at, data).gradient
     step = 1e-6
     for j in range(at.size):
         for part, direction in ((j, -1.0), (at.size + j, 1j)):
             moved = np.zeros(at.size, dtype=complex)
             moved[j] = step * direction
-            difference = normal_equations(at + moved, data).cost - normal_equations(at - moved, data).cost
+            difference = build_normal_equations(at + moved, data).cost - build_normal_equations(at - moved, data).cost
             assert -difference / (4 * step) == pytest.approx(
                 gradient[part], rel=1e-3, abs=1e-3 * np.abs(gradient).max()
             )
@@ -45,7 +45,7 @@ def test_start_poles_of_a_clean_decay_are_exact():
     """Without noise a subspace method is limited by its 60 dB filter alone: a thousandth of the damping."""
     true = poles_of((0.9, 0.005), (1.3, 0.003), (2.2, 0.002))
     random = np.random.default_rng(2)
-    found = start_poles([decays(random, true, 120, 2, 1e-7)], 1 / DT, 0.3, 4.3)
+    found = find_start_poles([decays(random, true, 120, 2, 1e-7)], 1 / DT, 0.3, 4.3)
     for pole in true:
         nearest = found[np.argmin(np.abs(found - pole))]
         assert abs(nearest - pole) < 1e-3 * abs(pole.real)
@@ -56,10 +56,10 @@ def test_close_pair_is_told_apart(distance):
     """Pair 3 and 6 mHz apart at 0.1 % in four minutes: both poles within five standard deviations of the truth."""
     random = np.random.default_rng(3)
     true = poles_of((2.5, 0.001), (2.5 + distance, 0.001), (3.1, 0.002))
-    data = [block(decays(random, true, 240, 4, 0.02), DT, 0.3, 6.0)]
-    found = settle(poles_of((2.5015, 0.0015), (3.1, 0.002)), data)
+    data = [build_block(decays(random, true, 240, 4, 0.02), DT, 0.3, 6.0)]
+    found = select_poles(poles_of((2.5015, 0.0015), (3.1, 0.002)), data)
     assert found.poles.size == 3
-    refined = refine(found.poles, whitened(data, found.noise))
+    refined = refine_poles(found.poles, whiten(data, found.noise))
     std = np.sqrt(np.diag(refined.covariance))
     assert np.all(np.abs(refined.poles.real - true.real) < 5 * std[:3])
     assert np.all(np.abs(refined.poles.imag - true.imag) < 5 * std[3:])
@@ -70,8 +70,8 @@ def test_noise_alone_is_not_taken_for_poles():
     for seed in range(20):
         random = np.random.default_rng(seed)
         true = poles_of((1.5, 0.004))
-        data = [block(decays(random, true, 60, 2, 0.05), DT, 0.3, 6.0)]
-        assert settle(true, data).poles.size == 1
+        data = [build_block(decays(random, true, 60, 2, 0.05), DT, 0.3, 6.0)]
+        assert select_poles(true, data).poles.size == 1
 
 
 def test_standard_deviations_are_those_of_repeated_noise():
@@ -84,9 +84,9 @@ def test_standard_deviations_are_those_of_repeated_noise():
         residues = fixed.standard_normal((3, 2)) + 1j * fixed.standard_normal((3, 2))
         n = int(100 / DT)
         clean = 2 * (np.exp(np.outer(np.arange(n) * DT, true)) @ residues).real
-        data = [block(clean + 0.05 * random.standard_normal(clean.shape), DT, 0.3, 6.0)]
-        noise = [noise_of(solve(true, data[0]), 3, data[0])]
-        refined = refine(true, whitened(data, noise))
+        data = [build_block(clean + 0.05 * random.standard_normal(clean.shape), DT, 0.3, 6.0)]
+        noise = [estimate_noise(solve_residues(true, data[0]), 3, data[0])]
+        refined = refine_poles(true, whiten(data, noise))
         error = np.concatenate([-(refined.poles - true).real, (refined.poles - true).imag])
         standardised.append(error / np.sqrt(np.diag(refined.covariance)))
     variance = np.var(standardised)

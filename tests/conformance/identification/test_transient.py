@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from pantocheck.conformance.identification.frequency_response import frequency_response
-from pantocheck.conformance.identification.identify import identify
-from pantocheck.conformance.identification.repeatability import repeatability
+from pantocheck.conformance.identification.frequency_response import compute_frequency_response
+from pantocheck.conformance.identification.identify import identify_modes
+from pantocheck.conformance.identification.repeatability import compare_records
 from pantocheck.conformance.input_files.channel_units import STANDARD_GRAVITY
-from pantocheck.conformance.mass_drops.drop_record import Channel, Drop, DropRecord, Line
+from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
 
 RATE, RELEASE, MASS = 50.0, 5.0, 20.0
 MODAL_MASS = 100.0  # [kg]
@@ -25,8 +25,10 @@ def record(name, random, noise=0.002, shift=0.0, other=1.0):
         motion = np.exp(-decay * after) * (np.cos(omega * after) - decay / omega * np.sin(omega * after))
         signal += np.outer(np.where(t >= 0, force / MODAL_MASS * motion, 0), (1.0, 0.5 * (-other) ** j))
     signal += noise * random.standard_normal(signal.shape)
-    channels = (Channel("S1_z", 1, "z", "CW", 10.0), Channel("S2_z", 2, "z", "CW", 30.0))
-    return DropRecord(name, "made", RATE, signal, channels, drop=Drop(MASS, "CW", 10.0, RELEASE), line=Line((60.0,)))
+    channels = (DropChannel("S1_z", 1, "z", "CW", 10.0), DropChannel("S2_z", 2, "z", "CW", 30.0))
+    return DropRecord(
+        name, "made", RATE, signal, channels, drop=DropDescription(MASS, "CW", 10.0, RELEASE), line=DropLine((60.0,))
+    )
 
 
 def test_response_is_that_of_the_oscillators():
@@ -37,8 +39,8 @@ def test_response_is_that_of_the_oscillators():
     1.7 Hz, 1.2 and 1.5 % at 2.6 Hz). The release is known to one sample: w dt = 0.11 rad at 0.9 Hz turns the phase,
     not the magnitude.
     """
-    (found,) = identify((record("one", np.random.default_rng(1)),), highest=4.0)
-    response = frequency_response(found, 0)
+    (found,) = identify_modes((record("one", np.random.default_rng(1)),), highest=4.0)
+    response = compute_frequency_response(found, 0)
     assert response is not None
     omega = 2 * np.pi * response.frequency
     omega_0 = 2 * np.pi * FREQUENCY
@@ -53,8 +55,8 @@ def test_response_is_that_of_the_oscillators():
 
 
 def test_identified_response_overlays_the_measured_one():
-    (found,) = identify((record("one", np.random.default_rng(2)),), highest=4.0)
-    response = frequency_response(found, 0)
+    (found,) = identify_modes((record("one", np.random.default_rng(2)),), highest=4.0)
+    response = compute_frequency_response(found, 0)
     assert response is not None
     low = response.frequency < 3.0
     left = np.linalg.norm((response.measured - response.identified)[low])
@@ -64,15 +66,15 @@ def test_identified_response_overlays_the_measured_one():
 def test_repeats_correlate_and_another_line_does_not():
     random = np.random.default_rng(3)
     first, again = record("first", random), record("again", random, shift=0.13)
-    (found,) = identify((first, again), highest=4.0)
-    same = repeatability(found.prepared)
+    (found,) = identify_modes((first, again), highest=4.0)
+    same = compare_records(found.prepared)
     assert same is not None
     assert same.verdict == "repeatable"
     assert min(c.correlation[0] for c in same.comparisons) > 0.999
     other = record("other", random, other=-1.0)
-    (changed,) = identify((first, other), highest=4.0)
-    different = repeatability(changed.prepared)
+    (changed,) = identify_modes((first, other), highest=4.0)
+    different = compare_records(changed.prepared)
     assert different is not None
     assert different.verdict == "not repeatable"
     assert "S2_z" in different.reason
-    assert repeatability(found.prepared[:1]) is None
+    assert compare_records(found.prepared[:1]) is None

@@ -2,7 +2,7 @@
 
 import pytest
 
-from pantocheck.conformance.cases.library import load, read_limits
+from pantocheck.conformance.cases.library import load_case, read_limits
 from pantocheck.conformance.input_files.input_error import InputError
 
 LINE, PANTOGRAPH, CASE = "line.toml", "pantograph.toml", "250.toml"
@@ -206,7 +206,7 @@ LINE, PANTOGRAPH, CASE = "line.toml", "pantograph.toml", "250.toml"
 )
 def test_one_mistake_one_message(own_case, file, old, new, message):
     with pytest.raises(InputError) as caught:
-        load(own_case(file, old, new))
+        load_case(own_case(file, old, new))
     assert str(caught.value).startswith(message)
     assert caught.value.hint
 
@@ -214,26 +214,26 @@ def test_one_mistake_one_message(own_case, file, old, new, message):
 def test_malformed_toml_names_line_and_column(own_case):
     path = own_case(CASE, 'title = "EN', "title = EN")
     with pytest.raises(InputError, match=r"at line 3, column 9"):
-        load(path)
+        load_case(path)
 
 
 def test_file_that_is_not_text(tmp_path):
     path = tmp_path / "case.toml"
     path.write_bytes(b'id = "x"\n\xff\xfe')
     with pytest.raises(InputError, match="byte 10 is not UTF-8 text"):
-        load(path)
+        load_case(path)
 
 
 def test_deep_nesting_does_not_crash(tmp_path):
     path = tmp_path / "case.toml"
     path.write_text("a = " + "[" * 100_000)
     with pytest.raises(InputError, match="too long to read"):
-        load(path)
+        load_case(path)
 
 
 def test_absent_file(tmp_path):
     with pytest.raises(InputError, match="No such file"):
-        load(tmp_path / "nothing.toml")
+        load_case(tmp_path / "nothing.toml")
 
 
 def test_limit_for_a_line_quantity_has_no_pantograph(tmp_path):

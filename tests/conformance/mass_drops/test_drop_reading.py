@@ -11,9 +11,9 @@ import scipy.io
 import tomli_w
 
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.mass_drops.drop_reading import read_records
-from pantocheck.conformance.mass_drops.drop_record import Channel, Drop, DropRecord, Line
-from pantocheck.conformance.mass_drops.drop_writing import write_csv, write_hdf5, write_uff
+from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
+from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
+from pantocheck.conformance.mass_drops.drop_writing import write_drop_csv, write_drop_hdf5, write_drop_uff
 
 RATE, N = 100.0, 400
 FLIPS = 400  # files; on fewer some of the errors that the libraries raise do not show
@@ -23,13 +23,20 @@ FLIPS = 400  # files; on fewer some of the errors that the libraries raise do no
 def record():
     random = np.random.default_rng(0)
     channels = (
-        Channel("S1_z", 1, "z", "CW", 12.0),
-        Channel("S1_y", 1, "y", "CW", 12.0),
-        Channel("S2_z", 2, "z", "MW", 40.5),
+        DropChannel("S1_z", 1, "z", "CW", 12.0),
+        DropChannel("S1_y", 1, "y", "CW", 12.0),
+        DropChannel("S2_z", 2, "z", "MW", 40.5),
     )
-    line = Line((60.0, 54.0), 20e3, 15e3)
+    line = DropLine((60.0, 54.0), 20e3, 15e3)
     return DropRecord(
-        "T", "made", RATE, random.standard_normal((N, 3)), channels, "acceleration", Drop(30, "CW", 33, 1.5), line
+        "T",
+        "made",
+        RATE,
+        random.standard_normal((N, 3)),
+        channels,
+        "acceleration",
+        DropDescription(30, "CW", 33, 1.5),
+        line,
     )
 
 
@@ -42,24 +49,24 @@ def same(read, record, tolerance):
 @pytest.mark.parametrize("form", ["ascii", "binary"])
 def test_uff_reads_back(tmp_path, record, form):
     """Binary holds doubles; ASCII has twelve digits."""
-    write_uff(record, tmp_path / "r.uff", form)
-    same(read_records(tmp_path / "r.uff")[0], record, 0.0 if form == "binary" else 1e-10)
+    write_drop_uff(record, tmp_path / "r.uff", form)
+    same(read_drop_records(tmp_path / "r.uff")[0], record, 0.0 if form == "binary" else 1e-10)
 
 
 def test_uff_speaks_for_itself_without_a_sidecar(tmp_path, record):
-    write_uff(record, tmp_path / "r.uff")
+    write_drop_uff(record, tmp_path / "r.uff")
     (tmp_path / "r.toml").unlink()
-    (read,) = read_records(tmp_path / "r.uff")
+    (read,) = read_drop_records(tmp_path / "r.uff")
     assert read.channels == record.channels
     assert read.drop == record.drop
 
 
 def test_csv_and_hdf5_read_back(tmp_path, record):
     """CSV is written with nine digits."""
-    write_csv(record, tmp_path / "r.csv")
-    same(read_records(tmp_path / "r.csv")[0], record, 1e-8)
-    write_hdf5((record, record), tmp_path / "r.h5")
-    runs = read_records(tmp_path / "r.h5")
+    write_drop_csv(record, tmp_path / "r.csv")
+    same(read_drop_records(tmp_path / "r.csv")[0], record, 1e-8)
+    write_drop_hdf5((record, record), tmp_path / "r.h5")
+    runs = read_drop_records(tmp_path / "r.h5")
     assert [run.name for run in runs] == ["T run 1", "T run 2"]
     same(runs[1], record, 0.0)
 
@@ -67,10 +74,10 @@ def test_csv_and_hdf5_read_back(tmp_path, record):
 @pytest.mark.parametrize("name", ["Câble_z", "mât 3", "5µ_z"])
 def test_names_beyond_ascii_read_back(tmp_path, record, name):
     named = replace(record, channels=(replace(record.channels[0], name=name), *record.channels[1:]))
-    write_uff(named, tmp_path / "u.uff")
-    same(read_records(tmp_path / "u.uff")[0], named, 0.0)
-    write_csv(named, tmp_path / "c.csv")
-    same(read_records(tmp_path / "c.csv")[0], named, 1e-8)
+    write_drop_uff(named, tmp_path / "u.uff")
+    same(read_drop_records(tmp_path / "u.uff")[0], named, 0.0)
+    write_drop_csv(named, tmp_path / "c.csv")
+    same(read_drop_records(tmp_path / "c.csv")[0], named, 1e-8)
 
 
 @pytest.mark.parametrize("name", ["S1,z", "S1;z", 'S1"z', "S1'z", "S1\nz", "S1_z\n", "S1\u2028z", "S1\tz"])
@@ -78,31 +85,31 @@ def test_names_that_no_head_line_can_hold_are_refused(tmp_path, record, name):
     """Neither the file nor its sidecar is left behind."""
     named = replace(record, channels=(replace(record.channels[0], name=name), *record.channels[1:]))
     with pytest.raises(InputError, match="a name that a head line cannot hold"):
-        write_csv(named, tmp_path / "r.csv")
+        write_drop_csv(named, tmp_path / "r.csv")
     assert not list(tmp_path.iterdir())
 
 
 def test_decimal_commas(tmp_path, record):
-    write_csv(record, tmp_path / "r.csv")
+    write_drop_csv(record, tmp_path / "r.csv")
     text = (tmp_path / "r.csv").read_text()
     (tmp_path / "r.csv").write_text(text.replace(",", ";").replace(".", ","))
-    same(read_records(tmp_path / "r.csv")[0], record, 1e-8)
+    same(read_drop_records(tmp_path / "r.csv")[0], record, 1e-8)
 
 
 def test_units_and_directions_become_si_and_upward(tmp_path, record):
-    write_csv(record, tmp_path / "r.csv")
+    write_drop_csv(record, tmp_path / "r.csv")
     sidecar = (
         (tmp_path / "r.toml").read_text().replace('direction = "+z"\nunit = "m/s2"', 'direction = "-z"\nunit = "g"', 1)
     )
     (tmp_path / "r.toml").write_text(sidecar)
-    (read,) = read_records(tmp_path / "r.csv")
+    (read,) = read_drop_records(tmp_path / "r.csv")
     assert read.signals[:, 0] == pytest.approx(-9.80665 * record.signals[:, 0], rel=1e-6)
     assert read.signals[:, 2] == pytest.approx(record.signals[:, 2], rel=1e-6)
 
 
 @pytest.mark.parametrize("version", ["5", "7.3"])
 def test_matlab(tmp_path, record, version):
-    write_csv(record, tmp_path / "r.csv")
+    write_drop_csv(record, tmp_path / "r.csv")
     path = tmp_path / "r.mat"
     if version == "5":
         scipy.io.savemat(path, {"acceleration": record.signals, "fs": RATE})
@@ -110,12 +117,12 @@ def test_matlab(tmp_path, record, version):
         with h5py.File(path, "w") as file:
             file["acceleration"] = record.signals.T  # MATLAB stores by columns
             file["fs"] = np.array([[RATE]])
-    same(read_records(path)[0], record, 1e-12)
+    same(read_drop_records(path)[0], record, 1e-12)
 
 
 def test_tdms(tmp_path, record):
     nptdms = pytest.importorskip("nptdms", reason="extra tdms")
-    write_csv(record, tmp_path / "r.csv")
+    write_drop_csv(record, tmp_path / "r.csv")
     with nptdms.TdmsWriter(str(tmp_path / "r.tdms")) as writer:
         writer.write_segment(
             [
@@ -123,12 +130,12 @@ def test_tdms(tmp_path, record):
                 for c, channel in enumerate(record.channels)
             ]
         )
-    same(read_records(tmp_path / "r.tdms")[0], record, 0.0)
+    same(read_drop_records(tmp_path / "r.tdms")[0], record, 0.0)
 
 
 def test_mdf(tmp_path, record):
     asammdf = pytest.importorskip("asammdf", reason="extra mdf")
-    write_csv(record, tmp_path / "r.csv")
+    write_drop_csv(record, tmp_path / "r.csv")
     file = asammdf.MDF(version="4.10")
     signals = [
         asammdf.Signal(record.signals[:, c], record.time, name=channel.name, unit="m/s2")
@@ -137,12 +144,12 @@ def test_mdf(tmp_path, record):
     file.append(signals)
     file.save(tmp_path / "r.mf4", overwrite=True)
     file.close()
-    same(read_records(tmp_path / "r.mf4")[0], record, 0.0)
+    same(read_drop_records(tmp_path / "r.mf4")[0], record, 0.0)
 
 
 def test_tdms_with_channels_of_two_rates_is_refused(tmp_path, record):
     nptdms = pytest.importorskip("nptdms", reason="extra tdms")
-    write_csv(record, tmp_path / "r.csv")
+    write_drop_csv(record, tmp_path / "r.csv")
     with nptdms.TdmsWriter(str(tmp_path / "r.tdms")) as writer:
         writer.write_segment(
             [
@@ -151,7 +158,7 @@ def test_tdms_with_channels_of_two_rates_is_refused(tmp_path, record):
             ]
         )
     with pytest.raises(InputError, match="differ in sampling interval"):
-        read_records(tmp_path / "r.tdms")
+        read_drop_records(tmp_path / "r.tdms")
 
 
 def test_mdf_with_channels_of_two_rates_is_refused(tmp_path, record, monkeypatch):
@@ -178,40 +185,40 @@ def test_mdf_with_channels_of_two_rates_is_refused(tmp_path, record, monkeypatch
     monkeypatch.setitem(sys.modules, "asammdf", SimpleNamespace(MDF=File))
     monkeypatch.setitem(sys.modules, "asammdf.blocks", SimpleNamespace())
     monkeypatch.setitem(sys.modules, "asammdf.blocks.utils", SimpleNamespace(MdfException=RuntimeError))
-    write_csv(record, tmp_path / "r.csv")
+    write_drop_csv(record, tmp_path / "r.csv")
     (tmp_path / "r.mf4").write_bytes(b"x")
     with pytest.raises(InputError, match="differ in sampling interval"):
-        read_records(tmp_path / "r.mf4")
+        read_drop_records(tmp_path / "r.mf4")
     signals[record.channels[2].name].timestamps = record.time
-    same(read_records(tmp_path / "r.mf4")[0], record, 0.0)
+    same(read_drop_records(tmp_path / "r.mf4")[0], record, 0.0)
 
 
 @pytest.mark.parametrize("name", ["Time", "T", "TIME_S"])
 def test_matlab_time_is_no_signal_however_it_is_written(tmp_path, record, name):
-    write_csv(record, tmp_path / "r.csv")
+    write_drop_csv(record, tmp_path / "r.csv")
     scipy.io.savemat(tmp_path / "r.mat", {name: record.time, "acceleration": record.signals})
-    same(read_records(tmp_path / "r.mat")[0], record, 1e-12)
+    same(read_drop_records(tmp_path / "r.mat")[0], record, 1e-12)
     scipy.io.savemat(tmp_path / "r.mat", {name: 2 * record.time, "acceleration": record.signals})
     with pytest.raises(InputError, match="the time column says 50"):
-        read_records(tmp_path / "r.mat")
+        read_drop_records(tmp_path / "r.mat")
 
 
 @pytest.mark.parametrize("form", ["matrix", "vectors"])
 def test_matlab_time_of_another_length_is_refused(tmp_path, record, form):
-    write_csv(record, tmp_path / "r.csv")
+    write_drop_csv(record, tmp_path / "r.csv")
     vectors = {channel.name: record.signals[:, c] for c, channel in enumerate(record.channels)}
     data = vectors if form == "vectors" else {"acceleration": record.signals}
     scipy.io.savemat(tmp_path / "r.mat", {"t": record.time[:-7], **data})
     with pytest.raises(InputError, match=f"{N - 7} times for {N} samples"):
-        read_records(tmp_path / "r.mat")
+        read_drop_records(tmp_path / "r.mat")
 
 
 def test_matlab_tables_of_one_size_are_refused(tmp_path, record):
     """One vector per channel under other names than the sidecar's, or raw and filtered side by side: no one is it."""
-    write_csv(record, tmp_path / "r.csv")
+    write_drop_csv(record, tmp_path / "r.csv")
     scipy.io.savemat(tmp_path / "r.mat", {"raw": record.signals, "filtered": 0.5 * record.signals, "fs": RATE})
     with pytest.raises(InputError, match=r"filtered, raw.*several tables of one size"):
-        read_records(tmp_path / "r.mat")
+        read_drop_records(tmp_path / "r.mat")
 
 
 @pytest.mark.parametrize(("suffix", "package", "extra"), [(".tdms", "nptdms", "tdms"), (".mf4", "asammdf", "mdf")])
@@ -220,14 +227,14 @@ def test_missing_extra_is_named(tmp_path, monkeypatch, suffix, package, extra):
     path.write_bytes(b"x")
     monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(InputError, match=rf"pantocheck\[{extra}\]"):
-        read_records(path)
+        read_drop_records(path)
 
 
 def csv_damage(change):
     """A written CSV record with its text changed."""
 
     def damage(folder, record):
-        write_csv(record, folder / "r.csv")
+        write_drop_csv(record, folder / "r.csv")
         path = folder / "r.csv"
         path.write_text(change(path.read_text()))
         return path
@@ -239,7 +246,7 @@ def sidecar_damage(old, new):
     """A written CSV record with its sidecar changed."""
 
     def damage(folder, record):
-        write_csv(record, folder / "r.csv")
+        write_drop_csv(record, folder / "r.csv")
         path = folder / "r.toml"
         text = path.read_text()
         assert old in text
@@ -250,21 +257,21 @@ def sidecar_damage(old, new):
 
 
 def cut_binary(folder, record):
-    write_uff(record, folder / "r.uff")
+    write_drop_uff(record, folder / "r.uff")
     content = (folder / "r.uff").read_bytes()
     (folder / "r.uff").write_bytes(content[: len(content) * 2 // 3])
     return folder / "r.uff"
 
 
 def cut_hdf5(folder, record):
-    write_hdf5((record,), folder / "r.h5")
+    write_drop_hdf5((record,), folder / "r.h5")
     content = (folder / "r.h5").read_bytes()
     (folder / "r.h5").write_bytes(content[: len(content) // 2])
     return folder / "r.h5"
 
 
 def without_sidecar(folder, record):
-    write_csv(record, folder / "r.csv")
+    write_drop_csv(record, folder / "r.csv")
     (folder / "r.toml").unlink()
     return folder / "r.csv"
 
@@ -308,32 +315,32 @@ DAMAGES = {
 def test_damage_is_told(tmp_path, record, name):
     damage, message = DAMAGES[name]
     with pytest.raises(InputError, match=message):
-        read_records(damage(tmp_path, record))
+        read_drop_records(damage(tmp_path, record))
 
 
 @pytest.mark.parametrize("suffix", [".uff", ".mat", ".h5", ".tdms", ".mf4", ".csv"])
 def test_garbage_is_refused(tmp_path, record, suffix):
-    write_csv(record, tmp_path / "r.csv")
+    write_drop_csv(record, tmp_path / "r.csv")
     path = tmp_path / f"r{suffix}"
     path.write_bytes(bytes(np.random.default_rng(1).integers(0, 256, 5000, dtype=np.uint8)))
     with pytest.raises(InputError):
-        read_records(path)
+        read_drop_records(path)
 
 
 def test_hdf5_group_in_place_of_a_table_is_refused(tmp_path, record):
-    write_hdf5((record,), tmp_path / "r.h5")
+    write_drop_hdf5((record,), tmp_path / "r.h5")
     with h5py.File(tmp_path / "r.h5", "r+") as file:
         del file["run_1/acceleration"]
         file.create_group("run_1/acceleration")
     with pytest.raises(InputError, match="holds no table of samples"):
-        read_records(tmp_path / "r.h5")
+        read_drop_records(tmp_path / "r.h5")
 
 
 def whole_file(kind, folder, record):
     if kind == "h5":
-        write_hdf5((record,), folder / "r.h5")
+        write_drop_hdf5((record,), folder / "r.h5")
         return folder / "r.h5"
-    write_csv(record, folder / "r.csv")
+    write_drop_csv(record, folder / "r.csv")
     if kind == "tdms":
         nptdms = pytest.importorskip("nptdms", reason="extra tdms")
         with nptdms.TdmsWriter(str(folder / "r.tdms")) as writer:
@@ -372,7 +379,7 @@ def test_flipped_bytes_are_read_or_refused(tmp_path, record, kind):
             damaged = damaged[: random.integers(1, end)]
         path.write_bytes(damaged)
         try:
-            read_records(path)
+            read_drop_records(path)
         except InputError:
             refused += 1
     assert refused > 0
@@ -382,8 +389,8 @@ def test_clipping_is_marked(tmp_path, record):
     signals = record.signals.copy()
     signals[50:60, 0] = signals[:, 0].max()
     clipped = DropRecord(record.name, record.source, RATE, signals, record.channels, drop=record.drop, line=record.line)
-    write_csv(clipped, tmp_path / "r.csv")
-    (read,) = read_records(tmp_path / "r.csv")
+    write_drop_csv(clipped, tmp_path / "r.csv")
+    (read,) = read_drop_records(tmp_path / "r.csv")
     assert any("clipped" in text for text in read.warnings)
 
 
@@ -391,13 +398,13 @@ def test_dead_channel_is_refused(tmp_path, record):
     signals = record.signals.copy()
     signals[:, 1] = 0.25
     dead = DropRecord(record.name, record.source, RATE, signals, record.channels, drop=record.drop)
-    write_csv(dead, tmp_path / "r.csv")
+    write_drop_csv(dead, tmp_path / "r.csv")
     with pytest.raises(InputError, match="never changes"):
-        read_records(tmp_path / "r.csv")
+        read_drop_records(tmp_path / "r.csv")
 
 
 def test_own_keys_of_a_team_are_left_alone(tmp_path, record):
-    write_csv(record, tmp_path / "r.csv")
+    write_drop_csv(record, tmp_path / "r.csv")
     text = (tmp_path / "r.toml").read_text()
     (tmp_path / "r.toml").write_text(text + "\n" + tomli_w.dumps({"weather": {"wind_m_s": 2.0}}))
-    same(read_records(tmp_path / "r.csv")[0], record, 1e-8)
+    same(read_drop_records(tmp_path / "r.csv")[0], record, 1e-8)

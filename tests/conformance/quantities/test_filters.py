@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.signal import butter, freqz
 
-from pantocheck.conformance.quantities.filters import LowPass, low_passed
+from pantocheck.conformance.quantities.filters import LowPass, filter_force
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandNotObservable
 
 RATE = 1000.0
@@ -91,7 +91,7 @@ def test_rate_too_low_is_refused():
 
 def test_force_filtered_at_the_same_cutoff_is_not_filtered_twice():
     force = np.random.default_rng(1).normal(size=2000)
-    assert low_passed(force, RATE, LowPass(), 20.0) is force
+    assert filter_force(force, RATE, LowPass(), 20.0) is force
     with pytest.raises(AlreadyFiltered, match="filtered at 10 Hz"):
-        low_passed(force, RATE, LowPass(), 10.0)
-    assert_allclose(low_passed(force, RATE, LowPass(), 200.0), LowPass()(force, RATE))
+        filter_force(force, RATE, LowPass(), 10.0)
+    assert_allclose(filter_force(force, RATE, LowPass(), 200.0), LowPass()(force, RATE))

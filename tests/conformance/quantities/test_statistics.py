@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from pantocheck.conformance.quantities.statistics import (
     coefficient_of_variation,
     contact_loss,
-    histogram,
+    force_histogram,
     statistical_extremes,
 )
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered
@@ -38,7 +38,7 @@ def test_contact_loss_of_a_filtered_force_is_unknown():
 @given(values=st.lists(st.floats(-500, 500), min_size=1, max_size=300))
 def test_histogram_holds_every_sample_once(values):
     force = np.array(values)
-    edges, share = histogram(force)
+    edges, share = force_histogram(force)
     assert edges[0] <= force.min()
     assert force.max() < edges[-1]
     assert share.size == edges.size - 1

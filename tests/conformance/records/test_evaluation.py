@@ -13,7 +13,7 @@ from pantocheck.conformance.quantities.registry import (
     PANTOGRAPH_QUANTITIES,
     QUANTITIES,
 )
-from pantocheck.conformance.records.evaluation import LINE, evaluate
+from pantocheck.conformance.records.evaluation import LINE, evaluate_record
 from pantocheck.conformance.records.record import Record
 
 RATE, SPEED = 1000.0, 50.0
@@ -35,7 +35,7 @@ def record(force=None, rate: float = RATE, length: float = 600.0, **changes) -> 
 
 
 def values(item: Record, **filter_settings) -> dict[str, float]:
-    return evaluate(item, LowPass(**filter_settings)).values[1]
+    return evaluate_record(item, LowPass(**filter_settings)).values[1]
 
 
 def test_every_quantity_of_a_known_force():
@@ -85,7 +85,7 @@ def test_two_pantographs_are_evaluated_where_each_of_them_is():
     time = np.arange(12_000) / RATE
     position = np.array([SPEED * time, SPEED * time - 100])
     force = np.where(position < 200, 500.0, np.where(position < 400, [[110.0], [130.0]], 900.0))
-    found = evaluate(record(force, position=position), LowPass()).values
+    found = evaluate_record(record(force, position=position), LowPass()).values
     assert_allclose([found[1]["mean_force_N"], found[2]["mean_force_N"]], [110, 130], rtol=1e-12)
 
 
@@ -93,12 +93,12 @@ def test_uplift_is_the_largest_at_the_evaluated_supports():
     supports = np.array([150.0, 200.0, 300.0, 400.0, 450.0])
     uplift = np.zeros((5, 12_000))
     uplift[:, 7000] = [0.9, 0.04, 0.05, 0.06, 0.9]
-    found = evaluate(record(support_position=supports, support_uplift=uplift), LowPass())
+    found = evaluate_record(record(support_position=supports, support_uplift=uplift), LowPass())
     assert_allclose(found.values[LINE]["max_uplift_at_support_mm"], 60.0)
 
 
 def test_force_filtered_at_20_hz_yields_nothing_above_and_no_contact_loss():
-    evaluation = evaluate(record(filter_applied_Hz=20.0), LowPass())
+    evaluation = evaluate_record(record(filter_applied_Hz=20.0), LowPass())
     assert set(evaluation.skipped[1]) == {
         "std_force_50_N",
         "cov_50",
@@ -112,7 +112,7 @@ def test_force_filtered_at_20_hz_yields_nothing_above_and_no_contact_loss():
 
 
 def test_low_rate_yields_nothing_up_to_50_hz():
-    evaluation = evaluate(record(rate=100.0), LowPass())
+    evaluation = evaluate_record(record(rate=100.0), LowPass())
     assert {"rms_20_50_N", "std_force_50_N", "cov_50"} < set(evaluation.skipped[1])
     assert "needs at least 125 samples per second; the record has 100" in evaluation.skipped[1]["rms_20_50_N"]
     assert evaluation.values[1]["std_force_N"] > 0
@@ -120,21 +120,21 @@ def test_low_rate_yields_nothing_up_to_50_hz():
 
 @pytest.mark.parametrize("length", [190.0, 390.0])
 def test_truncated_record_yields_no_number_at_all(length):
-    evaluation = evaluate(record(length=length), LowPass())
+    evaluation = evaluate_record(record(length=length), LowPass())
     assert evaluation.values[1] == {}
     assert "the evaluated stretch is 200 m to 400 m" in evaluation.skipped[1]["mean_force_N"]
 
 
 def test_short_stretch_yields_no_slow_band():
-    evaluation = evaluate(record(evaluated=(200.0, 220.0)), LowPass())
+    evaluation = evaluate_record(record(evaluated=(200.0, 220.0)), LowPass())
     assert "lasts 0.4 s" in evaluation.skipped[1]["rms_0_5_N"]
     assert evaluation.values[1]["std_force_N"] > 0
-    shorter = evaluate(record(evaluated=(200.0, 205.0)), LowPass())
+    shorter = evaluate_record(record(evaluated=(200.0, 205.0)), LowPass())
     assert "need at least 0.2 s" in shorter.skipped[1]["std_force_N"]
 
 
 def test_record_without_uplift_or_height_says_so():
-    evaluation = evaluate(record(), LowPass())
+    evaluation = evaluate_record(record(), LowPass())
     assert evaluation.skipped[1]["contact_height_range_mm"] == "the record has no contact height"
     assert evaluation.skipped[LINE]["max_uplift_at_support_mm"] == "the record has no uplift at supports"
 

@@ -4,13 +4,13 @@ import tomllib
 
 import pytest
 
-from pantocheck.conformance.authenticity.recomputation import discrepancies
-from pantocheck.conformance.cases.library import library_folder, select
+from pantocheck.conformance.authenticity.recomputation import find_discrepancies
+from pantocheck.conformance.cases.library import library_folder, select_cases
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.records.record_summary import read_summary
-from pantocheck.conformance.runner import run
-from pantocheck.conformance.systems.record_folder import record_folder
-from pantocheck.conformance.systems.system_choice import system_named
+from pantocheck.conformance.records.record_summary import read_record_summary
+from pantocheck.conformance.runner import run_cases
+from pantocheck.conformance.systems.record_folder import open_record_folder
+from pantocheck.conformance.systems.system_choice import choose_system
 
 PASSING = library_folder() / "en50318-2002" / "known-passing-code"
 SPEEDS = ("250", "300")
@@ -27,10 +27,10 @@ QUANTITIES = (
 
 
 def test_published_passing_code_passes_on_all_criteria():
-    results = run(select(["en50318-2002/*"]), system_named("record:en50318-2002/known-passing-code"))
+    results = run_cases(select_cases(["en50318-2002/*"]), choose_system("record:en50318-2002/known-passing-code"))
     assert results.verdict == "pass"
     assert [item.verdict for case in results.cases for item in case.criteria] == ["pass"] * 16
-    assert discrepancies(results.to_dict()) == []
+    assert find_discrepancies(results.to_dict()) == []
     # The printed extremes at 300 km/h contradict the printed mean and deviation: said, and graded as printed.
     assert [len(case.warnings) for case in results.cases] == [0, 2]
 
@@ -38,7 +38,7 @@ def test_published_passing_code_passes_on_all_criteria():
 @pytest.mark.parametrize("speed", SPEEDS)
 @pytest.mark.parametrize("quantity", QUANTITIES)
 def test_value_just_outside_its_limit_fails_on_that_criterion_alone(speed, quantity, tmp_path):
-    (case,) = select([f"en50318-2002/{speed}"])
+    (case,) = select_cases([f"en50318-2002/{speed}"])
     (limit,) = (limit for limit in case.limits if limit.quantity == quantity)
     text = (PASSING / f"{speed}.toml").read_text()
     (line,) = (line for line in text.splitlines() if line.startswith(f"{quantity} = "))
@@ -46,7 +46,7 @@ def test_value_just_outside_its_limit_fails_on_that_criterion_alone(speed, quant
         if bound == 0 and step < 0:
             continue  # a share below 0 % cannot be
         (tmp_path / "pushed.toml").write_text(text.replace(line, f"{quantity} = {bound + step!r}"))
-        (result,) = run([case], record_folder(tmp_path)).cases
+        (result,) = run_cases([case], open_record_folder(tmp_path)).cases
         assert result.verdict == "fail"
         assert [item.quantity for item in result.criteria if item.verdict == "fail"] == [quantity]
         assert sum(item.verdict == "pass" for item in result.criteria) == 7
@@ -55,7 +55,7 @@ def test_value_just_outside_its_limit_fails_on_that_criterion_alone(speed, quant
 def test_quantity_that_is_not_given_is_skipped(tmp_path):
     text = (PASSING / "250.toml").read_text()
     (tmp_path / "a.toml").write_text(text.replace("max_force_N = 193.7\n", ""))
-    (result,) = run(select(["en50318-2002/250"]), record_folder(tmp_path)).cases
+    (result,) = run_cases(select_cases(["en50318-2002/250"]), open_record_folder(tmp_path)).cases
     assert result.verdict == "skip"
     (skipped,) = (item for item in result.criteria if item.verdict == "skip")
     assert (skipped.quantity, skipped.reason) == ("max_force_N", "the summary record does not give it")
@@ -72,7 +72,7 @@ def test_quantity_that_is_not_given_is_skipped(tmp_path):
 )
 def test_summary_of_another_case_is_an_error(old, new, message, tmp_path):
     (tmp_path / "a.toml").write_text((PASSING / "250.toml").read_text().replace(old, new))
-    (result,) = run(select(["en50318-2002/250"]), record_folder(tmp_path)).cases
+    (result,) = run_cases(select_cases(["en50318-2002/250"]), open_record_folder(tmp_path)).cases
     assert result.verdict == "error"
     assert message in result.reason
 
@@ -100,7 +100,7 @@ def test_nonsense_is_refused_with_its_key(old, new, message, tmp_path):
     assert old in text
     (tmp_path / "a.toml").write_text(text.replace(old, new, 1))
     with pytest.raises(InputError, match=message):
-        read_summary(tmp_path / "a.toml")
+        read_record_summary(tmp_path / "a.toml")
 
 
 def test_shipped_numbers_are_the_published_ones():

@@ -3,9 +3,9 @@
 import pytest
 from numpy.testing import assert_allclose
 
-from pantocheck.conformance.reports.certificate.certificate_page import page
-from pantocheck.conformance.reports.figures.charts import chart
-from pantocheck.conformance.reports.formats.html import render
+from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
+from pantocheck.conformance.reports.figures.charts import draw_chart
+from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.results.results_format import Chart, Mark, Series, TextTable
 
 LINE = Series(label="computed", style="line", x=[1e-6, 1e-3, 1.0], y=[3.0, 2.0, 1.0])
@@ -20,12 +20,12 @@ def data(**parts):
 
 
 def drawn(**parts):
-    return chart(data(**parts))
+    return draw_chart(data(**parts))
 
 
 def axes_of(**parts):
     """The axes before they are made a picture."""
-    (axes,) = chart.__wrapped__(data(**parts)).axes
+    (axes,) = draw_chart.__wrapped__(data(**parts)).axes
     return axes
 
 
@@ -72,7 +72,7 @@ def test_tables_and_charts_stand_on_the_page_escaped(results):
                             series=[LINE]).model_dump()]  # fmt: skip
     table = TextTable(caption="Findings", columns=["Finding", "Verdict"], rows=[["<b>less</b> in front", "reproduced"]])
     case["tables"] = [table.model_dump()]
-    text = render(results)
+    text = render_html(results)
     assert "Figure of a study" in text
     assert "&lt;b&gt;less&lt;/b&gt; in front" in text
-    assert page(results).cases[0].tables[0].rows == (("<b>less</b> in front", "reproduced"),)
+    assert build_certificate(results).cases[0].tables[0].rows == (("<b>less</b> in front", "reproduced"),)

@@ -38,7 +38,7 @@ class Outline(HTMLParser):
 
 
 def test_same_results_give_the_same_bytes(results, page_text):
-    assert html.render(results) == page_text
+    assert html.render_html(results) == page_text
 
 
 @pytest.mark.parametrize("name", ["page_text", "hostile_text"])

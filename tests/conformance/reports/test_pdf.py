@@ -13,9 +13,9 @@ import pytest
 from pypdf import PdfReader
 
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.reports.certificate.criteria_rows import criterion
+from pantocheck.conformance.reports.certificate.criteria_rows import build_criterion_row
 from pantocheck.conformance.reports.formats import html, pdf
-from pantocheck.conformance.reports.formats.embedding import timeless
+from pantocheck.conformance.reports.formats.embedding import strip_times
 
 
 def words_of(content: bytes) -> str:
@@ -26,10 +26,10 @@ def words_of(content: bytes) -> str:
 
 def test_same_input_gives_the_same_bytes_whenever_it_ran(passing, tmp_path, monkeypatch):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
-    pdf.write(passing, tmp_path / "a.pdf")
+    pdf.write_certificate_pdf(passing, tmp_path / "a.pdf")
     later = passing | {"started": "2031-01-01T00:00:00Z"}
     later["cases"][0]["run"] |= {"wall_s": 99.0}
-    pdf.write(later, tmp_path / "b.pdf")
+    pdf.write_certificate_pdf(later, tmp_path / "b.pdf")
     assert (tmp_path / "a.pdf").read_bytes() == (tmp_path / "b.pdf").read_bytes()
 
 
@@ -40,7 +40,7 @@ def test_bytes_do_not_depend_on_the_process(passing, tmp_path):
     program = (
         "import hashlib, json, sys; from pantocheck.conformance.reports.formats import html, pdf;"
         "r = json.load(open(sys.argv[1]));"
-        "print(hashlib.sha256(html.render(r).encode() + pdf.render(r, 1)).hexdigest())"
+        "print(hashlib.sha256(html.render_html(r).encode() + pdf.render_pdf(r, 1)).hexdigest())"
     )
     other = subprocess.run(
         [sys.executable, "-c", program, str(source)],
@@ -49,13 +49,13 @@ def test_bytes_do_not_depend_on_the_process(passing, tmp_path):
         check=True,
         text=True,
     )
-    here = hashlib.sha256(html.render(passing).encode() + pdf.render(passing, 1))
+    here = hashlib.sha256(html.render_html(passing).encode() + pdf.render_pdf(passing, 1))
     assert other.stdout.strip() == here.hexdigest()
 
 
 def test_date_is_the_start_of_the_run(passing, tmp_path, monkeypatch):
     monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
-    pdf.write(passing, tmp_path / "a.pdf")
+    pdf.write_certificate_pdf(passing, tmp_path / "a.pdf")
     assert PdfReader(tmp_path / "a.pdf").metadata["/CreationDate"] == "D:20261120235000Z"
 
 
@@ -63,14 +63,14 @@ def test_date_is_the_start_of_the_run(passing, tmp_path, monkeypatch):
 def test_wrong_source_date_is_refused(passing, tmp_path, monkeypatch, given):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", given)
     with pytest.raises(InputError, match="SOURCE_DATE_EPOCH"):
-        pdf.write(passing, tmp_path / "a.pdf")
+        pdf.write_certificate_pdf(passing, tmp_path / "a.pdf")
     assert list(tmp_path.iterdir()) == []
 
 
 def test_attachment_is_the_results_without_times(results, certificate):
     reader = PdfReader(io.BytesIO(certificate))
     [content] = reader.attachments["results.json"]
-    assert json.loads(content) == json.loads(json.dumps(timeless(results)))
+    assert json.loads(content) == json.loads(json.dumps(strip_times(results)))
     assert b'"started": null' in content
     assert b"wall_s" in content
     assert not re.search(rb'"wall_s": [0-9]', content)
@@ -99,14 +99,14 @@ def test_every_criterion_is_printed(results, certificate):
     text = words_of(certificate)
     for case in results["cases"]:
         for row in case["criteria"]:
-            shown = criterion(row, [])
+            shown = build_criterion_row(row, [])
             assert f"{shown.label}{shown.quantity}".replace(" ", "") in text
             expected = f"{shown.pantograph}{shown.value}{shown.unit}{shown.error}{shown.limits}{shown.margin}"
             assert expected.replace(" ", "") in text
 
 
 def test_hostile_text_stays_text(hostile):
-    text = words_of(pdf.render(hostile, 1))
+    text = words_of(pdf.render_pdf(hostile, 1))
     assert '#import"x.typ":*"])#panic()' in text
     assert "<script>alert(1)</script>" in text
     assert "x" * 300 in text
@@ -125,4 +125,4 @@ def test_fonts_are_embedded_and_none_is_the_machines(certificate):
 def test_unwritable_folder_is_an_input_error(passing, tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError):
-        pdf.write(passing, Path(tmp_path, "file", "a.pdf"))
+        pdf.write_certificate_pdf(passing, Path(tmp_path, "file", "a.pdf"))

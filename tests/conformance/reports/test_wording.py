@@ -9,14 +9,14 @@ from hypothesis import strategies as st
 
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.reports import page_text as text
-from pantocheck.conformance.reports.certificate.case_facts import of_case
-from pantocheck.conformance.reports.certificate.certificate_page import page
-from pantocheck.conformance.reports.certificate.criteria_rows import criterion, signed
+from pantocheck.conformance.reports.certificate.case_facts import list_case_facts
+from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
+from pantocheck.conformance.reports.certificate.criteria_rows import build_criterion_row, format_signed
 from pantocheck.conformance.reports.certificate.quantity_tables import bands
-from pantocheck.conformance.reports.certificate.verdict_reasons import reasons
+from pantocheck.conformance.reports.certificate.verdict_reasons import build_reasons
 from pantocheck.conformance.reports.figures import force_figures as figures
-from pantocheck.conformance.reports.figures.margin_bar import WIDTH, margin_bar
-from pantocheck.conformance.reports.words import words
+from pantocheck.conformance.reports.figures.margin_bar import WIDTH, draw_margin_bar
+from pantocheck.conformance.reports.words import read_words
 from pantocheck.conformance.results.results_format import Results
 
 numbers = st.floats(-1e6, 1e6)
@@ -27,13 +27,13 @@ def test_example_has_the_format_of_results(results):
 
 
 def test_every_quantity_has_a_name():
-    assert list(words()["quantity"].keys() ^ QUANTITIES.keys()) == []
+    assert list(read_words()["quantity"].keys() ^ QUANTITIES.keys()) == []
 
 
 @given(st.text(st.characters()))
 def test_clean_text_fits_any_format(raw):
-    shown = text.clean(raw)
-    assert text.clean(shown) == shown
+    shown = text.clean_text(raw)
+    assert text.clean_text(shown) == shown
     shown.encode("utf-8")
     ElementTree.fromstring(f"<a>{shown.replace('&', '').replace('<', '')}</a>")
     assert len(shown) <= text.LONGEST
@@ -51,12 +51,12 @@ def test_clean_text_fits_any_format(raw):
     ],
 )
 def test_number(value, shown):
-    assert text.number(value) == shown
+    assert text.format_value(value) == shown
 
 
 @given(numbers, numbers)
 def test_a_shown_value_lies_on_the_same_side_of_its_limit(value, limit):
-    shown = float(text.beside_limits(value, limit, None).replace("−", "-"))
+    shown = float(text.format_beside_limits(value, limit, None).replace("−", "-"))
     assert (shown >= limit) == (value >= limit)
 
 
@@ -64,14 +64,14 @@ def test_a_shown_value_lies_on_the_same_side_of_its_limit(value, limit):
     ("margin", "shown"), [(0.0, "0.00"), (0.4812, "+0.48"), (-0.0004, "−0.0004"), (1e-20, "+1.0e−20")]
 )
 def test_a_margin_shows_its_sign(margin, shown):
-    assert signed(margin) == shown
+    assert format_signed(margin) == shown
 
 
 @given(numbers, st.none() | numbers, st.none() | numbers, st.none() | st.floats(0, 1e3))
 def test_margin_bar_stays_inside_its_drawing(value, lower, upper, error):
     if lower is not None and upper is not None and lower > upper:
         lower, upper = upper, lower
-    root = ElementTree.fromstring(margin_bar(value, lower, upper, error, "pass"))
+    root = ElementTree.fromstring(draw_margin_bar(value, lower, upper, error, "pass"))
     for circle in root.iter("{http://www.w3.org/2000/svg}circle"):
         assert 0 <= float(circle.get("cx")) <= WIDTH
     assert "nan" not in ElementTree.tostring(root).decode()
@@ -79,7 +79,7 @@ def test_margin_bar_stays_inside_its_drawing(value, lower, upper, error):
 
 def test_margin_bar_marks_are_told_apart_without_colour():
     inside, outside, uncounted, beyond = (
-        margin_bar(value, 26, 31, None, verdict)
+        draw_margin_bar(value, 26, 31, None, verdict)
         for value, verdict in ((28, "pass"), (32, "fail"), (28, "info"), (99, "fail"))
     )
     assert 'r="4.5" fill="#1b5e3a"' in inside
@@ -91,24 +91,24 @@ def test_margin_bar_marks_are_told_apart_without_colour():
 def test_a_row_says_all_there_is(passing):
     row = passing["cases"][0]["criteria"][0] | {"value": 118.2, "margin": 0.36, "discretisation_error": 0.1234}
     sources = ["another"]
-    shown = criterion(row, sources)
+    shown = build_criterion_row(row, sources)
     assert (shown.value, shown.unit, shown.error, shown.limits) == ("118.2", "N", "± 0.12", "110 to 120")
     assert (shown.margin, shown.verdict, shown.trust, shown.pantograph) == ("+0.36", "pass", "secondary", "1")
     assert sources[shown.source - 1] == row["source"]
-    of_line = criterion(row | {"pantograph": 0, "item": 3, "discretisation_error": None}, sources)
+    of_line = build_criterion_row(row | {"pantograph": 0, "item": 3, "discretisation_error": None}, sources)
     assert (of_line.pantograph, of_line.error) == ("line, no. 3", "–")
 
 
 def test_a_value_within_its_discretisation_error_is_named(passing):
     row = passing["cases"][0]["criteria"][0]
     row |= {"value": 119.9, "discretisation_error": 0.2, "margin": 0.02}
-    assert criterion(row, []).remarks == ("closer to its limit than its discretisation error",)
-    headings = [group.heading for group in reasons(passing)]
+    assert build_criterion_row(row, []).remarks == ("closer to its limit than its discretisation error",)
+    headings = [group.heading for group in build_reasons(passing)]
     assert headings == ["Closer to a limit than the discretisation error", "Closest margins"]
 
 
 def test_reasons_lead_with_the_gravest(results):
-    groups = {group.heading: group.sentences for group in reasons(results)}
+    groups = {group.heading: group.sentences for group in build_reasons(results)}
     assert list(groups) == ["What failed", "What could not be evaluated", "Closest margins"]
     assert len(groups["What failed"]) == 1
     assert "31.68 N, limits 32 to 34, margin −0.32" in groups["What failed"][0]
@@ -127,8 +127,8 @@ def test_bands_say_what_is_graded(results):
 
 
 def test_wall_time_per_simulated_time(passing):
-    facts = dict(of_case(passing["cases"][0]))
-    assert facts["Wall time / simulated time"] == text.number(0.412 / 7.0, 3)
+    facts = dict(list_case_facts(passing["cases"][0]))
+    assert facts["Wall time / simulated time"] == text.format_value(0.412 / 7.0, 3)
     assert facts["Filter"] == "Butterworth, order 6, −3 dB at 20 Hz, zero phase"
 
 
@@ -139,7 +139,7 @@ def test_a_record_with_gaps_still_makes_a_page(passing):
     case["quantities"]["0"] = {"dropper_length_m": [1.017, 0.896]}
     case["run"] |= dict.fromkeys(("simulated_s", "wall_s", "dt_s", "element_m"))
     Results.model_validate(passing)
-    made = page(passing).cases[0]
+    made = build_certificate(passing).cases[0]
     assert [figure.caption.split(":")[0] for figure in made.figures] == 2 * ["Pantograph 1"] + 3 * ["Pantograph 2"] + [
         "Uplift at the supports. Largest"
     ]
@@ -150,9 +150,9 @@ def test_figures_are_the_same_whatever_the_users_settings(passing):
     import matplotlib
 
     case = passing["cases"][0]
-    expected = figures.uplift(case["uplift"], case["criteria"])
+    expected = figures.draw_uplift(case["uplift"], case["criteria"])
     with matplotlib.rc_context({"font.family": "monospace", "axes.grid": False, "svg.fonttype": "none"}):
-        assert figures.uplift(case["uplift"], case["criteria"]) == expected
+        assert figures.draw_uplift(case["uplift"], case["criteria"]) == expected
         assert matplotlib.rcParams["svg.fonttype"] == "none"
     assert "<text" not in expected
     assert "dc:date" not in expected

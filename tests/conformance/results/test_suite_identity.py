@@ -23,17 +23,17 @@ def test_own_repository_gives_its_commit_and_says_if_files_were_changed(reposito
     head = subprocess.run(
         ["git", "-C", str(repository), "rev-parse", "HEAD"], capture_output=True, text=True, check=True
     )
-    commit = suite_identity.suite_commit.__wrapped__()
+    commit = suite_identity.find_suite_commit.__wrapped__()
     assert commit is not None
     assert head.stdout.startswith(commit)
     (repository / "conformance" / "x.py").write_text("x = 2\n")
-    assert suite_identity.suite_commit.__wrapped__() == f"{commit}-dirty"
+    assert suite_identity.find_suite_commit.__wrapped__() == f"{commit}-dirty"
 
 
 def test_foreign_repository_or_none_gives_no_commit(repository, monkeypatch, tmp_path_factory):
     inner = repository / "site-packages" / "conformance"
     inner.mkdir(parents=True)
     monkeypatch.setattr(suite_identity, "files", lambda name: inner)
-    assert suite_identity.suite_commit.__wrapped__() is None
+    assert suite_identity.find_suite_commit.__wrapped__() is None
     monkeypatch.setattr(suite_identity, "files", lambda name: tmp_path_factory.mktemp("plain"))
-    assert suite_identity.suite_commit.__wrapped__() is None
+    assert suite_identity.find_suite_commit.__wrapped__() is None

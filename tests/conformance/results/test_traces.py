@@ -5,7 +5,7 @@ from numpy.testing import assert_allclose
 
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.records.record import Record
-from pantocheck.conformance.results.traces import MOST_POINTS, pantograph_traces, thinned, uplift_traces
+from pantocheck.conformance.results.traces import MOST_POINTS, build_pantograph_traces, build_uplift_traces, thin_series
 
 RATE, SPEED = 200.0, 50.0
 
@@ -25,7 +25,7 @@ def long_record(**changes) -> Record:
 
 
 def test_thinned_spectrum_keeps_its_peak():
-    traces = pantograph_traces(long_record(), LowPass(), [0.0, 50.0])["1"]
+    traces = build_pantograph_traces(long_record(), LowPass(), [0.0, 50.0])["1"]
     spectrum = traces.spectrum
     assert len(spectrum.frequency_Hz) <= MOST_POINTS
     assert_allclose(max(spectrum.amplitude_N), 10.0, rtol=1e-5)
@@ -35,15 +35,15 @@ def test_thinned_spectrum_keeps_its_peak():
 
 
 def test_spectrum_ends_where_the_force_was_filtered():
-    traces = pantograph_traces(long_record(filter_applied_Hz=20.0), LowPass(), [])["1"]
+    traces = build_pantograph_traces(long_record(filter_applied_Hz=20.0), LowPass(), [])["1"]
     assert max(traces.spectrum.frequency_Hz) <= 20
 
 
 def test_nothing_is_drawn_of_a_stretch_that_is_not_covered():
-    assert pantograph_traces(long_record(evaluated=(0.0, 9000.0)), LowPass(), []) == {}
-    assert uplift_traces(long_record()) == []
+    assert build_pantograph_traces(long_record(evaluated=(0.0, 9000.0)), LowPass(), []) == {}
+    assert build_uplift_traces(long_record()) == []
 
 
 def test_series_are_rounded_and_thinned():
-    assert thinned(np.array([1 / 3])) == [0.333333]
-    assert thinned(np.arange(3001.0)) == list(range(0, 3001, 3))
+    assert thin_series(np.array([1 / 3])) == [0.333333]
+    assert thin_series(np.arange(3001.0)) == list(range(0, 3001, 3))

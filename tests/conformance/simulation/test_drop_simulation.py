@@ -7,11 +7,11 @@ import pytest
 from numpy.testing import assert_allclose
 from typer.testing import CliRunner
 
-from pantocheck.conformance.cases.library import library_folder, load, select
+from pantocheck.conformance.cases.library import library_folder, load_case, select_cases
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.mass_drops.drop_reading import read_records
-from pantocheck.conformance.simulation.drop_simulation import decimated, simulated
+from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
+from pantocheck.conformance.simulation.drop_simulation import decimate, simulate_drop
 
 
 def pantocheck(*arguments: object):
@@ -48,19 +48,19 @@ def test_decimation_keeps_the_pass_band_and_its_phase():
     time = np.arange(20_000) / rate
     for frequency in (1.0, 40.0, 80.0):
         wave = np.sin(2 * np.pi * frequency * time)[:, None]
-        assert_allclose(decimated(wave, every)[200:-200], wave[::every][200:-200], atol=1e-4)
+        assert_allclose(decimate(wave, every)[200:-200], wave[::every][200:-200], atol=1e-4)
 
 
 def test_decimation_takes_out_what_would_alias():
     rate, every = 1000.0, 5
     time = np.arange(20_000) / rate
     wave = np.sin(2 * np.pi * 101.0 * time)[:, None]
-    assert np.abs(decimated(wave, every)[200:-200]).max() < 1e-4
+    assert np.abs(decimate(wave, every)[200:-200]).max() < 1e-4
 
 
 def test_record_is_the_decay_at_its_own_rate(own_case):
-    case = load(own_case(("noise_rms = 0.003", "noise_rms = 0.0")))
-    drop = simulated(case, 1)
+    case = load_case(own_case(("noise_rms = 0.003", "noise_rms = 0.0")))
+    drop = simulate_drop(case, 1)
     record, decay = drop.record, drop.decay
     assert record.rate == 100.0
     assert (record.drop.mass, record.drop.wire, record.drop.position, record.drop.trigger_nominal) == (
@@ -83,8 +83,8 @@ def test_record_is_the_decay_at_its_own_rate(own_case):
 
 
 def test_noise_is_the_same_every_time_and_another_for_every_drop(own_case):
-    case = load(own_case())
-    first, again, other = simulated(case, 1).record, simulated(case, 1).record, simulated(case, 3).record
+    case = load_case(own_case())
+    first, again, other = simulate_drop(case, 1).record, simulate_drop(case, 1).record, simulate_drop(case, 3).record
     assert np.array_equal(first.signals, again.signals)
     quiet = slice(0, 480)
     assert_allclose(first.signals[quiet].std(), 0.003, rtol=0.05)  # 1920 samples: 1.6 % standard error
@@ -97,15 +97,15 @@ def test_command_writes_records_that_read_back(own_case, tmp_path, suffix):
     out = tmp_path / f"record{suffix}"
     done = pantocheck("drop", own_case(), "--drop", 2, "--out", out)
     assert done.exit_code == 0, done.output
-    (record,) = read_records(out)
+    (record,) = read_drop_records(out)
     assert (record.drop.mass, record.drop.wire, record.rate) == (30.0, "MW", 100.0)
-    assert_allclose(record.signals, simulated(load(own_case()), 2).record.signals, rtol=1e-6, atol=1e-6)
+    assert_allclose(record.signals, simulate_drop(load_case(own_case()), 2).record.signals, rtol=1e-6, atol=1e-6)
 
 
 def test_command_writes_every_drop_to_a_file_of_its_own(own_case, tmp_path):
     done = pantocheck("drop", own_case(), "--out", tmp_path / "all.csv")
     assert done.exit_code == 0, done.output
-    assert [read_records(tmp_path / f"all-{n}.csv")[0].drop.mass for n in (1, 2, 3)] == [40.0, 30.0, 20.0]
+    assert [read_drop_records(tmp_path / f"all-{n}.csv")[0].drop.mass for n in (1, 2, 3)] == [40.0, 30.0, 20.0]
 
 
 @pytest.mark.parametrize(
@@ -144,29 +144,29 @@ def test_impossible_drops_are_refused_with_their_key(own_case, old, new, key):
     assert old in text
     path.write_text(text.replace(old, new, 1))
     with pytest.raises(InputError) as refused:
-        load(path)
+        load_case(path)
     assert key in str(refused.value)
 
 
 def test_damping_table_and_damping_file_are_the_same(own_case):
     """The block that a fit writes stands in a case as it is, or in a file that the case names."""
-    named = load(own_case())
+    named = load_case(own_case())
     path = own_case()
     block = (library_folder() / "vovan2015" / "damping" / "updated.toml").read_text().split("\n\n", 1)[1]
     text = path.read_text().replace('damping = "vovan2015/damping/updated.toml"\n', "", 1) + "\n" + block
     path.write_text(text)
-    assert load(path).line == named.line
-    assert load(path).digest == named.digest
+    assert load_case(path).line == named.line
+    assert load_case(path).digest == named.digest
 
 
 def test_studies_run_on_request_only():
     """They take minutes, and one is expected to fail: a run without a case must not meet them."""
-    assert not any(case.id.startswith("vovan2015") for case in select([]))
-    assert len(select(["vovan2015/*"])) == 8
+    assert not any(case.id.startswith("vovan2015") for case in select_cases([]))
+    assert len(select_cases(["vovan2015/*"])) == 8
 
 
 def test_every_kind_of_damping_that_a_model_leaves_out_stays_the_lines(own_case):
-    case = load(own_case())
+    case = load_case(own_case())
     wires = case.dampings["initial"].model_copy(update={})
     only = type(wires).model_validate(
         {"trust": "primary", "source": "test", "contact_wire": {"mass_coefficient_1_s": 0.5}}
@@ -180,5 +180,5 @@ def test_every_kind_of_damping_that_a_model_leaves_out_stays_the_lines(own_case)
 
 
 def test_digest_covers_the_models_that_a_study_runs_with():
-    (study,) = select(["vovan2015/contact-force"])
+    (study,) = select_cases(["vovan2015/contact-force"])
     assert replace(study, dampings={"initial": study.line.damping}).digest != study.digest

@@ -5,17 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pantocheck.conformance.cases.library import select
-from pantocheck.conformance.runner import run
-from pantocheck.conformance.simulation.catenary_model import catenary
-from pantocheck.conformance.simulation.static_quantities import SAMPLES_PER_SPAN, static_quantities
+from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.runner import run_cases
+from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.simulation.static_quantities import SAMPLES_PER_SPAN, compute_static_quantities
 from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
 from pantocheck.model import discretise
 
 
 def shortened(name, spans=8):
     """A case of the library on a shorter line: what is checked in a span half way along hardly feels the ends."""
-    case = next(one for one in select([name]) if one.id == name)
+    case = next(one for one in select_cases([name]) if one.id == name)
     geometry = case.line.geometry.model_copy(update={"spans": spans})
     return replace(case, line=case.line.model_copy(update={"geometry": geometry}))
 
@@ -23,7 +23,7 @@ def shortened(name, spans=8):
 @pytest.fixture(scope="module")
 def simple():
     case = shortened("en50318-2018/ac-simple/static")
-    return case, static_quantities(case, discretise(catenary(case.line), 0.5))
+    return case, compute_static_quantities(case, discretise(build_catenary(case.line), 0.5))
 
 
 def test_published_lengths_by_strings_and_what_bending_and_stagger_add(simple):
@@ -55,7 +55,7 @@ def test_waves_and_modes(simple):
     assert found["wave_speed_m_s"] == pytest.approx(np.sqrt(22e3 / 1.35))
     assert "doppler_factor" not in found
     running = shortened("en50318-2018/ac-simple/320")
-    factors = static_quantities(running, discretise(catenary(running.line), 1.0))
+    factors = compute_static_quantities(running, discretise(build_catenary(running.line), 1.0))
     c, v = factors["wave_speed_m_s"], 320 / 3.6
     assert factors["doppler_factor"] == pytest.approx((c - v) / (c + v))
     assert factors["amplification_coefficient"] == pytest.approx(
@@ -71,7 +71,7 @@ def test_waves_and_modes(simple):
 def test_stitched_line_fits_its_figure():
     """Seven lengths measured to 0.01 m."""
     case = shortened("en50318-2018/ac-stitched/static")
-    found = static_quantities(case, discretise(catenary(case.line), 1.0))
+    found = compute_static_quantities(case, discretise(build_catenary(case.line), 1.0))
     assert found["dropper_length_m"] == pytest.approx(case.line.droppers.length_m, abs=0.0101)
 
 
@@ -80,7 +80,7 @@ def test_failed_static_case_skips_what_builds_on_it():
     wrong = static.limits[0].model_copy(update={"lower": 2.0, "upper": 3.0})
     coarse = static.file.discretisation.model_copy(update={"element_m": 4.0})
     static = replace(static, file=static.file.model_copy(update={"discretisation": coarse}), limits=(wrong,))
-    results = run([static, running], ReferenceSimulator())
+    results = run_cases([static, running], ReferenceSimulator())
     assert [case.verdict for case in results.cases] == ["fail", "skip"]
     assert results.cases[1].reason == f"requires {static.id}, which ended in fail"
 

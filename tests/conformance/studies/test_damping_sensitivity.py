@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass
 
-from pantocheck.conformance.cases.library import select
+from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.results.outcome import Outcome
-from pantocheck.conformance.runner import run
-from pantocheck.conformance.studies.damping_sensitivity import MODELS, OWN, with_damping_study
+from pantocheck.conformance.runner import run_cases
+from pantocheck.conformance.studies.damping_sensitivity import MODELS, OWN, add_damping_study
 
 
 def told_apart(wave):
@@ -21,8 +21,8 @@ def told_apart(wave):
 
 
 def test_every_model_has_a_column_of_its_own(case_250, wave):
-    studied = with_damping_study(case_250)
-    (result,) = run([studied], told_apart(wave)).cases
+    studied = add_damping_study(case_250)
+    (result,) = run_cases([studied], told_apart(wave)).cases
     (table,) = result.tables
     assert table.columns == ["Quantity", "Of", OWN, *MODELS]
     rows = {(row[0], row[1]): row[2:] for row in table.rows}
@@ -34,7 +34,7 @@ def test_every_model_has_a_column_of_its_own(case_250, wave):
 
 
 def test_the_case_is_graded_as_without_the_study(case_250, wave):
-    plain, studied = (run([case], wave()).cases[0] for case in (case_250, with_damping_study(case_250)))
+    plain, studied = (run_cases([case], wave()).cases[0] for case in (case_250, add_damping_study(case_250)))
     assert studied.criteria == plain.criteria
     assert studied.input_digest == plain.input_digest
 
@@ -45,7 +45,7 @@ def test_a_system_that_cannot_run_a_model_is_named_in_a_warning(case_250, wave):
         def run(self, case):
             return wave().run(case) if case.id == case_250.id else Outcome(skipped="there is no record of this case")
 
-    (result,) = run([with_damping_study(case_250)], Only()).cases
+    (result,) = run_cases([add_damping_study(case_250)], Only()).cases
     assert [w for w in result.warnings if w.startswith("damping '")] == [
         f"damping '{name}': there is no record of this case" for name in MODELS
     ]
@@ -53,5 +53,5 @@ def test_a_system_that_cannot_run_a_model_is_named_in_a_warning(case_250, wave):
 
 
 def test_static_cases_and_studies_stay_as_they_are():
-    for case in select(["en50318-2018/ac-simple/static", "vovan2015/contact-force"]):
-        assert with_damping_study(case) is case
+    for case in select_cases(["en50318-2018/ac-simple/static", "vovan2015/contact-force"]):
+        assert add_damping_study(case) is case

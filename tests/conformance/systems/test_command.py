@@ -10,15 +10,15 @@ import jsonschema
 import pytest
 from numpy.testing import assert_allclose
 
-from pantocheck.conformance.cases.library import select
+from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.plan import read_plan
 from pantocheck.conformance.records.record_writing import write_record
-from pantocheck.conformance.runner import run
+from pantocheck.conformance.runner import run_cases
 from pantocheck.conformance.schemas import schema_of
-from pantocheck.conformance.systems.command.program_arguments import arguments
-from pantocheck.conformance.systems.command.protocol_messages import AnswerRefused, parsed
-from pantocheck.conformance.systems.system_choice import system_named
+from pantocheck.conformance.systems.command.program_arguments import split_arguments
+from pantocheck.conformance.systems.command.protocol_messages import AnswerRefused, parse_message
+from pantocheck.conformance.systems.system_choice import choose_system
 
 # A program that behaves but for one thing, which its first argument names.
 PROGRAM = """
@@ -108,7 +108,7 @@ for line in sys.stdin:
 
 @pytest.fixture
 def cases():
-    return select(["en50318-2002/*"])
+    return select_cases(["en50318-2002/*"])
 
 
 @pytest.fixture
@@ -120,7 +120,7 @@ def program(case_250, wave, tmp_path):
 
     def system(how, timeout=20.0):
         text = f"{sys.executable} -S '{script}' '{how}' '{tmp_path}' '{tmp_path / 'log'}'"
-        return system_named(f"command:{text}", timeout)
+        return choose_system(f"command:{text}", timeout)
 
     return system
 
@@ -163,7 +163,7 @@ def test_answers_of_the_program_follow_their_schema():
         {"message": "errored", "id": 1, "reason": "why"},
     ):
         jsonschema.validate(message, schema_of("command-answer"))
-        assert parsed(json.dumps(message).encode()).message == message["message"]
+        assert parse_message(json.dumps(message).encode()).message == message["message"]
 
 
 @pytest.mark.parametrize(
@@ -189,7 +189,7 @@ def test_answers_of_the_program_follow_their_schema():
 )
 def test_misbehaviour_is_the_verdict_of_its_case(program, case_250, how, verdict, reason):
     try:
-        (result,) = run([case_250], program(how)).cases
+        (result,) = run_cases([case_250], program(how)).cases
     finally:
         Path(tempfile.gettempdir(), "stray.toml").unlink(missing_ok=True)
     assert result.verdict == verdict
@@ -198,7 +198,7 @@ def test_misbehaviour_is_the_verdict_of_its_case(program, case_250, how, verdict
 
 
 def test_crash_with_its_last_words_leaves_the_other_cases_and_a_record_of_another_case_is_refused(program, cases):
-    first, second = run(cases, program("crash")).cases
+    first, second = run_cases(cases, program("crash")).cases
     assert first.reason == "p: ended with exit code 1 before it answered; its last words: no licence left"
     assert second.reason == "p: the record is of case 'en50318-2002/250', asked was 'en50318-2002/300'"
 
@@ -237,7 +237,7 @@ def test_program_that_does_not_stop_is_ended_and_warned_of(program, case_250, mo
     ],
 )
 def test_program_that_does_not_start_is_the_error_of_every_case(program, cases, how, reason):
-    results = run(cases, program(how, timeout=1.0))
+    results = run_cases(cases, program(how, timeout=1.0))
     assert [case.verdict for case in results.cases] == ["error", "error"]
     assert all(reason in case.reason for case in results.cases)
 
@@ -254,12 +254,12 @@ def test_program_that_does_not_start_is_the_error_of_every_case(program, cases, 
 )
 def test_wrong_commands(text, found, tmp_path):
     with pytest.raises(InputError, match=found):
-        arguments(text, tmp_path)
+        split_arguments(text, tmp_path)
 
 
 def test_nothing_of_a_command_is_left_to_a_shell(tmp_path):
     (tmp_path / "a b.py").touch()
-    given = arguments("sh 'a b.py' $HOME ;rm -rf * | cat '' # x", tmp_path)
+    given = split_arguments("sh 'a b.py' $HOME ;rm -rf * | cat '' # x", tmp_path)
     assert given[1:] == (str(tmp_path / "a b.py"), "$HOME", ";rm", "-rf", "*", "|", "cat", "", "#", "x")
     assert os.path.isabs(given[0])
 
@@ -280,4 +280,4 @@ def test_plan_names_a_command_relative_to_itself(tmp_path):
 )  # fmt: skip
 def test_what_is_no_message_is_refused(line):
     with pytest.raises(AnswerRefused):
-        parsed(line)
+        parse_message(line)

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 from numpy.testing import assert_allclose
 
-from pantocheck.conformance.cases.library import library_folder, load
-from pantocheck.conformance.records.evaluation import evaluate
+from pantocheck.conformance.cases.library import library_folder, load_case
+from pantocheck.conformance.records.evaluation import evaluate_record
 from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
-from pantocheck.conformance.systems.system_choice import system_named
+from pantocheck.conformance.systems.system_choice import choose_system
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
@@ -27,23 +27,23 @@ def short(tmp_path_factory):
         text = (library_folder() / "en50318-2002" / name).read_text(encoding="utf-8")
         assert old in text
         (folder / name).write_text(text.replace(old, new), encoding="utf-8")
-    return load(folder / "250.toml")
+    return load_case(folder / "250.toml")
 
 
 @pytest.fixture(scope="module")
 def reference(short):
-    return evaluate(ReferenceSimulator().run_unrefined(short).record, short.file.filter.low_pass).values[1]
+    return evaluate_record(ReferenceSimulator().run_unrefined(short).record, short.file.filter.low_pass).values[1]
 
 
 def adapter(name, *arguments):
-    return system_named(f"command:'{sys.executable}' '{EXAMPLES / name / 'adapter.py'}' {' '.join(arguments)}", 100.0)
+    return choose_system(f"command:'{sys.executable}' '{EXAMPLES / name / 'adapter.py'}' {' '.join(arguments)}", 100.0)
 
 
 def test_plain_simulator_agrees_with_the_reference_simulator(short, reference):
     """Two formulations of the same line. Second-order differences at 0.5 m are within a tenth up to 20 Hz."""
     outcome = adapter("string_catenary").run(short)
     assert outcome.errored is None
-    values = evaluate(outcome.record, short.file.filter.low_pass).values[1]
+    values = evaluate_record(outcome.record, short.file.filter.low_pass).values[1]
     assert_allclose(values["mean_force_N"], reference["mean_force_N"], rtol=0.02)
     assert_allclose(values["std_force_N"], reference["std_force_N"], rtol=0.1)
     assert outcome.element_m == 0.5
@@ -63,5 +63,5 @@ def test_external_program_gives_what_it_gives_in_process(short, reference):
     command = Path(sysconfig.get_path("scripts"), "pantocheck")
     outcome = adapter("external_program", f"'{command}'").run(short)
     assert outcome.errored is None
-    values = evaluate(outcome.record, short.file.filter.low_pass).values[1]
+    values = evaluate_record(outcome.record, short.file.filter.low_pass).values[1]
     assert_allclose([values[name] for name in reference], list(reference.values()), rtol=1e-9)

@@ -5,20 +5,20 @@ from dataclasses import replace
 import pytest
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import select
-from pantocheck.conformance.records.evaluation import evaluate
+from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.records.evaluation import evaluate_record
 from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
 
 
 def values(case: Case) -> dict:
     record = ReferenceSimulator().run_unrefined(case).record
-    return evaluate(record, case.file.filter.low_pass).values[1]
+    return evaluate_record(record, case.file.filter.low_pass).values[1]
 
 
 @pytest.mark.parametrize(("speed", "deviation"), [(250, 33.0), (300, 38.4)])
 def test_an_arm_that_carries_nothing_raises_the_deviation(speed, deviation):
     """Printed to a tenth in the note; above the limit of 31 N at 250 km/h."""
-    (case,) = select([f"en50318-2002/{speed}"])
+    (case,) = select_cases([f"en50318-2002/{speed}"])
     arm = case.line.steady_arm.model_copy(update={"static_share": "none"})
     found = values(replace(case, line=case.line.model_copy(update={"steady_arm": arm})))
     assert found["std_force_N"] == pytest.approx(deviation, abs=0.06)
@@ -27,7 +27,7 @@ def test_an_arm_that_carries_nothing_raises_the_deviation(speed, deviation):
 @pytest.mark.parametrize(("speed", "mean"), [(250, 116.5), (300, 115.7)])
 def test_a_spring_unstretched_at_the_wire_takes_part_of_the_uplift(speed, mean):
     """Printed to a tenth in the note."""
-    (case,) = select([f"en50318-2002/{speed}"])
+    (case,) = select_cases([f"en50318-2002/{speed}"])
     (pantograph,) = case.pantographs
     chain = pantograph.chain.model_copy(update={"base_spring_unstretched": "wire_height"})
     found = values(replace(case, pantographs=(pantograph.model_copy(update={"chain": chain}),)))

@@ -4,13 +4,13 @@ import pytest
 
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record_writing import write_record
-from pantocheck.conformance.systems.record_folder import record_folder
-from pantocheck.conformance.systems.system_choice import system_named
+from pantocheck.conformance.systems.record_folder import open_record_folder
+from pantocheck.conformance.systems.system_choice import choose_system
 
 
 def test_record_is_found_by_its_case(case_250, wave, tmp_path):
     write_record(tmp_path / "deep" / "any name.h5", wave().record(case_250), case_250.id, run={"dt_s": 0.002})
-    system = system_named(f"record:{tmp_path}")
+    system = choose_system(f"record:{tmp_path}")
     outcome = system.run(case_250)
     assert outcome.record is not None
     assert outcome.dt_s == 0.002
@@ -19,21 +19,21 @@ def test_record_is_found_by_its_case(case_250, wave, tmp_path):
 
 def test_case_without_record_is_skipped(case_250, wave, tmp_path):
     write_record(tmp_path / "a.csv", wave().record(case_250), "another/case")
-    assert record_folder(tmp_path).run(case_250).skipped == "there is no record of this case"
+    assert open_record_folder(tmp_path).run(case_250).skipped == "there is no record of this case"
 
 
 def test_wrong_folders(case_250, wave, tmp_path):
     with pytest.raises(InputError, match="no sidecar in it names a case"):
-        record_folder(tmp_path)
+        open_record_folder(tmp_path)
     with pytest.raises(InputError, match="there is no such folder"):
-        record_folder(tmp_path / "none")
+        open_record_folder(tmp_path / "none")
     for name in ("a.csv", "b.csv"):
         write_record(tmp_path / name, wave().record(case_250), case_250.id)
     with pytest.raises(InputError, match=r"b\.toml and a\.toml are both of case en50318-2002/250"):
-        record_folder(tmp_path)
+        open_record_folder(tmp_path)
 
 
 @pytest.mark.parametrize("text", ["builtins", "record:", "commands:python", ""])
 def test_unknown_system(text):
     with pytest.raises(InputError, match="there is no such system"):
-        system_named(text)
+        choose_system(text)

@@ -5,31 +5,31 @@ import pytest
 from scipy.sparse.linalg import splu
 
 from helpers.lines import DAMPED, Array, simple_line, without_connectors
-from pantocheck.model.discretised_line import Discretised, discretise
-from pantocheck.model.dynamics.block_tridiagonal import factorise, half_width, inverse_columns, solve
-from pantocheck.model.fem.assembly import assemble, order, stepping_mass
+from pantocheck.model.discretised_line import DiscretisedLine, discretise
+from pantocheck.model.dynamics.block_tridiagonal import column_half_width, factorise, inverse_columns, solve_line
+from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, stepping_mass
 
 
 @pytest.fixture(scope="module", params=[(0.5, 1e-3), (1.3, 4e-3)])
-def line_and_step(request: pytest.FixtureRequest) -> tuple[Discretised, float]:
+def line_and_step(request: pytest.FixtureRequest) -> tuple[DiscretisedLine, float]:
     """A fine line with a short step, a coarse one with a long step."""
     element_length, time_step = request.param
     return discretise(simple_line(spans=2, damping=DAMPED), element_length), time_step
 
 
-def inverse_of_assembled(line: Discretised, time_step: float) -> Array:
+def inverse_of_assembled(line: DiscretisedLine, time_step: float) -> Array:
     """Inverse of M + dt/2 C + dt^2/4 K of the rows alone, over (rows, stations, 2) twice; zero for what is held."""
-    matrices = assemble(without_connectors(line))
+    matrices = assemble_matrices(without_connectors(line))
     effective = (
         stepping_mass(line, time_step) + time_step / 2 * matrices.damping + time_step**2 / 4 * matrices.stiffness
     )
-    kept = order(line)[matrices.free]
+    kept = bandwidth_order(line)[matrices.free]
     inverse = np.zeros((line.beams.free.size,) * 2)
     inverse[np.ix_(kept, kept)] = splu(effective.tocsc()).solve(np.eye(kept.size))
     return inverse.reshape(line.beams.free.shape * 2)
 
 
-def test_local_columns_are_the_columns_of_the_assembled_inverse(line_and_step: tuple[Discretised, float]) -> None:
+def test_local_columns_are_the_columns_of_the_assembled_inverse(line_and_step: tuple[DiscretisedLine, float]) -> None:
     """To 1e-12 of each column's peak: below it a column is left out, the rest is rounding."""
     line, time_step = line_and_step
     inverse, factor, stations = (
@@ -38,7 +38,7 @@ def test_local_columns_are_the_columns_of_the_assembled_inverse(line_and_step: t
         line.mesh.position.size,
     )
     loads = [(row, s, slope) for row in range(2) for s in range(0, stations, 3) for slope in range(2)]
-    width = half_width(factor, [(row, s) for row, s, _ in loads])
+    width = column_half_width(factor, [(row, s) for row, s, _ in loads])
     assert width < stations / 2  # else nothing is local, and nothing is tested
     columns = inverse_columns(factor, *(np.array(part) for part in zip(*loads, strict=True)), width)
     for (row, s, slope), column in zip(loads, columns, strict=True):
@@ -49,14 +49,14 @@ def test_local_columns_are_the_columns_of_the_assembled_inverse(line_and_step: t
         np.testing.assert_allclose(whole, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
 
 
-def test_solve_is_a_sparse_solve(line_and_step: tuple[Discretised, float]) -> None:
+def test_solve_is_a_sparse_solve(line_and_step: tuple[DiscretisedLine, float]) -> None:
     """A random load everywhere: 1e-12 of the peak allows for the growth of rounding along the row."""
     line, time_step = line_and_step
     inverse, factor = inverse_of_assembled(line, time_step), factorise(line.beams, time_step)
     load = np.random.default_rng(1).normal(size=line.beams.free.shape)
     load[~line.beams.free] = 0.0
     w, r = load[..., 0].copy(), load[..., 1].copy()
-    solve(factor, 0, w.shape[1] - 1, w, r)
+    solve_line(factor, 0, w.shape[1] - 1, w, r)
     for row in range(2):
         expected = np.einsum("siab,ab->si", inverse[row, :, :, row], load[row])
         found = np.stack([w[row], r[row]], axis=1)

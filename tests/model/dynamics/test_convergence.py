@@ -8,11 +8,11 @@ from scipy.linalg import eigh
 from helpers.lines import Array, bare_wire, simple_line
 from pantocheck.model import Passage, chain
 from pantocheck.model.discretised_line import discretise
-from pantocheck.model.dynamics.kernel_arrays import time_stepping
+from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays
 from pantocheck.model.dynamics.newmark import step
-from pantocheck.model.dynamics.simulation import no_train, start, workspace
+from pantocheck.model.dynamics.simulation import build_workspace, empty_train, start_motion
 from pantocheck.model.dynamics.state import Motion
-from pantocheck.model.fem.assembly import assemble, order
+from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order
 
 
 def test_free_vibration_converges_with_the_second_order() -> None:
@@ -22,11 +22,11 @@ def test_free_vibration_converges_with_the_second_order() -> None:
     Average acceleration with the plain mass would be late by w t (w dt)^2 / 12; a twentieth of that is left.
     """
     line = discretise(simple_line(spans=2), 2.0)
-    matrices = assemble(line)
+    matrices = assemble_matrices(line)
     w2, shapes = eigh(matrices.stiffness.toarray(), matrices.mass.toarray())
     chosen = [2, 6, 11]
     amplitude, omega = 1e-4 * shapes[:, chosen], np.sqrt(w2[chosen])
-    place, duration, errors = order(line)[matrices.free], 0.8, []
+    place, duration, errors = bandwidth_order(line)[matrices.free], 0.8, []
 
     def spread(values: Array) -> tuple[Array, Array]:
         full = np.zeros((3, line.beams.free.size))
@@ -35,10 +35,10 @@ def test_free_vibration_converges_with_the_second_order() -> None:
         return shaped[..., 0].copy(), shaped[..., 1].copy()
 
     for time_step in (4e-3, 2e-3, 1e-3):
-        stepping, train = time_stepping(line, time_step), no_train(1)
+        stepping, train = build_kernel_arrays(line, time_step), empty_train(1)
         initial = np.array([amplitude.sum(axis=1), np.zeros(place.size), -amplitude @ omega**2])
         motion = Motion(*spread(initial), line.connectors.preload.copy(), np.zeros(0), np.zeros(1))
-        work = workspace(stepping, train)
+        work = build_workspace(stepping, train)
         for _ in range(round(duration / time_step)):
             assert step(stepping, motion, train, work)
             assert (motion.tension > 0).all()
@@ -64,9 +64,9 @@ def test_contact_force_converges_with_the_second_order() -> None:
     line, duration, forces = discretise(bare_wire(60.0), 1.0), 0.5, []
     for halvings in range(4):
         time_step = 4e-3 / 2**halvings
-        stepping = time_stepping(line, time_step)
-        motion, train = start(line, stepping, Passage((PANTOGRAPH,), (27.3,), 0.0, duration, time_step))
-        work, force = workspace(stepping, train), []
+        stepping = build_kernel_arrays(line, time_step)
+        motion, train = start_motion(line, stepping, Passage((PANTOGRAPH,), (27.3,), 0.0, duration, time_step))
+        work, force = build_workspace(stepping, train), []
         for n in range(1, round(duration / time_step) + 1):
             train.force[0, 0] = 120.0 + 30.0 * np.sin(np.pi * n * time_step / duration) ** 4
             assert step(stepping, motion, train, work)

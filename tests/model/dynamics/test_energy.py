@@ -8,39 +8,39 @@ from scipy.sparse import csc_array
 
 from helpers.lines import Array, simple_line, without_connectors
 from pantocheck.model.catenary import Kind, Rayleigh
-from pantocheck.model.discretised_line import Discretised, discretise
-from pantocheck.model.dynamics.kernel_arrays import time_stepping
+from pantocheck.model.discretised_line import DiscretisedLine, discretise
+from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays
 from pantocheck.model.dynamics.newmark import step
-from pantocheck.model.dynamics.simulation import no_train, still, workspace
+from pantocheck.model.dynamics.simulation import build_workspace, empty_train, motion_at_rest
 from pantocheck.model.dynamics.state import Motion
 from pantocheck.model.fem.assembly import (
-    assemble,
+    assemble_matrices,
+    bandwidth_order,
     connector_directions,
     free_unknowns,
-    order,
     point_load,
     stepping_mass,
 )
-from pantocheck.model.statics.static_solver import Statics
+from pantocheck.model.statics.static_solver import StaticSolver
 
 EVERY = 5
 """The energy is taken at every so many steps."""
 
 
-def free_decay(line: Discretised, time_step: float, steps: int) -> tuple[Array, Array]:
+def free_decay(line: DiscretisedLine, time_step: float, steps: int) -> tuple[Array, Array]:
     """Energy about the initial state [J] and dropper tensions [N] after a weight of 60 kg falls off the contact wire.
 
     The wires, lumped springs and taut droppers store q'Kq / 2; a dropper at tension N stores N^2 / 2k, and what its
     preload does is potential energy, too: it was in balance with the weights.
     """
     rows, taken = without_connectors(line), point_load(line, 0, 20.0)
-    matrices, mass = assemble(rows), stepping_mass(line, time_step)
-    place, bars = order(line)[matrices.free], csc_array(connector_directions(line)[matrices.free])
+    matrices, mass = assemble_matrices(rows), stepping_mass(line, time_step)
+    place, bars = bandwidth_order(line)[matrices.free], csc_array(connector_directions(line)[matrices.free])
     stiffness, preload = line.connectors.stiffness, line.connectors.preload
-    motion = still(Statics(line).deflection(-600.0 * taken))
+    motion = motion_at_rest(StaticSolver(line).deflection(-600.0 * taken))
     _accelerate(line, time_step, motion, taken)
-    stepping, train = time_stepping(line, time_step), no_train(1)
-    work = workspace(stepping, train)
+    stepping, train = build_kernel_arrays(line, time_step), empty_train(1)
+    work = build_workspace(stepping, train)
     energy, tensions = [], np.zeros((steps, stiffness.size))
     for n in range(steps):
         if n % EVERY == 0:
@@ -54,16 +54,16 @@ def free_decay(line: Discretised, time_step: float, steps: int) -> tuple[Array, 
     return np.array(energy), tensions
 
 
-def _accelerate(line: Discretised, time_step: float, motion: Motion, taken: Array) -> None:
+def _accelerate(line: DiscretisedLine, time_step: float, motion: Motion, taken: Array) -> None:
     """Give the line the acceleration with which it starts when the weight is gone: A(0) = M^-1 of the weight."""
     mass, free = stepping_mass(line, time_step).toarray(), free_unknowns(line)
     acceleration = np.zeros(line.beams.free.size)
-    acceleration[order(line)[free]] = np.linalg.solve(mass, 600.0 * taken[free])
+    acceleration[bandwidth_order(line)[free]] = np.linalg.solve(mass, 600.0 * taken[free])
     shaped = acceleration.reshape(line.beams.free.shape)
     motion.w[2], motion.r[2] = shaped[..., 0], shaped[..., 1]
 
 
-def line_of(damping: dict[Kind, Rayleigh]) -> Discretised:
+def line_of(damping: dict[Kind, Rayleigh]) -> DiscretisedLine:
     """Two short spans with dampable arms."""
     catenary = simple_line(2, 44.0, (4.0, 14.0, 24.0, 32.0, 40.0), damping)
     return discretise(replace(catenary, steady_arms=tuple(replace(a, mass=1.0) for a in catenary.steady_arms)), 1.0)

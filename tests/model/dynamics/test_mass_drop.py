@@ -5,8 +5,8 @@ import numpy as np
 from helpers.lines import simple_line
 from pantocheck.model import Kind, Rayleigh, discretise
 from pantocheck.model.catenary import GRAVITY
-from pantocheck.model.dynamics.mass_drop import Drop, drop
-from pantocheck.model.modal.modes import damping_ratios, modes
+from pantocheck.model.dynamics.mass_drop import MassDropSetup, simulate_mass_drop
+from pantocheck.model.modal.modes import compute_modes, damping_ratios
 
 DAMPING = dict.fromkeys(Kind, Rayleigh(0.1, 1e-4))
 LINE = simple_line(spans=2, damping=DAMPING)
@@ -18,11 +18,11 @@ def test_a_light_mass_leaves_a_sum_of_decaying_modes() -> None:
     What the sum leaves out and the period error of the steps ((omega dt)^2 / 12) are below 1 % of the largest
     displacement.
     """
-    test = Drop(2.0, "contact", 33.0, 0.0, 0.05, 3.0, 1e-3, (("contact", 21.0), ("messenger", 45.0)))
-    decay = drop(LINE, 1.0, test)
+    test = MassDropSetup(2.0, "contact", 33.0, 0.0, 0.05, 3.0, 1e-3, (("contact", 21.0), ("messenger", 45.0)))
+    decay = simulate_mass_drop(LINE, 1.0, test)
     assert decay.last_slack is None
     line = discretise(LINE, 1.0, (33.0, 21.0, 45.0))
-    found = modes(line, 140)
+    found = compute_modes(line, 140)
     zeta, omega = damping_ratios(line, found), 2 * np.pi * found.frequency
     station = line.mesh.station
     participation = found.shape[:, 0, station(33.0), 0] * -2.0 * GRAVITY / omega**2
@@ -42,7 +42,9 @@ def test_a_light_mass_leaves_a_sum_of_decaying_modes() -> None:
 def test_nothing_moves_before_the_release_and_a_slow_release_excites_less() -> None:
     """At rest to the tolerance of the forces, 1e-9 N; a release over 0.2 s is no step force any more."""
     at_once, slowly = (
-        drop(LINE, 1.0, Drop(30.0, "contact", 33.0, duration, 0.2, 1.0, 1e-3, (("contact", 21.0),)))
+        simulate_mass_drop(
+            LINE, 1.0, MassDropSetup(30.0, "contact", 33.0, duration, 0.2, 1.0, 1e-3, (("contact", 21.0),))
+        )
         for duration in (0.0, 0.2)
     )
     before = at_once.time <= 0
@@ -52,7 +54,9 @@ def test_nothing_moves_before_the_release_and_a_slow_release_excites_less() -> N
 
 
 def test_a_heavy_mass_on_the_messenger_slackens_droppers() -> None:
-    decay = drop(LINE, 1.0, Drop(60.0, "messenger", 30.0, 0.0, 0.02, 1.0, 1e-3, (("contact", 30.0),)))
+    decay = simulate_mass_drop(
+        LINE, 1.0, MassDropSetup(60.0, "messenger", 30.0, 0.0, 0.02, 1.0, 1e-3, (("contact", 30.0),))
+    )
     assert decay.slack_at_start > 0
     assert decay.last_slack is not None
     assert decay.last_slack > 0.1

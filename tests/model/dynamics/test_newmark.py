@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 from helpers.lines import DAMPED, Array, bare_wire, simple_line
 from helpers.plain_newmark import PlainNewmark
 from pantocheck.model import Catenary, Kind, Passage, Rayleigh, chain
-from pantocheck.model.discretised_line import Discretised, discretise
-from pantocheck.model.dynamics.kernel_arrays import time_stepping
+from pantocheck.model.discretised_line import DiscretisedLine, discretise
+from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays
 from pantocheck.model.dynamics.newmark import step
-from pantocheck.model.dynamics.simulation import start, workspace
-from pantocheck.model.fem.assembly import order
+from pantocheck.model.dynamics.simulation import build_workspace, start_motion
+from pantocheck.model.fem.assembly import bandwidth_order
 from pantocheck.model.pantograph import Pantograph
 
 TWO_MASSES = chain(
@@ -25,18 +25,18 @@ THREE_MASSES = chain(
 
 
 def largest_differences(
-    line: Discretised, passage: Passage, steps: int, drop: float
+    line: DiscretisedLine, passage: Passage, steps: int, drop: float
 ) -> tuple[dict[str, float], Array, Array]:
     """March the kernel and its twin side by side, the heads thrown down with the speed `drop` [m/s] to begin with.
 
     Returns the largest difference of each quantity as a share of its largest value, the tensions, the contact forces.
     """
-    stepping = time_stepping(line, passage.time_step)
-    motion, train = start(line, stepping, passage)
+    stepping = build_kernel_arrays(line, passage.time_step)
+    motion, train = start_motion(line, stepping, passage)
     for p, pantograph in enumerate(passage.pantographs):
         train.z[1, p, : pantograph.head.size] = -drop * pantograph.head
     twin = PlainNewmark(line, passage)
-    state, work, place = twin.take(motion, train), workspace(stepping, train), order(line)[twin.free]
+    state, work, place = twin.take(motion, train), build_workspace(stepping, train), bandwidth_order(line)[twin.free]
     ours: dict[str, list[Array]] = {name: [] for name in ("q", "v", "a", "tension", "contact")}
     theirs: dict[str, list[Array]] = {name: [] for name in ours}
     for _ in range(steps):

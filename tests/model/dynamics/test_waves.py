@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from helpers.lines import Array, bare_wire
-from pantocheck.model.discretised_line import Discretised, discretise
-from pantocheck.model.dynamics.kernel_arrays import time_stepping
+from pantocheck.model.discretised_line import DiscretisedLine, discretise
+from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays
 from pantocheck.model.dynamics.newmark import step
-from pantocheck.model.dynamics.simulation import Passage, no_train, start, workspace
+from pantocheck.model.dynamics.simulation import Passage, build_workspace, empty_train, start_motion
 from pantocheck.model.dynamics.state import Motion
 from pantocheck.model.fem import beam
 from pantocheck.model.pantograph import Pantograph
@@ -16,7 +16,7 @@ TENSION, MASS = 20e3, 1.35
 SPEED_OF_WAVES = beam.wave_speed(TENSION, MASS)
 
 
-def travelled(line: Discretised, bending_stiffness: float, width: float, centre: float, times: Array) -> Array:
+def travelled(line: DiscretisedLine, bending_stiffness: float, width: float, centre: float, times: Array) -> Array:
     """Deflection, velocity and acceleration of a pulse that runs to the right, each wave at its own speed.
 
     Returns (times, 3, 2, stations): value and slope.
@@ -48,12 +48,12 @@ def test_pulse_travels_with_the_speed_of_each_of_its_waves(bending_stiffness: fl
     """
     length, width, centre, dt = 120.0, 3.0, 40.0, 2.5e-4
     line = discretise(bare_wire(length, TENSION, MASS, bending_stiffness), 0.25)
-    stepping = time_stepping(line, dt)
+    stepping = build_kernel_arrays(line, dt)
     steps = round(40.0 / SPEED_OF_WAVES / dt)
     at_start, at_end = travelled(line, bending_stiffness, width, centre, np.array([0.0, steps * dt]))
     motion = Motion(at_start[:, :1].copy(), at_start[:, 1:].copy(), np.zeros(0), np.zeros(0), np.zeros(1))
-    train = no_train(1)
-    work = workspace(stepping, train)
+    train = empty_train(1)
+    work = build_workspace(stepping, train)
     for _ in range(steps):
         assert step(stepping, motion, train, work)
     error = np.abs(motion.w[0, 0] - at_end[0, 0]).max() / 0.01
@@ -89,9 +89,9 @@ def test_moving_load_on_a_long_string(share: float, tolerance: float) -> None:
     line = discretise(bare_wire(length, TENSION, MASS, 0.0), 0.25)
     heavy = Pantograph(np.array([[1e9]]), np.zeros((1, 1)), np.zeros((1, 1)), np.ones(1), np.zeros(1), 0.0, soft)
     passage = Passage((heavy,), (origin,), speed, duration, dt)
-    stepping = time_stepping(line, dt)
-    motion, train = start(line, stepping, passage)
-    work = workspace(stepping, train)
+    stepping = build_kernel_arrays(line, dt)
+    motion, train = start_motion(line, stepping, passage)
+    work = build_workspace(stepping, train)
     steps = round(duration / dt)
     for n in range(1, steps + 1):
         train.z[:] = 0.0

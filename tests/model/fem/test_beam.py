@@ -8,9 +8,9 @@ from helpers.lines import Array, bare_wire
 from pantocheck.model.catenary import GRAVITY
 from pantocheck.model.discretised_line import discretise
 from pantocheck.model.fem import beam
-from pantocheck.model.fem.assembly import assemble, order
+from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order
 from pantocheck.model.fem.beams import weight
-from pantocheck.model.statics.static_solver import Statics
+from pantocheck.model.statics.static_solver import StaticSolver
 
 SPAN, TENSION, MASS, BENDING = 60.0, 20e3, 1.35, 195.0
 
@@ -18,7 +18,7 @@ SPAN, TENSION, MASS, BENDING = 60.0, 20e3, 1.35, 195.0
 def frequencies(elements: int, n: int, tension: float = TENSION, bending_stiffness: float = BENDING) -> Array:
     """Natural frequencies of a pinned wire through the package's own assembly [Hz]."""
     line = discretise(bare_wire(SPAN, tension, MASS, bending_stiffness), SPAN / elements)
-    matrices = assemble(line)
+    matrices = assemble_matrices(line)
     w2 = eigh(matrices.stiffness.toarray(), matrices.mass.toarray(), eigvals_only=True, subset_by_index=[0, n - 1])
     return np.asarray(np.sqrt(w2) / (2 * np.pi))
 
@@ -72,5 +72,5 @@ def test_sag_of_a_string_is_exact_at_the_nodes() -> None:
 def test_two_ways_to_the_sag_agree() -> None:
     """The static solver in global order, loaded by the weight, repeats the row-wise solve of the initial state."""
     line = discretise(bare_wire(SPAN), 0.5)
-    deflection = Statics(line).deflection(weight(line.beams, 0, GRAVITY)[order(line)])
+    deflection = StaticSolver(line).deflection(weight(line.beams, 0, GRAVITY)[bandwidth_order(line)])
     np.testing.assert_allclose(deflection.displacement, line.state.deflection, rtol=0, atol=1e-12)

@@ -6,40 +6,40 @@ import numpy as np
 from scipy.linalg import eig
 
 from helpers.lines import Array, simple_line
-from pantocheck.model import Discretised, Kind, ModalBand, Rayleigh, discretise
-from pantocheck.model.dynamics.kernel_arrays import time_stepping
+from pantocheck.model import DiscretisedLine, Kind, ModalBand, Rayleigh, discretise
+from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays
 from pantocheck.model.dynamics.newmark import step
-from pantocheck.model.dynamics.simulation import no_train, workspace
+from pantocheck.model.dynamics.simulation import build_workspace, empty_train
 from pantocheck.model.dynamics.state import Motion
-from pantocheck.model.fem.assembly import assemble, order, stepping_mass
-from pantocheck.model.modal.modal_damping import modal_terms
-from pantocheck.model.modal.modes import damping_ratios, modes
+from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, stepping_mass
+from pantocheck.model.modal.modal_damping import build_modal_terms
+from pantocheck.model.modal.modes import compute_modes, damping_ratios
 
 UNIFORM = dict.fromkeys(Kind, Rayleigh(0.05, 1e-4))
 BAND = ModalBand(0.8, 1.5, 0.02)
 
 
-def damped_line() -> Discretised:
+def damped_line() -> DiscretisedLine:
     """Two spans with uniform Rayleigh damping, the modes between 0.8 and 1.5 Hz set to 2 %."""
     return discretise(replace(simple_line(damping=UNIFORM), modal_damping=(BAND,)), 2.0)
 
 
-def full_damping(line: Discretised) -> Array:
+def full_damping(line: DiscretisedLine) -> Array:
     """The matrix that the simulator never forms."""
-    matrices, terms = assemble(line), modal_terms(line)
-    weight = terms.weight.reshape(len(terms.damping), -1)[:, order(line)[matrices.free]]
+    matrices, terms = assemble_matrices(line), build_modal_terms(line)
+    weight = terms.weight.reshape(len(terms.damping), -1)[:, bandwidth_order(line)[matrices.free]]
     return np.asarray(matrices.damping.toarray() + weight.T @ np.diag(terms.damping) @ weight)
 
 
 def test_complex_eigenvalues_have_the_ratios_asked_for_and_rayleigh_elsewhere() -> None:
     """Uniform Rayleigh damping couples no modes, so both hold exactly; dense eigenvalues carry about ten digits."""
     line = damped_line()
-    found = modes(line, 12)
+    found = compute_modes(line, 12)
     expected = damping_ratios(line, found)
     chosen = (found.frequency >= BAND.from_frequency) & (found.frequency < BAND.to_frequency)
     assert 1 < chosen.sum() < 6
     expected[chosen] = BAND.damping_ratio
-    matrices = assemble(line)
+    matrices = assemble_matrices(line)
     n = matrices.free.size
     mass, stiffness = matrices.mass.toarray(), matrices.stiffness.toarray()
     lower = [-np.linalg.solve(mass, stiffness), -np.linalg.solve(mass, full_damping(line))]
@@ -55,9 +55,9 @@ def test_the_step_equals_one_with_the_full_matrix() -> None:
     The forces of a step settle to 1e-9 N of about 100 N, and 300 steps add up what is left: 1e-8 of the motion.
     """
     line, dt = damped_line(), 2e-3
-    matrices, damping = assemble(line), full_damping(line)
+    matrices, damping = assemble_matrices(line), full_damping(line)
     mass, stiffness = stepping_mass(line, dt).toarray(), matrices.stiffness.toarray()
-    place = order(line)[matrices.free]
+    place = bandwidth_order(line)[matrices.free]
     start = np.zeros(line.beams.free.size)
     start[place] = 1e-4 * np.linalg.solve(stiffness, mass @ np.ones(matrices.free.size))
     q, v = start[place], np.zeros(matrices.free.size)
@@ -65,13 +65,13 @@ def test_the_step_equals_one_with_the_full_matrix() -> None:
     spread = np.zeros((3, line.beams.free.size))
     spread[0, place], spread[2, place] = q, a
     w, r = (np.ascontiguousarray(spread.reshape(3, *line.beams.free.shape)[..., i]) for i in range(2))
-    stepping = time_stepping(line, dt)
+    stepping = build_kernel_arrays(line, dt)
     tension = line.connectors.preload + line.connectors.stiffness * np.einsum(
         "nb,nb->n", line.connectors.coefficient, w[0].T[line.connectors.station]
     )
     motion = Motion(w, r, tension, np.zeros(stepping.modal_damping.size), np.zeros(1))
-    train = no_train(1)
-    work = workspace(stepping, train)
+    train = empty_train(1)
+    work = build_workspace(stepping, train)
     effective = mass + dt / 2 * damping + dt**2 / 4 * stiffness
     for _ in range(300):
         assert step(stepping, motion, train, work) > 0

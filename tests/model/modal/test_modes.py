@@ -7,21 +7,21 @@ from scipy.linalg import eig
 from helpers.lines import DAMPED, bare_wire, simple_line
 from pantocheck.model import Kind, Rayleigh, discretise
 from pantocheck.model.discretised_line import with_damping
-from pantocheck.model.fem.assembly import assemble
+from pantocheck.model.fem.assembly import assemble_matrices
 from pantocheck.model.fem.beam import pinned_frequencies
-from pantocheck.model.modal.modes import component_energies, damping_ratios, modes
+from pantocheck.model.modal.modes import component_energies, compute_modes, damping_ratios
 
 
 def test_a_bare_wire_has_its_closed_form_frequencies() -> None:
     """Elements of 1 m on a wave of 12 m and more: the measured error is 2e-7."""
-    found = modes(discretise(bare_wire(60.0), 1.0), 10)
+    found = compute_modes(discretise(bare_wire(60.0), 1.0), 10)
     np.testing.assert_allclose(found.frequency, pinned_frequencies(10, 60.0, 20e3, 195.0, 1.35), rtol=1e-6)
 
 
 def test_shapes_are_mass_normalised_and_energies_add_up() -> None:
     """Sums of 7 kinds of component against 1 and omega squared: rounding, magnified by the condition of K."""
     line = discretise(simple_line(damping=DAMPED), 1.0)
-    found = modes(line, 12)
+    found = compute_modes(line, 12)
     energies = component_energies(line, found)
     np.testing.assert_allclose(energies.mass.sum(axis=1), 1.0, rtol=1e-10)
     np.testing.assert_allclose(energies.stiffness.sum(axis=1), (2 * np.pi * found.frequency) ** 2, rtol=1e-8)
@@ -32,7 +32,7 @@ def test_shapes_are_mass_normalised_and_energies_add_up() -> None:
 def test_energies_give_the_damping_ratios_of_any_coefficients() -> None:
     """zeta = sum (a k + b m) / 2 omega, the two sides computed by different sums: rounding."""
     line = discretise(simple_line(damping=DAMPED), 1.0)
-    found = modes(line, 12)
+    found = compute_modes(line, 12)
     energies = component_energies(line, found)
     expected = np.zeros(12)
     for k, kind in enumerate(energies.kinds):
@@ -46,8 +46,8 @@ def test_energies_give_the_damping_ratios_of_any_coefficients() -> None:
 def test_uniform_rayleigh_damping_is_what_complex_eigenvalues_say(coefficients: Rayleigh) -> None:
     """Proportional damping: ratio of mode j is exactly its energy sum; dense eigenvalues carry about ten digits."""
     line = with_damping(discretise(simple_line(spans=1), 2.0), dict.fromkeys(Kind, coefficients))
-    found = modes(line, 6)
-    matrices = assemble(line)
+    found = compute_modes(line, 6)
+    matrices = assemble_matrices(line)
     n = matrices.free.size
     mass, damping, stiffness = (m.toarray() for m in (matrices.mass, matrices.damping, matrices.stiffness))
     state = np.block(

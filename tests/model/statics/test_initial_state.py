@@ -8,8 +8,8 @@ import pytest
 from helpers.lines import Array, simple_line
 from pantocheck.model import Catenary, Clamp, Dropper, Kind, MessengerSupport, SteadyArm, Wire
 from pantocheck.model.catenary import GRAVITY
-from pantocheck.model.discretised_line import Discretised, discretise
-from pantocheck.model.fem.assembly import assemble, connector_directions, order
+from pantocheck.model.discretised_line import DiscretisedLine, discretise
+from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, connector_directions
 from pantocheck.model.fem.beams import weight, wire_matrices
 
 LENGTHS_2018 = np.array([1.017, 0.896, 0.810, 0.758, 0.741, 0.758, 0.810, 0.896, 1.017])
@@ -50,7 +50,7 @@ def simple_line_2018(spans: int, heights: Array, bending: float) -> Catenary:
     )
 
 
-def end_pull(line: Discretised, name: str) -> float:
+def end_pull(line: DiscretisedLine, name: str) -> float:
     """Vertical force with which the anchors and, for a messenger, the supports hold a wire up, from its slopes [N].
 
     Read from the shape alone: T times the jump of the slope, less the shear of bending, by the shape functions' ends.
@@ -80,14 +80,14 @@ def test_forces_on_each_wire_balance(carries_share: bool) -> None:
 def test_equilibrium_holds_for_every_unknown() -> None:
     """Of the whole line in global order: wires, dropper tensions and arm forces, to 1e-9 of the weights (2.4 kN)."""
     line = discretise(simple_line(spans=3), 0.5)
-    place = order(line)
+    place = bandwidth_order(line)
     wires = np.concatenate([wire_matrices(line.beams, row)[0] @ line.state.deflection[row].ravel() for row in range(2)])
     pulled = np.concatenate([weight(line.beams, row, GRAVITY) for row in range(2)])
     for arm, force in zip(line.catenary.steady_arms, line.state.arm_force[:, 1], strict=True):
         pulled[2 * line.mesh.station(arm.position)] += force
     residual = (pulled - wires)[place] - connector_directions(line) @ line.connectors.preload
     held = {2 * (line.mesh.rows * line.mesh.station(s.position) + 1) for s in line.catenary.messenger_supports}
-    free = [unknown for unknown in assemble(line).free if unknown not in held]
+    free = [unknown for unknown in assemble_matrices(line).free if unknown not in held]
     np.testing.assert_allclose(residual[free], 0.0, atol=2.4e-6)
 
 

@@ -6,7 +6,18 @@ import numpy as np
 import pytest
 
 from helpers.lines import Array, simple_line
-from pantocheck.model import Catenary, Discretised, Dropper, Kind, Passage, SteadyArm, Wire, chain, discretise, run
+from pantocheck.model import (
+    Catenary,
+    DiscretisedLine,
+    Dropper,
+    Kind,
+    Passage,
+    SteadyArm,
+    Wire,
+    chain,
+    discretise,
+    simulate_passage,
+)
 from pantocheck.model.fem.beams import wire_matrices
 from pantocheck.model.fem.connectors import RIGID
 from pantocheck.model.statics.elasticity import static_uplift
@@ -30,7 +41,7 @@ def with_stagger(catenary: Catenary, contact: float, spans: int) -> Catenary:
     )
 
 
-def zigzag(acts: str = "pull", length: float = 1.2, spans: int = 5) -> Discretised:
+def zigzag(acts: str = "pull", length: float = 1.2, spans: int = 5) -> DiscretisedLine:
     """A bare contact wire between steady arms."""
     wire = Wire("contact", Kind.CONTACT_WIRE, 0.0, spans * SPAN, TENSION, 1.35, 195.0)
     plan = tuple((SPAN * n, STAGGER if n % 2 else -STAGGER) for n in range(spans + 1))
@@ -52,7 +63,7 @@ def test_zero_stagger_is_the_vertical_plane() -> None:
     flat = discretise(plane, 0.5)
     assert "y" not in flat.mesh.row_field
     assert lateral.state.dropper_length == pytest.approx(flat.state.dropper_length, rel=1e-13)
-    ours, theirs = run(lateral, passage()).force, run(flat, passage()).force
+    ours, theirs = simulate_passage(lateral, passage()).force, simulate_passage(flat, passage()).force
     assert np.ptp(theirs) > 50
     assert np.abs(ours - theirs).max() < 1e-7
 
@@ -121,7 +132,7 @@ def test_inclined_droppers_lie_along_the_line_between_their_wires() -> None:
     assert np.abs(between).max() > 0.1
 
 
-def _between(line: Discretised) -> Array:
+def _between(line: DiscretisedLine) -> Array:
     y = line.state.deflection[..., 0]
     upper, lower = line.mesh.row_of["messenger", "y"], line.mesh.row_of["contact", "y"]
     at = [line.mesh.station(d.position) for d in line.catenary.droppers]
@@ -132,7 +143,7 @@ def test_mirrored_stagger_gives_the_same_forces() -> None:
     """Left and right are alike: the vertical motion cannot tell them apart, to rounding."""
     spans = 4
     lines = [discretise(with_stagger(simple_line(spans), side * STAGGER, spans), 0.5) for side in (1.0, -1.0)]
-    one, other = (run(line, passage(duration=0.3)).force for line in lines)
+    one, other = (simulate_passage(line, passage(duration=0.3)).force for line in lines)
     assert np.abs(one - other).max() < 1e-7
 
 
@@ -157,7 +168,7 @@ def test_two_wires_side_by_side_are_one_of_twice_everything() -> None:
     # Each wire has its own penalty: half as stiff, they give as one of the pantograph's.
     half = replace(PANTOGRAPH, contact_stiffness=PANTOGRAPH.contact_stiffness / 2)
     way = passage(duration=0.6)
-    together = run(discretise(two, 0.5), replace(way, pantographs=(half,))).force
-    alone = run(discretise(one, 0.5), way).force
+    together = simulate_passage(discretise(two, 0.5), replace(way, pantographs=(half,))).force
+    alone = simulate_passage(discretise(one, 0.5), way).force
     assert np.ptp(alone) > 50
     assert np.abs(together - alone).max() < 1e-6

@@ -9,12 +9,12 @@ from scipy.optimize import nnls
 
 from helpers.lines import Array, simple_line, without_connectors
 from pantocheck.model.discretised_line import discretise
-from pantocheck.model.fem.assembly import assemble, connector_directions, order, point_load
-from pantocheck.model.statics.static_solver import Statics
+from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, connector_directions, point_load
+from pantocheck.model.statics.static_solver import StaticSolver
 
 LINE = discretise(simple_line(spans=3), 1.0)
-STATICS = Statics(LINE)
-ROWS = assemble(without_connectors(LINE))
+STATICS = StaticSolver(LINE)
+ROWS = assemble_matrices(without_connectors(LINE))
 FREE, COMPLIANCE = ROWS.free, np.linalg.inv(ROWS.stiffness.toarray())
 BARS = connector_directions(LINE)[FREE].toarray()
 
@@ -30,7 +30,7 @@ def tensions_by_minimisation(load: Array) -> tuple[Array, Array]:
     root = cholesky(BARS.T @ COMPLIANCE @ BARS + np.diag(1 / stiffness))
     tension, _ = nnls(root, solve_triangular(root, preload / stiffness + BARS.T @ pulled, trans="T"))
     full = np.zeros(load.size)
-    full[order(LINE)[FREE]] = pulled - COMPLIANCE @ (BARS @ tension)
+    full[bandwidth_order(LINE)[FREE]] = pulled - COMPLIANCE @ (BARS @ tension)
     return full.reshape(LINE.beams.free.shape), tension
 
 
@@ -73,7 +73,7 @@ def test_elasticity_is_positive_and_symmetrical() -> None:
     supports, neighbouring spans and droppers adds a tenth; near the supports it is about half of that.
     """
     loads = [100.0 * point_load(LINE, 0, x) for x in np.linspace(60.0, 120.0, 61)]
-    moved = [STATICS.deflection(load).displacement.ravel()[order(LINE)] @ load for load in loads]
+    moved = [STATICS.deflection(load).displacement.ravel()[bandwidth_order(LINE)] @ load for load in loads]
     elasticity = np.array(moved) / 100.0**2
     np.testing.assert_allclose(elasticity, elasticity[::-1], rtol=1e-9)
     string = 60.0 / (4 * (20e3 + 16e3))
@@ -84,6 +84,6 @@ def test_elasticity_is_positive_and_symmetrical() -> None:
 def test_a_unit_load_is_answered_reciprocally() -> None:
     """Maxwell: what a force at A moves at B, the same force at B moves at A, whichever wires A and B are on."""
     a, b = 10.0 * point_load(LINE, 0, 51.2), 10.0 * point_load(LINE, 1, 97.9)
-    place = order(LINE)
+    place = bandwidth_order(LINE)
     moved = [STATICS.deflection(load).displacement.ravel()[place] for load in (a, b)]
     assert moved[0] @ b == pytest.approx(moved[1] @ a, rel=1e-9)

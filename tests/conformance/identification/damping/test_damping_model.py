@@ -8,14 +8,14 @@ import scipy.linalg
 import scipy.optimize
 
 from pantocheck.conformance.identification.damping.damping_model import (
-    Measured,
+    MeasuredMode,
     ModalEnergies,
-    fit_damping,
-    modal_bands,
-    with_modal,
+    add_modal_damping,
+    fit_damping_model,
+    fit_modal_bands,
 )
-from pantocheck.conformance.identification.damping.mode_pairing import assurance, pair
-from pantocheck.conformance.identification.damping.observability import observability, residual_without
+from pantocheck.conformance.identification.damping.mode_pairing import modal_assurance, pair_modes
+from pantocheck.conformance.identification.damping.observability import compute_observability, residual_without_column
 from pantocheck.conformance.input_files.input_error import InputError
 
 SPANS = (63.0, 63.0, 58.5, 63.0, 54.0, 63.0)
@@ -66,7 +66,7 @@ def line():
 def measured_of(line, noise, random):
     energies, ratio, group = line
     noisy = ratio * (1 + noise * random.standard_normal(ratio.size))
-    return Measured(energies.frequency, noisy, np.maximum(noise, 1e-4) * ratio, group)
+    return MeasuredMode(energies.frequency, noisy, np.maximum(noise, 1e-4) * ratio, group)
 
 
 def test_energies_of_the_kinds_add_up(line):
@@ -77,7 +77,7 @@ def test_energies_of_the_kinds_add_up(line):
 
 def test_coefficients_come_back(line):
     """Both wires within 5 % from ratios known to 0.3 %; the droppers' own 1e-5 s, not fitted, biases by less."""
-    fit = fit_damping(line[0], measured_of(line, 0.003, np.random.default_rng(1)))
+    fit = fit_damping_model(line[0], measured_of(line, 0.003, np.random.default_rng(1)))
     for kind, (_, _, mass, stiffness) in WIRES.items():
         assert fit.value(kind, "mass") == pytest.approx(mass, rel=0.05)
         assert fit.value(kind, "stiffness") == pytest.approx(stiffness, rel=0.05)
@@ -88,7 +88,7 @@ def test_intervals_cover_the_truth(line):
     """Of 20 fits x 4 coefficients, 95 % intervals miss about 4; fewer than 13 is five standard errors away."""
     missed = 0
     for seed in range(20):
-        fit = fit_damping(line[0], measured_of(line, 0.02, np.random.default_rng(seed)))
+        fit = fit_damping_model(line[0], measured_of(line, 0.02, np.random.default_rng(seed)))
         for c in fit.coefficients:
             true = WIRES[c.kind][2 if c.matrix == "mass" else 3]
             missed += not c.low <= true <= c.high
@@ -98,7 +98,7 @@ def test_intervals_cover_the_truth(line):
 def test_outlier_of_a_group_is_left_out(line):
     measured = measured_of(line, 0.003, np.random.default_rng(2))
     measured.damping_ratio[8] *= 1.5
-    fit = fit_damping(line[0], measured)
+    fit = fit_damping_model(line[0], measured)
     assert not fit.used[8]
     assert fit.used.sum() >= 34
     assert fit.value("contact_wire", "stiffness") == pytest.approx(5e-5, rel=0.06)
@@ -106,11 +106,11 @@ def test_outlier_of_a_group_is_left_out(line):
 
 def test_only_the_wires_are_observable(line):
     measured = measured_of(line, 0.003, np.random.default_rng(3))
-    fit = fit_damping(line[0], measured)
-    seen = {(one.kind, one.matrix) for one in observability(line[0], measured, fit) if one.observable}
+    fit = fit_damping_model(line[0], measured)
+    seen = {(one.kind, one.matrix) for one in compute_observability(line[0], measured, fit) if one.observable}
     assert seen == {(kind, matrix) for kind in WIRES for matrix in ("stiffness", "mass")}
     for name in seen:
-        assert residual_without(line[0], measured, fit, name) > 2 * fit.residual
+        assert residual_without_column(line[0], measured, fit, name) > 2 * fit.residual
 
 
 def test_coefficients_are_those_of_the_modes_used(line):
@@ -122,7 +122,7 @@ def test_coefficients_are_those_of_the_modes_used(line):
         random = np.random.default_rng(seed)
         measured = measured_of(line, 0.003, random)
         measured.damping_ratio[random.choice(36, 8, replace=False)] *= 1 + 10 ** random.uniform(-2, -0.5, 8)
-        fit = fit_damping(line[0], measured)
+        fit = fit_damping_model(line[0], measured)
         names, columns = line[0].columns()
         at = [names.index((c.kind, c.matrix)) for c in fit.coefficients]
         count = np.array([np.sum(fit.used & (measured.group == number)) for number in measured.group])[fit.used]
@@ -143,20 +143,20 @@ def test_leaving_out_what_the_fit_puts_to_zero_changes_nothing(line):
     ratio = columns @ [true.get(name, 0.0) for name in names]
     random = np.random.default_rng(6)
     std = ratio * np.array([0.001, 0.05])[group % 2]
-    measured = Measured(energies.frequency, ratio + std * random.standard_normal(ratio.size), std, group)
-    fit = fit_damping(energies, measured)
+    measured = MeasuredMode(energies.frequency, ratio + std * random.standard_normal(ratio.size), std, group)
+    fit = fit_damping_model(energies, measured)
     assert fit.value("contact_wire", "mass") == 0.0
-    growth = {(one.kind, one.matrix): one.growth for one in observability(energies, measured, fit)}
+    growth = {(one.kind, one.matrix): one.growth for one in compute_observability(energies, measured, fit)}
     assert growth["contact_wire", "mass"] == pytest.approx(1.0, rel=1e-9)
     assert growth["contact_wire", "stiffness"] > 1.0
 
 
 def test_modal_bands_give_the_first_groups_their_medians(line):
     measured = measured_of(line, 0.0, np.random.default_rng(4))
-    bands = modal_bands(measured)
+    bands = fit_modal_bands(measured)
     assert len(bands) == 3
     assert all(a.high <= b.low for a, b in pairwise(bands))
-    changed = with_modal(measured.frequency, measured.damping_ratio, bands)
+    changed = add_modal_damping(measured.frequency, measured.damping_ratio, bands)
     assert changed[:6] == pytest.approx(np.median(measured.damping_ratio[:6]))
     assert np.array_equal(changed[18:], measured.damping_ratio[18:])
 
@@ -165,7 +165,9 @@ def test_too_few_modes_are_refused(line):
     energies = line[0]
     few = ModalEnergies(energies.frequency[:4], energies.kinds, energies.stiffness[:4], energies.mass[:4])
     with pytest.raises(InputError, match="4 modes for 4 coefficients"):
-        fit_damping(few, Measured(few.frequency, np.full(4, 0.005), np.full(4, 1e-5), np.ones(4, dtype=np.int64)))
+        fit_damping_model(
+            few, MeasuredMode(few.frequency, np.full(4, 0.005), np.full(4, 1e-5), np.ones(4, dtype=np.int64))
+        )
 
 
 def test_pairs_by_frequency_and_shape():
@@ -176,8 +178,10 @@ def test_pairs_by_frequency_and_shape():
     computed = 0.98 * measured[[0, 1, 3, 2, 4, 5]]
     table = [shapes[[0, 1, 3, 2, 4, 5]]] * 6
     order = np.argsort(computed)
-    pairs = pair(measured, [row.astype(complex) * 2j for row in shapes], computed[order], [t[order] for t in table])
+    pairs = pair_modes(
+        measured, [row.astype(complex) * 2j for row in shapes], computed[order], [t[order] for t in table]
+    )
     assert len(pairs) == 6
     for p in pairs:
         assert p.mac == pytest.approx(1.0)
-    assert assurance(np.array([1.0, 0.0]), np.array([0.0, 1.0])) == 0.0
+    assert modal_assurance(np.array([1.0, 0.0]), np.array([0.0, 1.0])) == 0.0

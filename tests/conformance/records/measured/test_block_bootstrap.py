@@ -5,7 +5,7 @@ import pytest
 
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.quantities.signals import PantographSignals
-from pantocheck.conformance.records.measured.block_bootstrap import uncertainties
+from pantocheck.conformance.records.measured.block_bootstrap import bootstrap_uncertainties
 from pantocheck.conformance.records.measured.pooled_signals import PooledSignals
 
 RATE, SPEED, SPAN = 100.0, 60.0, 60.0  # a span a second
@@ -37,7 +37,7 @@ def test_intervals_of_95_percent_cover_the_truth(count):
     hits = np.zeros(2)
     for i in range(400):
         signals = pooled(spans(random, count), filter_applied_Hz=20.0)
-        found = uncertainties(signals, SPAN / SPEED, f"{i:064x}"[::-1])
+        found = bootstrap_uncertainties(signals, SPAN / SPEED, f"{i:064x}"[::-1])
         hits += [
             abs(signals.delivered.mean() - 120) < found["mean_force_N"],
             abs(signals.graded.std() - SIGMA) < found["std_force_N"],
@@ -49,7 +49,8 @@ def test_intervals_of_95_percent_cover_the_truth(count):
 def test_longer_record_is_more_certain_by_the_root_of_its_length():
     random = np.random.default_rng(5)
     short, long = (
-        uncertainties(pooled(spans(random, count), filter_applied_Hz=20.0), 1.0, DIGEST) for count in (40, 640)
+        bootstrap_uncertainties(pooled(spans(random, count), filter_applied_Hz=20.0), 1.0, DIGEST)
+        for count in (40, 640)
     )
     for name in ("mean_force_N", "std_force_N", "statistical_min_N", "cov_20"):
         assert short[name] / long[name] == pytest.approx(4, rel=0.35)  # an estimate from 40 blocks is off by a fifth
@@ -57,22 +58,22 @@ def test_longer_record_is_more_certain_by_the_root_of_its_length():
 
 def test_same_record_has_the_same_uncertainty_and_another_digest_another():
     signals = pooled(spans(np.random.default_rng(6), 50))
-    first = uncertainties(signals, 1.0, DIGEST)
-    assert first == uncertainties(signals, 1.0, DIGEST)
-    assert first != uncertainties(signals, 1.0, "ab" * 32)
+    first = bootstrap_uncertainties(signals, 1.0, DIGEST)
+    assert first == bootstrap_uncertainties(signals, 1.0, DIGEST)
+    assert first != bootstrap_uncertainties(signals, 1.0, "ab" * 32)
     assert set(first) >= {"max_force_N", "min_force_N", "contact_loss_pct", "cov_20"}
 
 
 def test_short_record_has_none():
-    assert uncertainties(pooled(spans(np.random.default_rng(7), 4)), 1.0, DIGEST) == {}
-    assert uncertainties(PooledSignals((), "gone"), 1.0, DIGEST) == {}
+    assert bootstrap_uncertainties(pooled(spans(np.random.default_rng(7), 4)), 1.0, DIGEST) == {}
+    assert bootstrap_uncertainties(PooledSignals((), "gone"), 1.0, DIGEST) == {}
 
 
 def test_blocks_do_not_reach_across_a_gap():
     """Two halves with means 100 and 140: every block has one of them, so the mean of 2 n blocks is binomial."""
     halves = [np.full(10_000, level) for level in (100.0, 140.0)]
     parts = tuple(pooled(half, filter_applied_Hz=20.0).parts[0] for half in halves)
-    found = uncertainties(PooledSignals(parts, ""), 1.0, DIGEST)
+    found = bootstrap_uncertainties(PooledSignals(parts, ""), 1.0, DIGEST)
     blocks = sum(part.delivered.size for part in parts) / RATE
     assert found["mean_force_N"] == pytest.approx(1.96 * 20 / np.sqrt(blocks), rel=0.1)
     # A block across the gap would bring other extremes than these two.

@@ -6,12 +6,12 @@ from numpy.testing import assert_allclose
 
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.quantities.signals import LineSignals
-from pantocheck.conformance.records.evaluation import evaluate, evaluated
-from pantocheck.conformance.records.measured.outliers import outliers
-from pantocheck.conformance.records.measured.record_preparation import prepared
+from pantocheck.conformance.records.evaluation import evaluate_record, evaluate_signals
+from pantocheck.conformance.records.measured.outliers import find_outliers
+from pantocheck.conformance.records.measured.record_preparation import prepare_record
 from pantocheck.conformance.records.record import RecordInvalid
-from pantocheck.conformance.records.record_sidecar import Sidecar
-from pantocheck.conformance.records.samples import Samples, record_of
+from pantocheck.conformance.records.record_sidecar import RecordSidecar
+from pantocheck.conformance.records.samples import RecordSamples, build_record
 
 SPEED, SPAN, MEAN, SIGMA = 250 / 3.6, 60.0, 120.0, 24.0
 
@@ -25,27 +25,27 @@ def force_at(position):
 
 def sidecar(**keys):
     base = {"schema": "pantocheck.record/1", "file": "a.csv", "speed_km_h": 250.0, "pantographs": 1}
-    return Sidecar.model_validate({**base, "filter_applied_Hz": "none", **keys})
+    return RecordSidecar.model_validate({**base, "filter_applied_Hz": "none", **keys})
 
 
 def ready(samples, tolerance=5.0, **keys):
-    return prepared(samples, sidecar(**keys), LowPass(), tolerance)
+    return prepare_record(samples, sidecar(**keys), LowPass(), tolerance)
 
 
 def by_time(seconds=30.0, rate=500.0):
     time = np.arange(int(seconds * rate)) / rate
-    return Samples(force=force_at(SPEED * time)[None], time=time, position=SPEED * time[None])
+    return RecordSamples(force=force_at(SPEED * time)[None], time=time, position=SPEED * time[None])
 
 
 def values(found):
-    return evaluated(found.pantographs, LineSignals(found.evaluated)).values[1]
+    return evaluate_signals(found.pantographs, LineSignals(found.evaluated)).values[1]
 
 
 def test_simulated_record_goes_through_unchanged():
     """Even samples, a run-in and a run-out: the quantities are those of the record itself, to the last bit."""
     samples = by_time()
     keys = {"evaluated_m": [300.0, 1500.0]}
-    expected = evaluate(record_of(samples, sidecar(**keys)), LowPass()).values[1]
+    expected = evaluate_record(build_record(samples, sidecar(**keys)), LowPass()).values[1]
     assert values(ready(samples, **keys)) == expected
 
 
@@ -58,7 +58,7 @@ def test_whole_record_is_evaluated_away_from_its_ends():
 @pytest.mark.parametrize("step", [0.1, 0.25])
 def test_sampling_by_distance_gives_the_statistics_of_time(step):
     position = np.arange(0, 2000, step)
-    found = ready(Samples(force=force_at(position)[None], position=position[None]), evaluated_m=[60.0, 1860.0])
+    found = ready(RecordSamples(force=force_at(position)[None], position=position[None]), evaluated_m=[60.0, 1860.0])
     assert found.rate == pytest.approx(SPEED / step, rel=1e-5)
     reference = values(ready(by_time(), evaluated_m=[60.0, 1860.0]))
     got = values(found)
@@ -74,7 +74,7 @@ def test_speed_channel_makes_time_from_distance():
     speed = SPEED * (1 + 0.04 * position / 3000)
     time = 3000 / (0.04 * SPEED) * np.log1p(0.04 * position / 3000)
     force = MEAN + 10 * np.sin(2 * np.pi * 12 * time)
-    part = ready(Samples(force=force[None], position=position[None], speed=speed)).pantographs[1].parts[0]
+    part = ready(RecordSamples(force=force[None], position=position[None], speed=speed)).pantographs[1].parts[0]
     spectrum = np.abs(np.fft.rfft(part.delivered - part.delivered.mean()))
     assert np.fft.rfftfreq(part.delivered.size, 1 / part.rate)[spectrum.argmax()] == pytest.approx(12, abs=0.03)
 
@@ -93,11 +93,11 @@ def test_missing_values_are_a_gap_and_two_of_them_are_bridged():
     samples = by_time()
     force = samples.force.copy()
     force[0, 5000:5003] = np.nan  # 6 ms
-    bridged = ready(Samples(force=force, time=samples.time, position=samples.position))
+    bridged = ready(RecordSamples(force=force, time=samples.time, position=samples.position))
     assert len(bridged.pantographs[1].parts) == 1
     assert any("of pantograph 1 is missing, first at 694.4 m" in text for text in bridged.warnings)
     force[0, 5000:5400] = np.nan
-    cut = ready(Samples(force=force, time=samples.time, position=samples.position))
+    cut = ready(RecordSamples(force=force, time=samples.time, position=samples.position))
     assert len(cut.pantographs[1].parts) == 2
     assert np.isfinite(values(cut)["std_force_N"])
 
@@ -106,22 +106,22 @@ def test_change_of_speed_is_cut():
     """Half of the record runs 10 % too slow: it is left out, and said."""
     time = np.arange(0, 60, 0.002)
     position = np.where(time < 30, SPEED * time, SPEED * 30 + 0.9 * SPEED * (time - 30))
-    samples = Samples(force=force_at(position)[None], time=time, position=position[None])
+    samples = RecordSamples(force=force_at(position)[None], time=time, position=position[None])
     found = ready(samples)
     assert found.seconds == pytest.approx(29.8, abs=0.3)
     assert any("50 % of the record was cut" in text and "off 250 km/h" in text for text in found.warnings)
     nothing = ready(samples, speed_km_h=300.0)
     assert nothing.pantographs[1].parts == ()
-    skipped = evaluated(nothing.pantographs, LineSignals(nothing.evaluated)).skipped[1]
+    skipped = evaluate_signals(nothing.pantographs, LineSignals(nothing.evaluated)).skipped[1]
     assert "at the nominal speed" in skipped["std_force_N"]
 
 
 @pytest.mark.parametrize("stated", [True, False])
 def test_chain_filtered_at_20_Hz_gives_nothing_above(stated):
     samples = by_time()
-    filtered = Samples(LowPass(order=8)(samples.force[0], 500.0)[None], samples.time, position=samples.position)
+    filtered = RecordSamples(LowPass(order=8)(samples.force[0], 500.0)[None], samples.time, position=samples.position)
     found = ready(filtered, filter_applied_Hz=20.0) if stated else ready(filtered)
-    got = evaluated(found.pantographs, LineSignals(found.evaluated))
+    got = evaluate_signals(found.pantographs, LineSignals(found.evaluated))
     for name in ("rms_20_50_N", "std_force_50_N", "cov_50", "contact_loss_pct"):
         assert name not in got.values[1]
         assert "filtered at 20 Hz" in got.skipped[1][name]
@@ -133,20 +133,22 @@ def test_outliers_are_marked_and_graded():
     samples = by_time()
     force = samples.force.copy()
     force[0, 6000] = 900.0
-    found = ready(Samples(force=force, time=samples.time, position=samples.position))
+    found = ready(RecordSamples(force=force, time=samples.time, position=samples.position))
     assert any("1 outlier, graded all the same: 900 N at 833.3 m" in text for text in found.warnings)
     assert values(found)["max_force_N"] > values(ready(samples))["max_force_N"] + 10
-    assert outliers(samples.force[0]).size == 0
-    assert list(outliers(force[0])) == [6000]
+    assert find_outliers(samples.force[0]).size == 0
+    assert list(find_outliers(force[0])) == [6000]
 
 
 def test_noise_of_a_million_samples_has_no_outlier():
-    assert outliers(np.random.default_rng(1).normal(120, 25, 1_000_000)).size == 0
+    assert find_outliers(np.random.default_rng(1).normal(120, 25, 1_000_000)).size == 0
 
 
 def test_rear_pantograph_is_placed_by_its_spacing():
     samples = by_time()
-    two = Samples(np.vstack([samples.force, force_at(samples.position - 200.0)]), samples.time, None, samples.position)
+    two = RecordSamples(
+        np.vstack([samples.force, force_at(samples.position - 200.0)]), samples.time, None, samples.position
+    )
     found = ready(two, pantographs=2, spacing_m=[200.0])
     assert found.pantographs[2].parts[0].position[0] == pytest.approx(-200.0)
     assert found.evaluated == pytest.approx((0.0, SPEED * 29.998 - 200), abs=0.1)
@@ -155,11 +157,14 @@ def test_rear_pantograph_is_placed_by_its_spacing():
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda s: Samples(s.force, s.time[::-1], position=s.position), "time: does not grow from sample 1"),
-        (lambda s: Samples(s.force, s.time, position=s.position[:, ::-1]), "position: does not grow from sample 1"),
-        (lambda s: Samples(s.force, np.full(s.time.size, np.nan)), "fewer than two samples"),
-        (lambda s: Samples(s.force, speed=np.zeros(s.time.size), position=s.position), "stands at nearly every"),
-        (lambda s: Samples(s.force, np.r_[s.time[:-1], 1e8], position=s.position), "are more than"),
+        (lambda s: RecordSamples(s.force, s.time[::-1], position=s.position), "time: does not grow from sample 1"),
+        (
+            lambda s: RecordSamples(s.force, s.time, position=s.position[:, ::-1]),
+            "position: does not grow from sample 1",
+        ),
+        (lambda s: RecordSamples(s.force, np.full(s.time.size, np.nan)), "fewer than two samples"),
+        (lambda s: RecordSamples(s.force, speed=np.zeros(s.time.size), position=s.position), "stands at nearly every"),
+        (lambda s: RecordSamples(s.force, np.r_[s.time[:-1], 1e8], position=s.position), "are more than"),
     ],
 )
 def test_impossible_axes_are_refused(change, message):
@@ -171,7 +176,7 @@ def test_odometer_that_moves_in_steps_is_smoothed():
     """A counter of 0.5 m steps, sampled every 0.14 m: the position grows evenly in between, the statistics stay."""
     samples = by_time()
     stepped = np.floor(samples.position * 2) / 2
-    found = ready(Samples(samples.force, samples.time, position=stepped))
+    found = ready(RecordSamples(samples.force, samples.time, position=stepped))
     assert np.all(np.diff(found.pantographs[1].parts[0].position) > 0)
     assert_allclose(values(found)["std_force_N"], values(ready(samples))["std_force_N"], rtol=1e-3)
 
@@ -180,7 +185,7 @@ def test_record_that_covers_little_of_its_stretch_gives_no_number():
     """A truncated record must not stand for the line: 30 s are 2083 m."""
     for asked, share in ((3000.0, "69"), (2083.0, None), (10_000.0, "only 21")):
         found = ready(by_time(), evaluated_m=[10.0, asked])
-        texts = [*found.warnings, *evaluated(found.pantographs, found.line).skipped[1].values()]
+        texts = [*found.warnings, *evaluate_signals(found.pantographs, found.line).skipped[1].values()]
         assert (len(found.pantographs[1].parts) == 1) == (asked < 5000)
         assert any(f"{share} % of" in text or f"{share}" in text for text in texts) == (share is not None)
 
@@ -190,7 +195,7 @@ def test_uplift_ignores_missing_values():
     uplift = np.full((2, samples.time.size), np.nan)
     uplift[0, 100:200] = 0.03
     uplift[0, 150] = 0.05
-    lines = Samples(samples.force, samples.time, None, samples.position, None, uplift, np.array([300.0, 360.0]))
+    lines = RecordSamples(samples.force, samples.time, None, samples.position, None, uplift, np.array([300.0, 360.0]))
     found = ready(lines, support_position_m=[300.0, 360.0]).line
     assert (found.uplift.shape[0], found.uplift.max()) == (1, 0.05)
     assert any("of the uplift is missing" in text for text in ready(lines, support_position_m=[300.0, 360.0]).warnings)

@@ -3,16 +3,16 @@
 import pytest
 from numpy.testing import assert_allclose
 
-from pantocheck.conformance.cases.library import select
-from pantocheck.conformance.identification.identify import identify
-from pantocheck.conformance.simulation.drop_simulation import simulated
-from pantocheck.conformance.studies.vovan2015.fit_comparison import fitted_damping
+from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.identification.identify import identify_modes
+from pantocheck.conformance.simulation.drop_simulation import simulate_drop
+from pantocheck.conformance.studies.vovan2015.fit_comparison import fit_identified_damping
 
 
 @pytest.fixture(scope="module")
 def short():
     """The line in three spans, 80 s of one drop: 50 s would leave the messenger's share uncertain by 20 %."""
-    (case,) = select(["vovan2015/mass-drop/printed"])
+    (case,) = select_cases(["vovan2015/mass-drop/printed"])
     told = case.file.mass_drop
     drop = told.drop[0].model_copy(update={"x_m": 85.5})
     places = ((0, 78.75), (1, 45.0), (2, 99.0), (3, 141.75))
@@ -25,10 +25,12 @@ def short():
 
 
 def test_coefficients_of_both_wires_come_out_within_five_percent(short):
-    drop = simulated(short, 1)
+    drop = simulate_drop(short, 1)
     assert drop.decay.last_slack is not None
-    (found,) = identify((drop.record,), short.file.mass_drop.highest_Hz)
-    fitted = {(one["kind"], one["matrix"]): one["value"] for one in fitted_damping(short, found)["coefficients"]}
+    (found,) = identify_modes((drop.record,), short.file.mass_drop.highest_Hz)
+    fitted = {
+        (one["kind"], one["matrix"]): one["value"] for one in fit_identified_damping(short, found)["coefficients"]
+    }
     damping = short.line.damping
     for kind in ("contact_wire", "messenger_wire"):
         put_in = getattr(damping, kind)

@@ -7,12 +7,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 from pantocheck.conformance.cases.damping_file import Damping
-from pantocheck.conformance.cases.library import select
-from pantocheck.conformance.grading.case_grading import graded
+from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.results.outcome import Outcome
-from pantocheck.conformance.studies.force_charts import bars
+from pantocheck.conformance.studies.force_charts import draw_band_bars
 from pantocheck.conformance.studies.study_dispatch import run_study
-from pantocheck.conformance.studies.vovan2015.damping_change import changes
+from pantocheck.conformance.studies.vovan2015.damping_change import band_changes
 from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
 
 
@@ -30,7 +30,7 @@ class Once:
 
 @pytest.fixture(scope="module")
 def case():
-    (found,) = select(["vovan2015/contact-force"])
+    (found,) = select_cases(["vovan2015/contact-force"])
     # Three spans on a coarse mesh: the changes keep their signs, which is all that is graded.
     coarse = found.file.discretisation.model_copy(update={"element_m": 1.0, "time_step_s": 0.002})
     file = found.file.model_copy(update={"discretisation": coarse, "evaluated_spans": (7, 9)})
@@ -50,7 +50,7 @@ def rows(case, before=None, after=None):
         case = replace(case, dampings={"initial": before})
     if after is not None:
         case = replace(case, line=case.line.model_copy(update={"damping": after}))
-    result = graded(case, run_study(case, Once()), "primary")
+    result = grade_case(case, run_study(case, Once()), "primary")
     return {(row.quantity, row.pantograph): row for row in result.criteria}, result
 
 
@@ -62,7 +62,7 @@ DIFFERENCE = ("rear_over_front_change_20_50_pct", 0)
 def test_changes_of_the_printed_table(case):
     """Table 1: 34.0 to 29.6 N, 26.0 to 29.7 N, 32.9 to 42.5 N."""
     printed = {(one.model, one.pantograph): dict(one.values) for one in case.file.study.printed}
-    found = changes(*({p: printed[name, p] for p in (1, 2)} for name in ("initial", "updated")))
+    found = band_changes(*({p: printed[name, p] for p in (1, 2)} for name in ("initial", "updated")))
     assert_allclose(found[1]["change_rms_0_5_pct"], 0.0, atol=1e-12)
     assert_allclose(found[1]["change_rms_5_20_pct"], -12.94, atol=0.01)
     assert_allclose(found[1]["change_rms_20_50_pct"], 14.23, atol=0.01)
@@ -73,15 +73,15 @@ def test_changes_of_the_printed_table(case):
 def test_changes_of_the_rear_pantograph_alone():
     """Where a paper prints those of one pantograph, there is nothing to compare it with."""
     values = [{2: {"rms_20_50_N": value}} for value in (32.0, 40.0)]
-    assert changes(*values) == {2: {"change_rms_20_50_pct": 25.0}}
+    assert band_changes(*values) == {2: {"change_rms_20_50_pct": 25.0}}
 
 
 def test_the_printed_values_meet_every_limit(case):
     """The limits are those of the paper's own findings."""
     printed = {(one.model, one.pantograph): dict(one.values) for one in case.file.study.printed}
-    found = changes(*({p: printed[name, p] for p in (1, 2)} for name in ("initial", "updated")))
+    found = band_changes(*({p: printed[name, p] for p in (1, 2)} for name in ("initial", "updated")))
     static = replace(case, file=case.file.model_copy(update={"speed_km_h": None, "study": None}))
-    assert {row.verdict for row in graded(static, Outcome(findings=found), "primary").criteria} == {"pass"}
+    assert {row.verdict for row in grade_case(static, Outcome(findings=found), "primary").criteria} == {"pass"}
 
 
 def test_the_updated_damping_brings_more_above_20_hz(case):
@@ -95,7 +95,9 @@ def test_the_updated_damping_brings_more_above_20_hz(case):
 def test_charts_say_what_is_drawn_beside_the_computed_bars():
     """Without printed values there are no printed bars, and no table of computed beside printed ones."""
     values = {"one": {1: {"rms_0_5_N": 30.0}}}
-    (alone,), (beside,) = (bars(values, printed, ["rms_0_5_N"]) for printed in ({}, {("one", 1): {"rms_0_5_N": 34.0}}))
+    (alone,), (beside,) = (
+        draw_band_bars(values, printed, ["rms_0_5_N"]) for printed in ({}, {("one", 1): {"rms_0_5_N": 34.0}})
+    )
     assert "printed" in beside.caption
     assert "printed" in beside.alternative
     assert "computed under each damping model" in alone.caption
@@ -125,6 +127,6 @@ def test_a_system_without_a_record_of_one_model_is_skipped(case):
         def run(self, case):
             return Outcome(skipped="there is no record of this case")
 
-    result = graded(case, run_study(case, OneModel()), "primary")
+    result = grade_case(case, run_study(case, OneModel()), "primary")
     assert result.verdict == "skip"
     assert result.reason == "initial: there is no record of this case"

@@ -7,10 +7,10 @@ from numpy.testing import assert_allclose
 
 from helpers.computed_modes import verdicts
 from helpers.lines import simple_line
-from pantocheck.conformance.cases.library import select
+from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.records.evaluation import LINE
-from pantocheck.conformance.studies.vovan2015.dropper_damping import dropper_damping, transition
-from pantocheck.model import Kind, Passage, Rayleigh, chain, discretise, run
+from pantocheck.conformance.studies.vovan2015.dropper_damping import find_transition, run_dropper_damping
+from pantocheck.model import Kind, Passage, Rayleigh, chain, discretise, simulate_passage
 from pantocheck.model.discretised_line import with_damping
 from pantocheck.model.fem.dropper_laws import with_viscous_part_kept
 
@@ -24,7 +24,7 @@ def low_pass_curve(corner):
 
 def test_levels_of_a_known_curve():
     """Half is left at the corner, 90 % at a third and 10 % at three times of it; points lie 26 % apart."""
-    found = transition(COEFFICIENTS, low_pass_curve(2e-3))
+    found = find_transition(COEFFICIENTS, low_pass_curve(2e-3))
     assert_allclose(found["dropper_transition_start_s"], 2e-3 / 3, rtol=0.03)
     assert_allclose(found["dropper_transition_middle_s"], 2e-3, rtol=0.01)
     assert_allclose(found["dropper_transition_end_s"], 6e-3, rtol=0.03)
@@ -34,12 +34,12 @@ def test_levels_of_a_known_curve():
 def test_a_dropper_that_never_slackens_has_no_transition():
     """There is no force whose share could be told."""
     with np.errstate(all="raise"):
-        assert transition(COEFFICIENTS, np.zeros(COEFFICIENTS.size)) == {}
+        assert find_transition(COEFFICIENTS, np.zeros(COEFFICIENTS.size)) == {}
 
 
 def graded(force):
-    (case,) = select(["vovan2015/dropper-damping"])
-    rows = verdicts(case, {LINE: transition(COEFFICIENTS, force)})
+    (case,) = select_cases(["vovan2015/dropper-damping"])
+    rows = verdicts(case, {LINE: find_transition(COEFFICIENTS, force)})
     return {quantity.removeprefix("dropper_"): row.verdict for (quantity, _), row in rows.items()}
 
 
@@ -59,13 +59,13 @@ def test_a_dropper_that_never_locks_is_caught():
 
 
 def test_the_law_that_compensates_the_elastic_force_locks_and_the_other_does_not():
-    (case,) = select(["vovan2015/dropper-damping"])
+    (case,) = select_cases(["vovan2015/dropper-damping"])
     coarse = case.file.discretisation.model_copy(update={"element_m": 1.5, "time_step_s": 0.002})
     study = case.file.study.model_copy(update={"coefficients_s": (1e-6, 3e-3, 1e-1), "x_m": 283.5})
     file = case.file.model_copy(
         update={"discretisation": coarse, "study": study, "evaluated_spans": (4, 5), "run_out_m": 0.0}
     )
-    outcome = dropper_damping(replace(case, file=file), study)
+    outcome = run_dropper_damping(replace(case, file=file), study)
     (chart,) = outcome.charts
     nothing, elastic = (series.y for series in chart.series)
     # Neither law knows the other without damping: they agree to what a coefficient of 1e-6 s does.
@@ -111,7 +111,7 @@ def taut_and_apart(mesh, other, uplift):
     droppers = mesh.catenary.droppers
     watched = tuple((wire, one.position) for one in droppers for wire in (one.upper, one.lower))
     passage = Passage((head,), (20.0,), 50.0, 1.0, 0.002, watched)
-    motion, compared = (run(line, passage).motion for line in (mesh, other))
+    motion, compared = (simulate_passage(line, passage).motion for line in (mesh, other))
     change = motion[0::2] - motion[1::2]
     bars, count = mesh.connectors, len(droppers)
     assert bars.unilateral[:count].all()

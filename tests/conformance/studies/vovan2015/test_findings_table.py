@@ -5,7 +5,7 @@ import math
 import pytest
 
 from pantocheck.conformance.cases.limits import Limit
-from pantocheck.conformance.studies.vovan2015.findings_table import findings_table
+from pantocheck.conformance.studies.vovan2015.findings_table import build_findings_table
 
 CHANGE = Limit(quantity="change_rms_0_5_pct", upper=0.0, trust="primary", source="test", note="less below 5 Hz")
 SECOND = Limit(quantity="mode_frequency_Hz", item=2, lower=1.0, upper=2.0, trust="primary", source="test")
@@ -13,7 +13,7 @@ SECOND = Limit(quantity="mode_frequency_Hz", item=2, lower=1.0, upper=2.0, trust
 
 def row(limit, value):
     of = {limit.of: {limit.quantity: value}}
-    (found,) = findings_table([limit], of, {}).rows
+    (found,) = build_findings_table([limit], of, {}).rows
     return found[2:]
 
 

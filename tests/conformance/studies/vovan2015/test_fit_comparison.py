@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from pantocheck.conformance.cases.library import select
+from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.identification.damping import observability
 from pantocheck.conformance.reports.figures import mass_drop_figures as massdrop_figures
 from pantocheck.conformance.reports.mass_drop.damping_report import OBSERVABILITY
@@ -22,9 +22,9 @@ ROWS = [
 
 @pytest.fixture
 def chart(monkeypatch):
-    monkeypatch.setattr(fitted, "fitted_damping", lambda *_: {"coefficients": [], "observability": ROWS})
-    (case,) = select(["vovan2015/mass-drop/updated"])
-    ((chart,),) = fitted.fit_report(case, None)[1:]
+    monkeypatch.setattr(fitted, "fit_identified_damping", lambda *_: {"coefficients": [], "observability": ROWS})
+    (case,) = select_cases(["vovan2015/mass-drop/updated"])
+    ((chart,),) = fitted.build_fit_report(case, None)[1:]
     return chart
 
 
@@ -39,7 +39,7 @@ def test_what_is_well_determined_is_not_called_observable_for_that_alone(chart):
 
 def test_drawn_threshold_is_that_of_the_fit(chart):
     assert chart.marks[0].low == observability.RATIO_NEEDED
-    left, right = massdrop_figures.observability.__wrapped__(ROWS).axes
+    left, right = massdrop_figures.draw_observability.__wrapped__(ROWS).axes
     assert set(left.lines[0].get_xdata()) == {100 * observability.SHARE_NEEDED}
     assert set(right.lines[0].get_xdata()) == {observability.RATIO_NEEDED}
     assert f"at least {100 * observability.SHARE_NEEDED:g} % of some mode's damping" in OBSERVABILITY

@@ -5,10 +5,10 @@ from dataclasses import replace
 import pytest
 
 from helpers.computed_modes import computed_modes, verdicts
-from pantocheck.conformance.cases.library import select
+from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.records.evaluation import LINE
-from pantocheck.conformance.simulation.catenary_model import catenary
-from pantocheck.conformance.studies.vovan2015.group_findings import group_findings
+from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.studies.vovan2015.group_findings import compute_group_findings
 from pantocheck.model import Kind, Rayleigh
 
 EVERYTHING = {
@@ -22,9 +22,9 @@ EVERYTHING = {
 
 
 def failed(model, change=lambda line: line, spans=6, highest=6.0):
-    (case,) = select([f"vovan2015/mass-drop/{model}"])
-    modes = computed_modes(change(catenary(case.line)), spans, highest)
-    rows = verdicts(case, {LINE: group_findings(modes)})
+    (case,) = select_cases([f"vovan2015/mass-drop/{model}"])
+    modes = computed_modes(change(build_catenary(case.line)), spans, highest)
+    rows = verdicts(case, {LINE: compute_group_findings(modes)})
     assert set(rows) == EVERYTHING
     assert all(row.margin is not None or row.verdict == "skip" for row in rows.values())
     return {key for key, row in rows.items() if row.verdict == "fail"}
@@ -73,14 +73,14 @@ def test_a_second_group_out_of_place_is_caught():
 
 
 def test_a_mode_lost_in_the_first_group_is_caught():
-    (case,) = select(["vovan2015/mass-drop/updated"])
-    modes = computed_modes(catenary(case.line), 6, 6.0)[1:]
-    rows = verdicts(case, {LINE: group_findings(modes)})
+    (case,) = select_cases(["vovan2015/mass-drop/updated"])
+    modes = computed_modes(build_catenary(case.line), 6, 6.0)[1:]
+    rows = verdicts(case, {LINE: compute_group_findings(modes)})
     assert rows["modes_in_group", 1].verdict == "fail"
 
 
 def test_too_few_groups_are_not_graded():
-    (case,) = select(["vovan2015/mass-drop/updated"])
-    rows = verdicts(case, {LINE: group_findings(computed_modes(catenary(case.line), 6, 2.0))})
+    (case,) = select_cases(["vovan2015/mass-drop/updated"])
+    rows = verdicts(case, {LINE: compute_group_findings(computed_modes(build_catenary(case.line), 6, 2.0))})
     assert rows["damping_decrease_pct", None].verdict == "skip"
     assert rows["damping_rise_pct", None].verdict == "skip"

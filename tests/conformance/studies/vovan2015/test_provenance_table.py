@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import pytest
 
-from pantocheck.conformance.cases.library import select
+from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.cases.limits import Limit
-from pantocheck.conformance.studies.vovan2015.provenance_table import origins
+from pantocheck.conformance.studies.vovan2015.provenance_table import build_provenance_table
 
 
 @pytest.mark.parametrize(
@@ -24,14 +24,16 @@ from pantocheck.conformance.studies.vovan2015.provenance_table import origins
 )
 def test_a_limit_is_the_papers_if_its_source_names_the_paper(source, trust, whose):
     """Own limits laid over a study may well be primary, without being printed in its paper."""
-    (case,) = select(["vovan2015/contact-force"])
+    (case,) = select_cases(["vovan2015/contact-force"])
     limit = Limit(quantity="change_rms_0_5_pct", upper=0.0, trust=trust, source=source)
-    (row,) = (row for row in origins(replace(case, limits=(limit,))).rows if row[0].startswith("limit of"))
+    (row,) = (
+        row for row in build_provenance_table(replace(case, limits=(limit,))).rows if row[0].startswith("limit of")
+    )
     assert row[:2] == ["limit of change_rms_0_5_pct", whose]
 
 
 @pytest.mark.parametrize("pattern", ["vovan2015/contact-force", "vovan2015/mass-drop/printed"])
 def test_primary_limits_of_the_library_are_the_papers(pattern):
-    (case,) = select([pattern])
-    rows = [row for row in origins(case).rows if row[0].startswith("limit of")]
+    (case,) = select_cases([pattern])
+    rows = [row for row in build_provenance_table(case).rows if row[0].startswith("limit of")]
     assert [row[1] for row in rows] == ["the paper's" if one.trust == "primary" else "assumed" for one in case.limits]

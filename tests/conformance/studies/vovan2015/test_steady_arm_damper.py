@@ -7,10 +7,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 from helpers.computed_modes import ELEMENT, verdicts
-from pantocheck.conformance.cases.library import select
+from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.records.evaluation import LINE
-from pantocheck.conformance.simulation.catenary_model import catenary
-from pantocheck.conformance.studies.vovan2015.steady_arm_damper import gains
+from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.studies.vovan2015.steady_arm_damper import damping_gains
 from pantocheck.model import Kind, Rayleigh, discretise
 from pantocheck.model.modal.modal_damping import modes_below
 from pantocheck.model.modal.modes import damping_ratios
@@ -18,14 +18,14 @@ from pantocheck.model.modal.modes import damping_ratios
 
 @pytest.fixture(scope="module")
 def case():
-    (found,) = select(["vovan2015/steady-arm-damper"])
+    (found,) = select_cases(["vovan2015/steady-arm-damper"])
     return found
 
 
 @pytest.fixture(scope="module")
 def verdicts_of(case):
     """Verdicts for a line that takes the damped one's place, by quantity and band."""
-    plain = catenary(case.line)
+    plain = build_catenary(case.line)
     mesh = discretise(plain, ELEMENT)
     shapes = modes_below(mesh, case.file.study.bands_Hz[-1][1])
 
@@ -35,7 +35,7 @@ def verdicts_of(case):
         return [float(np.median(ratio[band])) for band in inside]
 
     def verdicts_for(change):
-        rows = verdicts(case, {LINE: gains(medians(plain), medians(change(plain)))})
+        rows = verdicts(case, {LINE: damping_gains(medians(plain), medians(change(plain)))})
         return {(name.removeprefix("damping_gain_"), band): row.verdict for (name, band), row in rows.items()}
 
     return verdicts_for
@@ -46,13 +46,13 @@ def dampers(damper):
 
 
 def test_gains_by_hand():
-    found = gains([0.002, 0.004, 0.003], [0.003, 0.006, 0.003])
+    found = damping_gains([0.002, 0.004, 0.003], [0.003, 0.006, 0.003])
     assert_allclose(found["damping_gain_pct"], [50, 50, 0], atol=1e-9)
     assert_allclose(found["damping_gain_fading_pct"], 50)
 
 
 def test_a_band_without_modes_ends_the_list():
-    found = gains([0.002, np.nan, 0.003], [0.003, 0.006, 0.003])
+    found = damping_gains([0.002, np.nan, 0.003], [0.003, 0.006, 0.003])
     assert_allclose(found["damping_gain_pct"], [50])
     assert "damping_gain_fading_pct" not in found
 
