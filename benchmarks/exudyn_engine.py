@@ -36,8 +36,10 @@ class DroppersAndContact:
 
     Parameters
     ----------
-    line : with one contact wire
-    passage : pantographs, their places and speed
+    line
+        With one contact wire.
+    passage
+        Pantographs, their places and speed.
     """
 
     def __init__(self, line: DiscretisedLine, passage: Passage) -> None:
@@ -130,12 +132,15 @@ def run_exudyn(line: DiscretisedLine, passage: Passage) -> tuple[Array, float, f
 
     Parameters
     ----------
-    line : in the vertical plane, with one contact wire
-    passage : what is to be run
+    line : DiscretisedLine
+        In the vertical plane, with one contact wire.
+    passage : Passage
+        What is to be run.
 
     Returns
     -------
-    (P, T) contact force [N], process time of the engine's solver [s], the part of it spent in user functions [s]
+    (P, T) ndarray
+        Contact force [N], process time of the engine's solver [s], the part of it spent in user functions [s].
     """
     model = DroppersAndContact(line, passage)
     forces: list[Array] = []

@@ -46,8 +46,10 @@ def vertical(case: Case, state: InitialState) -> Catenary:
 
     Parameters
     ----------
-    case : with stagger
-    state : of the line with stagger, which gives the forces
+    case : Case
+        With stagger.
+    state : InitialState
+        Of the line with stagger, which gives the forces.
     """
     built = build_catenary(case.line)
     arms = tuple(
@@ -70,12 +72,18 @@ def passage(
 
     Parameters
     ----------
-    case : gives speed and pantograph
-    line : the discretised line
-    step : time step [s]
-    pantographs : 1 or 2
-    until : where the last pantograph stops [m]
-    reach : what lies farther than this from every pantograph stands still [m]
+    case : Case
+        Gives speed and pantograph.
+    line : DiscretisedLine
+        The discretised line.
+    step : float
+        Time step [s].
+    pantographs : int
+        1 or 2.
+    until : float
+        Where the last pantograph stops [m].
+    reach : float
+        What lies farther than this from every pantograph stands still [m].
     """
     span = case.line.geometry.span_m
     model = build_pantograph(case.pantographs[0], UPLIFT_FORCE, 0.06)

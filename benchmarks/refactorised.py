@@ -26,7 +26,8 @@ def run_refactorised(line: DiscretisedLine, passage: Passage) -> tuple[np.ndarra
 
     Returns
     -------
-    (T, P) contact force [N], process time of the steps [s]
+    (T, P) ndarray
+        Contact force [N], process time of the steps [s].
     """
     motion, train = start_motion(line, build_kernel_arrays(line, passage.time_step, math.inf), passage)
     matrices, connectors, dt = assemble_matrices(line), line.connectors, passage.time_step

@@ -46,7 +46,8 @@ def read_plan(path: Path) -> Plan:
 
     Raises
     ------
-    InputError : it cannot be read, or is wrong
+    InputError
+        It cannot be read, or is wrong.
     """
     plan, folder = read_model(path, Plan, "plan"), path.parent
     kind, _, rest = plan.system.partition(":")

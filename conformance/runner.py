@@ -24,7 +24,8 @@ class RunInterrupted(Exception):
 
     Parameters
     ----------
-    results : of all cases; those that were not finished are skipped with this reason
+    results
+        Of all cases; those that were not finished are skipped with this reason.
     """
 
     def __init__(self, results: Results) -> None:
@@ -39,19 +40,26 @@ def run_cases(
 
     Parameters
     ----------
-    cases : with unique ids
-    system : under test
-    trust : lowest trust of the limits that carry a verdict
-    jobs : processes at work side by side; with 1, all is done in this process
-    progress : called with each result as it is finished
+    cases : Sequence[Case]
+        With unique ids.
+    system : System
+        Under test.
+    trust : Trust
+        Lowest trust of the limits that carry a verdict.
+    jobs : int
+        Processes at work side by side; with 1, all is done in this process.
+    progress : Progress or None
+        Called with each result as it is finished.
 
     Returns
     -------
-    results in the order of `cases`, whatever was finished first
+    Results
+        Results in the order of `cases`, whatever was finished first.
 
     Raises
     ------
-    RunInterrupted : on KeyboardInterrupt, with what was finished
+    RunInterrupted
+        On KeyboardInterrupt, with what was finished.
     """
     started = utc_now()
     finished: dict[str, CaseResult] = {}

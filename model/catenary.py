@@ -32,8 +32,10 @@ class Rayleigh:
 
     Parameters
     ----------
-    mass_coefficient : multiplies the mass [1/s]
-    stiffness_coefficient : multiplies the stiffness [s]
+    mass_coefficient : float
+        Multiplies the mass [1/s].
+    stiffness_coefficient : float
+        Multiplies the stiffness [s].
     """
 
     mass_coefficient: float = 0.0
@@ -46,8 +48,10 @@ class TensionChange:
 
     Parameters
     ----------
-    start, end : the stretch [m]
-    change : added to the tension of the wire [N]
+    start, end : float
+        The stretch [m].
+    change : float
+        Added to the tension of the wire [N].
     """
 
     start: float
@@ -61,14 +65,22 @@ class Wire:
 
     Parameters
     ----------
-    name : unique within the line
-    kind : contact, messenger or stitch wire
-    start, end : anchors, where the wire does not move [m]
-    tension : [N]
-    mass_per_length : [kg/m]
-    bending_stiffness : EI [N m2]
-    tension_changes : stretches of other tension
-    stagger : prescribed lateral places (x, y) at supports and steady arms [m, m]; None leaves the lateral field out
+    name : str
+        Unique within the line.
+    kind : Kind
+        Contact, messenger or stitch wire.
+    start, end : float
+        Anchors, where the wire does not move [m].
+    tension : float
+        [N].
+    mass_per_length : float
+        [kg/m].
+    bending_stiffness : float
+        EI [N m2].
+    tension_changes : tuple[TensionChange, ...]
+        Stretches of other tension.
+    stagger : tuple[tuple[float, float], ...] or None
+        Prescribed lateral places (x, y) at supports and steady arms [m, m]; None leaves the lateral field out.
     """
 
     name: str
@@ -88,14 +100,21 @@ class Dropper:
 
     Parameters
     ----------
-    position : [m]
-    upper, lower : names of the wires
-    stiffness : axial, while taut [N/m]; or None, and then axial_stiffness is given
-    axial_stiffness : EA [N]; the stiffness is EA over the length that statics give
-    mass : its own, halved to its ends [kg]
-    upper_clamp_mass, lower_clamp_mass : [kg]
-    contact_wire_height : prescribed height of the lower wire here, over the height at the supports [m];
-        None where the lower wire finds its own
+    position : float
+        [m].
+    upper, lower : str
+        Names of the wires.
+    stiffness : float or None
+        Axial, while taut [N/m]; or None, and then axial_stiffness is given.
+    axial_stiffness : float or None
+        EA [N]; the stiffness is EA over the length that statics give.
+    mass : float
+        Its own, halved to its ends [kg].
+    upper_clamp_mass, lower_clamp_mass : float
+        [kg].
+    contact_wire_height : float or None
+        Prescribed height of the lower wire here, over the height at the supports [m]; None where the lower wire finds
+        its own.
     """
 
     position: float
@@ -115,14 +134,22 @@ class SteadyArm:
 
     Parameters
     ----------
-    position : [m]
-    wire : name of the contact wire
-    vertical_stiffness : given [N/m]; None: with a lateral field the axial force over the length of the arm, else none
-    length : of the bar, hinge to claw [m]
-    mass : what the bar and its claw add to the wire at the claw [kg]
-    vertical_damper : a damper between claw and ground [N s/m]
-    carries_share : does the arm carry its share of the contact wire, so that the wire is level at the support?
-    acts : "pull" or "push": which way it holds the wire; an arm that pushes is a negative spring
+    position : float
+        [m].
+    wire : str
+        Name of the contact wire.
+    vertical_stiffness : float or None
+        Given [N/m]; None: with a lateral field the axial force over the length of the arm, else none.
+    length : float or None
+        Of the bar, hinge to claw [m].
+    mass : float
+        What the bar and its claw add to the wire at the claw [kg].
+    vertical_damper : float
+        a damper between claw and ground [N s/m].
+    carries_share : bool
+        Does the arm carry its share of the contact wire, so that the wire is level at the support?
+    acts : Literal[pull, push]
+        "pull" or "push": which way it holds the wire; an arm that pushes is a negative spring.
     """
 
     position: float
@@ -141,11 +168,16 @@ class MessengerSupport:
 
     Parameters
     ----------
-    position : [m]
-    wire : name of the messenger wire
-    height : of the messenger over the contact wire at the support, the encumbrance [m]
-    stiffness : vertical [N/m]
-    damping : vertical [N s/m]
+    position : float
+        [m].
+    wire : str
+        Name of the messenger wire.
+    height : float
+        Of the messenger over the contact wire at the support, the encumbrance [m].
+    stiffness : float
+        Vertical [N/m].
+    damping : float
+        Vertical [N s/m].
     """
 
     position: float
@@ -161,9 +193,12 @@ class Clamp:
 
     Parameters
     ----------
-    position : [m]
-    upper, lower : names of the wires
-    mass : [kg]
+    position : float
+        [m].
+    upper, lower : str
+        Names of the wires.
+    mass : float
+        [kg].
     """
 
     position: float
@@ -178,8 +213,10 @@ class ModalBand:
 
     Parameters
     ----------
-    from_frequency, to_frequency : the band, its upper edge left out [Hz]
-    damping_ratio : [-]
+    from_frequency, to_frequency : float
+        The band, its upper edge left out [Hz].
+    damping_ratio : float
+        [-].
     """
 
     from_frequency: float
@@ -193,9 +230,12 @@ class Catenary:
 
     Parameters
     ----------
-    wires, droppers, steady_arms, messenger_supports, clamps : the parts
-    damping : by kind of component; a kind left out is undamped
-    modal_damping : bands whose modes have a damping ratio of their own
+    wires, droppers, steady_arms, messenger_supports, clamps : tuple of Wire, tuple of Dropper, ...
+        The parts.
+    damping : dict[Kind, Rayleigh]
+        By kind of component; a kind left out is undamped.
+    modal_damping : tuple[ModalBand, ...]
+        Bands whose modes have a damping ratio of their own.
     """
 
     wires: tuple[Wire, ...]
@@ -221,6 +261,7 @@ class Catenary:
 
         Raises
         ------
-        KeyError : there is none
+        KeyError
+            There is none.
         """
         return {wire.name: wire for wire in self.wires}[name]

@@ -21,11 +21,16 @@ class DiscretisedLine:
 
     Parameters
     ----------
-    catenary : what it was made from
-    mesh : stations and rows
-    beams : rows of beams with everything lumped onto them
-    connectors : droppers and clamps
-    state : initial state
+    catenary : Catenary
+        What it was made from.
+    mesh : Mesh
+        Stations and rows.
+    beams : Beams
+        Rows of beams with everything lumped onto them.
+    connectors : Connectors
+        Droppers and clamps.
+    state : InitialState
+        Initial state.
     """
 
     catenary: Catenary
@@ -45,17 +50,22 @@ def discretise(catenary: Catenary, element_length: float, places: tuple[float, .
 
     Parameters
     ----------
-    catenary : the line
-    element_length : longest element [m]
-    places : where stations are wanted besides those the line itself needs, as for loads and sensors [m]
+    catenary : Catenary
+        The line.
+    element_length : float
+        Longest element [m].
+    places : tuple[float, ...]
+        Where stations are wanted besides those the line itself needs, as for loads and sensors [m].
 
     Returns
     -------
-    the discretised line
+    DiscretisedLine
+        The discretised line.
 
     Raises
     ------
-    NoInitialState : the prescribed geometry has no equilibrium
+    NoInitialState
+        The prescribed geometry has no equilibrium.
     """
     mesh = build_mesh(catenary, element_length, places)
     beams = build_beams(catenary, mesh)
@@ -69,12 +79,15 @@ def with_damping(line: DiscretisedLine, damping: Mapping[Kind, Rayleigh]) -> Dis
 
     Parameters
     ----------
-    line : the discretised line
-    damping : by kind of component
+    line : DiscretisedLine
+        The discretised line.
+    damping : Mapping[Kind, Rayleigh]
+        By kind of component.
 
     Returns
     -------
-    the line with that damping
+    DiscretisedLine
+        The line with that damping.
     """
     catenary = replace(line.catenary, damping=dict(damping))
     beams = build_beams(catenary, line.mesh)

@@ -27,11 +27,16 @@ class Pantograph:
 
     Parameters
     ----------
-    mass, damping, stiffness : (n, n) symmetric matrices [kg, N s/m, N/m]
-    head : (n,) picks the head's displacement out of the unknowns [-]
-    force : (n,) constant force on the unknowns: uplift, and preload of the springs [N]
-    static_force : contact force at rest [N]
-    contact_stiffness : of the penalty between head and wire [N/m]
+    mass, damping, stiffness : (n, n) ndarray
+        Symmetric matrices [kg, N s/m, N/m].
+    head : (n,) ndarray
+        Picks the head's displacement out of the unknowns [-].
+    force : (n,) ndarray
+        Constant force on the unknowns: uplift, and preload of the springs [N].
+    static_force : float
+        Contact force at rest [N].
+    contact_stiffness : float
+        Of the penalty between head and wire [N/m].
     """
 
     mass: Array
@@ -56,16 +61,23 @@ def chain(
 
     Parameters
     ----------
-    masses : (n,) from the base upwards [kg]
-    stiffness, damping : (n,) of the element below each mass [N/m, N s/m]
-    uplift_force : constant [N]
-    uplift_on : index of the mass it acts on
-    contact_stiffness : [N/m]
-    unstretched_height : of all masses, over the contact wire at the supports, at which no spring is stretched [m]
+    masses : (n,) ndarray
+        From the base upwards [kg].
+    stiffness, damping : (n,) ndarray
+        Of the element below each mass [N/m, N s/m].
+    uplift_force : float
+        Constant [N].
+    uplift_on : int
+        Index of the mass it acts on.
+    contact_stiffness : float
+        [N/m].
+    unstretched_height : float
+        Of all masses, over the contact wire at the supports, at which no spring is stretched [m].
 
     Returns
     -------
-    the pantograph
+    Pantograph
+        The pantograph.
     """
     n = len(masses)
     force, head = np.zeros(n), np.zeros(n)
@@ -99,15 +111,21 @@ def from_matrices(
 
     Parameters
     ----------
-    mass, damping, stiffness : (n, n) symmetric matrices [kg, N s/m, N/m]; for modal unknowns, per their normalisation
-    head : (n,) picks the head's displacement out of the unknowns
-    static_force : contact force at rest [N]
-    contact_stiffness : [N/m]
-    working_height : of the head at rest, over the contact wire at the supports [m]
+    mass, damping, stiffness : (n, n) ndarray
+        Symmetric matrices [kg, N s/m, N/m]; for modal unknowns, per their normalisation.
+    head : (n,) ndarray
+        Picks the head's displacement out of the unknowns.
+    static_force : float
+        Contact force at rest [N].
+    contact_stiffness : float
+        [N/m].
+    working_height : float
+        Of the head at rest, over the contact wire at the supports [m].
 
     Returns
     -------
-    the pantograph
+    Pantograph
+        The pantograph.
     """
     head, stiff = np.asarray(head, dtype=float), np.asarray(stiffness, dtype=float)
     # Any unknowns that put the head at its height will do: what they stretch is preload.
@@ -135,16 +153,23 @@ def from_modes(
 
     Parameters
     ----------
-    frequency : (n,) [Hz]; zero for a rigid-body mode
-    damping_ratio : (n,) [-]
-    head_shape : (n,) displacement of the head in each mode [kg^-1/2]
-    modal_force : (n,) constant force on each mode [N kg^-1/2]
-    static_force : contact force at rest [N]
-    contact_stiffness : [N/m]
+    frequency : (n,) ndarray
+        [Hz]; zero for a rigid-body mode.
+    damping_ratio : (n,) ndarray
+        [-].
+    head_shape : (n,) ndarray
+        Displacement of the head in each mode [kg^-1/2].
+    modal_force : (n,) ndarray
+        Constant force on each mode [N kg^-1/2].
+    static_force : float
+        Contact force at rest [N].
+    contact_stiffness : float
+        [N/m].
 
     Returns
     -------
-    the pantograph
+    Pantograph
+        The pantograph.
     """
     omega = 2 * np.pi * np.asarray(frequency, dtype=float)
     return Pantograph(
@@ -169,12 +194,15 @@ def apparent_mass(pantograph: Pantograph, frequency: Array) -> Array:
 
     Parameters
     ----------
-    pantograph : the model
-    frequency : (m,) above zero [Hz]
+    pantograph : Pantograph
+        The model.
+    frequency : (m,) ndarray
+        Above zero [Hz].
 
     Returns
     -------
-    (m,) complex [kg]
+    (m,) ndarray
+        Complex [kg].
     """
     omega = 2 * np.pi * np.asarray(frequency, dtype=float)
     receptance = np.empty(omega.size, dtype=complex)

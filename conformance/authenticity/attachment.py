@@ -33,7 +33,8 @@ def open_document(path: Path) -> PdfReader:
 
     Raises
     ------
-    InputError : no such file, too large, or not a PDF
+    InputError
+        No such file, too large, or not a PDF.
     """
     try:
         size = path.stat().st_size
@@ -60,7 +61,8 @@ def read_title_and_first_page(path: Path, reader: PdfReader) -> tuple[str, str]:
 
     Raises
     ------
-    InputError : damaged
+    InputError
+        Damaged.
     """
     try:
         title = reader.metadata.title if reader.metadata else None
@@ -74,7 +76,8 @@ def read_embedded_results(path: Path, reader: PdfReader) -> dict[str, Any]:
 
     Raises
     ------
-    InputError : nothing embedded under the name, more than once, too large, not JSON, or not results of this suite
+    InputError
+        Nothing embedded under the name, more than once, too large, not JSON, or not results of this suite.
     """
     try:
         found = reader.attachments.get(NAME, [])

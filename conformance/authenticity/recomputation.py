@@ -19,7 +19,8 @@ def find_discrepancies(results: dict[str, Any]) -> list[str]:
 
     Parameters
     ----------
-    results : valid results.json as a dictionary
+    results : dict[str, Any]
+        Valid results.json as a dictionary.
     """
     found = [text for case in results["cases"] for text in _case(case, results["trust"])]
     verdict = worst_verdict(case["verdict"] for case in results["cases"])

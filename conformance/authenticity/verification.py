@@ -21,9 +21,12 @@ class Verification:
 
     Parameters
     ----------
-    verdict : as the embedded results state it
-    cases, criteria : how many there are
-    discrepancies : one line each; none if the certificate is consistent
+    verdict : Verdict
+        As the embedded results state it.
+    cases, criteria : int
+        How many there are.
+    discrepancies : tuple[str, ...]
+        One line each; none if the certificate is consistent.
     """
 
     verdict: Verdict
@@ -45,11 +48,13 @@ def verify_certificate(path: Path) -> Verification:
 
     Parameters
     ----------
-    path : a certificate.pdf
+    path : Path
+        a certificate.pdf.
 
     Raises
     ------
-    InputError : not a PDF, damaged, or without valid results
+    InputError
+        Not a PDF, damaged, or without valid results.
     """
     reader = open_document(path)
     results = read_embedded_results(path, reader)

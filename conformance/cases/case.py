@@ -22,8 +22,10 @@ class InputProvenance:
 
     Parameters
     ----------
-    group : dotted name of the table, or of one key of it
-    trust, source : as the file says; source keys
+    group : str
+        Dotted name of the table, or of one key of it.
+    trust, source : Trust or tuple[str, ...]
+        As the file says; source keys.
     """
 
     group: str
@@ -37,12 +39,18 @@ class Case:
 
     Parameters
     ----------
-    file : the case file
-    line : its line
-    pantographs : one per [[pantograph]] table, in running order
-    limits : those of the file, or a user's in their place
-    measured : pantograph whose apparent mass a static case takes
-    dampings : other damping models that a study or a comparison needs, by name
+    file : CaseFile
+        The case file.
+    line : LineFile
+        Its line.
+    pantographs : tuple[PantographFile, ...]
+        One per [[pantograph]] table, in running order.
+    limits : tuple[Limit, ...]
+        Those of the file, or a user's in their place.
+    measured : PantographFile or None
+        Pantograph whose apparent mass a static case takes.
+    dampings : Mapping[str, Damping]
+        Other damping models that a study or a comparison needs, by name.
     """
 
     file: CaseFile

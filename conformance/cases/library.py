@@ -44,7 +44,8 @@ def select_cases(patterns: Sequence[str]) -> list[Case]:
 
     Raises
     ------
-    InputError : a pattern matches nothing (the nearest ids are named), or a file is wrong
+    InputError
+        a pattern matches nothing (the nearest ids are named), or a file is wrong.
     """
     known = list_library(library_folder())
     chosen: dict[str, Case] = {}
@@ -97,7 +98,8 @@ def load_case(path: Path) -> Case:
 
     Raises
     ------
-    InputError : a file cannot be read, or is wrong
+    InputError
+        a file cannot be read, or is wrong.
     """
     file = read_model(path, CaseFile, "case")
     line = read_model(_beside(path, file.line, "line"), LineFile, "reference line")
@@ -201,7 +203,8 @@ def overlay_limits(cases: Sequence[Case], limits: Sequence[LimitOverride]) -> li
 
     Raises
     ------
-    InputError : a limit is for none of the cases, or for a pantograph that its case has not
+    InputError
+        a limit is for none of the cases, or for a pantograph that its case has not.
     """
     for i, limit in enumerate(limits, 1):
         where, meant = f"limits, key limit[{i}]", [case for case in cases if fnmatchcase(case.id, limit.case)]

@@ -130,14 +130,19 @@ def resolve_bounds(
 
     Parameters
     ----------
-    rule : to be resolved
-    speed_km_h : of the record [km/h]
-    given : what the record says of its line, by key
-    measured : value of the measured record, for a rule that compares
+    rule : Rule
+        To be resolved.
+    speed_km_h : float
+        Of the record [km/h].
+    given : Mapping[str, float or None]
+        What the record says of its line, by key.
+    measured : float or None
+        Value of the measured record, for a rule that compares.
 
     Raises
     ------
-    NoBound : the speed is out of the formula's range, what the bound refers to is not known, or nothing lies between
+    NoBound
+        The speed is out of the formula's range, what the bound refers to is not known, or nothing lies between.
     """
     if rule.compares:
         if measured is None:
@@ -170,7 +175,8 @@ def load_profile(name: str) -> Profile:
 
     Raises
     ------
-    InputError : there is no such profile, or it is wrong
+    InputError
+        There is no such profile, or it is wrong.
     """
     if name.endswith(".toml"):
         return read_model(Path(name), Profile, "profile")

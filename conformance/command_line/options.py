@@ -18,12 +18,15 @@ def build_options(plan: Path | None = None, **given: object) -> "Plan":
 
     Parameters
     ----------
-    plan : its file, if there is one
-    given : by key of a plan; what is None was not given
+    plan : Path or None
+        Its file, if there is one.
+    given : object
+        By key of a plan; what is None was not given.
 
     Raises
     ------
-    InputError : the plan cannot be read or is wrong, or an option is wrong
+    InputError
+        The plan cannot be read or is wrong, or an option is wrong.
     """
     from pydantic import ValidationError
 

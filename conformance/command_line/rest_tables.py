@@ -28,7 +28,8 @@ def build_rest_tables(case: Case) -> "list[RenderableType]":
 
     Parameters
     ----------
-    case : any case, with or without a speed
+    case : Case
+        Any case, with or without a speed.
     """
     element = case.file.discretisation.element_m
     found = compute_static_quantities(case, discretise(build_catenary(case.line), element))

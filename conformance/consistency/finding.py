@@ -12,9 +12,12 @@ class Finding:
 
     Parameters
     ----------
-    check : which one
-    kind : `contradiction` (the record cannot be graded), `doubt` (a warning), `unchecked` (the record lacks a channel)
-    text : one line, for the reader of a report
+    check : CheckName
+        Which one.
+    kind : Literal[contradiction, doubt, unchecked]
+        `contradiction` (the record cannot be graded), `doubt` (a warning), `unchecked` (the record lacks a channel).
+    text : str
+        One line, for the reader of a report.
     """
 
     check: CheckName

@@ -41,10 +41,14 @@ class ResponseFit:
 
     Parameters
     ----------
-    misfit : rms of motion minus response, over rms of the response
-    gain : of the force that explains the motion best, 1 if all is right
-    unexplained : share of the motion that remains with that gain
-    motion, response : (n,) what is compared [m]
+    misfit : float
+        Rms of motion minus response, over rms of the response.
+    gain : float
+        Of the force that explains the motion best, 1 if all is right.
+    unexplained : float
+        Share of the motion that remains with that gain.
+    motion, response : (n,) ndarray
+        What is compared [m].
     """
 
     misfit: float
@@ -82,13 +86,17 @@ def fit_motion(file: PantographFile, force: Array, height: Array, step: float) -
 
     Parameters
     ----------
-    file : the pantograph
-    force, height : (n,) contact force [N] and height of the contact point [m]
-    step : between samples [s]
+    file : PantographFile
+        The pantograph.
+    force, height : (n,) ndarray
+        Contact force [N] and height of the contact point [m].
+    step : float
+        Between samples [s].
 
     Returns
     -------
-    the fit; None if the head hardly moves, and would hardly move
+    ResponseFit or None
+        The fit; None if the head hardly moves, and would hardly move.
     """
     response, free = _responses(file, force, step)
     response, motion = _without(response, free), _without(height, free)

@@ -32,13 +32,20 @@ class AssessedRecord:
 
     Parameters
     ----------
-    name : of its file
-    said : the sidecar, or the summary itself
-    line : what is known of the line, the command line's included
-    digest : SHA-256 of all that was read, in hexadecimal
-    values : quantities, with those that follow from the line
-    uncertainty : half-width of their 95 % interval, by pantograph and name
-    signals : that the quantities were computed from; None for a summary
+    name : str
+        Of its file.
+    said : RecordSidecar or RecordSummary
+        The sidecar, or the summary itself.
+    line : LineTable
+        What is known of the line, the command line's included.
+    digest : str
+        SHA-256 of all that was read, in hexadecimal.
+    values : Evaluation
+        Quantities, with those that follow from the line.
+    uncertainty : dict[int, dict[str, float]]
+        Half-width of their 95 % interval, by pantograph and name.
+    signals : PreparedRecord or None
+        That the quantities were computed from; None for a summary.
     """
 
     name: str
@@ -74,13 +81,17 @@ def load_assessed_record(path: Path, profile: Profile, line: LineTable) -> Asses
 
     Parameters
     ----------
-    path : of a sidecar, a table beside its sidecar, or a summary record
-    profile : filter, and how far the speed may vary
-    line : what goes before the `line` table of the record
+    path : Path
+        Of a sidecar, a table beside its sidecar, or a summary record.
+    profile : Profile
+        Filter, and how far the speed may vary.
+    line : LineTable
+        What goes before the `line` table of the record.
 
     Raises
     ------
-    InputError : the record cannot be read, is impossible, or was filtered otherwise than the profile asks
+    InputError
+        The record cannot be read, is impossible, or was filtered otherwise than the profile asks.
     """
     said = open_record(path)
     known = said.line.model_copy(update=line.model_dump(exclude_none=True))

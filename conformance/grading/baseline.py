@@ -32,10 +32,14 @@ def compare_with_baseline(results: Results, baseline: Results, drift_pct: float,
 
     Parameters
     ----------
-    results : of this run
-    baseline : of the run to compare with
-    drift_pct : how far a value may be from that of the baseline [%]
-    name : what the baseline is called in reports
+    results : Results
+        Of this run.
+    baseline : Results
+        Of the run to compare with.
+    drift_pct : float
+        How far a value may be from that of the baseline [%].
+    name : str
+        What the baseline is called in reports.
     """
     earlier = {case.id: case for case in baseline.cases}
     cases = [_compared(case, earlier.get(case.id), drift_pct, name) for case in results.cases]

@@ -30,9 +30,12 @@ def grade_case(case: Case, outcome: Outcome, lowest_trust: Trust) -> CaseResult:
 
     Parameters
     ----------
-    case : what was asked, and its limits
-    outcome : what was delivered
-    lowest_trust : lowest trust of the limits that carry a verdict
+    case : Case
+        What was asked, and its limits.
+    outcome : Outcome
+        What was delivered.
+    lowest_trust : Trust
+        Lowest trust of the limits that carry a verdict.
     """
     if outcome.errored is not None:
         return build_ungraded(case, "error", outcome.errored, outcome)
@@ -171,10 +174,14 @@ def grade_criterion(
 
     Parameters
     ----------
-    limit : of one quantity
-    evaluation : that holds the value, or the reason why there is none
-    lowest_trust : lowest trust of the limits that carry a verdict
-    refined : the same with element and time step halved, for the discretisation error
+    limit : Limit
+        Of one quantity.
+    evaluation : Evaluation
+        That holds the value, or the reason why there is none.
+    lowest_trust : Trust
+        Lowest trust of the limits that carry a verdict.
+    refined : Evaluation or None
+        The same with element and time step halved, for the discretisation error.
     """
     value = find_value(limit, evaluation.values)
     fine = find_value(limit, refined.values) if refined is not None else None
@@ -222,8 +229,10 @@ def find_value(limit: Limit, values: Mapping[int, Mapping[str, Value]]) -> float
 
     Parameters
     ----------
-    limit : of one quantity, or of one item of it
-    values : by pantograph (0: the line) and name
+    limit : Limit
+        Of one quantity, or of one item of it.
+    values : Mapping[int, Mapping[str, Value]]
+        By pantograph (0: the line) and name.
     """
     value = values.get(limit.of, {}).get(limit.quantity)
     if isinstance(value, tuple):

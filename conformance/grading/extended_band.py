@@ -27,9 +27,12 @@ def extended_band_warnings(outcome: Outcome, evaluation: Evaluation, refined: Ev
 
     Parameters
     ----------
-    outcome : what the system delivered
-    evaluation : its quantities
-    refined : those of the same case with element and time step halved; None if that was not run
+    outcome : Outcome
+        What the system delivered.
+    evaluation : Evaluation
+        Its quantities.
+    refined : Evaluation or None
+        Those of the same case with element and time step halved; None if that was not run.
     """
     bands, warnings = _bands(evaluation), find_unvalidated(evaluation)
     if not bands:

@@ -54,15 +54,21 @@ def assess_record(
 
     Parameters
     ----------
-    subject : the record
-    profile : its rules
-    trust : lowest trust of the rules that carry a verdict
-    measured : the record to compare with, for a profile that compares
-    limits : a user's own, in place of the rules of the same quantity
+    subject : AssessedRecord
+        The record.
+    profile : Profile
+        Its rules.
+    trust : Trust
+        Lowest trust of the rules that carry a verdict.
+    measured : AssessedRecord or None
+        The record to compare with, for a profile that compares.
+    limits : Sequence[Limit]
+        a user's own, in place of the rules of the same quantity.
 
     Raises
     ------
-    InputError : a measured record is missing or of no use, or does not fit the record
+    InputError
+        a measured record is missing or of no use, or does not fit the record.
     """
     _check_pair(subject, measured, profile)
     graded = _graded(subject, profile, trust, measured, limits)

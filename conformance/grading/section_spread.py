@@ -21,14 +21,19 @@ def section_spread(
 
     Parameters
     ----------
-    record : of the run
-    stretches : start and end of every stretch of the same length [m, m]
-    low_pass : filter of the graded force
-    values : on the evaluated stretch, by pantograph and name
+    record : Record
+        Of the run.
+    stretches : Sequence[tuple[float, float]]
+        Start and end of every stretch of the same length [m, m].
+    low_pass : LowPass
+        Filter of the graded force.
+    values : dict[int, dict[str, Value]]
+        On the evaluated stretch, by pantograph and name.
 
     Returns
     -------
-    in the units of the quantities, by pantograph and name; without what fewer than three stretches give
+    dict[int, dict[str, float]]
+        In the units of the quantities, by pantograph and name; without what fewer than three stretches give.
     """
     shifted = [evaluate_record(replace(record, evaluated=stretch), low_pass).values for stretch in stretches]
     found: dict[int, dict[str, float]] = {}

@@ -22,12 +22,15 @@ def margin(value: float, lower: float | None, upper: float | None) -> float:
 
     Parameters
     ----------
-    value : the value graded
-    lower, upper : limits in the unit of the value; at least one of them
+    value : float
+        The value graded.
+    lower, upper : float or None
+        Limits in the unit of the value; at least one of them.
 
     Returns
     -------
-    [-]
+    float
+        [-].
     """
     if lower is not None and upper is not None:
         if lower == upper:

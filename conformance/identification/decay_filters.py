@@ -16,9 +16,12 @@ def low_pass_decay(rate: float, passes: float, stops: float, attenuation: float)
 
     Parameters
     ----------
-    rate : samples per second [Hz]
-    passes, stops : edges of the transition [Hz]
-    attenuation : of the stop band [dB]
+    rate : float
+        Samples per second [Hz].
+    passes, stops : float
+        Edges of the transition [Hz].
+    attenuation : float
+        Of the stop band [dB].
     """
     length, beta = scipy.signal.kaiserord(attenuation, (stops - passes) / (rate / 2))
     taps = scipy.signal.firwin(length | 1, (passes + stops) / 2, window=("kaiser", beta), fs=rate)

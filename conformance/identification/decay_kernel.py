@@ -20,14 +20,19 @@ def decay_kernel(poles: Complex, omega: Real, dt: float, n: int) -> Complex:
 
     Parameters
     ----------
-    poles : (m,) lambda [1/s]
-    omega : (k,) angular frequencies, multiples of 2 pi / (n dt) [rad/s]
-    dt : sampling interval [s]
-    n : number of samples N
+    poles : (m,) complex ndarray
+        Lambda [1/s].
+    omega : (k,) ndarray
+        Angular frequencies, multiples of 2 pi / (n dt) [rad/s].
+    dt : float
+        Sampling interval [s].
+    n : int
+        Number of samples N.
 
     Returns
     -------
-    (k, m) the finite geometric sum, without unit
+    (k, m) ndarray
+        The finite geometric sum, without unit.
     """
     decayed = -np.expm1(poles * (n * dt))
     return np.asarray(decayed / -_ratio(poles, omega, dt))
@@ -52,11 +57,13 @@ def real_columns(towards_pole: Complex, towards_conjugate: Complex) -> Real:
 
     Parameters
     ----------
-    towards_pole, towards_conjugate : (k, m) K (or its derivative) at lambda and at conj lambda
+    towards_pole, towards_conjugate : (k, m) complex ndarray
+        K (or its derivative) at lambda and at conj lambda.
 
     Returns
     -------
-    (2 k, 2 m): rows are real parts then imaginary parts; columns multiply Re A of every pole, then Im A of every pole
+    (2 k, 2 m) ndarray
+        Rows are real parts then imaginary parts; columns multiply Re A of every pole, then Im A of every pole.
     """
     with_real = towards_pole + towards_conjugate
     with_imaginary = 1j * (towards_pole - towards_conjugate)
@@ -75,7 +82,8 @@ def drift_columns(degree: int, n: int, lines: NDArray[np.int64]) -> Real:
 
     Returns
     -------
-    (2 k, degree), each column of unit length
+    (2 k, degree) ndarray
+        Each column of unit length.
     """
     t = np.linspace(-1.0, 1.0, n)
     polynomials = np.polynomial.legendre.legvander(t, degree)[:, 1:]

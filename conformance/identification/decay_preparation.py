@@ -23,12 +23,18 @@ class PreparedDecay:
 
     Parameters
     ----------
-    record : as read
-    columns : which of its channels are used (vertical ones)
-    release : when the mass was released
-    stretch : free decay of those channels
-    lateral : (n, l) lateral channels over the same stretch, treated the same way
-    warnings : what is doubtful
+    record : DropRecord
+        As read.
+    columns : tuple[int, ...]
+        Which of its channels are used (vertical ones).
+    release : Release
+        When the mass was released.
+    stretch : LinearDecay
+        Free decay of those channels.
+    lateral : (n, l) ndarray
+        Lateral channels over the same stretch, treated the same way.
+    warnings : tuple[str, ...]
+        What is doubtful.
     """
 
     record: DropRecord
@@ -50,7 +56,8 @@ def prepare_decay(record: DropRecord, band: FrequencyBand) -> PreparedDecay:
 
     Raises
     ------
-    InputError : it has no vertical channel, or no usable free decay
+    InputError
+        It has no vertical channel, or no usable free decay.
     """
     name = record.name
     vertical = record.along("z")

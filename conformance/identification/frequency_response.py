@@ -26,11 +26,16 @@ class FrequencyResponse:
 
     Parameters
     ----------
-    record : name
-    channels : (c,) names
-    frequency : (k,) [Hz]
-    measured : (k, c) from the release to the end of the linear stretch [m/s2/N]
-    identified : (k, c) of the identified modes, carried back to the release [m/s2/N]
+    record : str
+        Name.
+    channels : tuple[str, ...]
+        (c,) names.
+    frequency : (k,) ndarray
+        [Hz].
+    measured : (k, c) complex ndarray
+        From the release to the end of the linear stretch [m/s2/N].
+    identified : (k, c) complex ndarray
+        Of the identified modes, carried back to the release [m/s2/N].
     """
 
     record: str
@@ -45,12 +50,15 @@ def compute_frequency_response(found: Identification, r: int) -> FrequencyRespon
 
     Parameters
     ----------
-    found : the identification
-    r : which of its records
+    found : Identification
+        The identification.
+    r : int
+        Which of its records.
 
     Returns
     -------
-    None if the mass is not known
+    FrequencyResponse or None
+        None if the mass is not known.
     """
     one = found.prepared[r]
     record, stretch = one.record, one.stretch

@@ -30,15 +30,18 @@ def read_poles(path: Path) -> NDArray[np.complex128]:
 
     Parameters
     ----------
-    path : the file
+    path : Path
+        The file.
 
     Returns
     -------
-    (m,) lambda [1/s]
+    (m,) ndarray
+        Lambda [1/s].
 
     Raises
     ------
-    InputError : it cannot be read or is wrong
+    InputError
+        It cannot be read or is wrong.
     """
     rows: list[tuple[float, float]]
     if path.suffix == ".json":

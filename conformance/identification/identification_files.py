@@ -113,7 +113,8 @@ def write_modes(path: Path, all_found: tuple[Identification, ...]) -> None:
 
     Raises
     ------
-    InputError : it cannot be written
+    InputError
+        It cannot be written.
     """
     write_json(path, [build_mode_row(mode) for found in all_found for mode in found.modes])
 
@@ -128,7 +129,8 @@ def read_modes(path: Path) -> tuple[ModeRow, ...]:
 
     Raises
     ------
-    InputError : it cannot be read, is no JSON, or is no list of modes
+    InputError
+        It cannot be read, is no JSON, or is no list of modes.
     """
     where = f"modes '{path.name}'"
     try:

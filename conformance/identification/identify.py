@@ -38,16 +38,26 @@ class Identification:
 
     Parameters
     ----------
-    prepared : the records, with the stretch used of each
-    band : what was identified
-    modes : by frequency
-    poles : of the fit, those beyond the reported band included [1/s]
-    blocks : data of the fit; the sensors of record r are the columns `columns[r]` of block `block_of[r]`
-    fits : residues and residual of each block
-    noise : per block, (c,) standard deviation of a line's real or imaginary part
-    block_of, columns : where each record's sensors are
-    misfit : squared error over its expectation; 1 if the model is complete
-    warnings : what is doubtful about the whole
+    prepared : tuple[PreparedDecay, ...]
+        The records, with the stretch used of each.
+    band : FrequencyBand
+        What was identified.
+    modes : tuple[Mode, ...]
+        By frequency.
+    poles : complex ndarray
+        Of the fit, those beyond the reported band included [1/s].
+    blocks : tuple[DataBlock, ...]
+        Data of the fit; the sensors of record r are the columns `columns[r]` of block `block_of[r]`.
+    fits : tuple[ProjectionFit, ...]
+        Residues and residual of each block.
+    noise : tuple[ndarray, ...]
+        Per block, (c,) standard deviation of a line's real or imaginary part.
+    block_of, columns : tuple[int, ...] or tuple[slice, ...]
+        Where each record's sensors are.
+    misfit : float
+        Squared error over its expectation; 1 if the model is complete.
+    warnings : tuple[str, ...]
+        What is doubtful about the whole.
     """
 
     prepared: tuple[PreparedDecay, ...]
@@ -75,14 +85,19 @@ def identify_modes(
 
     Parameters
     ----------
-    records : repeats, or drops at several places
-    highest : modes up to here are reported [Hz]
-    poles : start values placed by hand [1/s]; neither added to nor removed from. None: found from the records
-    progress : told what is being done
+    records : tuple[DropRecord, ...]
+        Repeats, or drops at several places.
+    highest : float
+        Modes up to here are reported [Hz].
+    poles : complex ndarray or None
+        Start values placed by hand [1/s]; neither added to nor removed from. None: found from the records.
+    progress : Callable[[str], None]
+        Told what is being done.
 
     Raises
     ------
-    InputError : a record that cannot be used
+    InputError
+        a record that cannot be used.
     """
     if not records:
         raise InputError("records", "none given", "Name at least one record.")

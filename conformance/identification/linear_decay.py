@@ -34,9 +34,12 @@ class FrequencyBand:
 
     Parameters
     ----------
-    low, high : modes between these are reported [Hz]
-    fitted : the fit goes up to here, so that the edge disturbs no reported mode [Hz]
-    stop : nothing is left above this [Hz]
+    low, high : float
+        Modes between these are reported [Hz].
+    fitted : float
+        The fit goes up to here, so that the edge disturbs no reported mode [Hz].
+    stop : float
+        Nothing is left above this [Hz].
     """
 
     low: float = 0.3
@@ -58,14 +61,22 @@ class LinearDecay:
 
     Parameters
     ----------
-    samples : (n, c)
-    dt : sampling interval [s]
-    taps : the low-pass at the original rate
-    rate : original samples per second [Hz]
-    start, end : of the samples used, in the record's time [s]
-    first : time to which the first sample belongs, in the record's time [s]
-    poles : what the search already found [1/s]
-    warnings : why the stretch is shorter than the record
+    samples : ndarray
+        (n, c).
+    dt : float
+        Sampling interval [s].
+    taps : ndarray
+        The low-pass at the original rate.
+    rate : float
+        Original samples per second [Hz].
+    start, end : float
+        Of the samples used, in the record's time [s].
+    first : float
+        Time to which the first sample belongs, in the record's time [s].
+    poles : complex ndarray
+        What the search already found [1/s].
+    warnings : tuple[str, ...]
+        Why the stretch is shorter than the record.
     """
 
     samples: Real
@@ -97,17 +108,25 @@ def find_linear_decay(
 
     Parameters
     ----------
-    signals : (n, c)
-    rate : samples per second [Hz]
-    release : when the mass was released
-    band : what is identified
-    name : of the record, for messages
-    channels : (c,) names, for messages
-    clipped_until : last clipped sample [s]
+    signals : ndarray
+        (n, c).
+    rate : float
+        Samples per second [Hz].
+    release : Release
+        When the mass was released.
+    band : FrequencyBand
+        What is identified.
+    name : str
+        Of the record, for messages.
+    channels : tuple[str, ...]
+        (c,) names, for messages.
+    clipped_until : float
+        Last clipped sample [s].
 
     Raises
     ------
-    InputError : less than `SHORTEST` is left, or a channel is dead there
+    InputError
+        Less than `SHORTEST` is left, or a channel is dead there.
     """
     begin = int(release.time * rate)
     taps = low_pass_decay(rate, band.fitted, band.stop, 80.0)
@@ -260,14 +279,19 @@ def residual_levels(residual: Real, window: int, dt: float, band: FrequencyBand)
 
     Parameters
     ----------
-    residual : (n, c)
-    window : samples of a window
-    dt : sampling interval [s]
-    band : what is identified
+    residual : ndarray
+        (n, c).
+    window : int
+        Samples of a window.
+    dt : float
+        Sampling interval [s].
+    band : FrequencyBand
+        What is identified.
 
     Returns
     -------
-    first sample of every window, (w,), and its levels, (w, c)
+    tuple[ndarray, ndarray]
+        First sample of every window, (w,), and its levels, (w, c).
     """
     inner = complete_overlap(residual, _test_filter(dt, band))
     starts = np.arange(0, inner.shape[0] - window + 1, max(window // 4, 1))

@@ -21,22 +21,38 @@ class Mode:
 
     Parameters
     ----------
-    frequency : |lambda| / 2 pi [Hz]
-    frequency_std : its standard deviation [Hz]
-    damping_ratio : share of critical damping
-    damping_ratio_std : its standard deviation
-    channels : (s,) of the record that shows the mode best
-    shape : (s,) complex shape at them, the largest 1
-    shape_std : (s,) standard deviation of its real and of its imaginary part
-    amplitude : largest amplitude of any sensor at the release [unit of the record]
-    collinearity : modal phase collinearity, 1 for a normal mode; None with a single sensor
-    error : what the fit leaves in the mode's band, over what is measured there
-    record : name of the record that shows the mode best
-    group : number of its group of span modes, None if it fits none
-    outlier : its damping ratio is far from its group's
-    lateral_share : largest lateral over largest vertical amplitude; None without lateral channels
-    half_power_points : spectral lines inside the half-power band
-    warnings : why it should not be believed without more
+    frequency : float
+        |lambda| / 2 pi [Hz].
+    frequency_std : float
+        Its standard deviation [Hz].
+    damping_ratio : float
+        Share of critical damping.
+    damping_ratio_std : float
+        Its standard deviation.
+    channels : tuple[DropChannel, ...]
+        (s,) of the record that shows the mode best.
+    shape : (s,) complex ndarray
+        Complex shape at them, the largest 1.
+    shape_std : (s,) ndarray
+        Standard deviation of its real and of its imaginary part.
+    amplitude : float
+        Largest amplitude of any sensor at the release [unit of the record].
+    collinearity : float or None
+        Modal phase collinearity, 1 for a normal mode; None with a single sensor.
+    error : float
+        What the fit leaves in the mode's band, over what is measured there.
+    record : str
+        Name of the record that shows the mode best.
+    group : int or None
+        Number of its group of span modes, None if it fits none.
+    outlier : bool
+        Its damping ratio is far from its group's.
+    lateral_share : float or None
+        Largest lateral over largest vertical amplitude; None without lateral channels.
+    half_power_points : float
+        Spectral lines inside the half-power band.
+    warnings : tuple[str, ...]
+        Why it should not be believed without more.
     """
 
     frequency: float
@@ -72,7 +88,8 @@ def phase_collinearity(shape: Complex) -> float | None:
 
     Parameters
     ----------
-    shape : (s,) complex shape
+    shape : (s,) complex ndarray
+        Complex shape.
 
     References
     ----------
@@ -105,11 +122,16 @@ def mode_remarks(
 
     Parameters
     ----------
-    frequency : [Hz]
-    damping_ratio, damping_ratio_std : and its standard deviation
-    duration : of the stretch used [s]
-    nearest : distance to the nearest other mode [Hz]
-    lateral_share : largest lateral over largest vertical amplitude
+    frequency : float
+        [Hz].
+    damping_ratio, damping_ratio_std : float
+        And its standard deviation.
+    duration : float
+        Of the stretch used [s].
+    nearest : float
+        Distance to the nearest other mode [Hz].
+    lateral_share : float or None
+        Largest lateral over largest vertical amplitude.
     """
     found = []
     bandwidth = 2 * damping_ratio * frequency

@@ -21,13 +21,17 @@ def number_groups(certain: Real, all_modes: Real, spans: int | None) -> Numbers:
 
     Parameters
     ----------
-    certain : (n,) frequencies of well identified vertical modes, from which the pattern is found [Hz]
-    all_modes : (m,) frequencies to number [Hz]
-    spans : number of spans, None if not known
+    certain : (n,) ndarray
+        Frequencies of well identified vertical modes, from which the pattern is found [Hz].
+    all_modes : (m,) ndarray
+        Frequencies to number [Hz].
+    spans : int or None
+        Number of spans, None if not known.
 
     Returns
     -------
-    (m,) numbers
+    (m,) ndarray
+        Numbers.
     """
     if certain.size < 3:
         return np.zeros(all_modes.size, dtype=np.int64)

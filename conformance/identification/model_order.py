@@ -38,8 +38,10 @@ class PoleSelection:
 
     Parameters
     ----------
-    poles : (m,) [1/s], by frequency
-    noise : per block, (c,) standard deviation of a line's real or imaginary part
+    poles : (m,) complex ndarray
+        [1/s], by frequency.
+    noise : list[ndarray]
+        Per block, (c,) standard deviation of a line's real or imaginary part.
     """
 
     poles: Complex
@@ -51,9 +53,12 @@ def select_poles(poles: Complex, blocks: list[DataBlock], rounds: int = 8) -> Po
 
     Parameters
     ----------
-    poles : (m,) start values [1/s]
-    blocks : data in physical units
-    rounds : at most so many
+    poles : (m,) complex ndarray
+        Start values [1/s].
+    blocks : list[DataBlock]
+        Data in physical units.
+    rounds : int
+        At most so many.
     """
     noise = _noise(poles, blocks)
     settled: Complex | None = None
@@ -74,8 +79,10 @@ def find_hidden_poles(found: PoleSelection, blocks: list[DataBlock]) -> PoleSele
 
     Parameters
     ----------
-    found : what `settle` found
-    blocks : data in physical units
+    found : PoleSelection
+        What `settle` found.
+    blocks : list[DataBlock]
+        Data in physical units.
     """
     white = whiten(blocks, found.noise)
     extended = _add(found.poles, white, [float(omega) for omega in found.poles.imag])

@@ -20,9 +20,12 @@ class RefinedPoles:
 
     Parameters
     ----------
-    poles : (m,) [1/s], by frequency
-    cost : sum of squares
-    covariance : (2 m, 2 m) of (decay rates [1/s], angular frequencies [rad/s]) for channels in units of their noise
+    poles : (m,) complex ndarray
+        [1/s], by frequency.
+    cost : float
+        Sum of squares.
+    covariance : (2 m, 2 m) ndarray
+        Of (decay rates [1/s], angular frequencies [rad/s]) for channels in units of their noise.
     """
 
     poles: Complex
@@ -37,10 +40,14 @@ def refine_poles(
 
     Parameters
     ----------
-    poles : (m,) start values [1/s]
-    blocks : data, each channel in units of its noise
-    iterations : at most so many steps
-    tolerance : stop when a step lowers the cost (a sum of squares in units of the noise) by less
+    poles : (m,) complex ndarray
+        Start values [1/s].
+    blocks : list[DataBlock]
+        Data, each channel in units of its noise.
+    iterations : int
+        At most so many steps.
+    tolerance : float
+        Stop when a step lowers the cost (a sum of squares in units of the noise) by less.
     """
     poles = poles[np.argsort(poles.imag)]
     if not poles.size:

@@ -37,11 +37,16 @@ class DataBlock:
 
     Parameters
     ----------
-    lines : (k,) indices of the spectral lines used
-    spectrum : (k, c) transforms of the channels at those lines, each in units of its noise
-    dt : sampling interval [s]
-    n : number of samples
-    residual_terms : (2 k, r) columns for drift and for what lies outside the band
+    lines : (k,) ndarray
+        Indices of the spectral lines used.
+    spectrum : (k, c) complex ndarray
+        Transforms of the channels at those lines, each in units of its noise.
+    dt : float
+        Sampling interval [s].
+    n : int
+        Number of samples.
+    residual_terms : (2 k, r) ndarray
+        Columns for drift and for what lies outside the band.
     """
 
     lines: NDArray[np.int64]
@@ -67,8 +72,10 @@ class ProjectionFit:
 
     Parameters
     ----------
-    residues : (m, c) A at the block's first sample, in the unit of the spectrum
-    residual : (k, c) what the poles and residual terms leave
+    residues : (m, c) complex ndarray
+        A at the block's first sample, in the unit of the spectrum.
+    residual : (k, c) complex ndarray
+        What the poles and residual terms leave.
     """
 
     residues: Complex
@@ -82,11 +89,16 @@ def build_block(
 
     Parameters
     ----------
-    samples : (n, c)
-    dt : sampling interval [s]
-    low, high : edges of the band [Hz]
-    drift_degree : highest polynomial of the offset drift in time
-    far_degree : highest polynomial over frequency, for modes outside the band
+    samples : ndarray
+        (n, c).
+    dt : float
+        Sampling interval [s].
+    low, high : float
+        Edges of the band [Hz].
+    drift_degree : int
+        Highest polynomial of the offset drift in time.
+    far_degree : int
+        Highest polynomial over frequency, for modes outside the band.
     """
     n = samples.shape[0]
     lines = np.arange(max(1, int(np.ceil(low * n * dt))), min(n // 2, int(high * n * dt) + 1), dtype=np.int64)
@@ -124,9 +136,12 @@ class NormalEquations:
 
     Parameters
     ----------
-    cost : sum of squares over all blocks
-    matrix : (2 m, 2 m) J'J; decay rates first, then angular frequencies
-    gradient : (2 m,) J'r
+    cost : float
+        Sum of squares over all blocks.
+    matrix : (2 m, 2 m) ndarray
+        J'J; decay rates first, then angular frequencies.
+    gradient : (2 m,) ndarray
+        J'r.
     """
 
     cost: float
@@ -139,8 +154,10 @@ def build_normal_equations(poles: Complex, blocks: list[DataBlock]) -> NormalEqu
 
     Parameters
     ----------
-    poles : (m,) lambda = -delta + i omega [1/s]
-    blocks : data, each channel in units of its noise
+    poles : (m,) complex ndarray
+        Lambda = -delta + i omega [1/s].
+    blocks : list[DataBlock]
+        Data, each channel in units of its noise.
     """
     m = poles.size
     cost, matrix, gradient = 0.0, np.zeros((2 * m, 2 * m)), np.zeros(2 * m)

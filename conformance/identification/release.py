@@ -20,9 +20,12 @@ class Release:
 
     Parameters
     ----------
-    time : when the first sensor moved [s]
-    rest_end : end of the rest before it [s]; 0 if the record has none
-    warnings : what is doubtful
+    time : float
+        When the first sensor moved [s].
+    rest_end : float
+        End of the rest before it [s]; 0 if the record has none.
+    warnings : tuple[str, ...]
+        What is doubtful.
     """
 
     time: float
@@ -35,14 +38,19 @@ def find_release(signals: Real, rate: float, nominal: float | None, name: str) -
 
     Parameters
     ----------
-    signals : (n, c)
-    rate : samples per second [Hz]
-    nominal : planned release [s]; None if not known
-    name : of the record, for messages
+    signals : ndarray
+        (n, c).
+    rate : float
+        Samples per second [Hz].
+    nominal : float or None
+        Planned release [s]; None if not known.
+    name : str
+        Of the record, for messages.
 
     Raises
     ------
-    InputError : nothing moves
+    InputError
+        Nothing moves.
     """
     n = signals.shape[0]
     if nominal is not None and nominal - TRIGGER_TOLERANCE < LEAST_REST:

@@ -23,12 +23,18 @@ class Comparison:
 
     Parameters
     ----------
-    first, second : names of the records
-    channel : name of the channel
-    correlation : at the start and a minute later; None if the records are too short for it
-    possible : the correlation that noise alone would leave, at the same times
-    residual : root mean square of the difference over that of the first record, at the same times
-    shift : by which the second was moved to lie over the first [s]
+    first, second : str
+        Names of the records.
+    channel : str
+        Name of the channel.
+    correlation : tuple[float, float or None]
+        At the start and a minute later; None if the records are too short for it.
+    possible : tuple[float, float or None]
+        The correlation that noise alone would leave, at the same times.
+    residual : tuple[float, float or None]
+        Root mean square of the difference over that of the first record, at the same times.
+    shift : float
+        By which the second was moved to lie over the first [s].
     """
 
     first: str
@@ -54,11 +60,13 @@ def compare_records(repeats: tuple[PreparedDecay, ...]) -> Repeatability | None:
 
     Parameters
     ----------
-    repeats : records of one drop; None comes back for fewer than two
+    repeats : tuple[PreparedDecay, ...]
+        Records of one drop; None comes back for fewer than two.
 
     Returns
     -------
-    comparisons of each further record with the first, for each sensor
+    Repeatability or None
+        Comparisons of each further record with the first, for each sensor.
     """
     if len(repeats) < 2:
         return None
@@ -86,8 +94,10 @@ def align_records(one: PreparedDecay, lowest_rate: float) -> tuple[Real, Real]:
 
     Parameters
     ----------
-    one : a record
-    lowest_rate : samples per second of the slowest record it is compared with [Hz]; it may not reach `HIGHEST`
+    one : PreparedDecay
+        a record.
+    lowest_rate : float
+        Samples per second of the slowest record it is compared with [Hz]; it may not reach `HIGHEST`.
     """
     rate, passes = one.record.rate, min(HIGHEST, 0.28 * lowest_rate)
     taps = low_pass_decay(rate, passes, 1.5 * passes, 50.0)

@@ -29,15 +29,21 @@ def find_start_poles(
 
     Parameters
     ----------
-    records : each (n, c) channels over a linear stretch, in units of their noise; all share the poles
-    rate : samples per second [Hz]
-    low, high : edges [Hz]
-    band : width of a band [Hz]
-    largest_order : most poles in a band with its flanks
+    records : list[ndarray]
+        Each (n, c) channels over a linear stretch, in units of their noise; all share the poles.
+    rate : float
+        Samples per second [Hz].
+    low, high : float
+        Edges [Hz].
+    band : float
+        Width of a band [Hz].
+    largest_order : int
+        Most poles in a band with its flanks.
 
     Returns
     -------
-    (m,) lambda [1/s], by frequency
+    (m,) ndarray
+        Lambda [1/s], by frequency.
     """
     count = max(1, round((high - low) / band))
     edges = np.linspace(low, high, count + 1)

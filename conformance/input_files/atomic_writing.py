@@ -14,12 +14,15 @@ def write_atomically(path: Path, content: bytes) -> None:
 
     Parameters
     ----------
-    path : the file to write; its folder is made if need be
-    content : all of it
+    path : Path
+        The file to write; its folder is made if need be.
+    content : bytes
+        All of it.
 
     Raises
     ------
-    InputError : the folder cannot be made or written
+    InputError
+        The folder cannot be made or written.
     """
     produce_atomically(path, lambda temporary: temporary.write_bytes(content))
 
@@ -29,7 +32,8 @@ def produce_atomically(path: Path, produce: Callable[[Path], object]) -> None:
 
     Raises
     ------
-    InputError : the folder cannot be made or written
+    InputError
+        The folder cannot be made or written.
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -57,7 +61,8 @@ def check_writable(folder: Path) -> None:
 
     Raises
     ------
-    InputError : the folder cannot be made or written
+    InputError
+        The folder cannot be made or written.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -25,7 +25,8 @@ def convert_unit(text: str, where: str) -> tuple[MotionQuantity, float]:
 
     Raises
     ------
-    InputError : the unit is not known; a guess would scale every amplitude
+    InputError
+        The unit is not known; a guess would scale every amplitude.
     """
     name = text.strip()
     name = SPELLINGS.get(name.lower(), name)
@@ -39,7 +40,8 @@ def parse_direction(text: str, where: str) -> tuple[Axis, float]:
 
     Raises
     ------
-    InputError : it is none of +x, -x, +y, -y, +z, -z
+    InputError
+        It is none of +x, -x, +y, -y, +z, -z.
     """
     name = text.strip().lower()
     sign = -1.0 if name.startswith("-") else 1.0

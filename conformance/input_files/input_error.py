@@ -8,9 +8,12 @@ class InputError(ValueError):
 
     Parameters
     ----------
-    where : the file, and the key, line or channel inside it
-    found : what is there
-    hint : what is expected, or what to do next
+    where
+        The file, and the key, line or channel inside it.
+    found
+        What is there.
+    hint
+        What is expected, or what to do next.
     """
 
     def __init__(self, where: str, found: str, hint: str) -> None:

@@ -55,8 +55,11 @@ def validation_problem(key: str, found: str, hint: str) -> PydanticCustomError:
 
     Parameters
     ----------
-    key : the key at fault, dotted, relative to the table that is validated
-    found : what is there
-    hint : what is expected
+    key : str
+        The key at fault, dotted, relative to the table that is validated.
+    found : str
+        What is there.
+    hint : str
+        What is expected.
     """
     return PydanticCustomError("inconsistent", "{found}. {hint}", {"key": key, "found": found, "hint": hint})

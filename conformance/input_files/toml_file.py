@@ -20,13 +20,17 @@ def read_model(path: Path, model: type[T], kind: str) -> T:
 
     Parameters
     ----------
-    path : the file
-    model : what it must be
-    kind : what it is called in messages, e.g. `reference line`
+    path : Path
+        The file.
+    model : type[T]
+        What it must be.
+    kind : str
+        What it is called in messages, e.g. `reference line`.
 
     Raises
     ------
-    InputError : it cannot be read, is not TOML, or does not fit the model
+    InputError
+        It cannot be read, is not TOML, or does not fit the model.
     """
     where = f"{kind} '{path.name}'"
     tree = read_toml(path, kind)

@@ -41,9 +41,12 @@ def build_input_error(error: ValidationError, model: type[BaseModel], where: str
 
     Parameters
     ----------
-    error : what pydantic found
-    model : the model that was validated
-    where : the file, e.g. `reference line 'my-line.toml'`
+    error : ValidationError
+        What pydantic found.
+    model : type[BaseModel]
+        The model that was validated.
+    where : str
+        The file, e.g. `reference line 'my-line.toml'`.
     """
     # A key in the wrong unit is unknown and the right one missing: the unknown one tells what to do.
     detail = min(error.errors(include_url=False), key=lambda item: item["type"] != "extra_forbidden")

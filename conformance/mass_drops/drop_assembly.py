@@ -39,13 +39,20 @@ class DropColumns:
 
     Parameters
     ----------
-    values : (n, c) in the file's units
-    columns : (c,) what the file says of them
-    time : (n,) time column [s] if the file has one
-    rate : samples per second that the file states [Hz]
-    title : name of the test
-    run : which of several runs of the file, from 1; 0 if the file holds one
-    drop, line : as far as the file tells
+    values : (n, c) ndarray
+        In the file's units.
+    columns : tuple[DropColumn, ...]
+        (c,) what the file says of them.
+    time : (n,) ndarray or None
+        Time column [s] if the file has one.
+    rate : float or None
+        Samples per second that the file states [Hz].
+    title : str
+        Name of the test.
+    run : int
+        Which of several runs of the file, from 1; 0 if the file holds one.
+    drop, line : DropDescription or DropLine
+        As far as the file tells.
     """
 
     values: Real
@@ -63,13 +70,17 @@ def assemble_drop_records(table: DropColumns, sidecar: DropSidecar | None, sourc
 
     Parameters
     ----------
-    table : one run
-    sidecar : what stands beside it; wins over the file where the two can both speak, and must not contradict it
-    source : name of the file, for messages
+    table : DropColumns
+        One run.
+    sidecar : DropSidecar or None
+        What stands beside it; wins over the file where the two can both speak, and must not contradict it.
+    source : str
+        Name of the file, for messages.
 
     Raises
     ------
-    InputError : anything that would turn into a wrong number
+    InputError
+        Anything that would turn into a wrong number.
     """
     n, width = table.values.shape
     if n < LEAST_SAMPLES:

@@ -18,11 +18,13 @@ def read_drop_records(path: Path) -> tuple[DropRecord, ...]:
 
     Parameters
     ----------
-    path : .csv, .txt, .uff, .unv, .mat, .h5, .hdf5, .tdms or .mf4; its sidecar has the same stem and .toml
+    path : Path
+        .csv, .txt, .uff, .unv, .mat, .h5, .hdf5, .tdms or .mf4; its sidecar has the same stem and .toml.
 
     Raises
     ------
-    InputError : the file cannot be read, is damaged, or does not say what it holds
+    InputError
+        The file cannot be read, is damaged, or does not say what it holds.
     """
     source = path.name
     reader = _reader(path.suffix.lower(), source)

@@ -17,11 +17,16 @@ class DropChannel:
 
     Parameters
     ----------
-    name : as the file calls it
-    sensor : number of the sensor
-    axis : x along the track, y lateral, z upward
-    wire : `CW` contact wire, `MW` messenger wire or another name; empty if not known
-    position : along the line from its first support [m]; None if not known
+    name : str
+        As the file calls it.
+    sensor : int
+        Number of the sensor.
+    axis : Axis
+        x along the track, y lateral, z upward.
+    wire : str
+        `CW` contact wire, `MW` messenger wire or another name; empty if not known.
+    position : float or None
+        Along the line from its first support [m]; None if not known.
     """
 
     name: str
@@ -37,10 +42,14 @@ class DropDescription:
 
     Parameters
     ----------
-    mass : [kg]; None if not known
-    wire : wire it hung from; empty if not known
-    position : along the line from its first support [m]; None if not known
-    trigger_nominal : when the release was planned, in the record's time [s]; None if not known
+    mass : float or None
+        [kg]; None if not known.
+    wire : str
+        Wire it hung from; empty if not known.
+    position : float or None
+        Along the line from its first support [m]; None if not known.
+    trigger_nominal : float or None
+        When the release was planned, in the record's time [s]; None if not known.
     """
 
     mass: float | None = None
@@ -55,8 +64,10 @@ class DropLine:
 
     Parameters
     ----------
-    spans : lengths of the spans [m]; empty if not known
-    contact_wire_tension, messenger_wire_tension : [N]; None if not known
+    spans : tuple[float, ...]
+        Lengths of the spans [m]; empty if not known.
+    contact_wire_tension, messenger_wire_tension : float or None
+        [N]; None if not known.
     """
 
     spans: tuple[float, ...] = ()
@@ -70,15 +81,24 @@ class DropRecord:
 
     Parameters
     ----------
-    name : test and run
-    source : name of the file, for messages
-    rate : samples per second [Hz]
-    signals : (n, c) [m/s2], [m/s] or [m] after `quantity`; read-only
-    channels : (c,) what each column is
-    quantity : what the sensors measure
-    drop, line : the test
-    warnings : what is doubtful about the record
-    file : where it was read from, which tells files of one name apart; empty if it was not read
+    name : str
+        Test and run.
+    source : str
+        Name of the file, for messages.
+    rate : float
+        Samples per second [Hz].
+    signals : (n, c) ndarray
+        [m/s2], [m/s] or [m] after `quantity`; read-only.
+    channels : tuple[DropChannel, ...]
+        (c,) what each column is.
+    quantity : MotionQuantity
+        What the sensors measure.
+    drop, line : DropDescription or DropLine
+        The test.
+    warnings : tuple[str, ...]
+        What is doubtful about the record.
+    file : str
+        Where it was read from, which tells files of one name apart; empty if it was not read.
     """
 
     name: str

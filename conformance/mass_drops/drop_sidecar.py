@@ -77,7 +77,8 @@ def read_drop_sidecar(record: Path) -> DropSidecar | None:
 
     Raises
     ------
-    InputError : it cannot be read or is wrong
+    InputError
+        It cannot be read or is wrong.
     """
     path = find_drop_sidecar(record)
     return read_model(path, DropSidecar, "sidecar") if path.is_file() else None

@@ -25,12 +25,15 @@ def write_drop_csv(record: DropRecord, path: Path) -> None:
 
     Parameters
     ----------
-    record : one run
-    path : the .csv file
+    record : DropRecord
+        One run.
+    path : Path
+        The .csv file.
 
     Raises
     ------
-    InputError : it cannot be written, or a channel has a name that a head line cannot hold
+    InputError
+        It cannot be written, or a channel has a name that a head line cannot hold.
     """
     for channel in record.channels:
         if set(channel.name) & set(UNWRITABLE) or channel.name.strip().splitlines() != [channel.name]:
@@ -117,7 +120,8 @@ def write_drop_hdf5(records: tuple[DropRecord, ...], path: Path) -> None:
 
     Raises
     ------
-    InputError : the runs differ in channels, rate or drop, or the file cannot be written
+    InputError
+        The runs differ in channels, rate or drop, or the file cannot be written.
     """
     first = records[0]
     for other in records[1:]:

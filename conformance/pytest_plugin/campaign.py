@@ -31,10 +31,14 @@ class PlanSession:
 
     Parameters
     ----------
-    path : of the plan
-    plan : read, with the options of the session laid over it
-    cases : of the plan, with its limits
-    folder : shared by all processes of the session
+    path : Path
+        Of the plan.
+    plan : Plan
+        Read, with the options of the session laid over it.
+    cases : list[Case]
+        Of the plan, with its limits.
+    folder : Path
+        Shared by all processes of the session.
     """
 
     path: Path
@@ -52,7 +56,8 @@ class PlanSession:
 
         Raises
         ------
-        InputError : the plan, a case or the limits are wrong, or the folder of the certificate cannot be written
+        InputError
+            The plan, a case or the limits are wrong, or the folder of the certificate cannot be written.
         """
         given = {"out": out, "formats": formats, "trust": trust}
         plan = read_plan(path).model_copy(update={key: value for key, value in given.items() if value is not None})

@@ -68,7 +68,8 @@ class CaseNode(pytest.Collector):
 
         Raises
         ------
-        NotMet : the case ended in error
+        NotMet
+            The case ended in error.
         """
         result = self.campaign.result(self.case)
         if result.verdict == "error":
@@ -139,7 +140,8 @@ def write_certificates(config: pytest.Config, folder: Path) -> tuple[list[str], 
 
     Raises
     ------
-    InputError : a file cannot be written
+    InputError
+        a file cannot be written.
     """
     lines, drifted_anywhere = [], False
     for path in list_registered(folder):

@@ -27,7 +27,8 @@ class GradedCase:
 
     Parameters
     ----------
-    result : all of it, as in results.json
+    result : CaseResult
+        All of it, as in results.json.
     """
 
     result: CaseResult
@@ -55,7 +56,8 @@ class GradedCase:
 
         Raises
         ------
-        AssertionError : one is not met, or has no limits
+        AssertionError
+            One is not met, or has no limits.
         """
         __tracebackhide__ = True
         wanted = [item for item in self.result.criteria if not quantities or item.quantity in quantities]
@@ -84,14 +86,19 @@ def run_and_grade(
 
     Parameters
     ----------
-    case : id, or path of a case file
-    system : as `--system` takes it, or an object with `name`, `version`, `kind` and `run(case)`
-    trust : lowest trust of limits that count
-    timeout_s : time a program may take [s]
+    case : str
+        Id, or path of a case file.
+    system : str or System
+        As `--system` takes it, or an object with `name`, `version`, `kind` and `run(case)`.
+    trust : Trust
+        Lowest trust of limits that count.
+    timeout_s : float
+        Time a program may take [s].
 
     Raises
     ------
-    InputError : there is no such case or system
+    InputError
+        There is no such case or system.
     """
     tested = choose_system(system, timeout_s) if isinstance(system, str) else system
     return GradedCase(run_case(_one(case), tested, trust))
@@ -114,18 +121,27 @@ def grade_arrays(
 
     Parameters
     ----------
-    case : id, or path of a case file
-    record : a record, or the path of one; None: the arrays below
-    time_s : (n,) evenly spaced [s]
-    position_m, force_N : (n,) or (p, n) contact point along the track [m] and contact force [N] of p pantographs
-    contact_height_m : (n,) or (p, n) [m]
-    support_position_m, support_uplift_m : (s,) and (s, n) [m]
-    filter_applied_Hz : cut-off of a low-pass the force has been through [Hz]
-    trust : lowest trust of limits that count
+    case : str
+        Id, or path of a case file.
+    record : Record or str or Path or None
+        a record, or the path of one; None: the arrays below.
+    time_s : array_like or None
+        (n,) evenly spaced [s].
+    position_m, force_N : array_like or None
+        (n,) or (p, n) contact point along the track [m] and contact force [N] of p pantographs.
+    contact_height_m : array_like or None
+        (n,) or (p, n) [m].
+    support_position_m, support_uplift_m : array_like or None
+        (s,) and (s, n) [m].
+    filter_applied_Hz : float or None
+        Cut-off of a low-pass the force has been through [Hz].
+    trust : Trust
+        Lowest trust of limits that count.
 
     Raises
     ------
-    InputError : there is no such case, or the record is wrong
+    InputError
+        There is no such case, or the record is wrong.
     """
     asked = _one(case)
     if isinstance(record, str | Path):

@@ -20,19 +20,26 @@ def band_rms(force: Array, rate: float, low: float, high: float, filter_applied_
 
     Parameters
     ----------
-    force : (n,) contact force over the evaluated stretch [N]
-    rate : samples per second [Hz]
-    low, high : edges of the band ]low, high] [Hz]
-    filter_applied_Hz : cut-off of a low-pass the force has been through [Hz]; None: unfiltered
+    force : (n,) ndarray
+        Contact force over the evaluated stretch [N].
+    rate : float
+        Samples per second [Hz].
+    low, high : float
+        Edges of the band ]low, high] [Hz].
+    filter_applied_Hz : float or None
+        Cut-off of a low-pass the force has been through [Hz]; None: unfiltered.
 
     Returns
     -------
-    [N]
+    float
+        [N].
 
     Raises
     ------
-    BandNotObservable : the stretch is too short for the band, or the rate too low for its upper edge
-    AlreadyFiltered : the force was filtered below the upper edge before it was delivered
+    BandNotObservable
+        The stretch is too short for the band, or the rate too low for its upper edge.
+    AlreadyFiltered
+        The force was filtered below the upper edge before it was delivered.
     """
     if high > HIGHEST_SHARE_OF_RATE * rate:
         raise BandNotObservable(

@@ -29,10 +29,14 @@ class LowPass:
 
     Parameters
     ----------
-    kind : family of the filter
-    order : total order; even for zero phase
-    cutoff_Hz : where the whole filter has -3 dB [Hz]
-    phase : `zero` (forwards and backwards) or `causal` (forwards only, as an instrument does)
+    kind : Literal[butterworth]
+        Family of the filter.
+    order : int
+        Total order; even for zero phase.
+    cutoff_Hz : float
+        Where the whole filter has -3 dB [Hz].
+    phase : Literal[zero, causal]
+        `zero` (forwards and backwards) or `causal` (forwards only, as an instrument does).
     """
 
     kind: Literal["butterworth"] = "butterworth"
@@ -51,7 +55,8 @@ class LowPass:
 
         Raises
         ------
-        BandNotObservable : the cut-off is too high for the rate
+        BandNotObservable
+            The cut-off is too high for the rate.
         """
         if self.cutoff_Hz > HIGHEST_SHARE_OF_RATE * rate:
             raise BandNotObservable(
@@ -69,8 +74,10 @@ class LowPass:
 
         Parameters
         ----------
-        signal : (n,) samples of the whole record, so that the transients lie outside the evaluated stretch
-        rate : samples per second [Hz]
+        signal : (n,) ndarray
+            Samples of the whole record, so that the transients lie outside the evaluated stretch.
+        rate : float
+            Samples per second [Hz].
         """
         sections = self.sections(rate)
         if self.phase == "causal":
@@ -92,8 +99,10 @@ def filter_force(signal: Array, rate: float, low_pass: LowPass, filter_applied_H
 
     Raises
     ------
-    AlreadyFiltered : the signal was filtered below the cut-off
-    BandNotObservable : the rate is too low for the cut-off
+    AlreadyFiltered
+        The signal was filtered below the cut-off.
+    BandNotObservable
+        The rate is too low for the cut-off.
     """
     if filter_applied_Hz is None or filter_applied_Hz > 1.001 * low_pass.cutoff_Hz:
         return low_pass(signal, rate)

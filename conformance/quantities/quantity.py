@@ -10,12 +10,17 @@ class Quantity:
 
     Parameters
     ----------
-    name : as it stands in case files and results, the unit at its end
-    unit : as printed; empty for a ratio
-    definition : one sentence
-    needs : what a record, or a static check, must deliver for it
-    scope : `pantograph` (one value each), `line` (one value a run), `static` (of the line at rest), `mass_drop`,
-        `study` (what a comparison of runs shows)
+    name : str
+        As it stands in case files and results, the unit at its end.
+    unit : str
+        As printed; empty for a ratio.
+    definition : str
+        One sentence.
+    needs : str
+        What a record, or a static check, must deliver for it.
+    scope : Literal[pantograph, line, static, mass_drop, study]
+        `pantograph` (one value each), `line` (one value a run), `static` (of the line at rest), `mass_drop`, `study`
+        (what a comparison of runs shows).
     """
 
     name: str

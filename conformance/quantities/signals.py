@@ -56,13 +56,20 @@ class PantographSignals:
 
     Parameters
     ----------
-    rate : samples per second [Hz]
-    position : (n,) contact point along the track [m]
-    force : (n,) contact force as delivered [N]
-    evaluated : start and end of the evaluated stretch [m]; the end itself is outside
-    low_pass : filter of the graded force
-    filter_applied_Hz : cut-off of a low-pass the force has been through [Hz]; None: unfiltered
-    contact_height : (n,) height of the contact point [m], or None
+    rate : float
+        Samples per second [Hz].
+    position : (n,) ndarray
+        Contact point along the track [m].
+    force : (n,) ndarray
+        Contact force as delivered [N].
+    evaluated : tuple[float, float]
+        Start and end of the evaluated stretch [m]; the end itself is outside.
+    low_pass : LowPass
+        Filter of the graded force.
+    filter_applied_Hz : float or None
+        Cut-off of a low-pass the force has been through [Hz]; None: unfiltered.
+    contact_height : (n,) ndarray or None
+        Height of the contact point [m], or None.
     """
 
     rate: float
@@ -79,7 +86,8 @@ class PantographSignals:
 
         Raises
         ------
-        StretchNotCovered : the record starts after the beginning, or stops before the end of the stretch
+        StretchNotCovered
+            The record starts after the beginning, or stops before the end of the stretch.
         """
         start, end = self.evaluated
         # One sample of tolerance: a stretch that ends with the record ends between two samples.
@@ -127,7 +135,8 @@ class PantographSignals:
 
         Raises
         ------
-        ChannelMissing : the record has no contact height
+        ChannelMissing
+            The record has no contact height.
         """
         if self.contact_height is None:
             raise ChannelMissing("the record has no contact height")
@@ -140,9 +149,12 @@ class LineSignals:
 
     Parameters
     ----------
-    evaluated : start and end of the evaluated stretch [m]
-    support_position : (s,) [m], or None
-    support_uplift : (s, n) [m], or None
+    evaluated : tuple[float, float]
+        Start and end of the evaluated stretch [m].
+    support_position : (s,) ndarray or None
+        [m], or None.
+    support_uplift : (s, n) ndarray or None
+        [m], or None.
     """
 
     evaluated: tuple[float, float]
@@ -155,7 +167,8 @@ class LineSignals:
 
         Raises
         ------
-        ChannelMissing : the record has no uplift, or none inside the evaluated stretch
+        ChannelMissing
+            The record has no uplift, or none inside the evaluated stretch.
         """
         if self.support_position is None or self.support_uplift is None:
             raise ChannelMissing("the record has no uplift at supports")

@@ -13,7 +13,8 @@ def coefficient_of_variation(mean: float, deviation: float) -> float:
 
     Raises
     ------
-    NoMeanForce : the mean is not positive
+    NoMeanForce
+        The mean is not positive.
     """
     if mean <= 0:
         raise NoMeanForce(f"the mean force is {mean:.4g} N: a variation relative to it means nothing")
@@ -30,12 +31,15 @@ def contact_loss(force: Array, filter_applied_Hz: float | None = None) -> float:
 
     Parameters
     ----------
-    force : (n,) unfiltered contact force over the evaluated stretch [N]; no contact is zero force
-    filter_applied_Hz : cut-off of a low-pass the force has been through [Hz]; None: unfiltered
+    force : (n,) ndarray
+        Unfiltered contact force over the evaluated stretch [N]; no contact is zero force.
+    filter_applied_Hz : float or None
+        Cut-off of a low-pass the force has been through [Hz]; None: unfiltered.
 
     Raises
     ------
-    AlreadyFiltered : a filter smears a loss of contact into a low force, so that none would be counted
+    AlreadyFiltered
+        a filter smears a loss of contact into a low force, so that none would be counted.
     """
     if filter_applied_Hz is not None:
         raise AlreadyFiltered(

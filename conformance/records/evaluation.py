@@ -22,8 +22,10 @@ class Evaluation:
 
     Parameters
     ----------
-    values : what could be computed
-    skipped : why the others could not
+    values : dict[int, dict[str, Value]]
+        What could be computed.
+    skipped : dict[int, dict[str, str]]
+        Why the others could not.
     """
 
     values: dict[int, dict[str, Value]]
@@ -54,8 +56,10 @@ def evaluate_record(record: Record, low_pass: LowPass) -> Evaluation:
 
     Parameters
     ----------
-    record : of a run or a measurement
-    low_pass : filter of the graded force
+    record : Record
+        Of a run or a measurement.
+    low_pass : LowPass
+        Filter of the graded force.
     """
     numbered = range(1, record.pantographs + 1)
     return evaluate_signals({i: pantograph_signals(record, i, low_pass) for i in numbered}, line_signals(record))

@@ -19,8 +19,10 @@ class RecordInvalid(ValueError):
 
     Parameters
     ----------
-    channel : name of the array at fault
-    found : what is wrong with it
+    channel
+        Name of the array at fault.
+    found
+        What is wrong with it.
     """
 
     def __init__(self, channel: str, found: str) -> None:
@@ -35,19 +37,29 @@ class Record:
 
     Parameters
     ----------
-    time : (n,) uniform time axis [s]
-    speed : of the train [m/s]
-    position : (p, n) contact point along the track [m]
-    force : (p, n) contact force as delivered [N]
-    evaluated : start and end of the evaluated stretch of track [m]
-    filter_applied_Hz : cut-off of the low-pass the force has already gone through [Hz]; None: unfiltered
-    contact_height : (p, n) height of the contact point above its static height or above rail [m], or None
-    support_position : (s,) positions of the supports [m], or None
-    support_uplift : (s, n) uplift of the contact wire at the supports [m], or None
+    time : (n,) ndarray
+        Uniform time axis [s].
+    speed : float
+        Of the train [m/s].
+    position : (p, n) ndarray
+        Contact point along the track [m].
+    force : (p, n) ndarray
+        Contact force as delivered [N].
+    evaluated : tuple[float, float]
+        Start and end of the evaluated stretch of track [m].
+    filter_applied_Hz : float or None
+        Cut-off of the low-pass the force has already gone through [Hz]; None: unfiltered.
+    contact_height : (p, n) ndarray or None
+        Height of the contact point above its static height or above rail [m], or None.
+    support_position : (s,) ndarray or None
+        Positions of the supports [m], or None.
+    support_uplift : (s, n) ndarray or None
+        Uplift of the contact wire at the supports [m], or None.
 
     Raises
     ------
-    RecordInvalid : shapes disagree, a value is not finite, or time is not uniform
+    RecordInvalid
+        Shapes disagree, a value is not finite, or time is not uniform.
     """
 
     time: Array

@@ -13,9 +13,12 @@ class RecordChannel:
 
     Parameters
     ----------
-    name : without number and unit
-    unit : that it is kept in, as at the end of its key
-    per : what has one row of it each; `record`: there is one for all
+    name : str
+        Without number and unit.
+    unit : str
+        That it is kept in, as at the end of its key.
+    per : str
+        What has one row of it each; `record`: there is one for all.
     """
 
     name: str

@@ -18,7 +18,8 @@ def open_record(path: Path) -> RecordSidecar | RecordSummary:
 
     Raises
     ------
-    InputError : it cannot be read, is wrong, or is of neither kind
+    InputError
+        It cannot be read, is wrong, or is of neither kind.
     """
     path = path if path.suffix == ".toml" else path.with_suffix(".toml")
     schema = read_toml(path, "record").get("schema")

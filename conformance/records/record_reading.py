@@ -23,12 +23,15 @@ def read_record(path: Path, evaluated: tuple[float, float] | None = None) -> tup
 
     Parameters
     ----------
-    path : of either
-    evaluated : stretch of the case it is read for, which holds where the sidecar names none [m]
+    path : Path
+        Of either.
+    evaluated : tuple[float, float] or None
+        Stretch of the case it is read for, which holds where the sidecar names none [m].
 
     Raises
     ------
-    InputError : a file is missing, damaged or contradicts the other, values are missing, or time is not uniform
+    InputError
+        a file is missing, damaged or contradicts the other, values are missing, or time is not uniform.
     """
     samples, sidecar, table = read_samples(path)
     try:
@@ -45,7 +48,8 @@ def read_samples(path: Path) -> tuple[RecordSamples, RecordSidecar, Path]:
 
     Raises
     ------
-    InputError : a file is missing, damaged or contradicts the other
+    InputError
+        a file is missing, damaged or contradicts the other.
     """
     sidecar_path = path if path.suffix == ".toml" else path.with_suffix(".toml")
     sidecar = read_model(sidecar_path, RecordSidecar, "sidecar")

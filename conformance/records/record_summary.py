@@ -130,6 +130,7 @@ def read_record_summary(path: Path) -> RecordSummary:
 
     Raises
     ------
-    InputError : it cannot be read, or is wrong
+    InputError
+        It cannot be read, or is wrong.
     """
     return read_model(path, RecordSummary, "summary record")

@@ -143,7 +143,8 @@ def check_complete(present: Iterable[str], where: str) -> None:
 
     Raises
     ------
-    InputError : a channel is missing
+    InputError
+        a channel is missing.
     """
     here = set(present)
     if "force" not in here:

@@ -27,19 +27,26 @@ def write_record(
 
     Parameters
     ----------
-    path : of the table, ending in .csv, .h5 or .hdf5
-    record : to be written
-    case : id of the case that was run
-    system : `name` and `version` of what it comes from
-    run : keys of the sidecar's run table; None is left out
+    path : Path
+        Of the table, ending in .csv, .h5 or .hdf5.
+    record : Record
+        To be written.
+    case : str or None
+        Id of the case that was run.
+    system : dict[str, str] or None
+        `name` and `version` of what it comes from.
+    run : dict[str, float or None] or None
+        Keys of the sidecar's run table; None is left out.
 
     Returns
     -------
-    path of the sidecar
+    Path
+        Path of the sidecar.
 
     Raises
     ------
-    InputError : the suffix is another one, a file cannot be written, or the sidecar would overwrite another file
+    InputError
+        The suffix is another one, a file cannot be written, or the sidecar would overwrite another file.
     """
     check_record_path(path)
     channels = _channels(record)

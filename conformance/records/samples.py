@@ -15,13 +15,20 @@ class RecordSamples:
 
     Parameters
     ----------
-    force : (p, n) contact force [N]
-    time : (n,) [s]
-    speed : (n,) of the train [m/s]
-    position : (p, n), or (1, n) of the first pantograph, along the track [m]
-    contact_height : (p, n) [m]
-    uplift : (s, n) of the contact wire at the supports [m]
-    support_position : (s,) [m]
+    force : (p, n) ndarray
+        Contact force [N].
+    time : (n,) ndarray or None
+        [s].
+    speed : (n,) ndarray or None
+        Of the train [m/s].
+    position : ndarray or None
+        (p, n), or (1, n) of the first pantograph, along the track [m].
+    contact_height : (p, n) ndarray or None
+        [m].
+    uplift : (s, n) ndarray or None
+        Of the contact wire at the supports [m].
+    support_position : (s,) ndarray or None
+        [m].
     """
 
     force: Array
@@ -46,7 +53,8 @@ def complete_samples(samples: RecordSamples, sidecar: RecordSidecar) -> tuple[Ar
 
     Raises
     ------
-    RecordInvalid : a speed with which nothing moves
+    RecordInvalid
+        a speed with which nothing moves.
     """
     behind = np.array(sidecar.behind)[:, None]
     speed = np.full(samples.force.shape[1], sidecar.speed_km_h / 3.6) if samples.speed is None else samples.speed
@@ -74,7 +82,8 @@ def build_record(samples: RecordSamples, sidecar: RecordSidecar) -> Record:
 
     Raises
     ------
-    RecordInvalid : values are missing, or time is not uniform
+    RecordInvalid
+        Values are missing, or time is not uniform.
     """
     for name in _SAMPLED:
         value = getattr(samples, name)

@@ -49,10 +49,14 @@ class Document:
 
     Parameters
     ----------
-    title : what it is on
-    headline : the result in a sentence
-    warnings : what should make a reader careful
-    sections : the rest
+    title : str
+        What it is on.
+    headline : str
+        The result in a sentence.
+    warnings : tuple[str, ...]
+        What should make a reader careful.
+    sections : tuple[Section, ...]
+        The rest.
     """
 
     title: str
@@ -66,7 +70,8 @@ def write_html(document: Document, path: Path) -> None:
 
     Raises
     ------
-    InputError : it cannot be written
+    InputError
+        It cannot be written.
     """
     text = build_environment().get_template("document.html").render(document=_plain(document))
     write_atomically(path, text.encode("utf-8"))
@@ -77,7 +82,8 @@ def write_pdf(document: Document, path: Path) -> None:
 
     Raises
     ------
-    InputError : it cannot be written
+    InputError
+        It cannot be written.
     """
     # typst takes a dictionary of files, which its type hints do not know.
     sources: Any = {

@@ -21,10 +21,14 @@ def build_results(cases: Sequence[CaseResult], system: SystemIdentity, trust: Tr
 
     Parameters
     ----------
-    cases : in the order they are reported
-    system : what was graded
-    trust : lowest trust of the limits that carry a verdict
-    started : when, from `now`
+    cases : Sequence[CaseResult]
+        In the order they are reported.
+    system : SystemIdentity
+        What was graded.
+    trust : Trust
+        Lowest trust of the limits that carry a verdict.
+    started : str
+        When, from `now`.
     """
     return Results(
         suite=Suite(version=version("pantocheck"), commit=find_suite_commit()),

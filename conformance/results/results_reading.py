@@ -17,7 +17,8 @@ def read_results(path: Path) -> Results:
 
     Raises
     ------
-    InputError : it cannot be read, or is not what the suite writes
+    InputError
+        It cannot be read, or is not what the suite writes.
     """
     where = f"results '{path.name}'"
     try:
@@ -34,12 +35,15 @@ def parse_results(content: bytes, where: str) -> Results:
 
     Parameters
     ----------
-    content : of the file
-    where : the file, for messages
+    content : bytes
+        Of the file.
+    where : str
+        The file, for messages.
 
     Raises
     ------
-    InputError : too large, not JSON, or not what the suite writes
+    InputError
+        Too large, not JSON, or not what the suite writes.
     """
     if len(content) > MAX_RESULTS_BYTES:
         raise InputError(where, f"{len(content)} bytes", f"Results have at most {MAX_RESULTS_BYTES} bytes.")

@@ -25,9 +25,12 @@ def build_pantograph_traces(record: Record, low_pass: LowPass, supports: list[fl
 
     Parameters
     ----------
-    record : of a run or a measurement
-    low_pass : filter of the graded force
-    supports : positions of the supports of the line [m]
+    record : Record
+        Of a run or a measurement.
+    low_pass : LowPass
+        Filter of the graded force.
+    supports : list[float]
+        Positions of the supports of the line [m].
     """
     traces = {}
     start, end = record.evaluated
@@ -52,10 +55,14 @@ def build_signal_traces(
 
     Parameters
     ----------
-    signals : that are evaluated
-    position : of their samples along the track [m]
-    supports : positions of the supports there [m]
-    spectrum : frequencies [Hz] and amplitudes [N]; empty if there is none
+    signals : ForceSignals
+        That are evaluated.
+    position : ndarray
+        Of their samples along the track [m].
+    supports : list[float]
+        Positions of the supports there [m].
+    spectrum : tuple[ndarray, ndarray]
+        Frequencies [Hz] and amplitudes [N]; empty if there is none.
     """
     try:
         graded = signals.graded

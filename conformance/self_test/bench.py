@@ -28,14 +28,22 @@ class Row:
 
     Parameters
     ----------
-    mutant : which one
-    case : id of the case
-    verdict : of the whole suite
-    by_limits : verdict of the limits of the case alone
-    outside : quantities outside their limits
-    checks : checks of the record that object, with what they say
-    caught : whether it ended in fail or error for the reason it must, or may pass
-    reason : what a user is told
+    mutant : Mutant
+        Which one.
+    case : str
+        Id of the case.
+    verdict : Verdict
+        Of the whole suite.
+    by_limits : Verdict
+        Verdict of the limits of the case alone.
+    outside : tuple[str, ...]
+        Quantities outside their limits.
+    checks : tuple[str, ...]
+        Checks of the record that object, with what they say.
+    caught : bool
+        Whether it ended in fail or error for the reason it must, or may pass.
+    reason : str
+        What a user is told.
     """
 
     mutant: Mutant
@@ -54,9 +62,12 @@ class SelfTest:
 
     Parameters
     ----------
-    right : verdict of the right system on each case, with the reason if it did not pass
-    rows : mutants that must be caught
-    mild : mutants that may pass
+    right : dict[str, tuple[Verdict, str]]
+        Verdict of the right system on each case, with the reason if it did not pass.
+    rows : tuple[Row, ...]
+        Mutants that must be caught.
+    mild : tuple[Row, ...]
+        Mutants that may pass.
     """
 
     right: dict[str, tuple[Verdict, str]]
@@ -74,12 +85,15 @@ def run_self_test(cases: Sequence[Case], progress: Callable[[str], None] | None 
 
     Parameters
     ----------
-    cases : that the right system passes
-    progress : called with the name of each mutant before it runs
+    cases : Sequence[Case]
+        That the right system passes.
+    progress : Callable[[str], None] or None
+        Called with the name of each mutant before it runs.
 
     Raises
     ------
-    NothingToMutate : the right system delivers no record of a case
+    NothingToMutate
+        The right system delivers no record of a case.
     """
     right: dict[str, tuple[Verdict, str]] = {}
     rows: dict[tuple[Mutant, ...], list[Row]] = {MUTANTS: [], MILD: []}

@@ -28,10 +28,14 @@ class Mutant:
 
     Parameters
     ----------
-    name : short
-    wrong : what is wrong with it, one sentence
-    make : gives what it delivers, from the case and the right record
-    caught_by : the check that must catch it; `limits`: those of the case alone; None: a mild fault that may pass
+    name : str
+        Short.
+    wrong : str
+        What is wrong with it, one sentence.
+    make : MakeMutant
+        Gives what it delivers, from the case and the right record.
+    caught_by : Literal[coverage, support passing, roll-off, dynamics, limits, record file] or None
+        The check that must catch it; `limits`: those of the case alone; None: a mild fault that may pass.
     """
 
     name: str

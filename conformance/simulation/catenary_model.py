@@ -29,11 +29,13 @@ def build_catenary(line: LineFile) -> Catenary:
 
     Parameters
     ----------
-    line : as read
+    line : LineFile
+        As read.
 
     Returns
     -------
-    the line in the simulator's terms
+    Catenary
+        The line in the simulator's terms.
     """
     built = Catenary(
         wires=(*_wires(line, "contact wire", Kind.CONTACT_WIRE), *_messenger_wires(line), *_stitch_wires(line)),

@@ -32,8 +32,10 @@ class SimulatedDrop:
 
     Parameters
     ----------
-    record : as a measuring team would have it
-    decay : as the simulator has it, at every time step
+    record : DropRecord
+        As a measuring team would have it.
+    decay : FreeDecay
+        As the simulator has it, at every time step.
     """
 
     record: DropRecord
@@ -47,14 +49,19 @@ def simulate_drop(
 
     Parameters
     ----------
-    case : with a mass drop
-    number : of the drop, from 1
-    progress : called now and then with the share done, 0 to 1
-    line : in place of the case's own
+    case : Case
+        With a mass drop.
+    number : int
+        Of the drop, from 1.
+    progress : Callable[[float], None] or None
+        Called now and then with the share done, 0 to 1.
+    line : Catenary or None
+        In place of the case's own.
 
     Raises
     ------
-    NoInitialState, NoEquilibrium, DidNotConverge : the simulation has no solution
+    NoInitialState, NoEquilibrium, DidNotConverge
+        The simulation has no solution.
     """
     told, steps = require_mass_drop(case), case.file.discretisation
     test, own = told.drop[number - 1], line or build_catenary(case.line)
@@ -85,7 +92,8 @@ def require_mass_drop(case: Case) -> MassDrop:
 
     Raises
     ------
-    ValueError : it has none
+    ValueError
+        It has none.
     """
     if case.file.mass_drop is None:
         raise ValueError(f"case {case.id} has no mass drop")
@@ -99,8 +107,10 @@ def decimate(signals: Array, every: int) -> Array:
 
     Parameters
     ----------
-    signals : (n, c)
-    every : k
+    signals : ndarray
+        (n, c).
+    every : int
+        k.
     """
     if every == 1:
         return signals

@@ -23,9 +23,12 @@ def draw_line(line: DiscretisedLine, title: str, span: float) -> Figure:
 
     Parameters
     ----------
-    line : the discretised line
-    title : what it is
-    span : length of its spans [m]
+    line : DiscretisedLine
+        The discretised line.
+    title : str
+        What it is.
+    span : float
+        Length of its spans [m].
     """
     last = float(line.mesh.position[-1])
     middle = round(last / span / 2) * span

@@ -13,13 +13,17 @@ def build_pantograph(file: PantographFile, uplift_force: float, working_height: 
 
     Parameters
     ----------
-    file : as read
-    uplift_force : [N]
-    working_height : of the head over the contact wire at the supports, at rest and pressing with that force [m]
+    file : PantographFile
+        As read.
+    uplift_force : float
+        [N].
+    working_height : float
+        Of the head over the contact wire at the supports, at rest and pressing with that force [m].
 
     Returns
     -------
-    the pantograph in the simulator's terms
+    Pantograph
+        The pantograph in the simulator's terms.
     """
     contact = file.contact.stiffness_N_m
     if file.chain is not None:

@@ -32,8 +32,10 @@ def compute_static_quantities(case: Case, line: DiscretisedLine) -> dict[str, Va
 
     Parameters
     ----------
-    case : with the line as its file has it
-    line : the same in finite elements
+    case : Case
+        With the line as its file has it.
+    line : DiscretisedLine
+        The same in finite elements.
     """
     found: dict[str, Value] = {"presag_mm": _presag(case.line, line)}
     found |= _dropper_lengths(case.line, line)
@@ -59,8 +61,10 @@ def first_modes(line: LineFile, element: float) -> Modes:
 
     Parameters
     ----------
-    line : as its file has it
-    element : longest element [m]
+    line : LineFile
+        As its file has it.
+    element : float
+        Longest element [m].
     """
     few = line.geometry.model_copy(update={"spans": min(line.geometry.spans, SPANS_OF_MODES)})
     short = discretise(build_catenary(line.model_copy(update={"geometry": few})), element)

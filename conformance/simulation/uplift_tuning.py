@@ -30,18 +30,24 @@ def tune_uplift(
 
     Parameters
     ----------
-    run : makes a run with the given uplift forces [N]
-    means : mean contact forces of a run [N]
-    start : forces of the first run [N]
-    targets : mean contact forces that are wanted; None leaves a force as it is [N]
+    run : Callable[[tuple[float, ...]], TunedRun]
+        Makes a run with the given uplift forces [N].
+    means : Callable[[TunedRun], ndarray]
+        Mean contact forces of a run [N].
+    start : Sequence[float]
+        Forces of the first run [N].
+    targets : Sequence[float or None]
+        Mean contact forces that are wanted; None leaves a force as it is [N].
 
     Returns
     -------
-    the run that meets the targets, and its forces
+    tuple[TunedRun, tuple[float, ...]]
+        The run that meets the targets, and its forces.
 
     Raises
     ------
-    NotTuned : it is not among the first runs
+    NotTuned
+        It is not among the first runs.
     """
     wanted = np.array([np.nan if target is None else target for target in targets])
     aimed = np.isfinite(wanted)

@@ -39,7 +39,8 @@ def add_damping_study(case: Case) -> Case:
 
     Raises
     ------
-    InputError : a damping file of the library is damaged
+    InputError
+        a damping file of the library is damaged.
     """
     if case.is_static or case.file.study is not None:
         return case
@@ -57,8 +58,10 @@ def run_damping_sensitivity(case: Case, system: System) -> Outcome:
 
     Parameters
     ----------
-    case : a passage
-    system : under test
+    case : Case
+        a passage.
+    system : System
+        Under test.
     """
     outcome = system.run(case.without_study())
     if outcome.record is None:

@@ -25,9 +25,12 @@ def draw_band_bars(
 
     Parameters
     ----------
-    values : computed, by damping model, pantograph and name
-    printed : by damping model and pantograph, and name; may be empty
-    bands : names of the quantities
+    values : Mapping[str, Mapping[int, Mapping[str, Value]]]
+        Computed, by damping model, pantograph and name.
+    printed : Mapping[tuple[str, int], Mapping[str, float]]
+        By damping model and pantograph, and name; may be empty.
+    bands : Sequence[str]
+        Names of the quantities.
     """
     how = "computed on the assumed line and printed" if printed else "computed under each damping model"
     table = "computed beside printed values" if printed else "the same run under several damping models"
@@ -58,8 +61,10 @@ def trailing_force(case: Case, study: DampingChange, runs: Mapping[str, Outcome]
 
     Parameters
     ----------
-    case, study : which span
-    runs : outcome by damping model
+    case, study : Case or DampingChange
+        Which span.
+    runs : Mapping[str, Outcome]
+        Outcome by damping model.
     """
     span = case.line.geometry.span_m
     start, end = (study.span - 1) * span, study.span * span

@@ -19,8 +19,10 @@ def run_study(case: Case, system: System) -> Outcome:
 
     Parameters
     ----------
-    case : what is asked
-    system : under test; changes of damping are asked of any system, the other studies of the reference simulator only
+    case : Case
+        What is asked.
+    system : System
+        Under test; changes of damping are asked of any system, the other studies of the reference simulator only.
     """
     match case.file.study:
         case None if case.file.mass_drop is None or system.kind != "builtin":

@@ -21,8 +21,10 @@ class RecordFolder:
 
     Parameters
     ----------
-    name, version : of what the records come from, if their sidecars agree; else the folder's name
-    sidecars : case id and sidecar, or summary record, of every record
+    name, version : str
+        Of what the records come from, if their sidecars agree; else the folder's name.
+    sidecars : tuple[tuple[str, Path], ...]
+        Case id and sidecar, or summary record, of every record.
     """
 
     name: str
@@ -85,7 +87,8 @@ def open_record_folder(folder: Path) -> RecordFolder:
 
     Raises
     ------
-    InputError : there is no such folder or no record in it, a sidecar is wrong, or two are of the same case
+    InputError
+        There is no such folder or no record in it, a sidecar is wrong, or two are of the same case.
     """
     where = f"system record:{folder}"
     if not folder.is_dir() and not folder.is_absolute() and (library_folder() / folder).is_dir():

@@ -27,8 +27,10 @@ class PassageRun:
 
     Parameters
     ----------
-    record : of the run
-    simulated_s, wall_s : time that was simulated, and that it took [s]
+    record : Record
+        Of the run.
+    simulated_s, wall_s : float
+        Time that was simulated, and that it took [s].
     """
 
     record: Record
@@ -70,14 +72,19 @@ def run_line(
 
     Parameters
     ----------
-    case : to run
-    line : its line
-    element, step : length of an element [m] and time step [s], as reported
-    uplift_forces : of the pantographs [N]; None: those of the case, tuned if it asks for a mean
+    case : Case
+        To run.
+    line : DiscretisedLine
+        Its line.
+    element, step : float
+        Length of an element [m] and time step [s], as reported.
+    uplift_forces : tuple[float, ...] or None
+        Of the pantographs [N]; None: those of the case, tuned if it asks for a mean.
 
     Returns
     -------
-    outcome, uplift forces
+    tuple[Outcome, tuple[float, ...]]
+        Outcome, uplift forces.
     """
     outcome = Outcome(static=compute_static_quantities(case, line), dt_s=step, element_m=element)
     if case.is_static:

@@ -15,12 +15,15 @@ def choose_system(text: str, timeout_s: float = TIMEOUT_S) -> System:
 
     Parameters
     ----------
-    text : as `--system` takes it
-    timeout_s : time that a program may take for a case [s]
+    text : str
+        As `--system` takes it.
+    timeout_s : float
+        Time that a program may take for a case [s].
 
     Raises
     ------
-    InputError : there is no such system
+    InputError
+        There is no such system.
     """
     kind, _, rest = text.partition(":")
     if text == "builtin":

@@ -31,13 +31,17 @@ def causal_reach(line: DiscretisedLine, speed: float, duration: float) -> float:
 
     Parameters
     ----------
-    line : the discretised line
-    speed : of the pantographs [m/s]
-    duration : of the run [s]
+    line : DiscretisedLine
+        The discretised line.
+    speed : float
+        Of the pantographs [m/s].
+    duration : float
+        Of the run [s].
 
     Returns
     -------
-    the distance; infinite for a train faster than the waves [m]
+    float
+        The distance; infinite for a train faster than the waves [m].
     """
     c = max_wave_speed(line)
     return duration * (c * c - speed * speed) / (2 * c) if speed < c else math.inf

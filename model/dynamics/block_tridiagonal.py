@@ -31,9 +31,12 @@ class Factor(NamedTuple):
 
     Parameters
     ----------
-    inverse : (2, B, S, 3) entries ww, wr, rr of the inverse of the diagonal block; zero for what cannot move
-    link : (2, B, S, 4) entries ww, wr, rw, rr of the block that takes a station's share on to its neighbour
-    meeting : (B, S, 3) inverse of the diagonal block where both eliminations have arrived
+    inverse : (2, B, S, 3) ndarray
+        Entries ww, wr, rr of the inverse of the diagonal block; zero for what cannot move.
+    link : (2, B, S, 4) ndarray
+        Entries ww, wr, rw, rr of the block that takes a station's share on to its neighbour.
+    meeting : (B, S, 3) ndarray
+        Inverse of the diagonal block where both eliminations have arrived.
     """
 
     inverse: Array
@@ -46,13 +49,16 @@ def build_effective_blocks(beams: Beams, time_step: float) -> tuple[Array, Array
 
     Parameters
     ----------
-    beams : the rows
-    time_step : [s]
+    beams : Beams
+        The rows.
+    time_step : float
+        [s].
 
     Returns
     -------
-    diagonal : (B, S, 2, 2)
-    below : (B, S, 2, 2), entry s links station s to station s - 1
+    diagonal : (B, S, 2, 2) ndarray
+    below : (B, S, 2, 2) ndarray
+        Entry s links station s to station s - 1.
     """
     rows, stations = beams.lumped_mass.shape
     diagonal, below = np.zeros((rows, stations, 2, 2)), np.zeros((rows, stations, 2, 2))
@@ -81,12 +87,15 @@ def factorise(beams: Beams, time_step: float) -> Factor:
 
     Parameters
     ----------
-    beams : the rows
-    time_step : [s]
+    beams : Beams
+        The rows.
+    time_step : float
+        [s].
 
     Returns
     -------
-    its block factors
+    Factor
+        Its block factors.
     """
     diagonal, below = build_effective_blocks(beams, time_step)
     rows, stations = diagonal.shape[:2]
@@ -135,8 +144,11 @@ def solve_line(factor: Factor, first: int, last: int, w: Array, r: Array) -> Non
     Parameters
     ----------
     factor : Factor
-    first, last : stations where the stretch begins and ends
-    w, r : (B, S) on entry forces and moments, on return accelerations of deflection and slope
+        Factor.
+    first, last : int
+        Stations where the stretch begins and ends.
+    w, r : (B, S) ndarray
+        On entry forces and moments, on return accelerations of deflection and slope.
     """
     for b in range(w.shape[0]):
         solve_row(factor, b, first, w[b, first : last + 1], r[b, first : last + 1])
@@ -203,10 +215,15 @@ def inverse_column(factor: Factor, row: int, station: int, slope: int, half_widt
     Parameters
     ----------
     factor : Factor
-    row, station : where the unit load acts
-    slope : 0 for a unit force, 1 for a unit moment
-    half_width : stations kept before the loaded one, and one less behind it
-    w, r : (2 half_width,) the column, the loaded station at half_width; zero beyond the ends of the line
+        Factor.
+    row, station : int
+        Where the unit load acts.
+    slope : int
+        0 for a unit force, 1 for a unit moment.
+    half_width : int
+        Stations kept before the loaded one, and one less behind it.
+    w, r : (2 half_width,) ndarray
+        The column, the loaded station at half_width; zero beyond the ends of the line.
     """
     stations = factor.meeting.shape[1]
     w[:] = 0.0
@@ -233,12 +250,15 @@ def column_half_width(factor: Factor, loads: list[tuple[int, int]]) -> int:
 
     Parameters
     ----------
-    factor : the factors
-    loads : (row, station) of the loads
+    factor : Factor
+        The factors.
+    loads : list[tuple[int, int]]
+        (row, station) of the loads.
 
     Returns
     -------
-    stations on either side
+    int
+        Stations on either side.
     """
     width = 8
     while width < factor.meeting.shape[1]:
@@ -256,12 +276,16 @@ def inverse_columns(factor: Factor, rows: Indices, stations: Indices, slopes: In
     Parameters
     ----------
     factor : Factor
-    rows, stations, slopes : (L,) where each unit load acts, and whether it is a moment
-    half_width : stations kept on either side
+        Factor.
+    rows, stations, slopes : (L,) int ndarray
+        Where each unit load acts, and whether it is a moment.
+    half_width : int
+        Stations kept on either side.
 
     Returns
     -------
-    (L, 2, 2 half_width) deflection and slope around each load
+    (L, 2, 2 half_width) ndarray
+        Deflection and slope around each load.
     """
     columns = np.zeros((rows.size, 2, 2 * half_width))
     for n in range(rows.size):
@@ -276,11 +300,14 @@ def solve_rows(factor: Factor, force: Array) -> Array:
     Parameters
     ----------
     factor : Factor
-    force : (n, B, S, 2) forces and moments
+        Factor.
+    force : (n, B, S, 2) ndarray
+        Forces and moments.
 
     Returns
     -------
-    (n, B, S, 2) accelerations
+    (n, B, S, 2) ndarray
+        Accelerations.
     """
     solved = np.empty_like(force)
     for n in range(force.shape[0]):

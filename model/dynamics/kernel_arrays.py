@@ -22,7 +22,8 @@ class Load(NamedTuple):
 
     Parameters
     ----------
-    row, station : indices
+    row, station : int
+        Indices.
     """
 
     row: int
@@ -36,15 +37,20 @@ def build_kernel_arrays(
 
     Parameters
     ----------
-    line : the discretised line
-    time_step : [s]
-    reach : what lies farther than this from every pantograph, or no wave has come to yet, is left standing still; all
-        moves where it is infinite [m]
-    load : where the external load acts, if there is one
+    line : DiscretisedLine
+        The discretised line.
+    time_step : float
+        [s].
+    reach : float
+        What lies farther than this from every pantograph, or no wave has come to yet, is left standing still; all moves
+        where it is infinite [m].
+    load : Load or None
+        Where the external load acts, if there is one.
 
     Returns
     -------
-    what `newmark.step` needs of the line
+    KernelArrays
+        What `newmark.step` needs of the line.
     """
     beams, connectors, stations = line.beams, line.connectors, line.mesh.position.size
     factor = factorise(beams, time_step)

@@ -25,13 +25,17 @@ def mass_correction(beams: Beams, row: int, time_step: float) -> Array:
 
     Parameters
     ----------
-    beams : the rows
-    row : which one
-    time_step : [s]
+    beams : Beams
+        The rows.
+    row : int
+        Which one.
+    time_step : float
+        [s].
 
     Returns
     -------
-    (S-1, 4, 4) matrices [kg]; less than dt^2/6 K where an element is shorter than 2.6 times the way of a wave in a step
+    (S-1, 4, 4) ndarray
+        Matrices [kg]; less than dt^2/6 K where an element is shorter than 2.6 times the way of a wave in a step.
     """
     h, tension, mass_per_length = beams.length, beams.tension[row], beams.mass_per_length[row]
     # An element without a wire has neither tension nor mass.

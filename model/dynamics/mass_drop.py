@@ -32,14 +32,22 @@ class MassDropSetup:
 
     Parameters
     ----------
-    mass : [kg]
-    wire : name of the wire it hangs on
-    position : [m]
-    release_duration : over which its weight fades linearly; 0 for at once [s]
-    hanging : time recorded before the release [s]
-    duration : time recorded after the release [s]
-    time_step : [s]
-    sensors : wire and place of each sensor [-, m]
+    mass : float
+        [kg].
+    wire : str
+        Name of the wire it hangs on.
+    position : float
+        [m].
+    release_duration : float
+        Over which its weight fades linearly; 0 for at once [s].
+    hanging : float
+        Time recorded before the release [s].
+    duration : float
+        Time recorded after the release [s].
+    time_step : float
+        [s].
+    sensors : tuple[tuple[str, float], ...]
+        Wire and place of each sensor [-, m].
     """
 
     mass: float
@@ -58,10 +66,14 @@ class FreeDecay:
 
     Parameters
     ----------
-    time : (T,) from the release on, negative before [s]
-    motion : (U, T, 3) vertical displacement, velocity, acceleration [m, m/s, m/s2]
-    last_slack : when a dropper was slack for the last time after the release; None if never [s]
-    slack_at_start : droppers that are slack under the hanging mass
+    time : (T,) ndarray
+        From the release on, negative before [s].
+    motion : (U, T, 3) ndarray
+        Vertical displacement, velocity, acceleration [m, m/s, m/s2].
+    last_slack : float or None
+        When a dropper was slack for the last time after the release; None if never [s].
+    slack_at_start : int
+        Droppers that are slack under the hanging mass.
     """
 
     time: Array
@@ -77,19 +89,26 @@ def simulate_mass_drop(
 
     Parameters
     ----------
-    catenary : the line
-    element_length : longest element [m]
-    test : mass, place, sensors
-    progress : called now and then with the share done, 0 to 1
+    catenary : Catenary
+        The line.
+    element_length : float
+        Longest element [m].
+    test : MassDropSetup
+        Mass, place, sensors.
+    progress : Callable[[float], None] or None
+        Called now and then with the share done, 0 to 1.
 
     Returns
     -------
-    the free decay
+    FreeDecay
+        The free decay.
 
     Raises
     ------
-    NoInitialState, NoEquilibrium : the line has no rest, without or with the mass
-    DidNotConverge : a time step has no solution
+    NoInitialState, NoEquilibrium
+        The line has no rest, without or with the mass.
+    DidNotConverge
+        a time step has no solution.
     """
     places = (test.position, *(position for _, position in test.sensors))
     line = discretise(catenary, element_length, places)

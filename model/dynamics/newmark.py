@@ -32,14 +32,19 @@ def step(line: KernelArrays, motion: Motion, train: Train, work: Workspace) -> i
 
     Parameters
     ----------
-    line : Line
+    line : KernelArrays
+        Line.
     motion : Motion
-    train : Train, with no pantograph at all for a free line
+        Motion.
+    train : Train
+        Train, with no pantograph at all for a free line.
     work : Workspace
+        Workspace.
 
     Returns
     -------
-    turns taken; zero when the forces did not converge
+    int
+        Turns taken; zero when the forces did not converge.
     """
     dt = line.time_step
     w, r = motion.w[2], motion.r[2]
@@ -84,17 +89,25 @@ def march(
 
     Parameters
     ----------
-    line, motion, train, work : as for `step`
-    load : (T,) external load [N]
-    watch_row, watch_station : (U,) where motion is recorded
-    contact : (T, P) contact force in total, filled [N]
-    height : (T, P) of the head, filled [m]
-    watched : (T, U, 3) displacement, velocity, acceleration at the watched stations, filled [m, m/s, m/s2]
-    tension : (T, N) of the first connectors, as many as there is room for, filled [N]
+    line, motion, train, work : KernelArrays or Motion or Train or Workspace
+        As for `step`.
+    load : (T,) ndarray
+        External load [N].
+    watch_row, watch_station : (U,) int ndarray
+        Where motion is recorded.
+    contact : (T, P) ndarray
+        Contact force in total, filled [N].
+    height : (T, P) ndarray
+        Of the head, filled [m].
+    watched : (T, U, 3) ndarray
+        Displacement, velocity, acceleration at the watched stations, filled [m, m/s, m/s2].
+    tension : (T, N) ndarray
+        Of the first connectors, as many as there is room for, filled [N].
 
     Returns
     -------
-    steps completed
+    int
+        Steps completed.
     """
     for n in range(load.size):
         motion.load[0] = load[n]

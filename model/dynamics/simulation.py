@@ -37,14 +37,21 @@ class Passage:
 
     Parameters
     ----------
-    pantographs : in running order, the leading one first
-    start : (pantographs,) place of each at the start [m]
-    speed : [m/s]
-    duration : [s]
-    time_step : [s]
-    watched : wire and place of the stations whose vertical motion is recorded [-, m]
-    reach : what lies farther than this from every pantograph, or no wave has come to yet, is left standing still; all
-        moves where it is infinite [m]
+    pantographs : tuple[Pantograph, ...]
+        In running order, the leading one first.
+    start : tuple[float, ...]
+        (pantographs,) place of each at the start [m].
+    speed : float
+        [m/s].
+    duration : float
+        [s].
+    time_step : float
+        [s].
+    watched : tuple[tuple[str, float], ...]
+        Wire and place of the stations whose vertical motion is recorded [-, m].
+    reach : float
+        What lies farther than this from every pantograph, or no wave has come to yet, is left standing still; all moves
+        where it is infinite [m].
     """
 
     pantographs: tuple[Pantograph, ...]
@@ -62,11 +69,16 @@ class History:
 
     Parameters
     ----------
-    time : (T,) [s]
-    position : (P, T) of the pantographs [m]
-    force : (P, T) contact force, unfiltered [N]
-    height : (P, T) of the head over the contact wire at the supports [m]
-    motion : (U, T, 3) vertical displacement, velocity and acceleration at the watched places [m, m/s, m/s2]
+    time : (T,) ndarray
+        [s].
+    position : (P, T) ndarray
+        Of the pantographs [m].
+    force : (P, T) ndarray
+        Contact force, unfiltered [N].
+    height : (P, T) ndarray
+        Of the head over the contact wire at the supports [m].
+    motion : (U, T, 3) ndarray
+        Vertical displacement, velocity and acceleration at the watched places [m, m/s, m/s2].
     """
 
     time: Array
@@ -83,18 +95,24 @@ def simulate_passage(
 
     Parameters
     ----------
-    line : the discretised line
-    passage : pantographs, speed, duration
-    progress : called now and then with the share done, 0 to 1
+    line : DiscretisedLine
+        The discretised line.
+    passage : Passage
+        Pantographs, speed, duration.
+    progress : Callable[[float], None] or None
+        Called now and then with the share done, 0 to 1.
 
     Returns
     -------
-    the history
+    History
+        The history.
 
     Raises
     ------
-    ImpossiblePassage : there is no pantograph, or one would leave the line
-    DidNotConverge : a time step has no solution
+    ImpossiblePassage
+        There is no pantograph, or one would leave the line.
+    DidNotConverge
+        a time step has no solution.
     """
     _check(line, passage)
     stepping = build_kernel_arrays(line, passage.time_step, passage.reach)
@@ -133,13 +151,17 @@ def start_motion(line: DiscretisedLine, stepping: KernelArrays, passage: Passage
 
     Parameters
     ----------
-    line : the discretised line
-    stepping : its arrays for the time step
-    passage : pantographs and their places
+    line : DiscretisedLine
+        The discretised line.
+    stepping : KernelArrays
+        Its arrays for the time step.
+    passage : Passage
+        Pantographs and their places.
 
     Returns
     -------
-    state of the line, state of the pantographs
+    tuple[Motion, Train]
+        State of the line, state of the pantographs.
     """
     share = 1 / len(line.contact_rows)
     load = np.zeros(line.beams.free.size)

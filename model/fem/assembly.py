@@ -24,8 +24,10 @@ class GlobalMatrices:
 
     Parameters
     ----------
-    mass, damping, stiffness : (n, n)
-    free : (n,) index of each kept unknown among all of them
+    mass, damping, stiffness : sp.csc_array
+        (n, n).
+    free : (n,) ndarray
+        Index of each kept unknown among all of them.
     """
 
     mass: sp.csc_array
@@ -59,11 +61,13 @@ def assemble_matrices(line: DiscretisedLine) -> GlobalMatrices:
 
     Parameters
     ----------
-    line : the discretised line
+    line : DiscretisedLine
+        The discretised line.
 
     Returns
     -------
-    matrices of the free unknowns
+    GlobalMatrices
+        Matrices of the free unknowns.
     """
     beams, free = line.beams, free_unknowns(line)
     wires = [wire_matrices(beams, row) for row in range(line.mesh.rows)]
@@ -97,12 +101,15 @@ def stepping_mass(line: DiscretisedLine, time_step: float) -> sp.csc_array:
 
     Parameters
     ----------
-    line : the discretised line
-    time_step : [s]
+    line : DiscretisedLine
+        The discretised line.
+    time_step : float
+        [s].
 
     Returns
     -------
-    (n, n) for the free unknowns [kg]
+    sp.csc_array
+        (n, n) for the free unknowns [kg].
     """
     rows = range(line.mesh.rows)
     taken = sp.block_diag([by_station(mass_correction(line.beams, row, time_step)) for row in rows], format="csr")
@@ -124,13 +131,17 @@ def point_load(line: DiscretisedLine, row: int, position: float) -> Array:
 
     Parameters
     ----------
-    line : the discretised line
-    row : which row
-    position : [m]
+    line : DiscretisedLine
+        The discretised line.
+    row : int
+        Which row.
+    position : float
+        [m].
 
     Returns
     -------
-    (unknowns,) [-, m]
+    (unknowns,) ndarray
+        [-, m].
     """
     x = line.mesh.position
     e = int(np.clip(np.searchsorted(x, position) - 1, 0, x.size - 2))
@@ -148,14 +159,19 @@ def contact_stiffness(line: DiscretisedLine, row: int, position: float, penalty:
 
     Parameters
     ----------
-    line : the discretised line
-    row : of a contact wire
-    position : [m]
-    penalty : stiffness of the contact [N/m]
+    line : DiscretisedLine
+        The discretised line.
+    row : int
+        Of a contact wire.
+    position : float
+        [m].
+    penalty : float
+        Stiffness of the contact [N/m].
 
     Returns
     -------
-    [N/m]
+    float
+        [N/m].
     """
     x, beams = line.mesh.position, line.beams
     e = int(np.clip(np.searchsorted(x, position) - 1, 0, x.size - 2))

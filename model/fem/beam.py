@@ -18,13 +18,17 @@ def stiffness(h: float | Array, tension: float | Array, bending_stiffness: float
 
     Parameters
     ----------
-    h : (...) length of each element [m]
-    tension : (...) axial tension T [N]
-    bending_stiffness : (...) EI [N m2]
+    h : float or ndarray
+        (...) length of each element [m].
+    tension : float or ndarray
+        (...) axial tension T [N].
+    bending_stiffness : float or ndarray
+        (...) EI [N m2].
 
     Returns
     -------
-    (..., 4, 4) symmetric matrices [N/m, N, N m]
+    (..., 4, 4) ndarray
+        Symmetric matrices [N/m, N, N m].
     """
     h = np.asarray(h, dtype=np.float64)
     one = np.ones_like(h)
@@ -52,12 +56,15 @@ def mass(h: float | Array, mass_per_length: float | Array) -> Array:
 
     Parameters
     ----------
-    h : (...) length of each element [m]
-    mass_per_length : (...) [kg/m]
+    h : float or ndarray
+        (...) length of each element [m].
+    mass_per_length : float or ndarray
+        (...) [kg/m].
 
     Returns
     -------
-    (..., 4, 4) symmetric matrices [kg, kg m, kg m2]
+    (..., 4, 4) ndarray
+        Symmetric matrices [kg, kg m, kg m2].
     """
     h = np.asarray(h, dtype=np.float64)
     one = np.ones_like(h)
@@ -77,11 +84,13 @@ def springs(stiffness: Array) -> Array:
 
     Parameters
     ----------
-    stiffness : (n,) of each element, T / h for a string [N/m]
+    stiffness : (n,) ndarray
+        Of each element, T / h for a string [N/m].
 
     Returns
     -------
-    (n, 4, 4) symmetric matrices [N/m]
+    (n, 4, 4) ndarray
+        Symmetric matrices [N/m].
     """
     apart = np.array([1.0, 0.0, -1.0, 0.0])
     return np.asarray(stiffness[:, None, None] * np.outer(apart, apart))
@@ -97,12 +106,15 @@ def uniform_load(h: float, load_per_length: float) -> Array:
 
     Parameters
     ----------
-    h : length of the element [m]
-    load_per_length : [N/m]
+    h : float
+        Length of the element [m].
+    load_per_length : float
+        [N/m].
 
     Returns
     -------
-    (4,) [N, N m]
+    (4,) ndarray
+        [N, N m].
     """
     return load_per_length * h / 12 * np.array([6, h, 6, -h])
 
@@ -112,12 +124,15 @@ def shape(s: float, h: float) -> Array:
 
     Parameters
     ----------
-    s : place within the element as a share of its length, 0 to 1 [-]
-    h : length of the element [m]
+    s : float
+        Place within the element as a share of its length, 0 to 1 [-].
+    h : float
+        Length of the element [m].
 
     Returns
     -------
-    (4,) [-, m, -, m]
+    (4,) ndarray
+        [-, m, -, m].
     """
     return np.array([(1 + 2 * s) * (1 - s) ** 2, h * s * (1 - s) ** 2, s**2 * (3 - 2 * s), h * s**2 * (s - 1)])
 
@@ -129,15 +144,21 @@ def pinned_frequencies(
 
     Parameters
     ----------
-    n : number of modes
-    length : [m]
-    tension : T [N]
-    bending_stiffness : EI [N m2]
-    mass_per_length : [kg/m]
+    n : int
+        Number of modes.
+    length : float
+        [m].
+    tension : float
+        T [N].
+    bending_stiffness : float
+        EI [N m2].
+    mass_per_length : float
+        [kg/m].
 
     Returns
     -------
-    (n,) [Hz]
+    (n,) ndarray
+        [Hz].
     """
     k = np.arange(1, n + 1) * np.pi / length
     return np.asarray(np.sqrt((tension * k**2 + bending_stiffness * k**4) / mass_per_length) / (2 * np.pi))
@@ -148,11 +169,14 @@ def wave_speed(tension: float, mass_per_length: float) -> float:
 
     Parameters
     ----------
-    tension : T [N]
-    mass_per_length : [kg/m]
+    tension : float
+        T [N].
+    mass_per_length : float
+        [kg/m].
 
     Returns
     -------
-    [m/s]
+    float
+        [m/s].
     """
     return float(np.sqrt(tension / mass_per_length))

@@ -22,11 +22,16 @@ class Beams(NamedTuple):
 
     Parameters
     ----------
-    length : (S-1,) of the elements [m]
-    tension, bending_stiffness, mass_per_length : (B, S-1) per element, zero where the row has no wire [N, N m2, kg/m]
-    lumped_mass, lumped_stiffness, lumped_damping : (B, S) on the deflection [kg, N/m, N s/m]
-    mass_coefficient, stiffness_coefficient : (B,) Rayleigh damping of the wires [1/s, s]
-    free : (B, S, 2) whether deflection and slope can move
+    length : (S-1,) ndarray
+        Of the elements [m].
+    tension, bending_stiffness, mass_per_length : (B, S-1) ndarray
+        Per element, zero where the row has no wire [N, N m2, kg/m].
+    lumped_mass, lumped_stiffness, lumped_damping : (B, S) ndarray
+        On the deflection [kg, N/m, N s/m].
+    mass_coefficient, stiffness_coefficient : (B,) ndarray
+        Rayleigh damping of the wires [1/s, s].
+    free : (B, S, 2) ndarray
+        Whether deflection and slope can move.
     """
 
     length: Array
@@ -46,12 +51,15 @@ def build_beams(catenary: Catenary, mesh: Mesh) -> Beams:
 
     Parameters
     ----------
-    catenary : the line
-    mesh : its stations and rows
+    catenary : Catenary
+        The line.
+    mesh : Mesh
+        Its stations and rows.
 
     Returns
     -------
-    the rows; what acts on a single row at a single station is lumped onto them by `connectors.lump`
+    Beams
+        The rows; what acts on a single row at a single station is lumped onto them by `connectors.lump`.
     """
     stations = mesh.position.size
     length = np.diff(mesh.position)
@@ -91,12 +99,14 @@ def wire_matrices(beams: Beams, row: int) -> tuple[sp.csr_array, sp.csr_array]:
 
     Parameters
     ----------
-    beams : the rows
-    row : which one
+    beams : Beams
+        The rows.
+    row : int
+        Which one.
 
     Returns
     -------
-    stiffness, mass : (2 S, 2 S)
+    stiffness, mass : (2 S, 2 S) ndarray
     """
     mass = beam.mass(beams.length, beams.mass_per_length[row])
     return by_station(element_stiffness(beams, row)), by_station(mass)
@@ -126,13 +136,17 @@ def weight(beams: Beams, row: int, gravity: float) -> Array:
 
     Parameters
     ----------
-    beams : the rows
-    row : which one
-    gravity : [m/s2]
+    beams : Beams
+        The rows.
+    row : int
+        Which one.
+    gravity : float
+        [m/s2].
 
     Returns
     -------
-    (2 S,) [N, N m]
+    (2 S,) ndarray
+        [N, N m].
     """
     force = np.zeros(2 * beams.free.shape[1])
     for e in np.flatnonzero(beams.mass_per_length[row]):

@@ -41,11 +41,16 @@ class Connectors(NamedTuple):
 
     Parameters
     ----------
-    station : (N,) index
-    coefficient : (N, B) of each row's deflection in the elongation [-]
-    stiffness, damping : (N,) [N/m, N s/m]
-    preload : (N,) tension in the initial state [N]
-    unilateral : (N,) whether the tension cannot be negative
+    station : (N,) ndarray
+        Index.
+    coefficient : (N, B) ndarray
+        Of each row's deflection in the elongation [-].
+    stiffness, damping : (N,) ndarray
+        [N/m, N s/m].
+    preload : (N,) ndarray
+        Tension in the initial state [N].
+    unilateral : (N,) ndarray
+        Whether the tension cannot be negative.
     """
 
     station: NDArray[np.int64]
@@ -61,13 +66,17 @@ def build_connectors(catenary: Catenary, mesh: Mesh, state: InitialState) -> Con
 
     Parameters
     ----------
-    catenary : the line
-    mesh : its stations and rows
-    state : its initial state, which gives forces, lengths and directions
+    catenary : Catenary
+        The line.
+    mesh : Mesh
+        Its stations and rows.
+    state : InitialState
+        Its initial state, which gives forces, lengths and directions.
 
     Returns
     -------
-    the connectors
+    Connectors
+        The connectors.
     """
     bars = _droppers(catenary, mesh, state) + _clamps(catenary, mesh, state)
     if catenary.has_lateral_field:
@@ -162,12 +171,15 @@ def arm_direction(arm: SteadyArm, force: Array) -> tuple[float, float, float]:
 
     Parameters
     ----------
-    arm : the steady arm
-    force : (2,) its static force on the contact wire, y and z [N]
+    arm : SteadyArm
+        The steady arm.
+    force : (2,) ndarray
+        Its static force on the contact wire, y and z [N].
 
     Returns
     -------
-    direction y, z [-], and tension, negative for an arm that pushes [N]
+    tuple[float, float, float]
+        Direction y, z [-], and tension, negative for an arm that pushes [N].
     """
     size = float(np.hypot(*force))
     if force[0] == 0.0:
@@ -182,9 +194,12 @@ def add_lumped(catenary: Catenary, mesh: Mesh, beams: Beams) -> None:
 
     Parameters
     ----------
-    catenary : the line
-    mesh : its stations and rows
-    beams : its rows of beams, lumped arrays changed in place
+    catenary : Catenary
+        The line.
+    mesh : Mesh
+        Its stations and rows.
+    beams : Beams
+        Its rows of beams, lumped arrays changed in place.
     """
     undamped = Rayleigh()
 

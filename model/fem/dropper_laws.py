@@ -15,11 +15,13 @@ def with_viscous_part_kept(line: DiscretisedLine) -> DiscretisedLine:
 
     Parameters
     ----------
-    line : the discretised line
+    line : DiscretisedLine
+        The discretised line.
 
     Returns
     -------
-    the line, each dropper joined by a dashpot of its own
+    DiscretisedLine
+        The line, each dropper joined by a dashpot of its own.
     """
     own = line.connectors
     slackens = own.unilateral

@@ -22,10 +22,14 @@ class Mesh:
 
     Parameters
     ----------
-    position : (stations,) along the track [m]
-    row_kind : (rows,) kind of the wires of each row
-    row_field : (rows,) "z" or "y"
-    row_of : row by wire name and field
+    position : (stations,) ndarray
+        Along the track [m].
+    row_kind : tuple[Kind, ...]
+        (rows,) kind of the wires of each row.
+    row_field : tuple[str, ...]
+        (rows,) "z" or "y".
+    row_of : dict[tuple[str, str], int]
+        Row by wire name and field.
     """
 
     position: Array
@@ -51,13 +55,17 @@ def build_mesh(catenary: Catenary, element_length: float, places: tuple[float, .
 
     Parameters
     ----------
-    catenary : the line
-    element_length : longest element [m]
-    places : further places that are to be stations [m]
+    catenary : Catenary
+        The line.
+    element_length : float
+        Longest element [m].
+    places : tuple[float, ...]
+        Further places that are to be stations [m].
 
     Returns
     -------
-    the mesh
+    Mesh
+        The mesh.
     """
     fields = ("z", "y") if catenary.has_lateral_field else ("z",)
     rows: list[list[Wire]] = []

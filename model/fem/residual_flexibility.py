@@ -22,13 +22,17 @@ def condensed_bubbles(h: float, tension: float, bending_stiffness: float) -> Arr
 
     Parameters
     ----------
-    h : length of the element [m]
-    tension : T [N]
-    bending_stiffness : EI [N m2]
+    h : float
+        Length of the element [m].
+    tension : float
+        T [N].
+    bending_stiffness : float
+        EI [N m2].
 
     Returns
     -------
-    (6,) entries 00, 01, 02, 11, 12, 22 of the inverse of their stiffness [m/N]
+    (6,) ndarray
+        Entries 00, 01, 02, 11, 12, 22 of the inverse of their stiffness [m/N].
     """
     if bending_stiffness == 0.0:
         return np.zeros(6)  # a string has a kink under a force, which no smooth function follows
@@ -58,12 +62,15 @@ def local_flexibility(bubble: Array, s: float) -> float:
 
     Parameters
     ----------
-    bubble : (6,) of the element, from `bubble_flexibility`
-    s : place as a share of the length [-]
+    bubble : (6,) ndarray
+        Of the element, from `bubble_flexibility`.
+    s : float
+        Place as a share of the length [-].
 
     Returns
     -------
-    [m/N]
+    float
+        [m/N].
     """
     f = s * s * (1 - s) * (1 - s)
     t = 2 * s - 1

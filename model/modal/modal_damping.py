@@ -22,8 +22,10 @@ class ModalTerms:
 
     Parameters
     ----------
-    damping : (n,) 2 zeta w less what the Rayleigh part gives the mode [1/s]
-    weight : (n, rows, stations, 2) M phi [kg^1/2]
+    damping : (n,) ndarray
+        2 zeta w less what the Rayleigh part gives the mode [1/s].
+    weight : (n, rows, stations, 2) ndarray
+        M phi [kg^1/2].
     """
 
     damping: Array
@@ -35,11 +37,13 @@ def build_modal_terms(line: DiscretisedLine) -> ModalTerms:
 
     Parameters
     ----------
-    line : the discretised line
+    line : DiscretisedLine
+        The discretised line.
 
     Returns
     -------
-    the terms
+    ModalTerms
+        The terms.
     """
     bands = line.catenary.modal_damping
     if not bands:
@@ -65,12 +69,15 @@ def modes_below(line: DiscretisedLine, frequency: float) -> Modes:
 
     Parameters
     ----------
-    line : the discretised line
-    frequency : [Hz]
+    line : DiscretisedLine
+        The discretised line.
+    frequency : float
+        [Hz].
 
     Returns
     -------
-    the modes
+    Modes
+        The modes.
     """
     count, most = 16, assemble_matrices(line).free.size - 2
     while True:

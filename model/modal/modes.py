@@ -19,8 +19,10 @@ class Modes:
 
     Parameters
     ----------
-    frequency : (n,) ascending [Hz]
-    shape : (n, rows, stations, 2) deflection and slope [kg^-1/2, kg^-1/2 m^-1]
+    frequency : (n,) ndarray
+        Ascending [Hz].
+    shape : (n, rows, stations, 2) ndarray
+        Deflection and slope [kg^-1/2, kg^-1/2 m^-1].
     """
 
     frequency: Array
@@ -33,9 +35,12 @@ class ComponentEnergies:
 
     Parameters
     ----------
-    kinds : the kinds, in the order of the columns
-    stiffness : (n, kinds) phi' K_e phi, adding up to (2 pi f)^2 [1/s2]
-    mass : (n, kinds) phi' M_e phi, adding up to 1 [-]
+    kinds : tuple[Kind, ...]
+        The kinds, in the order of the columns.
+    stiffness : (n, kinds) ndarray
+        Phi' K_e phi, adding up to (2 pi f)^2 [1/s2].
+    mass : (n, kinds) ndarray
+        Phi' M_e phi, adding up to 1 [-].
     """
 
     kinds: tuple[Kind, ...]
@@ -48,12 +53,15 @@ def compute_modes(line: DiscretisedLine, count: int) -> Modes:
 
     Parameters
     ----------
-    line : the discretised line
-    count : how many
+    line : DiscretisedLine
+        The discretised line.
+    count : int
+        How many.
 
     Returns
     -------
-    the modes
+    Modes
+        The modes.
     """
     matrices = assemble_matrices(line)
     # A fixed start vector makes the iteration, and with it the last digits, the same every time.
@@ -77,14 +85,19 @@ def deflection_at(line: DiscretisedLine, shapes: Modes, row: int, position: floa
 
     Parameters
     ----------
-    line : the discretised line
-    shapes : its modes
-    row : which row
-    position : at a station [m]
+    line : DiscretisedLine
+        The discretised line.
+    shapes : Modes
+        Its modes.
+    row : int
+        Which row.
+    position : float
+        At a station [m].
 
     Returns
     -------
-    (n,) [kg^-1/2]
+    (n,) ndarray
+        [kg^-1/2].
     """
     return np.asarray(shapes.shape[:, row, line.mesh.station(position), 0])
 
@@ -94,12 +107,15 @@ def component_energies(line: DiscretisedLine, shapes: Modes) -> ComponentEnergie
 
     Parameters
     ----------
-    line : the discretised line
-    shapes : its modes
+    line : DiscretisedLine
+        The discretised line.
+    shapes : Modes
+        Its modes.
 
     Returns
     -------
-    the energies; a damping model a_e K_e + b_e M_e gives mode j the ratio sum (a_e k_ej + b_e m_ej) / (2 omega_j)
+    ComponentEnergies
+        The energies; a damping model a_e K_e + b_e M_e gives mode j the ratio sum (a_e k_ej + b_e m_ej) / (2 omega_j).
     """
     free = assemble_matrices(line).free
     vectors = shapes.shape.reshape(len(shapes.frequency), -1)[:, bandwidth_order(line)[free]]
@@ -122,12 +138,15 @@ def damping_ratios(line: DiscretisedLine, shapes: Modes) -> Array:
 
     Parameters
     ----------
-    line : the discretised line, with its damping
-    shapes : its modes
+    line : DiscretisedLine
+        The discretised line, with its damping.
+    shapes : Modes
+        Its modes.
 
     Returns
     -------
-    (n,) [-]
+    (n,) ndarray
+        [-].
     """
     free = assemble_matrices(line).free
     vectors = shapes.shape.reshape(len(shapes.frequency), -1)[:, bandwidth_order(line)[free]]

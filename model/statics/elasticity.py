@@ -15,13 +15,17 @@ def static_uplift(line: DiscretisedLine, position: Array, force: float) -> Array
 
     Parameters
     ----------
-    line : the discretised line
-    position : (n,) [m]
-    force : upwards, shared by the contact wires [N]
+    line : DiscretisedLine
+        The discretised line.
+    position : (n,) ndarray
+        [m].
+    force : float
+        Upwards, shared by the contact wires [N].
 
     Returns
     -------
-    (n,) uplift where the force acts, the mean over the contact wires [m]
+    (n,) ndarray
+        Uplift where the force acts, the mean over the contact wires [m].
     """
     statics = StaticSolver(line)
     rows = line.contact_rows
@@ -39,10 +43,12 @@ def non_uniformity(elasticity: Array) -> float:
 
     Parameters
     ----------
-    elasticity : (n,) along a span, in any unit
+    elasticity : (n,) ndarray
+        Along a span, in any unit.
 
     Returns
     -------
-    [-]
+    float
+        [-].
     """
     return float((elasticity.max() - elasticity.min()) / (elasticity.max() + elasticity.min()))

@@ -32,13 +32,19 @@ class InitialState:
 
     Parameters
     ----------
-    deflection : (rows, stations, 2) vertical rows: height over the contact wire at the supports; lateral rows: distance
-        from the track's centre line; and slope [m, -]
-    dropper_tension : (droppers,) axial, at mid-length [N]
-    dropper_length : (droppers,) between the wires' axes [m]
-    dropper_direction : (droppers, 2) from the lower to the upper wire, y and z [-]
-    clamp_force : (clamps, 2) force of the upper on the lower wire, y and z [N]
-    arm_force : (steady arms, 2) static force of each steady arm on the contact wire, y and z [N]
+    deflection : (rows, stations, 2) ndarray
+        Vertical rows: height over the contact wire at the supports; lateral rows: distance from the track's centre
+        line; and slope [m, -].
+    dropper_tension : (droppers,) ndarray
+        Axial, at mid-length [N].
+    dropper_length : (droppers,) ndarray
+        Between the wires' axes [m].
+    dropper_direction : (droppers, 2) ndarray
+        From the lower to the upper wire, y and z [-].
+    clamp_force : (clamps, 2) ndarray
+        Force of the upper on the lower wire, y and z [N].
+    arm_force : (steady arms, 2) ndarray
+        Static force of each steady arm on the contact wire, y and z [N].
     """
 
     deflection: Array
@@ -56,18 +62,24 @@ def compute_initial_state(
 
     Parameters
     ----------
-    catenary : the line
-    mesh : its stations and rows
-    beams : its rows of beams
-    stiffness : of the wires of one row; as beams, unless strings are asked for
+    catenary : Catenary
+        The line.
+    mesh : Mesh
+        Its stations and rows.
+    beams : Beams
+        Its rows of beams.
+    stiffness : Stiffness
+        Of the wires of one row; as beams, unless strings are asked for.
 
     Returns
     -------
-    the initial state
+    InitialState
+        The initial state.
 
     Raises
     ------
-    NoInitialState : a dropper would have to push
+    NoInitialState
+        a dropper would have to push.
     """
     vertical = [row for row in range(mesh.rows) if mesh.row_field[row] == "z"]
     contact = [row for row in vertical if mesh.row_kind[row] is Kind.CONTACT_WIRE]

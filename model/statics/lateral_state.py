@@ -31,10 +31,14 @@ class LateralState:
 
     Parameters
     ----------
-    rows : the lateral rows
-    shape : (lateral rows, stations, 2) distance from the centre line, and slope [m, -]
-    clamps : (clamps,) lateral force of the upper on the lower wire [N]
-    arms : (steady arms,) lateral force of each arm on its wire [N]
+    rows : list[int]
+        The lateral rows.
+    shape : (lateral rows, stations, 2) ndarray
+        Distance from the centre line, and slope [m, -].
+    clamps : (clamps,) ndarray
+        Lateral force of the upper on the lower wire [N].
+    arms : (steady arms,) ndarray
+        Lateral force of each arm on its wire [N].
     """
 
     rows: list[int]
@@ -48,14 +52,19 @@ def compute_lateral_state(catenary: Catenary, mesh: Mesh, beams: Beams, dropper_
 
     Parameters
     ----------
-    catenary : the line, its wires with their staggers
-    mesh : stations and rows
-    beams : rows of beams
-    dropper_stiffness : (droppers,) vertical force over height of each dropper [N/m]
+    catenary : Catenary
+        The line, its wires with their staggers.
+    mesh : Mesh
+        Stations and rows.
+    beams : Beams
+        Rows of beams.
+    dropper_stiffness : (droppers,) ndarray
+        Vertical force over height of each dropper [N/m].
 
     Returns
     -------
-    the plan view
+    LateralState
+        The plan view.
     """
     rows = [row for row in range(mesh.rows) if mesh.row_field[row] == "y"]
     stations = mesh.position.size

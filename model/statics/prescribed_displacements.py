@@ -15,14 +15,19 @@ def solve_with_prescribed_displacements(
 
     Parameters
     ----------
-    stiffness : (n, n); an unknown without stiffness stays at zero
-    load : (n,)
-    free : (n,) which unknowns can move
-    held : (n,) values of the others
+    stiffness : sp.csr_array
+        (n, n); an unknown without stiffness stays at zero.
+    load : ndarray
+        (n,).
+    free : (n,) ndarray
+        Which unknowns can move.
+    held : (n,) ndarray
+        Values of the others.
 
     Returns
     -------
-    (n,) all unknowns
+    (n,) ndarray
+        All unknowns.
     """
     active = np.flatnonzero(free & (stiffness.diagonal() != 0))
     solution: Array = np.where(free, 0.0, held)

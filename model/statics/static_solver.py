@@ -23,8 +23,10 @@ class Deflection:
 
     Parameters
     ----------
-    displacement : (rows, stations, 2) deflection and slope [m, -]
-    tension : (connectors,) in total [N]
+    displacement : (rows, stations, 2) ndarray
+        Deflection and slope [m, -].
+    tension : (connectors,) ndarray
+        In total [N].
     """
 
     displacement: Array
@@ -41,7 +43,8 @@ class StaticSolver:
 
     Parameters
     ----------
-    line : the discretised line
+    line
+        The discretised line.
     """
 
     def __init__(self, line: DiscretisedLine) -> None:
@@ -56,15 +59,18 @@ class StaticSolver:
 
         Parameters
         ----------
-        load : (unknowns,) forces and moments in global order [N, N m]
+        load : (unknowns,) ndarray
+            Forces and moments in global order [N, N m].
 
         Returns
         -------
-        the deflection
+        Deflection
+            The deflection.
 
         Raises
         ------
-        NoEquilibrium : the set of slack droppers does not settle
+        NoEquilibrium
+            The set of slack droppers does not settle.
         """
         connectors = self.line.connectors
         taut = self._factor.solve(np.asarray(load, dtype=float)[self._free])

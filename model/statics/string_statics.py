@@ -25,15 +25,18 @@ def string_state(catenary: Catenary) -> InitialState:
 
     Parameters
     ----------
-    catenary : the line; staggers are left out
+    catenary : Catenary
+        The line; staggers are left out.
 
     Returns
     -------
-    its state at the places of its connectors
+    InitialState
+        Its state at the places of its connectors.
 
     Raises
     ------
-    NoInitialState : the prescribed geometry has no equilibrium
+    NoInitialState
+        The prescribed geometry has no equilibrium.
     """
     vertical = in_vertical_plane(catenary)
     mesh = build_mesh(vertical, math.inf)
@@ -50,11 +53,14 @@ def string_stiffness(beams: Beams, row: int) -> sp.csr_array:
 
     Parameters
     ----------
-    beams : the rows
-    row : which one
+    beams : Beams
+        The rows.
+    row : int
+        Which one.
 
     Returns
     -------
-    (2 S, 2 S) with unknowns (w, r) by station [N/m]
+    sp.csr_array
+        (2 S, 2 S) with unknowns (w, r) by station [N/m].
     """
     return by_station(beam.springs(beams.tension[row] / beams.length))

@@ -19,12 +19,15 @@ def doppler_factor(speed: float, wave_speed: float) -> float:
 
     Parameters
     ----------
-    speed : v of the train [m/s]
-    wave_speed : c of the contact wire [m/s]
+    speed : float
+        v of the train [m/s].
+    wave_speed : float
+        c of the contact wire [m/s].
 
     Returns
     -------
-    [-]
+    float
+        [-].
     """
     return (wave_speed - speed) / (wave_speed + speed)
 
@@ -34,11 +37,13 @@ def reflection_coefficient(contact_wires: Iterable[Wire], messenger_wires: Itera
 
     Parameters
     ----------
-    contact_wires, messenger_wires : that the dropper joins
+    contact_wires, messenger_wires : Iterable[Wire]
+        That the dropper joins.
 
     Returns
     -------
-    sqrt(T_m m_m) / (sqrt(T_m m_m) + sqrt(T_c m_c)) [-]
+    float
+        sqrt(T_m m_m) / (sqrt(T_m m_m) + sqrt(T_c m_c)) [-].
     """
     upper = impedance(messenger_wires)
     return upper / (upper + impedance(contact_wires))

@@ -25,12 +25,15 @@ def contact_force(line: DiscretisedLine, passage: Passage) -> Array:
 
     Parameters
     ----------
-    line : the discretised line, in the vertical plane
-    passage : its time step is the explicit one, below 2 / w_max
+    line : DiscretisedLine
+        The discretised line, in the vertical plane.
+    passage : Passage
+        Its time step is the explicit one, below 2 / w_max.
 
     Returns
     -------
-    (T,) [N]
+    (T,) ndarray
+        [N].
     """
     (model,) = passage.pantographs
     matrices = assemble_matrices(without_connectors(line))

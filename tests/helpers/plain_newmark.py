@@ -43,8 +43,10 @@ class PlainNewmark:
 
     Parameters
     ----------
-    line : the discretised line
-    passage : pantographs and their journey
+    line
+        The discretised line.
+    passage
+        Pantographs and their journey.
     """
 
     def __init__(self, line: DiscretisedLine, passage: Passage) -> None:

@@ -34,10 +34,14 @@ class ModalEnergies:
 
     Parameters
     ----------
-    frequency : (m,) [Hz]
-    kinds : (e,) component kinds
-    stiffness : (m, e) k_ej [1/s2]
-    mass : (m, e) m_ej [-]
+    frequency : (m,) ndarray
+        [Hz].
+    kinds : tuple[str, ...]
+        (e,) component kinds.
+    stiffness : (m, e) ndarray
+        k_ej [1/s2].
+    mass : (m, e) ndarray
+        m_ej [-].
     """
 
     frequency: Real
@@ -58,9 +62,12 @@ class MeasuredMode:
 
     Parameters
     ----------
-    frequency : (m,) [Hz]
-    damping_ratio, std : (m,) and its standard deviation
-    group : (m,) number of the group of span modes, 0 for none
+    frequency : (m,) ndarray
+        [Hz].
+    damping_ratio, std : (m,) ndarray
+        And its standard deviation.
+    group : (m,) ndarray
+        Number of the group of span modes, 0 for none.
     """
 
     frequency: Real
@@ -75,10 +82,14 @@ class Coefficient:
 
     Parameters
     ----------
-    kind : component
-    matrix : `stiffness` [s] or `mass` [1/s], which it multiplies
-    value : fitted
-    low, high : 95 % confidence interval
+    kind : str
+        Component.
+    matrix : str
+        `stiffness` [s] or `mass` [1/s], which it multiplies.
+    value : float
+        Fitted.
+    low, high : float
+        95 % confidence interval.
     """
 
     kind: str
@@ -94,10 +105,14 @@ class DampingFit:
 
     Parameters
     ----------
-    coefficients : of the kinds fitted
-    predicted : (m,) damping ratios of the fit at the measured modes
-    used : (m,) modes that entered; outliers of their group did not
-    residual : root mean square of (measured - predicted) / measured over the modes used
+    coefficients : tuple[Coefficient, ...]
+        Of the kinds fitted.
+    predicted : (m,) ndarray
+        Damping ratios of the fit at the measured modes.
+    used : (m,) ndarray
+        Modes that entered; outliers of their group did not.
+    residual : float
+        Root mean square of (measured - predicted) / measured over the modes used.
     """
 
     coefficients: tuple[Coefficient, ...]
@@ -122,13 +137,17 @@ def fit_damping_model(
 
     Parameters
     ----------
-    energies : of the computed counterparts of the measured modes
-    measured : the measured modes
-    kinds : component kinds to fit
+    energies : ModalEnergies
+        Of the computed counterparts of the measured modes.
+    measured : MeasuredMode
+        The measured modes.
+    kinds : tuple[str, ...]
+        Component kinds to fit.
 
     Raises
     ------
-    InputError : fewer modes than coefficients
+    InputError
+        Fewer modes than coefficients.
     """
     names, columns = energies.columns()
     chosen = [i for i, (kind, _) in enumerate(names) if kind in kinds]
@@ -169,9 +188,12 @@ def fit_weights(std: Real, group: NDArray[np.int64], used: NDArray[np.bool_]) ->
 
     Parameters
     ----------
-    std : (m,) standard deviation of each mode
-    group : (m,) its group
-    used : (m,) whether it enters; others have no weight
+    std : (m,) ndarray
+        Standard deviation of each mode.
+    group : (m,) ndarray
+        Its group.
+    used : (m,) ndarray
+        Whether it enters; others have no weight.
     """
     count = np.array([max(int(np.sum(used & (group == number))), 1) for number in group])
     return np.where(used, 1 / (std * np.sqrt(count)), 0.0)
@@ -182,9 +204,12 @@ def solve_weighted(columns: Real, target: Real, weight: Real) -> Real:
 
     Parameters
     ----------
-    columns : (m, e) what a unit of each coefficient adds to the target
-    target : (m,)
-    weight : (m,) square roots of the weights
+    columns : (m, e) ndarray
+        What a unit of each coefficient adds to the target.
+    target : ndarray
+        (m,).
+    weight : (m,) ndarray
+        Square roots of the weights.
     """
     scale = np.maximum(np.linalg.norm(columns * weight[:, None], axis=0), np.finfo(float).tiny)
     solution, _ = scipy.optimize.nnls(columns * weight[:, None] / scale, target * weight)
@@ -231,8 +256,10 @@ def fit_modal_bands(measured: MeasuredMode, last_group: int = 3) -> tuple[Fitted
 
     Parameters
     ----------
-    measured : the measured modes
-    last_group : groups 1..last_group
+    measured : MeasuredMode
+        The measured modes.
+    last_group : int
+        Groups 1..last_group.
     """
     present = [number for number in range(1, last_group + 2) if np.any(measured.group == number)]
     edges = {

@@ -35,14 +35,19 @@ def build_damping_results(rows: tuple[ModeRow, ...], line: Catenary, element: fl
 
     Parameters
     ----------
-    rows : of modes.json; lateral, uncertain and ungrouped ones are left aside
-    line : the line that was measured; the damping it has already is the reference of the comparison
-    element : element length [m]
-    source : of the modes, for messages
+    rows : tuple[ModeRow, ...]
+        Of modes.json; lateral, uncertain and ungrouped ones are left aside.
+    line : Catenary
+        The line that was measured; the damping it has already is the reference of the comparison.
+    element : float
+        Element length [m].
+    source : str
+        Of the modes, for messages.
 
     Raises
     ------
-    InputError : too few modes, or none that the line can account for
+    InputError
+        Too few modes, or none that the line can account for.
     """
     usable = [row for row in rows if row.certain and not row.lateral and row.group is not None]
     if not usable:
@@ -156,8 +161,10 @@ def write_damping_toml(results: dict[str, Any], modal: Sequence[dict[str, float]
 
     Parameters
     ----------
-    results : of `damping_results`
-    modal : bands with a ratio of their own, `results["modal"]` for Rayleigh + modal damping
+    results : dict[str, Any]
+        Of `damping_results`.
+    modal : Sequence[dict[str, float]]
+        Bands with a ratio of their own, `results["modal"]` for Rayleigh + modal damping.
     """
     tables: dict[str, Any] = {
         "trust": "provisional",

@@ -37,10 +37,14 @@ def pair_modes(
 
     Parameters
     ----------
-    measured_frequency : (m,) [Hz]
-    measured_shapes : for each, (s,) at its sensors
-    computed_frequency : (n,) [Hz]
-    computed_shapes : for each measured mode, (n, s) the computed shapes at its sensors
+    measured_frequency : (m,) ndarray
+        [Hz].
+    measured_shapes : list[complex ndarray]
+        For each, (s,) at its sensors.
+    computed_frequency : (n,) ndarray
+        [Hz].
+    computed_shapes : list[ndarray]
+        For each measured mode, (n, s) the computed shapes at its sensors.
     """
     m, n = measured_frequency.size, computed_frequency.size
     if m == 0 or n == 0:

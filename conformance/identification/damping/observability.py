@@ -27,12 +27,18 @@ class Observability:
 
     Parameters
     ----------
-    kind, matrix : which
-    share : largest share that the plausible value would have in any mode's damping ratio
-    inflation : variance inflation by the likeness to all others that act at all, 1 / (1 - R^2)
-    std : smallest standard deviation with the other wires' coefficients unknown too [s] or [1/s]
-    growth : factor on the fit's residual when the coefficient is left out; 1 if it is not fitted
-    observable : whether the plausible value could be seen
+    kind, matrix : str
+        Which.
+    share : float
+        Largest share that the plausible value would have in any mode's damping ratio.
+    inflation : float
+        Variance inflation by the likeness to all others that act at all, 1 / (1 - R^2).
+    std : float
+        Smallest standard deviation with the other wires' coefficients unknown too [s] or [1/s].
+    growth : float
+        Factor on the fit's residual when the coefficient is left out; 1 if it is not fitted.
+    observable : bool
+        Whether the plausible value could be seen.
     """
 
     kind: str
@@ -51,8 +57,10 @@ def compute_observability(
 
     Parameters
     ----------
-    energies, measured : as for `fit_damping`
-    fit : with all fitted kinds
+    energies, measured : ModalEnergies or MeasuredMode
+        As for `fit_damping`.
+    fit : DampingFit
+        With all fitted kinds.
     """
     names, columns = energies.columns()
     weighted = columns / fit_deviation(measured)[:, None]

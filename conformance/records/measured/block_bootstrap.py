@@ -38,9 +38,12 @@ def bootstrap_uncertainties(signals: PooledSignals, block_s: float, digest: str)
 
     Parameters
     ----------
-    signals : of one pantograph
-    block_s : length of a block [s]; one span
-    digest : SHA-256 of the record in hexadecimal, from which the random numbers are seeded
+    signals : PooledSignals
+        Of one pantograph.
+    block_s : float
+        Length of a block [s]; one span.
+    digest : str
+        SHA-256 of the record in hexadecimal, from which the random numbers are seeded.
     """
     parts = signals.parts
     draws = _draws([part.delivered.size for part in parts], block_s * parts[0].rate, digest) if parts else None

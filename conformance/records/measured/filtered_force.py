@@ -21,9 +21,12 @@ def detect_filtered(pooled: PooledSignals, who: str, warnings: list[str]) -> Poo
 
     Parameters
     ----------
-    pooled : signals of one pantograph
-    who : it is, for messages
-    warnings : is told if the force had been filtered
+    pooled : PooledSignals
+        Signals of one pantograph.
+    who : str
+        It is, for messages.
+    warnings : list[str]
+        Is told if the force had been filtered.
     """
     if not pooled.parts or pooled.filter_applied_Hz is not None or pooled.parts[0].rate * HIGHEST_SHARE_OF_RATE < 50:
         return pooled

@@ -21,7 +21,8 @@ def find_outliers(force: Array) -> NDArray[np.intp]:
 
     Parameters
     ----------
-    force : (n,) contact force without missing values [N]
+    force : (n,) ndarray
+        Contact force without missing values [N].
     """
     if force.size < NEIGHBOURS:
         return np.empty(0, dtype=np.intp)

@@ -20,8 +20,10 @@ class PooledSignals:
 
     Parameters
     ----------
-    parts : the stretches, in running order
-    why_none : what a reader is told if there are none
+    parts : tuple[PantographSignals, ...]
+        The stretches, in running order.
+    why_none : str
+        What a reader is told if there are none.
     """
 
     parts: tuple[PantographSignals, ...]

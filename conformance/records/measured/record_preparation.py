@@ -38,14 +38,22 @@ class PreparedRecord:
 
     Parameters
     ----------
-    pantographs : signals by number from 1
-    line : uplift at the supports
-    rate : samples per second after resampling [Hz]
-    speed : mean over what is evaluated, or the nominal one [m/s]
-    evaluated : start and end of the track that is evaluated, cuts included [m]
-    seconds : what is evaluated of the first pantograph lasts [s]
-    notes : what was done
-    warnings : what should make a reader careful
+    pantographs : dict[int, PooledSignals]
+        Signals by number from 1.
+    line : LineSignals
+        Uplift at the supports.
+    rate : float
+        Samples per second after resampling [Hz].
+    speed : float
+        Mean over what is evaluated, or the nominal one [m/s].
+    evaluated : tuple[float, float]
+        Start and end of the track that is evaluated, cuts included [m].
+    seconds : float
+        What is evaluated of the first pantograph lasts [s].
+    notes : tuple[str, ...]
+        What was done.
+    warnings : tuple[str, ...]
+        What should make a reader careful.
     """
 
     pantographs: dict[int, PooledSignals]
@@ -65,14 +73,19 @@ def prepare_record(
 
     Parameters
     ----------
-    samples : as read
-    sidecar : what they are
-    low_pass : filter of the graded force
-    speed_tolerance_pct : how far the speed may be off the nominal one where the record is evaluated [%]
+    samples : RecordSamples
+        As read.
+    sidecar : RecordSidecar
+        What they are.
+    low_pass : LowPass
+        Filter of the graded force.
+    speed_tolerance_pct : float
+        How far the speed may be off the nominal one where the record is evaluated [%].
 
     Raises
     ------
-    RecordInvalid : time or position runs backwards, or no sample has both
+    RecordInvalid
+        Time or position runs backwards, or no sample has both.
     """
     notes: list[str] = []
     warnings: list[str] = []

@@ -15,12 +15,15 @@ def place_samples(
 
     Parameters
     ----------
-    samples, sidecar : of a record
-    warnings : is told what was left out
+    samples, sidecar : RecordSamples or RecordSidecar
+        Of a record.
+    warnings : list[str]
+        Is told what was left out.
 
     Raises
     ------
-    RecordInvalid : time or position runs backwards, or no two samples have both
+    RecordInvalid
+        Time or position runs backwards, or no two samples have both.
     """
     axes = [a for a in (samples.time, samples.speed, samples.position) if a is not None]
     known = np.all([np.isfinite(np.atleast_2d(axis)).all(axis=0) for axis in axes], axis=0)

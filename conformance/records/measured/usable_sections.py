@@ -28,9 +28,12 @@ class UsableSection:
 
     Parameters
     ----------
-    position : (n,) contact point along the track [m]
-    force : (n,) [N]
-    height : (n,) height of the contact point [m], or None
+    position : (n,) ndarray
+        Contact point along the track [m].
+    force : (n,) ndarray
+        [N].
+    height : (n,) ndarray or None
+        Height of the contact point [m], or None.
     """
 
     position: Array
@@ -50,8 +53,10 @@ def find_usable_sections(time: Array, usable: NDArray[np.bool_]) -> list[NDArray
 
     Parameters
     ----------
-    time : (n,) increasing [s]
-    usable : (n,) whether a sample may be evaluated
+    time : (n,) ndarray
+        Increasing [s].
+    usable : (n,) ndarray
+        Whether a sample may be evaluated.
     """
     chosen = np.flatnonzero(usable)
     if chosen.size == 0:
@@ -72,9 +77,12 @@ def cut_section(
 
     Parameters
     ----------
-    run : indices of the samples
-    time, position, force, height : (n,) of one pantograph [s, m, N, m]
-    rate : samples per second of the result [Hz]
+    run : ndarray
+        Indices of the samples.
+    time, position, force, height : (n,) ndarray or ndarray or None
+        Of one pantograph [s, m, N, m].
+    rate : float
+        Samples per second of the result [Hz].
     """
     at, height = time[run], None if height is None or not np.isfinite(height[run]).all() else height[run]
     uniform = np.linspace(at[0], at[-1], at.size)

@@ -22,7 +22,8 @@ def build_certificate(results: dict[str, Any]) -> Page:
 
     Parameters
     ----------
-    results : results.json as a dictionary
+    results : dict[str, Any]
+        results.json as a dictionary.
     """
     results = clean_tree(results)
     trust = results.get("trust") or ""

@@ -21,7 +21,8 @@ def draw_chart(data: dict[str, Any]) -> Figure:
 
     Parameters
     ----------
-    data : one entry of a case's `charts`
+    data : dict[str, Any]
+        One entry of a case's `charts`.
     """
     figure = Figure(figsize=(FULL, 2.9) if data["wide"] else (HALF, 2.4))
     axes = figure.subplots()

@@ -67,8 +67,10 @@ def draw_force(trace: dict[str, Any], limited: list[dict[str, Any]]) -> Figure:
 
     Parameters
     ----------
-    trace : one pantograph's entry of a case's `traces`
-    limited : what `limited_rows` leaves of the criteria of that pantograph
+    trace : dict[str, Any]
+        One pantograph's entry of a case's `traces`.
+    limited : list[dict[str, Any]]
+        What `limited_rows` leaves of the criteria of that pantograph.
     """
     figure = Figure(figsize=(FULL, 2.6))
     if limited:

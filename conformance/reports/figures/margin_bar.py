@@ -21,8 +21,10 @@ def draw_margin_bar(value: float, lower: float | None, upper: float | None, erro
 
     Parameters
     ----------
-    value, lower, upper, error : in the unit of the quantity; no limit, no band on that side
-    verdict : chooses the marker
+    value, lower, upper, error : float or float or None
+        In the unit of the quantity; no limit, no band on that side.
+    verdict : str
+        Chooses the marker.
     """
     centre, half = _scale(lower, upper)
 

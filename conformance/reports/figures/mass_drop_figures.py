@@ -16,9 +16,12 @@ def draw_overlay(runs: list[dict[str, Any]], channel: str, unit: str) -> Figure:
 
     Parameters
     ----------
-    runs : each {"name", "windows": [{"time_s", "signal"}, ...]}
-    channel : name of the channel
-    unit : of the signal
+    runs : list[dict[str, Any]]
+        Each {"name", "windows": [{"time_s", "signal"}, ...]}.
+    channel : str
+        Name of the channel.
+    unit : str
+        Of the signal.
     """
     windows = max(len(run["windows"]) for run in runs)
     figure = Figure(figsize=(FULL, 2.4 * windows))

@@ -18,12 +18,15 @@ def write_junit(results: dict[str, Any], path: Path) -> None:
 
     Parameters
     ----------
-    results : results.json as a dictionary
-    path : the file to write
+    results : dict[str, Any]
+        results.json as a dictionary.
+    path : Path
+        The file to write.
 
     Raises
     ------
-    InputError : the file cannot be written
+    InputError
+        The file cannot be written.
     """
     write_atomically(path, render_junit(results))
 

@@ -23,12 +23,15 @@ def write_markdown(results: dict[str, Any], path: Path) -> None:
 
     Parameters
     ----------
-    results : results.json as a dictionary
-    path : the file to write
+    results : dict[str, Any]
+        results.json as a dictionary.
+    path : Path
+        The file to write.
 
     Raises
     ------
-    InputError : the file cannot be written
+    InputError
+        The file cannot be written.
     """
     write_atomically(path, render_markdown(results).encode("utf-8"))
 

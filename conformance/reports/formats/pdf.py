@@ -30,12 +30,15 @@ def write_certificate_pdf(results: dict[str, Any], path: Path) -> None:
 
     Parameters
     ----------
-    results : results.json as a dictionary
-    path : the file to write
+    results : dict[str, Any]
+        results.json as a dictionary.
+    path : Path
+        The file to write.
 
     Raises
     ------
-    InputError : the file cannot be written, or `SOURCE_DATE_EPOCH` is not a number of seconds
+    InputError
+        The file cannot be written, or `SOURCE_DATE_EPOCH` is not a number of seconds.
     """
     write_atomically(path, render_pdf(results, parse_moment(results)))
 

@@ -35,7 +35,8 @@ def check_formats(names: Sequence[str]) -> tuple[str, ...]:
 
     Raises
     ------
-    InputError : there is no such format
+    InputError
+        There is no such format.
     """
     for name in names:
         if name not in FILES:
@@ -57,7 +58,8 @@ def write_all(results: Results, folder: Path, formats: Sequence[str]) -> list[Pa
 
     Raises
     ------
-    InputError : a file cannot be written
+    InputError
+        a file cannot be written.
     """
     content = results.to_dict()
     for name in formats:

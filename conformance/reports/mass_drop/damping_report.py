@@ -15,8 +15,10 @@ def build_damping_document(results: dict[str, Any], block: str) -> Document:
 
     Parameters
     ----------
-    results : of damping.json
-    block : the TOML block of the result
+    results : dict[str, Any]
+        Of damping.json.
+    block : str
+        The TOML block of the result.
     """
     seen = [row for row in results["observability"] if row["observable"]]
     kinds = dict.fromkeys(row["kind"].replace("_", " ") for row in seen)

@@ -14,7 +14,8 @@ def build_identification_document(lines: list[dict[str, Any]]) -> Document:
 
     Parameters
     ----------
-    lines : of identification.json, one entry per line
+    lines : list[dict[str, Any]]
+        Of identification.json, one entry per line.
     """
     modes = [mode for line in lines for mode in line["modes"]]
     certain = [mode for mode in modes if mode["certain"] and not mode["lateral"]]

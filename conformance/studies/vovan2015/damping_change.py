@@ -24,9 +24,12 @@ def run_damping_change(case: Case, study: DampingChange, system: System) -> Outc
 
     Parameters
     ----------
-    case : the passage
-    study : the damping before, and printed values
-    system : under test; it is asked for both passages
+    case : Case
+        The passage.
+    study : DampingChange
+        The damping before, and printed values.
+    system : System
+        Under test; it is asked for both passages.
     """
     ((name, damping),) = case.dampings.items()
     before, after = system.run(case.with_damping(name, damping)), system.run(case.without_study())
@@ -63,7 +66,8 @@ def band_changes(before: Values, after: Values) -> dict[int, dict[str, Value]]:
 
     Parameters
     ----------
-    before, after : quantities by pantograph and name; a band that one of them lacks is left out
+    before, after : Values
+        Quantities by pantograph and name; a band that one of them lacks is left out.
     """
     found: dict[int, dict[str, Value]] = {}
     for pantograph in before.keys() & after.keys() - {LINE}:

@@ -22,9 +22,12 @@ def computed_damping_ratios(mesh: DiscretisedLine, shapes: Modes, line: Catenary
 
     Parameters
     ----------
-    mesh : the line in finite elements, with any damping
-    shapes : its modes
-    line : the same line with the damping in question
+    mesh : DiscretisedLine
+        The line in finite elements, with any damping.
+    shapes : Modes
+        Its modes.
+    line : Catenary
+        The same line with the damping in question.
     """
     ratio = damping_ratios(with_damping(mesh, line.damping), shapes)
     for band in line.modal_damping:

@@ -43,8 +43,10 @@ class Law:
 
     Parameters
     ----------
-    line : the line with that law
-    viscous_share : share of the viscous force that is compensated with the elastic one
+    line : Callable[[DiscretisedLine], DiscretisedLine]
+        The line with that law.
+    viscous_share : float
+        Share of the viscous force that is compensated with the elastic one.
     """
 
     line: Callable[[DiscretisedLine], DiscretisedLine]
@@ -63,12 +65,15 @@ def run_dropper_damping(case: Case, study: DropperDamping) -> Outcome:
 
     Parameters
     ----------
-    case : a passage with given uplift forces
-    study : the dropper and its coefficients
+    case : Case
+        a passage with given uplift forces.
+    study : DropperDamping
+        The dropper and its coefficients.
 
     Raises
     ------
-    InputError : there is no dropper at that place, or an uplift force is to be tuned
+    InputError
+        There is no dropper at that place, or an uplift force is to be tuned.
     """
     begin = time.perf_counter()
     steps, line = case.file.discretisation, build_catenary(case.line)
@@ -107,12 +112,16 @@ def find_transition(coefficient: Array, force: Array) -> dict[str, Value]:
 
     Parameters
     ----------
-    coefficient : (n,) ascending [s]
-    force : (n,) largest compensation force [N]
+    coefficient : (n,) ndarray
+        Ascending [s].
+    force : (n,) ndarray
+        Largest compensation force [N].
 
     Returns
     -------
-    values by name of quantity; a level that is never reached is left out, and all of them if there is no force at first
+    dict[str, Value]
+        Values by name of quantity; a level that is never reached is left out, and all of them if there is no force at
+        first.
     """
     if force[0] == 0:
         return {}

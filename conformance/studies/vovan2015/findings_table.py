@@ -17,8 +17,10 @@ def build_findings_table(limits: Sequence[Limit], computed: Values, printed: Val
 
     Parameters
     ----------
-    limits : of the case; their notes are the findings in words
-    computed, printed : by pantograph and name
+    limits : Sequence[Limit]
+        Of the case; their notes are the findings in words.
+    computed, printed : Values
+        By pantograph and name.
     """
     rows = []
     for limit in limits:

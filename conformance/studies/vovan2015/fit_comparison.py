@@ -21,8 +21,10 @@ def build_fit_report(case: Case, found: Identification) -> tuple[tuple[TextTable
 
     Parameters
     ----------
-    case : whose line was simulated
-    found : modes identified from its drops
+    case : Case
+        Whose line was simulated.
+    found : Identification
+        Modes identified from its drops.
     """
     line = build_catenary(case.line)
     try:
@@ -37,7 +39,8 @@ def fit_identified_damping(case: Case, found: Identification) -> dict[str, Any]:
 
     Raises
     ------
-    InputError : too few modes
+    InputError
+        Too few modes.
     """
     rows = tuple(ModeRow.model_validate(build_mode_row(mode)) for mode in found.modes)
     element = case.file.discretisation.element_m

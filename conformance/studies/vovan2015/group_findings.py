@@ -16,11 +16,13 @@ def compute_group_findings(modes: Sequence[Mode]) -> dict[str, Value]:
 
     Parameters
     ----------
-    modes : identified
+    modes : Sequence[Mode]
+        Identified.
 
     Returns
     -------
-    values by name of quantity; lists count groups from 1
+    dict[str, Value]
+        Values by name of quantity; lists count groups from 1.
     """
     upward = [mode for mode in modes if not mode.lateral]
     certain = [mode for mode in upward if mode.certain]

@@ -25,7 +25,8 @@ def run_mass_drop_study(case: Case) -> Outcome:
 
     Parameters
     ----------
-    case : with a mass drop
+    case : Case
+        With a mass drop.
     """
     begin = time.perf_counter()
     told, steps = require_mass_drop(case), case.file.discretisation

@@ -19,7 +19,8 @@ def build_provenance_table(case: Case) -> TextTable:
 
     Parameters
     ----------
-    case : of a study
+    case : Case
+        Of a study.
     """
     rows = []
     for given in case.inputs:

@@ -20,12 +20,15 @@ def run_release_velocity(case: Case, study: ReleaseVelocity) -> Outcome:
 
     Parameters
     ----------
-    case : with a mass drop
-    study : models and windows
+    case : Case
+        With a mass drop.
+    study : ReleaseVelocity
+        Models and windows.
 
     Raises
     ------
-    InputError : there is no such sensor, or a window lies outside the record
+    InputError
+        There is no such sensor, or a window lies outside the record.
     """
     begin = time.perf_counter()
     told, steps = require_mass_drop(case), case.file.discretisation

@@ -25,8 +25,10 @@ def run_steady_arm_damper(case: Case, study: SteadyArmDamper) -> Outcome:
 
     Parameters
     ----------
-    case : with a mass drop
-    study : the damper and the bands
+    case : Case
+        With a mass drop.
+    study : SteadyArmDamper
+        The damper and the bands.
     """
     begin = time.perf_counter()
     told, steps = require_mass_drop(case), case.file.discretisation
@@ -60,7 +62,8 @@ def damping_gains(without: list[float], damped: list[float]) -> dict[str, Value]
 
     Parameters
     ----------
-    without, damped : medians of the bands; NaN where a band holds no certain mode
+    without, damped : list[float]
+        Medians of the bands; NaN where a band holds no certain mode.
     """
     gain = [100 * (z / z0 - 1) for z0, z in zip(without, damped, strict=True)]
     known = tuple(gain[: next((i for i, value in enumerate(gain) if not np.isfinite(value)), len(gain))])

@@ -37,10 +37,14 @@ class CommandSystem:
 
     Parameters
     ----------
-    arguments : program and arguments
-    timeout_s : time a case may take [s]
-    name, version : as the program gives them
-    broken : why it cannot run any case; None if it started
+    arguments : tuple[str, ...]
+        Program and arguments.
+    timeout_s : float
+        Time a case may take [s].
+    name, version : str
+        As the program gives them.
+    broken : str or None
+        Why it cannot run any case; None if it started.
     """
 
     arguments: tuple[str, ...]
@@ -102,7 +106,8 @@ def start_program(program: Program, limit: float) -> Started:
 
     Raises
     ------
-    ProgramFailed, AnswerRefused : it did not answer as it should
+    ProgramFailed, AnswerRefused
+        It did not answer as it should.
     """
     program.send(encode_message("start", protocol=PROTOCOL, suite_version=version("pantocheck")))
     answer = parse_message(program.line(min(limit, START_LIMIT)))
@@ -118,13 +123,17 @@ def parse_command(text: str, base: Path, timeout: float) -> CommandSystem:
 
     Parameters
     ----------
-    text : what follows `command:`
-    base : folder that file names in it are relative to
-    timeout : time a case may take [s]
+    text : str
+        What follows `command:`.
+    base : Path
+        Folder that file names in it are relative to.
+    timeout : float
+        Time a case may take [s].
 
     Raises
     ------
-    InputError : there is no such program
+    InputError
+        There is no such program.
     """
     parts = split_arguments(text, base)
     name = Path(parts[0]).name

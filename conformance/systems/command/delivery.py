@@ -19,15 +19,21 @@ def read_delivery(case: Case, answer: DeliveredAnswer, folder: Path, wall: float
 
     Parameters
     ----------
-    case : that was asked
-    answer : of the program
-    folder : of the run
-    wall : time from question to answer [s]
+    case : Case
+        That was asked.
+    answer : DeliveredAnswer
+        Of the program.
+    folder : Path
+        Of the run.
+    wall : float
+        Time from question to answer [s].
 
     Raises
     ------
-    DeliveryRefused : a file is not what the answer says
-    InputError : the record itself is wrong
+    DeliveryRefused
+        a file is not what the answer says.
+    InputError
+        The record itself is wrong.
     """
     if answer.record is None:
         return Outcome(static=dict(answer.static), wall_s=wall, notes=answer.notes)

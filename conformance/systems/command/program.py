@@ -34,12 +34,15 @@ class Program:
 
     Parameters
     ----------
-    arguments : program and arguments, never seen by a shell
-    folder : its working folder
+    arguments
+        Program and arguments, never seen by a shell.
+    folder
+        Its working folder.
 
     Raises
     ------
-    ProgramFailed : it cannot be started
+    ProgramFailed
+        It cannot be started.
     """
 
     def __init__(self, arguments: Sequence[str], folder: Path) -> None:
@@ -89,11 +92,13 @@ class Program:
 
         Parameters
         ----------
-        limit : time to wait for it [s]
+        limit : float
+            Time to wait for it [s].
 
         Raises
         ------
-        ProgramFailed : none came
+        ProgramFailed
+            None came.
         """
         try:
             line = self._lines.get(timeout=limit)

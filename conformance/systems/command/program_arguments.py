@@ -15,12 +15,15 @@ def split_arguments(text: str, base: Path) -> tuple[str, ...]:
 
     Parameters
     ----------
-    text : what follows `command:`
-    base : folder that relative names are relative to
+    text : str
+        What follows `command:`.
+    base : Path
+        Folder that relative names are relative to.
 
     Raises
     ------
-    InputError : there is no command, a quote is not closed, or there is no such program
+    InputError
+        There is no command, a quote is not closed, or there is no such program.
     """
     where, hint = f"system 'command:{text}'", "Write e.g. --system 'command:python3 adapter.py'."
     try:

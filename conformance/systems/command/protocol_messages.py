@@ -150,7 +150,8 @@ def parse_message(line: bytes) -> Answer:
 
     Raises
     ------
-    AnswerRefused : it is not one
+    AnswerRefused
+        It is not one.
     """
     try:
         return _ANSWER.validate_python(json.loads(line))

@@ -1,0 +1,144 @@
+"""Compare what the suite writes today with what commit 07ce9e7 wrote (`tests/data/frozen`).
+
+    python benchmarks/frozen.py write DIR [--drops DIR]     run every command of the comparison, results into DIR
+    python benchmarks/frozen.py compare DIR                 compare DIR with the frozen files
+
+`--drops` names the folder of the mass-drop records T1.h5, T2.csv and T3.uff; without it their identification is left
+out. Every id, number and verdict of the frozen file must stand in the new one at the same place; a new file may hold
+more keys. Texts may differ. Exit code 1 if a number differs by more than 1e-12 of its size, an id or a verdict differs,
+or something is missing; numbers that differ by less are counted and the largest difference is printed.
+"""
+
+import argparse
+import json
+import lzma
+import math
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+FROZEN = Path(__file__).parent.parent / "tests" / "data" / "frozen"
+
+RUNS = {
+    "en50318-2002": ["run", "en50318-2002/*", "--formats", "json"],
+    "ac-simple": ["run", "en50318-2018/ac-simple/*", "--jobs", "2", "--formats", "json"],
+    "ac-stitched": ["run", "en50318-2018/ac-stitched/*", "--jobs", "2", "--formats", "json"],
+    "vovan2015": ["run", "vovan2015/*", "--jobs", "2", "--formats", "json"],
+    "damping-study": ["run", "en50318-2002/250", "--damping-study", "--formats", "json"],
+    "record-system": [
+        *("run", "en50318-2002/*", "--system", "record:en50318-2002/known-passing-code", "--formats", "json")
+    ],
+}
+"""Arguments of the commands that need no record, by folder of their results."""
+
+DROPS = {"T1": "T1.h5", "T2": "T2.csv", "T3": "T3.uff"}
+FIT_LINE = "vovan2015/mass-drop/printed"
+
+RUN_FACTS = {"wall_s", "started", "commit", "version", "python", "numpy", "scipy", "numba", "machine", "system"}
+"""Keys that belong to the run and not to its results."""
+
+IDENTIFIERS = {"id", "verdict", "quantity", "trust", "unit", "name", "kind", "matrix", "wire", "input_digest"}
+"""Keys whose text must not change."""
+
+TOLERANCE = 1e-12
+"""Largest relative difference that a reordering of sums by the compiler may cause."""
+
+
+def write(folder: Path, drops: Path | None) -> None:
+    """Run every command of the comparison."""
+    for name, arguments in RUNS.items():
+        _pantocheck(*arguments, "--out", folder / name)
+    _pantocheck("simulate", "en50318-2002/250", "--out", folder / "250.h5")
+    _pantocheck(
+        "assess", folder / "250.h5", "--profile", "acceptance-ac", "--formats", "json", "--out", folder / "assess"
+    )
+    if drops is not None:
+        for name, file in DROPS.items():
+            _pantocheck("identify", drops / file, "--out", folder / name)
+        _pantocheck("fit-damping", folder / "T1" / "modes.json", "--line", FIT_LINE, "--out", folder / "T1-fit")
+
+
+def _pantocheck(*arguments: str | Path) -> None:
+    program = Path(sys.executable).parent / "pantocheck"
+    command = [str(program), *map(str, arguments)]
+    print("+", " ".join(command[1:]), flush=True)
+    done = subprocess.run(
+        command, env=os.environ | {"SOURCE_DATE_EPOCH": "1790000000"}, capture_output=True, text=True, check=False
+    )
+    if done.returncode not in (0, 1):
+        raise SystemExit(f"{done.stderr}\nexit code {done.returncode}")
+
+
+def differences(frozen: Any, new: Any, path: str = "", key: str = "") -> Iterator[tuple[str, float | str]]:
+    """Every number with its relative difference, and every other difference with its text."""
+    if isinstance(frozen, dict):
+        if not isinstance(new, dict):
+            yield path, f"is {type(new).__name__}, was an object"
+            return
+        for name, value in frozen.items():
+            if name in RUN_FACTS:
+                continue
+            if name not in new:
+                yield f"{path}.{name}", "is missing"
+            else:
+                yield from differences(value, new[name], f"{path}.{name}", name)
+    elif isinstance(frozen, list):
+        if not isinstance(new, list) or len(new) != len(frozen):
+            yield path, f"has another length than {len(frozen)}"
+            return
+        for i, (old, now) in enumerate(zip(frozen, new, strict=True)):
+            yield from differences(old, now, f"{path}[{i}]", key)
+    elif isinstance(frozen, bool) or frozen is None:
+        if new != frozen:
+            yield path, f"is {new!r}, was {frozen!r}"
+    elif isinstance(frozen, int | float):
+        if not isinstance(new, int | float):
+            yield path, f"is {new!r}, was {frozen!r}"
+        else:
+            yield path, 0.0 if new == frozen else abs(new - frozen) / max(abs(frozen), abs(new), math.ulp(0.0))
+    elif key in IDENTIFIERS and new != frozen:
+        yield path, f"is {new!r}, was {frozen!r}"
+
+
+def compare(folder: Path) -> bool:
+    """Compare a folder with the frozen files; whether all that must agree agrees."""
+    agreed = True
+    for path in sorted(FROZEN.rglob("*.json.xz")):
+        name = path.relative_to(FROZEN).with_suffix("")
+        if not (folder / name).is_file():
+            print(f"{name}: not written, not compared")
+            continue
+        found = list(
+            differences(json.loads(lzma.decompress(path.read_bytes())), json.loads((folder / name).read_text()))
+        )
+        numbers = [(where, value) for where, value in found if isinstance(value, float)]
+        faults = [(where, value) for where, value in found if isinstance(value, str) or value > TOLERANCE]
+        changed = [value for _, value in numbers if value > 0]
+        print(
+            f"{name}: {len(numbers)} numbers, {len(numbers) - len(changed)} bit-identical, "
+            f"largest relative difference {max(changed, default=0.0):.2g}, {len(faults)} faults"
+        )
+        for where, value in faults[:10]:
+            print(f"  {where}: {value}")
+        agreed &= not faults
+    return agreed
+
+
+def main() -> None:
+    """Entry point."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("action", choices=("write", "compare"))
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--drops", type=Path)
+    options = parser.parse_args()
+    if options.action == "write":
+        write(options.folder, options.drops)
+    else:
+        raise SystemExit(0 if compare(options.folder) else 1)
+
+
+if __name__ == "__main__":
+    main()
