@@ -4,15 +4,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pantocheck.model.catenary import Catenary, Kind, Rayleigh
 from pantocheck.model.fem.beams import Beams, build_beams
 from pantocheck.model.fem.connectors import Connectors, add_lumped, build_connectors
 from pantocheck.model.fem.mesh import Mesh, build_mesh
 from pantocheck.model.statics.initial_state import InitialState, compute_initial_state
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -13,10 +13,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import eigh
 
-Array = NDArray[np.float64]
+from pantocheck.model.arrays import Array
 
 
 @dataclass(frozen=True)

@@ -8,16 +8,14 @@ that its amplitude and its lag tell a wrong gain or unit of the force, or a shif
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.signal import lsim
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.consistency.finding import Finding
 from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE
 from pantocheck.conformance.records.record import Record
-
-Array = NDArray[np.float64]
 
 LARGEST_MISFIT = 0.1
 """Share of the motion that may stay unexplained. Rounding, a filter on one channel, another integration: below 0.02."""
@@ -54,8 +52,8 @@ class ResponseFit:
     misfit: float
     gain: float
     unexplained: float
-    motion: Array
-    response: Array
+    motion: RealArray
+    response: RealArray
 
 
 def check_force_dynamics(case: Case, record: Record) -> list[Finding]:
@@ -81,7 +79,7 @@ def check_force_dynamics(case: Case, record: Record) -> list[Finding]:
     return [Finding("dynamics", "unchecked", "force against motion: the contact point hardly moves")] if still else []
 
 
-def fit_motion(file: PantographFile, force: Array, height: Array, step: float) -> ResponseFit | None:
+def fit_motion(file: PantographFile, force: RealArray, height: RealArray, step: float) -> ResponseFit | None:
     """Compare a motion with the response of a pantograph.
 
     Parameters
@@ -108,7 +106,7 @@ def fit_motion(file: PantographFile, force: Array, height: Array, step: float) -
     return wire if wire.unexplained < head.unexplained / 2 else head
 
 
-def _fit(motion: Array, response: Array) -> ResponseFit:
+def _fit(motion: RealArray, response: RealArray) -> ResponseFit:
     scale = float(motion @ response / max(float(response @ response), TINY))
     left = motion - scale * response
     return ResponseFit(
@@ -120,7 +118,7 @@ def _fit(motion: Array, response: Array) -> ResponseFit:
     )
 
 
-def _responses(file: PantographFile, force: Array, step: float) -> tuple[Array, Array]:
+def _responses(file: PantographFile, force: RealArray, step: float) -> tuple[RealArray, RealArray]:
     """Head's response to the force from rest, and the (n, k) motions that are free: a constant and its modes.
 
     Modes that decay or swing faster than the samples can follow have no part in filtered motions.
@@ -142,7 +140,7 @@ def _responses(file: PantographFile, force: Array, step: float) -> tuple[Array, 
     return np.asarray(response), np.column_stack([np.ones(force.size), *drift, modes.real, modes.imag])
 
 
-def _without(signal: Array, free: Array) -> Array:
+def _without(signal: RealArray, free: RealArray) -> RealArray:
     """A signal without what free motions explain of it."""
     scaled = free / np.maximum(np.abs(free).max(axis=0), TINY)
     return np.asarray(signal - scaled @ np.linalg.lstsq(scaled, signal, rcond=1e-9)[0])

@@ -4,14 +4,13 @@ from typing import TypeVar
 
 import numpy as np
 import scipy.signal
-from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-SampledArray = TypeVar("SampledArray", Real, Complex)
+from pantocheck.conformance.array_types import ComplexArray, RealArray
+
+SampledArray = TypeVar("SampledArray", RealArray, ComplexArray)
 
 
-def low_pass_decay(rate: float, passes: float, stops: float, attenuation: float) -> Real:
+def low_pass_decay(rate: float, passes: float, stops: float, attenuation: float) -> RealArray:
     """Taps of a linear-phase low-pass (Kaiser window).
 
     Parameters
@@ -28,12 +27,12 @@ def low_pass_decay(rate: float, passes: float, stops: float, attenuation: float)
     return np.asarray(taps, dtype=np.float64)
 
 
-def complete_overlap(samples: SampledArray, taps: Real) -> SampledArray:
+def complete_overlap(samples: SampledArray, taps: RealArray) -> SampledArray:
     """Filtered samples of complete overlaps only, (n - taps + 1, c): each decay keeps its pole exactly."""
     return np.asarray(scipy.signal.oaconvolve(samples, taps[:, None], mode="valid", axes=0))
 
 
-def filter_gain(taps: Real, poles: Complex, rate: float) -> Complex:
+def filter_gain(taps: RealArray, poles: ComplexArray, rate: float) -> ComplexArray:
     """Factor by which the filter, its delay removed, multiplies the amplitude of a decay at each pole, (m,).
 
     The first filtered sample is taken to belong to the time of the tap in the middle.

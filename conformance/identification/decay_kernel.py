@@ -9,13 +9,11 @@ noise stays white from line to line.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from pantocheck.conformance.array_types import ComplexArray, IntegerArray, RealArray
 
 
-def decay_kernel(poles: Complex, omega: Real, dt: float, n: int) -> Complex:
+def decay_kernel(poles: ComplexArray, omega: RealArray, dt: float, n: int) -> ComplexArray:
     """Transform of exp(lambda n dt), n = 0..N-1, at lines of the record's own grid.
 
     Parameters
@@ -38,7 +36,9 @@ def decay_kernel(poles: Complex, omega: Real, dt: float, n: int) -> Complex:
     return np.asarray(decayed / -_ratio(poles, omega, dt))
 
 
-def kernel_and_derivative(poles: Complex, omega: Real, dt: float, n: int) -> tuple[Complex, Complex]:
+def kernel_and_derivative(
+    poles: ComplexArray, omega: RealArray, dt: float, n: int
+) -> tuple[ComplexArray, ComplexArray]:
     """The kernel and its derivative with respect to lambda [s], each (k, m); parameters as in `kernel`."""
     grown = np.exp(poles * (n * dt))
     one_minus_q = -_ratio(poles, omega, dt)
@@ -47,13 +47,13 @@ def kernel_and_derivative(poles: Complex, omega: Real, dt: float, n: int) -> tup
     return np.asarray(value), np.asarray(slope)
 
 
-def _ratio(poles: Complex, omega: Real, dt: float) -> Complex:
+def _ratio(poles: ComplexArray, omega: RealArray, dt: float) -> ComplexArray:
     """q - 1, (k, m), by expm1: near a pole q is close to one."""
     return np.asarray(np.expm1((poles[None, :] - 1j * omega[:, None]) * dt))
 
 
-def real_columns(towards_pole: Complex, towards_conjugate: Complex) -> Real:
-    """Real least-squares columns of A K(lambda) + conj(A) K(conj lambda).
+def real_columns(towards_pole: ComplexArray, towards_conjugate: ComplexArray) -> RealArray:
+    """RealArray least-squares columns of A K(lambda) + conj(A) K(conj lambda).
 
     Parameters
     ----------
@@ -70,12 +70,12 @@ def real_columns(towards_pole: Complex, towards_conjugate: Complex) -> Real:
     return stack_real_imaginary(np.hstack([with_real, with_imaginary]))
 
 
-def stack_real_imaginary(spectrum: Complex) -> Real:
+def stack_real_imaginary(spectrum: ComplexArray) -> RealArray:
     """(k, ...) complex lines as (2 k, ...) real rows."""
     return np.concatenate([spectrum.real, spectrum.imag])
 
 
-def drift_columns(degree: int, n: int, lines: NDArray[np.int64]) -> Real:
+def drift_columns(degree: int, n: int, lines: IntegerArray) -> RealArray:
     """Transforms of the Legendre polynomials of degree 1..degree over the record: offset drift seen at the lines used.
 
     The offset itself (degree 0) has no transform away from line 0.
@@ -91,7 +91,7 @@ def drift_columns(degree: int, n: int, lines: NDArray[np.int64]) -> Real:
     return np.asarray(columns / np.linalg.norm(columns, axis=0))
 
 
-def far_pole_columns(omega: Real, degree: int) -> Real:
+def far_pole_columns(omega: RealArray, degree: int) -> RealArray:
     """Smooth residual terms of what lies outside the band: complex polynomials over it, (2 k, 2 (degree + 1))."""
     middle = (omega[0] + omega[-1]) / 2
     half = max((omega[-1] - omega[0]) / 2, 1e-12)

@@ -3,16 +3,14 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.identification.decay_filters import complete_overlap
 from pantocheck.conformance.identification.linear_decay import FrequencyBand, LinearDecay, find_linear_decay
 from pantocheck.conformance.identification.release import Release, find_release
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.drop_assembly import find_clipping
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
-
-Real = NDArray[np.float64]
 
 CLIPPED_EARLY = 0.15  # share of the decay: a channel clipped beyond it is left out
 
@@ -41,7 +39,7 @@ class PreparedDecay:
     columns: tuple[int, ...]
     release: Release
     stretch: LinearDecay
-    lateral: Real
+    lateral: RealArray
     warnings: tuple[str, ...]
 
     @property
@@ -85,7 +83,7 @@ def prepare_decay(record: DropRecord, band: FrequencyBand) -> PreparedDecay:
     )
 
 
-def _lateral(record: DropRecord, stretch: LinearDecay) -> Real:
+def _lateral(record: DropRecord, stretch: LinearDecay) -> RealArray:
     begin = round(stretch.start * record.rate)
     n = stretch.samples.shape[0]
     step = round(stretch.dt * record.rate)

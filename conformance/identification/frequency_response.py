@@ -8,14 +8,11 @@ A step of height F at t = 0 has the transform F / (i w), so the accelerance of a
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pantocheck.conformance.array_types import ComplexArray, RealArray
 from pantocheck.conformance.identification.decay_filters import filter_gain
 from pantocheck.conformance.identification.identify import Identification
 from pantocheck.conformance.input_files.channel_units import STANDARD_GRAVITY
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 POWER_OF_OMEGA = {"acceleration": 0, "velocity": 1, "displacement": 2}
 
@@ -40,9 +37,9 @@ class FrequencyResponse:
 
     record: str
     channels: tuple[str, ...]
-    frequency: Real
-    measured: Complex
-    identified: Complex
+    frequency: RealArray
+    measured: ComplexArray
+    identified: ComplexArray
 
 
 def compute_frequency_response(found: Identification, r: int) -> FrequencyResponse | None:
@@ -70,7 +67,7 @@ def compute_frequency_response(found: Identification, r: int) -> FrequencyRespon
     n = signals.shape[0]
     frequency = np.asarray(np.fft.rfftfreq(n, 1 / record.rate), dtype=np.float64)
     used = (frequency >= found.band.low) & (frequency <= found.band.high)
-    omega: Real = 2 * np.pi * frequency[used]
+    omega: RealArray = 2 * np.pi * frequency[used]
     to_accelerance = (1j * omega) ** (1 + POWER_OF_OMEGA[record.quantity]) / (record.drop.mass * STANDARD_GRAVITY)
     offset = rest.mean(axis=0) if rest.shape[0] > 10 else signals.mean(axis=0)
     measured = np.fft.rfft(signals - offset, axis=0)[used] / record.rate
@@ -89,7 +86,7 @@ def compute_frequency_response(found: Identification, r: int) -> FrequencyRespon
     )
 
 
-def _transform(poles: Complex, omega: Real, duration: float) -> Complex:
+def _transform(poles: ComplexArray, omega: RealArray, duration: float) -> ComplexArray:
     """Transform of exp(lambda t) over the record, (k, m) [s]."""
     difference = poles[None, :] - 1j * omega[:, None]
     return np.asarray(np.expm1(difference * duration) / difference)

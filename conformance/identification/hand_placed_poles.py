@@ -4,9 +4,9 @@ from pathlib import Path
 from typing import Annotated
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
+from pantocheck.conformance.array_types import ComplexArray
 from pantocheck.conformance.identification.identification_files import read_modes
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_model
@@ -25,7 +25,7 @@ class _Poles(BaseModel):
     pole: Annotated[tuple[_Pole, ...], Field(strict=False, min_length=1, max_length=1000, description="start poles")]
 
 
-def read_poles(path: Path) -> NDArray[np.complex128]:
+def read_poles(path: Path) -> ComplexArray:
     """Poles of a TOML file with tables `[[pole]]`, or of a modes.json.
 
     Parameters

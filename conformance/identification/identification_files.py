@@ -5,9 +5,9 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.identification.frequency_response import compute_frequency_response
 from pantocheck.conformance.identification.identify import Identification
 from pantocheck.conformance.identification.mode import Mode
@@ -279,5 +279,5 @@ def _response(found: Identification, r: int) -> dict[str, Any] | None:
     }
 
 
-def _list(values: NDArray[np.float64]) -> list[float]:
+def _list(values: RealArray) -> list[float]:
     return [float(f"{value:.6g}") for value in values]

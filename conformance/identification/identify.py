@@ -4,8 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pantocheck.conformance.array_types import ComplexArray, RealArray
 from pantocheck.conformance.identification.decay_filters import filter_gain
 from pantocheck.conformance.identification.decay_preparation import PreparedDecay, prepare_decay
 from pantocheck.conformance.identification.linear_decay import FrequencyBand
@@ -23,9 +23,6 @@ from pantocheck.conformance.identification.projection import (
 from pantocheck.conformance.identification.start_poles import find_start_poles
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 SAME_LENGTH = 0.02  # repeats whose lengths differ by less are cut to the shortest and share one set of columns
 SHARED_POLES = 1.5  # squared error over its expectation above which several records do not share their poles
@@ -63,10 +60,10 @@ class Identification:
     prepared: tuple[PreparedDecay, ...]
     band: FrequencyBand
     modes: tuple[Mode, ...]
-    poles: Complex
+    poles: ComplexArray
     blocks: tuple[DataBlock, ...]
     fits: tuple[ProjectionFit, ...]
-    noise: tuple[Real, ...]
+    noise: tuple[RealArray, ...]
     block_of: tuple[int, ...]
     columns: tuple[slice, ...]
     misfit: float
@@ -76,7 +73,7 @@ class Identification:
 def identify_modes(
     records: tuple[DropRecord, ...],
     highest: float = 10.0,
-    poles: Complex | None = None,
+    poles: ComplexArray | None = None,
     progress: Callable[[str], None] = lambda text: None,
 ) -> tuple[Identification, ...]:
     """Modes of every line that the records are of.
@@ -114,7 +111,7 @@ def _line_key(record: DropRecord) -> object:
 
 
 def _identify_line(
-    records: tuple[DropRecord, ...], highest: float, given: Complex | None, progress: Callable[[str], None]
+    records: tuple[DropRecord, ...], highest: float, given: ComplexArray | None, progress: Callable[[str], None]
 ) -> Identification:
     slowest = min(records, key=lambda record: record.rate)
     band = FrequencyBand.up_to(highest, slowest.rate)
@@ -144,7 +141,9 @@ def _identify_line(
     return _reported(tuple(prepared), band, poles, blocks, noise, block_of, columns)
 
 
-def _start(prepared: list[PreparedDecay], stretches: list[tuple[Real, float]], band: FrequencyBand) -> Complex:
+def _start(
+    prepared: list[PreparedDecay], stretches: list[tuple[RealArray, float]], band: FrequencyBand
+) -> ComplexArray:
     (dt,) = {dt for _, dt in stretches} if len({dt for _, dt in stretches}) == 1 else (0.0,)
     if dt == 0.0:
         # Records of different rates: the longest alone gives the start.
@@ -154,9 +153,11 @@ def _start(prepared: list[PreparedDecay], stretches: list[tuple[Real, float]], b
     )
 
 
-def _arranged(prepared: list[PreparedDecay]) -> tuple[list[tuple[Real, float]], tuple[int, ...], tuple[slice, ...]]:
+def _arranged(
+    prepared: list[PreparedDecay],
+) -> tuple[list[tuple[RealArray, float]], tuple[int, ...], tuple[slice, ...]]:
     """Samples of the blocks, and for each record its block and its columns there."""
-    stretches: list[tuple[Real, float]] = []
+    stretches: list[tuple[RealArray, float]] = []
     block_of, columns = [], []
     for one in prepared:
         samples, dt = one.stretch.samples, one.stretch.dt
@@ -177,9 +178,9 @@ def _arranged(prepared: list[PreparedDecay]) -> tuple[list[tuple[Real, float]], 
 def _reported(
     prepared: tuple[PreparedDecay, ...],
     band: FrequencyBand,
-    poles: Complex,
+    poles: ComplexArray,
     blocks: list[DataBlock],
-    noise: list[Real],
+    noise: list[RealArray],
     block_of: tuple[int, ...],
     columns: tuple[slice, ...],
 ) -> Identification:
@@ -220,7 +221,7 @@ def _misfit(cost: float, m: int, blocks: list[DataBlock]) -> float:
     return float(cost / max(rows - linear - 2 * m, 1))
 
 
-def _inflation(white: list[DataBlock], fits: tuple[ProjectionFit, ...], noise: list[Real], pole: complex) -> float:
+def _inflation(white: list[DataBlock], fits: tuple[ProjectionFit, ...], noise: list[RealArray], pole: complex) -> float:
     """Factor for standard deviations where the residual around a mode is more than noise."""
     energy, count = 0.0, 0
     for data, fit, sigma in zip(white, fits, noise, strict=True):
@@ -236,9 +237,9 @@ def _mode(
     j: int,
     decay_std: float,
     omega_std: float,
-    spreads: list[Real],
+    spreads: list[RealArray],
     nearest: float,
-    lateral: list[Real | None],
+    lateral: list[RealArray | None],
 ) -> Mode:
     pole = whole.poles[j]
     best = max(range(len(whole.prepared)), key=lambda r: _signal_to_noise(whole, r, j))
@@ -276,8 +277,8 @@ def _signal_to_noise(whole: Identification, r: int, j: int) -> float:
 
 
 def _shared_shape(
-    whole: Identification, repeats: list[int], which: int, j: int, spreads: list[Real]
-) -> tuple[Complex, Real]:
+    whole: Identification, repeats: list[int], which: int, j: int, spreads: list[RealArray]
+) -> tuple[ComplexArray, RealArray]:
     """Residues over the sensors that repeats of a drop agree on best, and the standard deviation of their parts.
 
     They are scaled to the repeat `which`: residues belong to the first sample, and stretches begin at their own times.
@@ -298,7 +299,7 @@ def _error(whole: Identification, pole: complex) -> float:
     return float(np.sqrt(left / measured)) if measured > 0 else 1.0
 
 
-def _lateral_share(whole: Identification, r: int) -> Real | None:
+def _lateral_share(whole: Identification, r: int) -> RealArray | None:
     """Largest lateral over largest vertical amplitude of every pole, (m,); 0 where nothing lateral stands out."""
     one = whole.prepared[r]
     if one.lateral.shape[1] == 0:

@@ -10,15 +10,13 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from pantocheck.conformance.array_types import ComplexArray, IntegerArray, RealArray
 from pantocheck.conformance.identification.decay_filters import complete_overlap, low_pass_decay
 from pantocheck.conformance.identification.model_order import select_poles
 from pantocheck.conformance.identification.projection import build_block, solve_residues
 from pantocheck.conformance.identification.release import Release
 from pantocheck.conformance.identification.start_poles import find_start_poles
 from pantocheck.conformance.input_files.input_error import InputError
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 GUARD = 2.0  # droppers are taut again this long after the release, as a first guess [s]
 FIRST_FIT = 60.0  # length of the first fit [s]
@@ -79,14 +77,14 @@ class LinearDecay:
         Why the stretch is shorter than the record.
     """
 
-    samples: Real
+    samples: RealArray
     dt: float
-    taps: Real
+    taps: RealArray
     rate: float
     start: float
     end: float
     first: float
-    poles: Complex = field(default_factory=lambda: np.zeros(0, dtype=np.complex128))
+    poles: ComplexArray = field(default_factory=lambda: np.zeros(0, dtype=np.complex128))
     warnings: tuple[str, ...] = ()
 
     @property
@@ -96,7 +94,7 @@ class LinearDecay:
 
 
 def find_linear_decay(
-    signals: Real,
+    signals: RealArray,
     rate: float,
     release: Release,
     band: FrequencyBand,
@@ -179,7 +177,7 @@ def find_linear_decay(
     )
 
 
-def _search(samples: Real, guard: int, dt: float, band: FrequencyBand) -> tuple[int, int, Complex]:
+def _search(samples: RealArray, guard: int, dt: float, band: FrequencyBand) -> tuple[int, int, ComplexArray]:
     """First sample, end, and poles of the linear stretch.
 
     Fits over ever longer stretches are each tested over the whole record. A fit over a short stretch may fail further
@@ -208,7 +206,7 @@ def _search(samples: Real, guard: int, dt: float, band: FrequencyBand) -> tuple[
 class _Tested:
     """Windows over the whole record and which of them hold more than the fit and noise."""
 
-    starts: NDArray[np.int64]
+    starts: IntegerArray
     disturbed: NDArray[np.bool_]
     window: int
     reach: int  # samples that a window sees, its filter included
@@ -234,7 +232,13 @@ class _Tested:
 
 
 def _tested(
-    samples: Real, begin: int, end: int, poles: Complex, dt: float, band: FrequencyBand, width: float = LONG_WINDOW
+    samples: RealArray,
+    begin: int,
+    end: int,
+    poles: ComplexArray,
+    dt: float,
+    band: FrequencyBand,
+    width: float = LONG_WINDOW,
 ) -> _Tested:
     window = int(width / dt)
     starts, level = residual_levels(_left(samples, begin, end, poles, dt, band), window, dt, band)
@@ -244,7 +248,7 @@ def _tested(
     return _Tested(starts, _disturbed(level / floor, width, band), window, reach)
 
 
-def _first_sample(samples: Real, begin: int, end: int, poles: Complex, dt: float, band: FrequencyBand) -> int:
+def _first_sample(samples: RealArray, begin: int, end: int, poles: ComplexArray, dt: float, band: FrequencyBand) -> int:
     tested = _tested(samples, begin, end, poles, dt, band, SHORT_WINDOW)
     # Up to the first second and more of calm: a single loud window later on is chance.
     calm = np.convolve(~tested.disturbed, np.ones(5), mode="full")[4:] == 5
@@ -258,13 +262,13 @@ def _first_sample(samples: Real, begin: int, end: int, poles: Complex, dt: float
     return min(max(int(tested.starts[early][-1]) + reach, earliest), end - 1)
 
 
-def _poles(samples: Real, dt: float, band: FrequencyBand) -> Complex:
+def _poles(samples: RealArray, dt: float, band: FrequencyBand) -> ComplexArray:
     spread = samples.std(axis=0)
     poles = find_start_poles([samples / spread], 1 / dt, band.low, band.fitted + 0.5)
     return select_poles(poles, [build_block(samples, dt, band.low, band.fitted)], rounds=4).poles
 
 
-def _left(samples: Real, start: int, end: int, poles: Complex, dt: float, band: FrequencyBand) -> Real:
+def _left(samples: RealArray, start: int, end: int, poles: ComplexArray, dt: float, band: FrequencyBand) -> RealArray:
     """What the decays fitted over [start, end) leave of all samples; drift and what lies outside the band stay in."""
     residues = solve_residues(poles, build_block(samples[start:end], dt, band.low, band.fitted)).residues
     t = (np.arange(samples.shape[0]) - start) * dt
@@ -274,7 +278,7 @@ def _left(samples: Real, start: int, end: int, poles: Complex, dt: float, band: 
     return np.asarray(samples - 2 * (np.exp(np.outer(t, poles[real])) @ residues[real]).real)
 
 
-def residual_levels(residual: Real, window: int, dt: float, band: FrequencyBand) -> tuple[NDArray[np.int64], Real]:
+def residual_levels(residual: RealArray, window: int, dt: float, band: FrequencyBand) -> tuple[IntegerArray, RealArray]:
     """Mean square below the band's upper end in overlapping windows, a trend in each taken off.
 
     Parameters
@@ -302,7 +306,7 @@ def residual_levels(residual: Real, window: int, dt: float, band: FrequencyBand)
     return starts, np.asarray(np.mean((views - views @ straight) ** 2, axis=2))
 
 
-def _disturbed(ratio: Real, width: float, band: FrequencyBand) -> NDArray[np.bool_]:
+def _disturbed(ratio: RealArray, width: float, band: FrequencyBand) -> NDArray[np.bool_]:
     """Windows that hold more than noise: all channels together, or one alone."""
     freedom = 2 * width * (band.high - band.low)
     # Weak modes nobody fitted and gusts make the noise of a line breathe by some ten percent; a disturbance doubles it.
@@ -311,7 +315,7 @@ def _disturbed(ratio: Real, width: float, band: FrequencyBand) -> NDArray[np.boo
     return np.asarray(together | alone)
 
 
-def _test_filter(dt: float, band: FrequencyBand) -> Real:
+def _test_filter(dt: float, band: FrequencyBand) -> RealArray:
     """What lies above the band is no part of the test of the residual; short, so that it sees where a change is."""
     passes = max(band.fitted - TEST_TRANSITION, 0.5 * band.fitted)
     return low_pass_decay(1 / dt, passes, band.fitted, 70.0)

@@ -3,11 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pantocheck.conformance.array_types import ComplexArray, RealArray
 from pantocheck.conformance.mass_drops.drop_record import DropChannel
-
-Complex = NDArray[np.complex128]
 
 POINTS_IN_HALF_POWER_BAND = 5  # the study's rule
 UNCERTAIN = 0.05  # relative standard deviation of a damping ratio above which it says little
@@ -32,7 +30,7 @@ class Mode:
     channels : tuple[DropChannel, ...]
         (s,) of the record that shows the mode best.
     shape : (s,) complex ndarray
-        Complex shape at them, the largest 1.
+        ComplexArray shape at them, the largest 1.
     shape_std : (s,) ndarray
         Standard deviation of its real and of its imaginary part.
     amplitude : float
@@ -60,8 +58,8 @@ class Mode:
     damping_ratio: float
     damping_ratio_std: float
     channels: tuple[DropChannel, ...]
-    shape: Complex
-    shape_std: NDArray[np.float64]
+    shape: ComplexArray
+    shape_std: RealArray
     amplitude: float
     collinearity: float | None
     error: float
@@ -83,13 +81,13 @@ class Mode:
         return self.lateral_share is not None and self.lateral_share > LATERAL
 
 
-def phase_collinearity(shape: Complex) -> float | None:
+def phase_collinearity(shape: ComplexArray) -> float | None:
     """Modal phase collinearity: 1 if all components move in phase or against it, towards 0 for a travelling wave.
 
     Parameters
     ----------
     shape : (s,) complex ndarray
-        Complex shape.
+        ComplexArray shape.
 
     References
     ----------
@@ -104,7 +102,7 @@ def phase_collinearity(shape: Complex) -> float | None:
     return ((xx - yy) ** 2 + 4 * xy**2) / total if total > 0 else None
 
 
-def normalise_shape(residues: Complex) -> Complex:
+def normalise_shape(residues: ComplexArray) -> ComplexArray:
     """Shape of residues with its largest component 1."""
     largest = residues[np.argmax(np.abs(residues))]
     return np.asarray(residues / largest) if np.abs(largest) > 0 else residues

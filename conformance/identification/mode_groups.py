@@ -9,14 +9,13 @@ searched so that the places between the groups are as free as can be and no grou
 import numpy as np
 from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
-Numbers = NDArray[np.int64]
+from pantocheck.conformance.array_types import IntegerArray, RealArray
 
 LAST_GROUP = 8  # beyond, bending of the spans and bending between droppers mix
 CLEARANCE = 0.06  # how near a mode may come to a place between groups, over the first group's mean
 
 
-def number_groups(certain: Real, all_modes: Real, spans: int | None) -> Numbers:
+def number_groups(certain: RealArray, all_modes: RealArray, spans: int | None) -> IntegerArray:
     """Number of the group of each mode, from 1; 0 beyond `LAST_GROUP`.
 
     Parameters
@@ -31,7 +30,7 @@ def number_groups(certain: Real, all_modes: Real, spans: int | None) -> Numbers:
     Returns
     -------
     (m,) ndarray
-        Numbers.
+        IntegerArray.
     """
     if certain.size < 3:
         return np.zeros(all_modes.size, dtype=np.int64)
@@ -45,7 +44,7 @@ def number_groups(certain: Real, all_modes: Real, spans: int | None) -> Numbers:
     return np.asarray(numbers, dtype=np.int64)
 
 
-def find_group_outliers(values: Real) -> NDArray[np.bool_]:
+def find_group_outliers(values: RealArray) -> NDArray[np.bool_]:
     """Values beyond 1.5 quartile ranges outside the quartiles (Tukey's rule), (n,); none of fewer than four."""
     if values.size < 4:
         return np.zeros(values.size, dtype=np.bool_)
@@ -54,13 +53,13 @@ def find_group_outliers(values: Real) -> NDArray[np.bool_]:
     return np.asarray((values < low - reach) | (values > high + reach))
 
 
-def _between(mean: float, stretch: float) -> Real:
+def _between(mean: float, stretch: float) -> RealArray:
     """Upper ends of groups 1..LAST_GROUP [Hz]."""
     k = np.arange(1, LAST_GROUP + 1) + 0.5
     return np.asarray(k * mean * (1 + stretch * (k - 1)))
 
 
-def _misfit(frequencies: Real, mean: float, stretch: float, spans: int | None) -> float:
+def _misfit(frequencies: RealArray, mean: float, stretch: float, spans: int | None) -> float:
     between = _between(mean, stretch)
     nearest = np.abs(frequencies[:, None] - between[None, between < frequencies[-1] + mean]).min(axis=0)
     crowding = float(np.sum(np.exp(-((nearest / (CLEARANCE * mean)) ** 2))))

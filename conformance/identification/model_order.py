@@ -13,6 +13,7 @@ import scipy.linalg
 import scipy.stats
 from numpy.typing import NDArray
 
+from pantocheck.conformance.array_types import ComplexArray, RealArray
 from pantocheck.conformance.identification.decay_kernel import (
     decay_kernel,
     far_pole_columns,
@@ -21,9 +22,6 @@ from pantocheck.conformance.identification.decay_kernel import (
 )
 from pantocheck.conformance.identification.pole_refinement import refine_poles
 from pantocheck.conformance.identification.projection import DataBlock, ProjectionFit, solve_residues
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 FALSE_ALARM = 1e-3  # chance that noise alone adds one pole to a record
 OUTSIDE = 0.5  # how far beyond the band a pole may settle [Hz]
@@ -44,11 +42,11 @@ class PoleSelection:
         Per block, (c,) standard deviation of a line's real or imaginary part.
     """
 
-    poles: Complex
-    noise: list[Real]
+    poles: ComplexArray
+    noise: list[RealArray]
 
 
-def select_poles(poles: Complex, blocks: list[DataBlock], rounds: int = 8) -> PoleSelection:
+def select_poles(poles: ComplexArray, blocks: list[DataBlock], rounds: int = 8) -> PoleSelection:
     """Refine, add and remove poles until neither helps.
 
     Parameters
@@ -61,7 +59,7 @@ def select_poles(poles: Complex, blocks: list[DataBlock], rounds: int = 8) -> Po
         At most so many.
     """
     noise = _noise(poles, blocks)
-    settled: Complex | None = None
+    settled: ComplexArray | None = None
     for _ in range(rounds):
         poles = _in_band(_sweep(_in_band(poles, blocks), whiten(blocks, noise)), blocks)
         if settled is not None and _same(poles, settled):
@@ -91,23 +89,23 @@ def find_hidden_poles(found: PoleSelection, blocks: list[DataBlock]) -> PoleSele
     return select_poles(extended, blocks, rounds=3)
 
 
-def _noise(poles: Complex, blocks: list[DataBlock]) -> list[Real]:
+def _noise(poles: ComplexArray, blocks: list[DataBlock]) -> list[RealArray]:
     return [estimate_noise(solve_residues(poles, data), poles.size, data) for data in blocks]
 
 
-def _in_band(poles: Complex, blocks: list[DataBlock]) -> Complex:
+def _in_band(poles: ComplexArray, blocks: list[DataBlock]) -> ComplexArray:
     """Poles in the band or just outside: a strong mode beyond the edge leaks in, and stays as a residual term."""
     low = min(data.omega[0] for data in blocks)
     high = max(data.omega[-1] for data in blocks)
     return np.asarray(poles[(poles.imag > low / 2) & (poles.imag < high + 2 * np.pi * OUTSIDE)])
 
 
-def whiten(blocks: list[DataBlock], noise: list[Real]) -> list[DataBlock]:
+def whiten(blocks: list[DataBlock], noise: list[RealArray]) -> list[DataBlock]:
     """Blocks with each channel in units of its noise."""
     return [replace(data, spectrum=data.spectrum / sigma) for data, sigma in zip(blocks, noise, strict=True)]
 
 
-def estimate_noise(fit: ProjectionFit, poles: int, data: DataBlock) -> Real:
+def estimate_noise(fit: ProjectionFit, poles: int, data: DataBlock) -> RealArray:
     """Standard deviation of the real or imaginary part of a line, per channel, (c,).
 
     From the median over the lines, which a few unmodelled peaks do not move; |r|^2 / (2 sigma^2) of white noise has
@@ -127,7 +125,7 @@ def detection_threshold(blocks: list[DataBlock]) -> float:
     return float(scipy.stats.chi2.isf(FALSE_ALARM / (4 * lines), 2 + 2 * channels))
 
 
-def _add(poles: Complex, blocks: list[DataBlock], centres: list[float] | None = None) -> Complex:
+def _add(poles: ComplexArray, blocks: list[DataBlock], centres: list[float] | None = None) -> ComplexArray:
     """Poles with those added that pay; tried at the centres [rad/s], or where the residual asks for it."""
     least = detection_threshold(blocks)
     fits = [solve_residues(poles, data) for data in blocks]
@@ -144,7 +142,7 @@ def _add(poles: Complex, blocks: list[DataBlock], centres: list[float] | None = 
     return np.asarray(poles[np.argsort(poles.imag)])
 
 
-def _remove(poles: Complex, blocks: list[DataBlock]) -> Complex:
+def _remove(poles: ComplexArray, blocks: list[DataBlock]) -> ComplexArray:
     least = detection_threshold(blocks)
     weight = _weights(poles, blocks)
     doubtful = np.flatnonzero((weight < 3 * least) | _crowded(poles, blocks))
@@ -164,7 +162,7 @@ def _remove(poles: Complex, blocks: list[DataBlock]) -> Complex:
     return np.asarray(poles[np.argsort(poles.imag)])
 
 
-def _sweep(poles: Complex, blocks: list[DataBlock]) -> Complex:
+def _sweep(poles: ComplexArray, blocks: list[DataBlock]) -> ComplexArray:
     """Refine section by section, each with its neighbours: near the optimum in a tenth of the time."""
     for _ in range(2):
         fits = [solve_residues(poles, data) for data in blocks]
@@ -185,7 +183,7 @@ def _sweep(poles: Complex, blocks: list[DataBlock]) -> Complex:
     return np.asarray(poles[np.argsort(poles.imag)])
 
 
-def _same(a: Complex, b: Complex) -> bool:
+def _same(a: ComplexArray, b: ComplexArray) -> bool:
     return a.size == b.size and bool(np.all(np.abs(a - b) < 0.01 * np.abs(b.real)))
 
 
@@ -193,13 +191,13 @@ def _same(a: Complex, b: Complex) -> bool:
 class _Local:
     """The neighbourhood of a frequency: its poles (where `near`) and its lines without the distant poles' share."""
 
-    poles: Complex
+    poles: ComplexArray
     near: NDArray[np.bool_]
     blocks: list[DataBlock]
 
 
 def _local(
-    poles: Complex, blocks: list[DataBlock], fits: list[ProjectionFit], centre: float, least_half: float = 0.0
+    poles: ComplexArray, blocks: list[DataBlock], fits: list[ProjectionFit], centre: float, least_half: float = 0.0
 ) -> _Local:
     resolution = 2 * np.pi / min(data.duration for data in blocks)
     half = max(12 * resolution, 2 * np.pi * 0.15, least_half)
@@ -259,7 +257,7 @@ def _best_candidate(local: _Local, centre: float) -> tuple[complex, float] | Non
     return (complex(trials[best]), float(gain[best])) if gain[best] > 0 else None
 
 
-def _weights(poles: Complex, blocks: list[DataBlock]) -> Real:
+def _weights(poles: ComplexArray, blocks: list[DataBlock]) -> RealArray:
     """What each pole takes off the squared error with all other poles held, (m,)."""
     m = poles.size
     taken = np.zeros(m)
@@ -277,7 +275,7 @@ def _weights(poles: Complex, blocks: list[DataBlock]) -> Real:
     return taken
 
 
-def _crowded(poles: Complex, blocks: list[DataBlock]) -> NDArray[np.bool_]:
+def _crowded(poles: ComplexArray, blocks: list[DataBlock]) -> NDArray[np.bool_]:
     """Poles so near another that one of the two may be idle."""
     resolution = 2 * np.pi / max(data.duration for data in blocks)
     distance = np.abs(poles[:, None] - poles[None, :]) + np.where(np.eye(poles.size) > 0, np.inf, 0)

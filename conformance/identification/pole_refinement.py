@@ -4,12 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg
-from numpy.typing import NDArray
 
+from pantocheck.conformance.array_types import ComplexArray, RealArray
 from pantocheck.conformance.identification.projection import DataBlock, build_normal_equations
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 SMALLEST_DAMPING_RATIO = 1e-6  # a decay slower than this is not a decay in a record of minutes
 
@@ -28,13 +25,13 @@ class RefinedPoles:
         Of (decay rates [1/s], angular frequencies [rad/s]) for channels in units of their noise.
     """
 
-    poles: Complex
+    poles: ComplexArray
     cost: float
-    covariance: Real
+    covariance: RealArray
 
 
 def refine_poles(
-    poles: Complex, blocks: list[DataBlock], iterations: int = 30, tolerance: float = 1e-3
+    poles: ComplexArray, blocks: list[DataBlock], iterations: int = 30, tolerance: float = 1e-3
 ) -> RefinedPoles:
     """Minimise the output error over the poles.
 
@@ -71,7 +68,7 @@ def refine_poles(
     return RefinedPoles(poles[order], current.cost, _inverse(current.matrix)[np.ix_(both, both)])
 
 
-def _step(poles: Complex, matrix: Real, gradient: Real, damping: float) -> Complex:
+def _step(poles: ComplexArray, matrix: RealArray, gradient: RealArray, damping: float) -> ComplexArray:
     scale = np.sqrt(np.maximum(np.diag(matrix), np.finfo(float).tiny))
     normalised = matrix / np.outer(scale, scale)
     normalised[np.diag_indices_from(normalised)] += damping
@@ -85,6 +82,6 @@ def _step(poles: Complex, matrix: Real, gradient: Real, damping: float) -> Compl
     return np.asarray(-np.maximum(decay_new, SMALLEST_DAMPING_RATIO * omega) + 1j * omega)
 
 
-def _inverse(matrix: Real) -> Real:
+def _inverse(matrix: RealArray) -> RealArray:
     scale = np.sqrt(np.maximum(np.diag(matrix), np.finfo(float).tiny))
     return np.asarray(scipy.linalg.pinvh(matrix / np.outer(scale, scale)) / np.outer(scale, scale))

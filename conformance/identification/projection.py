@@ -16,8 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg
-from numpy.typing import NDArray
 
+from pantocheck.conformance.array_types import ComplexArray, IntegerArray, RealArray
 from pantocheck.conformance.identification.decay_kernel import (
     decay_kernel,
     drift_columns,
@@ -26,9 +26,6 @@ from pantocheck.conformance.identification.decay_kernel import (
     real_columns,
     stack_real_imaginary,
 )
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
@@ -49,14 +46,14 @@ class DataBlock:
         Columns for drift and for what lies outside the band.
     """
 
-    lines: NDArray[np.int64]
-    spectrum: Complex
+    lines: IntegerArray
+    spectrum: ComplexArray
     dt: float
     n: int
-    residual_terms: Real
+    residual_terms: RealArray
 
     @property
-    def omega(self) -> Real:
+    def omega(self) -> RealArray:
         """Angular frequency of the lines [rad/s]."""
         return np.asarray(2 * np.pi * self.lines / (self.n * self.dt))
 
@@ -78,12 +75,12 @@ class ProjectionFit:
         What the poles and residual terms leave.
     """
 
-    residues: Complex
-    residual: Complex
+    residues: ComplexArray
+    residual: ComplexArray
 
 
 def build_block(
-    samples: Real, dt: float, low: float, high: float, drift_degree: int = 4, far_degree: int = 3
+    samples: RealArray, dt: float, low: float, high: float, drift_degree: int = 4, far_degree: int = 3
 ) -> DataBlock:
     """Transform of channels and the residual terms that go with the band.
 
@@ -108,7 +105,7 @@ def build_block(
     return DataBlock(lines, np.asarray(spectrum), dt, n, terms)
 
 
-def solve_residues(poles: Complex, data: DataBlock) -> ProjectionFit:
+def solve_residues(poles: ComplexArray, data: DataBlock) -> ProjectionFit:
     """Residues and residual of given poles, shape (m,) [1/s]."""
     columns = np.hstack([_pole_columns(poles, data), data.residual_terms])
     q, r = scipy.linalg.qr(columns, mode="economic", check_finite=False)
@@ -121,7 +118,7 @@ def solve_residues(poles: Complex, data: DataBlock) -> ProjectionFit:
     return ProjectionFit(coefficients[:m] + 1j * coefficients[m : 2 * m], residual[:k] + 1j * residual[k:])
 
 
-def residue_spread(poles: Complex, data: DataBlock) -> Real:
+def residue_spread(poles: ComplexArray, data: DataBlock) -> RealArray:
     """Standard deviation of a residue's real or imaginary part for unit noise in the lines, poles known, (m,)."""
     r = scipy.linalg.qr(np.hstack([_pole_columns(poles, data), data.residual_terms]), mode="r", check_finite=False)[0]
     inverse = np.linalg.pinv(r[: r.shape[1]])
@@ -145,11 +142,11 @@ class NormalEquations:
     """
 
     cost: float
-    matrix: Real
-    gradient: Real
+    matrix: RealArray
+    gradient: RealArray
 
 
-def build_normal_equations(poles: Complex, blocks: list[DataBlock]) -> NormalEquations:
+def build_normal_equations(poles: ComplexArray, blocks: list[DataBlock]) -> NormalEquations:
     """Normal equations of the poles over all blocks, residues eliminated per channel.
 
     Parameters
@@ -178,7 +175,9 @@ def build_normal_equations(poles: Complex, blocks: list[DataBlock]) -> NormalEqu
     return NormalEquations(cost, matrix, gradient)
 
 
-def _accumulate(matrix: Real, gradient: Real, gram: Real, correlation: Real, residues: Real) -> None:
+def _accumulate(
+    matrix: RealArray, gradient: RealArray, gram: RealArray, correlation: RealArray, residues: RealArray
+) -> None:
     """Add one block: with a = p + i s, d(model)/d(delta) = -(p D1 + s D2) and d(model)/d(omega) = -s D1 + p D2."""
     m = gram.shape[0] // 2
     p, s = residues[:m], residues[m:]
@@ -194,7 +193,7 @@ def _accumulate(matrix: Real, gradient: Real, gram: Real, correlation: Real, res
     gradient[m:] += np.sum(-s * c1 + p * c2, axis=1)
 
 
-def _pole_columns(poles: Complex, data: DataBlock) -> Real:
+def _pole_columns(poles: ComplexArray, data: DataBlock) -> RealArray:
     return real_columns(
         decay_kernel(poles, data.omega, data.dt, data.n), decay_kernel(poles.conj(), data.omega, data.dt, data.n)
     )

@@ -3,11 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.input_files.input_error import InputError
-
-Real = NDArray[np.float64]
 
 TRIGGER_TOLERANCE = 0.6  # the release lies within half a second of the planned one [s]
 ONSET = 8.0  # times the noise at rest
@@ -33,7 +31,7 @@ class Release:
     warnings: tuple[str, ...] = ()
 
 
-def find_release(signals: Real, rate: float, nominal: float | None, name: str) -> Release:
+def find_release(signals: RealArray, rate: float, nominal: float | None, name: str) -> Release:
     """The first sustained movement of any channel.
 
     Parameters
@@ -82,7 +80,7 @@ def find_release(signals: Real, rate: float, nominal: float | None, name: str) -
     return Release(time, max(0.0, min(rest_end / rate, time - 0.1)), warnings)
 
 
-def _quiet_start(signals: Real, rate: float, name: str) -> int:
+def _quiet_start(signals: RealArray, rate: float, name: str) -> int:
     """Samples of rest at the beginning, where no trigger time is known: until half-second windows first leap."""
     width = max(int(0.5 * rate), 4)
     spread = signals[: signals.shape[0] // width * width].reshape(-1, width, signals.shape[1]).std(axis=1)

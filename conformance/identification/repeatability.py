@@ -4,12 +4,10 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.identification.decay_filters import complete_overlap, low_pass_decay
 from pantocheck.conformance.identification.decay_preparation import PreparedDecay
-
-Real = NDArray[np.float64]
 
 WINDOW = 10.0  # compared at a time [s]
 LATER = 60.0  # after the release [s]
@@ -89,7 +87,7 @@ def _repeats(c: Comparison) -> bool:
     return early and late
 
 
-def align_records(one: PreparedDecay, lowest_rate: float) -> tuple[Real, Real]:
+def align_records(one: PreparedDecay, lowest_rate: float) -> tuple[RealArray, RealArray]:
     """Time from the release [s], (n,), and the vertical channels below `HIGHEST`, (n, c).
 
     Parameters
@@ -153,13 +151,13 @@ def _compared(first: PreparedDecay, second: PreparedDecay) -> list[Comparison]:
     return found
 
 
-def _noise(time: Real, samples: Real) -> Real:
+def _noise(time: RealArray, samples: RealArray) -> RealArray:
     """Root mean square at rest, (c,); 0 if the record has no rest."""
     rest = samples[time < -1.0]
     return np.asarray(rest.std(axis=0)) if rest.shape[0] > 20 else np.zeros(samples.shape[1])
 
 
-def _shift(t1: Real, x1: Real, t2: Real, x2: Real, start: float, rate: float) -> float:
+def _shift(t1: RealArray, x1: RealArray, t2: RealArray, x2: RealArray, start: float, rate: float) -> float:
     """Time by which the second record lags, from all channels together, to a fraction of a sample [s]."""
     grid = start + np.arange(int(WINDOW * rate)) / rate
     a = np.column_stack([np.interp(grid, t1, column) for column in x1.T])

@@ -14,17 +14,14 @@ from itertools import pairwise
 
 import numpy as np
 import scipy.linalg
-from numpy.typing import NDArray
 
+from pantocheck.conformance.array_types import ComplexArray, RealArray
 from pantocheck.conformance.identification.decay_filters import complete_overlap, low_pass_decay
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 
 def find_start_poles(
-    records: list[Real], rate: float, low: float, high: float, band: float = 1.0, largest_order: int = 24
-) -> Complex:
+    records: list[RealArray], rate: float, low: float, high: float, band: float = 1.0, largest_order: int = 24
+) -> ComplexArray:
     """Poles of all bands between two frequencies.
 
     Parameters
@@ -52,7 +49,7 @@ def find_start_poles(
     return np.asarray(poles[np.argsort(poles.imag)])
 
 
-def _band_poles(records: list[Real], rate: float, low: float, high: float, largest_order: int) -> Complex:
+def _band_poles(records: list[RealArray], rate: float, low: float, high: float, largest_order: int) -> ComplexArray:
     width = high - low
     # The flank costs filter length, and so record length: never more than a tenth of the record.
     flank = max(0.4 * width, 25.0 * rate / min(samples.shape[0] for samples in records))
@@ -77,7 +74,7 @@ def _band_poles(records: list[Real], rate: float, low: float, high: float, large
     return np.asarray(poles[inside & (-poles.real < 0.1 * poles.imag)])
 
 
-def _signal_subspace(signals: list[Complex], most: int) -> Complex:
+def _signal_subspace(signals: list[ComplexArray], most: int) -> ComplexArray:
     """Leading left singular vectors of the block Hankel matrix of all channels, (rows, at most `most`)."""
     rows = min(signal.shape[0] for signal in signals) // 2
     gram = np.zeros((rows, rows), dtype=np.complex128)
@@ -89,13 +86,13 @@ def _signal_subspace(signals: list[Complex], most: int) -> Complex:
     return np.asarray(vectors[:, ::-1][:, : min(most, rows // 2)])
 
 
-def _poles_of(basis: Complex, dt: float) -> Complex:
+def _poles_of(basis: ComplexArray, dt: float) -> ComplexArray:
     transition = np.linalg.lstsq(basis[:-1], basis[1:], rcond=None)[0]
     q = np.linalg.eigvals(transition)
     return np.asarray(np.log(q[np.abs(q) > 0]) / dt)
 
 
-def _information_criterion(signals: list[Complex], poles: Complex, dt: float) -> float:
+def _information_criterion(signals: list[ComplexArray], poles: ComplexArray, dt: float) -> float:
     shortest = min(signal.shape[0] for signal in signals)
     decays = poles[poles.real < 5.0 / (shortest * dt)]
     score, values, channels = 0.0, 0, 0

@@ -3,8 +3,8 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.input_files.channel_units import convert_unit, parse_direction
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.drop_record import (
@@ -15,8 +15,6 @@ from pantocheck.conformance.mass_drops.drop_record import (
     MotionQuantity,
 )
 from pantocheck.conformance.mass_drops.drop_sidecar import DropChannelTable, DropSidecar
-
-Real = NDArray[np.float64]
 
 LEAST_SAMPLES = 16
 RATE_TOLERANCE = 1e-3
@@ -55,9 +53,9 @@ class DropColumns:
         As far as the file tells.
     """
 
-    values: Real
+    values: RealArray
     columns: tuple[DropColumn, ...]
-    time: Real | None = None
+    time: RealArray | None = None
     rate: float | None = None
     title: str = ""
     run: int = 0
@@ -119,7 +117,7 @@ def assemble_drop_records(table: DropColumns, sidecar: DropSidecar | None, sourc
     )
 
 
-def find_flat_tops(signal: Real) -> list[tuple[int, int]]:
+def find_flat_tops(signal: RealArray) -> list[tuple[int, int]]:
     """Stretches [start, end) where a signal stays on its own maximum or minimum.
 
     A signal that never moves is not clipped but dead, and is reported as one stretch.
@@ -131,7 +129,7 @@ def find_flat_tops(signal: Real) -> list[tuple[int, int]]:
     return sorted(found)
 
 
-def find_clipping(signal: Real) -> list[tuple[int, int]]:
+def find_clipping(signal: RealArray) -> list[tuple[int, int]]:
     """Flat tops [start, end) of a saturated amplifier: those far from the signal's middle.
 
     A converter's quiet floor also repeats its smallest value; it lies near the median.
@@ -215,7 +213,7 @@ def _rate(table: DropColumns, sidecar: DropSidecar | None, source: str) -> float
     return rate
 
 
-def _rate_of_time(time: Real, source: str) -> float:
+def _rate_of_time(time: RealArray, source: str) -> float:
     if not np.isfinite(time).all():
         at = int(np.flatnonzero(~np.isfinite(time))[0])
         raise InputError(source, f"time of sample {at + 1} is not a number", "Export the record again.")
@@ -234,7 +232,7 @@ def _rate_of_time(time: Real, source: str) -> float:
     return float(1 / step)
 
 
-def _check_finite(values: Real, rate: float, where: str) -> None:
+def _check_finite(values: RealArray, rate: float, where: str) -> None:
     bad = np.flatnonzero(~np.isfinite(values))
     if bad.size:
         raise InputError(
@@ -244,7 +242,7 @@ def _check_finite(values: Real, rate: float, where: str) -> None:
         )
 
 
-def _doubts(signal: Real, quantity: MotionQuantity, rate: float, where: str) -> list[str]:
+def _doubts(signal: RealArray, quantity: MotionQuantity, rate: float, where: str) -> list[str]:
     if np.ptp(signal) == 0:
         raise InputError(where, "never changes", "The sensor was dead: leave this channel out of the sidecar.")
     found = []

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
+from pantocheck.conformance.array_types import RealArray
+
 Axis = Literal["x", "y", "z"]
 MotionQuantity = Literal["acceleration", "velocity", "displacement"]
 
@@ -104,7 +104,7 @@ class DropRecord:
     name: str
     source: str
     rate: float
-    signals: Real
+    signals: RealArray
     channels: tuple[DropChannel, ...]
     quantity: MotionQuantity = "acceleration"
     drop: DropDescription = DropDescription()
@@ -116,7 +116,7 @@ class DropRecord:
         self.signals.flags.writeable = False
 
     @property
-    def time(self) -> Real:
+    def time(self) -> RealArray:
         """Time of every sample from the first one [s], (n,)."""
         return np.arange(self.signals.shape[0]) / self.rate
 

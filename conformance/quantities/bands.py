@@ -1,18 +1,16 @@
 """Contact-force bands: how the variance of the force is shared out over frequency."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandNotObservable
-
-Array = NDArray[np.float64]
 
 MIN_BAND_LINES = 4
 """Spectral lines a band must hold at least: with fewer, its rms is decided by where the stretch begins and ends."""
 
 
-def band_rms(force: Array, rate: float, low: float, high: float, filter_applied_Hz: float | None = None) -> float:
+def band_rms(force: RealArray, rate: float, low: float, high: float, filter_applied_Hz: float | None = None) -> float:
     """Root mean square of the force inside a frequency band, by Parseval.
 
     The bands ]0, 5], ]5, 20], ]20, 50] Hz partition the variance: their squares add up to the variance of the force
@@ -60,14 +58,14 @@ def band_rms(force: Array, rate: float, low: float, high: float, filter_applied_
     return float(np.sqrt(power[(frequency > low) & (frequency <= high)].sum()))
 
 
-def amplitude_spectrum(force: Array, rate: float, highest: float) -> tuple[Array, Array]:
+def amplitude_spectrum(force: RealArray, rate: float, highest: float) -> tuple[RealArray, RealArray]:
     """Single-sided amplitude spectrum of the force about its mean: frequencies ]0, highest] [Hz], amplitudes [N]."""
     frequency, power = _power(force, rate)
     inside = (frequency > 0) & (frequency <= highest)
     return frequency[inside], np.sqrt(2 * power[inside])
 
 
-def _power(force: Array, rate: float) -> tuple[Array, Array]:
+def _power(force: RealArray, rate: float) -> tuple[RealArray, RealArray]:
     """Frequencies [Hz] and the share of the variance at each [N2].
 
     Each line stands for itself and its mirror image. The one at half the rate has none, but lies above every band.

@@ -7,12 +7,10 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.signal import butter, sosfilt, sosfilt_zi, sosfiltfilt, sosfreqz
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandNotObservable
-
-Array = NDArray[np.float64]
 
 HIGHEST_SHARE_OF_RATE = 0.4
 """A frequency is observable up to this share of the sampling rate: above it the anti-alias filter rules."""
@@ -50,7 +48,7 @@ class LowPass:
                 f"order {self.order} does not exist with phase {self.phase}: zero phase needs an even order"
             )
 
-    def sections(self, rate: float) -> Array:
+    def sections(self, rate: float) -> RealArray:
         """Second-order sections of a single run at a sampling rate [Hz].
 
         Raises
@@ -69,7 +67,7 @@ class LowPass:
         warped = np.tan(np.pi * self.cutoff_Hz / rate) / (np.sqrt(2) - 1) ** (1 / (2 * half))
         return np.asarray(butter(half, rate / np.pi * np.arctan(warped), fs=rate, output="sos"))
 
-    def __call__(self, signal: Array, rate: float) -> Array:
+    def __call__(self, signal: RealArray, rate: float) -> RealArray:
         """Filter a signal; transients of its two ends decay within a few periods of the cut-off.
 
         Parameters
@@ -86,13 +84,13 @@ class LowPass:
         padding = min(signal.size - 1, int(np.ceil(2 * rate / self.cutoff_Hz)))
         return np.asarray(sosfiltfilt(sections, signal, padlen=padding))
 
-    def gain(self, frequency: Array, rate: float) -> Array:
+    def gain(self, frequency: RealArray, rate: float) -> RealArray:
         """Magnitude of the whole filter at frequencies [Hz], sampled at a rate [Hz]."""
         _, response = sosfreqz(self.sections(rate), worN=frequency, fs=rate)
         return np.asarray(np.abs(response) ** (2 if self.phase == "zero" else 1))
 
 
-def filter_force(signal: Array, rate: float, low_pass: LowPass, filter_applied_Hz: float | None) -> Array:
+def filter_force(signal: RealArray, rate: float, low_pass: LowPass, filter_applied_Hz: float | None) -> RealArray:
     """Signal filtered to a cut-off, also when it has been through a filter before.
 
     A signal delivered with the same cut-off is left as it is: a second pass would take another 3 dB at the cut-off.

@@ -5,13 +5,11 @@ from functools import cached_property
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.bands import band_rms
 from pantocheck.conformance.quantities.filters import LowPass, filter_force
 from pantocheck.conformance.quantities.unavailable import BandNotObservable, ChannelMissing, StretchNotCovered
-
-Array = NDArray[np.float64]
 
 EXTENDED_CUTOFF_HZ = 50.0
 """Upper end of the extended band [Hz]."""
@@ -28,19 +26,19 @@ class ForceSignals(Protocol):
         """Cut-off of a low-pass the force has been through [Hz]; None: unfiltered."""
 
     @property
-    def delivered(self) -> Array:
+    def delivered(self) -> RealArray:
         """Force as delivered, over what is evaluated [N]."""
 
     @property
-    def graded(self) -> Array:
+    def graded(self) -> RealArray:
         """Force through the case's filter [N]."""
 
     @property
-    def extended(self) -> Array:
+    def extended(self) -> RealArray:
         """Force through the same kind of filter at 50 Hz [N]."""
 
     @property
-    def height(self) -> Array:
+    def height(self) -> RealArray:
         """Height of the contact point [m]."""
 
     def band(self, low: float, high: float) -> float:
@@ -73,12 +71,12 @@ class PantographSignals:
     """
 
     rate: float
-    position: Array
-    force: Array
+    position: RealArray
+    force: RealArray
     evaluated: tuple[float, float]
     low_pass: LowPass
     filter_applied_Hz: float | None = None
-    contact_height: Array | None = None
+    contact_height: RealArray | None = None
 
     @cached_property
     def inside(self) -> slice:
@@ -101,17 +99,17 @@ class PantographSignals:
         return slice(int(first), int(last))
 
     @property
-    def delivered(self) -> Array:
+    def delivered(self) -> RealArray:
         """Force as delivered, over the evaluated stretch [N]."""
         return self.force[self.inside]
 
     @cached_property
-    def graded(self) -> Array:
+    def graded(self) -> RealArray:
         """Force through the case's filter (0-20 Hz), over the evaluated stretch [N]."""
         return self._through(self.low_pass)
 
     @cached_property
-    def extended(self) -> Array:
+    def extended(self) -> RealArray:
         """Force through the same kind of filter at 50 Hz, over the evaluated stretch [N]."""
         return self._through(replace(self.low_pass, cutoff_Hz=EXTENDED_CUTOFF_HZ))
 
@@ -119,7 +117,7 @@ class PantographSignals:
         """Rms of the force in the band ]low, high] Hz, over the evaluated stretch [N]."""
         return band_rms(self.delivered, self.rate, low, high, self.filter_applied_Hz)
 
-    def _through(self, low_pass: LowPass) -> Array:
+    def _through(self, low_pass: LowPass) -> RealArray:
         duration = self.delivered.size / self.rate
         shortest = SHORTEST_PERIODS / low_pass.cutoff_Hz
         if duration < shortest:
@@ -130,7 +128,7 @@ class PantographSignals:
         return filter_force(self.force, self.rate, low_pass, self.filter_applied_Hz)[self.inside]
 
     @property
-    def height(self) -> Array:
+    def height(self) -> RealArray:
         """Height of the contact point over the evaluated stretch [m].
 
         Raises
@@ -158,11 +156,11 @@ class LineSignals:
     """
 
     evaluated: tuple[float, float]
-    support_position: Array | None = None
-    support_uplift: Array | None = None
+    support_position: RealArray | None = None
+    support_uplift: RealArray | None = None
 
     @property
-    def uplift(self) -> Array:
+    def uplift(self) -> RealArray:
         """(k, n) uplift [m] at the k supports of the evaluated spans, the two at its ends included.
 
         Raises

@@ -1,11 +1,9 @@
 """Statistics of the contact force over the evaluated stretch."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, NoMeanForce
-
-Array = NDArray[np.float64]
 
 
 def coefficient_of_variation(mean: float, deviation: float) -> float:
@@ -26,7 +24,7 @@ def statistical_extremes(mean: float, deviation: float) -> tuple[float, float]:
     return mean - 3 * deviation, mean + 3 * deviation
 
 
-def contact_loss(force: Array, filter_applied_Hz: float | None = None) -> float:
+def contact_loss(force: RealArray, filter_applied_Hz: float | None = None) -> float:
     """Share of samples without contact [%].
 
     Parameters
@@ -49,7 +47,7 @@ def contact_loss(force: Array, filter_applied_Hz: float | None = None) -> float:
     return float(100 * np.count_nonzero(force <= 0) / force.size)
 
 
-def force_histogram(force: Array, bins: int = 30) -> tuple[Array, Array]:
+def force_histogram(force: RealArray, bins: int = 30) -> tuple[RealArray, RealArray]:
     """Edges of the classes [N] and share of the samples in each [%]; widths are 1, 2 or 5 times a power of ten."""
     spread = float(np.ptp(force))
     raw = max(spread, 1.0) / bins

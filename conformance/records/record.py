@@ -3,9 +3,9 @@
 from dataclasses import dataclass, field, fields
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from pantocheck.conformance.array_types import RealArray
 
 MAX_SAMPLES = 20_000_000
 """Numbers in one array of a record; more is a mistake in units or rate, and would exhaust the memory."""
@@ -62,15 +62,15 @@ class Record:
         Shapes disagree, a value is not finite, or time is not uniform.
     """
 
-    time: Array
+    time: RealArray
     speed: float
-    position: Array
-    force: Array
+    position: RealArray
+    force: RealArray
     evaluated: tuple[float, float]
     filter_applied_Hz: float | None = None
-    contact_height: Array | None = None
-    support_position: Array | None = None
-    support_uplift: Array | None = None
+    contact_height: RealArray | None = None
+    support_position: RealArray | None = None
+    support_uplift: RealArray | None = None
     rate: float = field(init=False)
 
     def __post_init__(self) -> None:
@@ -115,7 +115,7 @@ class Record:
 _ARRAYS = frozenset({"time", "position", "force", "contact_height", "support_position", "support_uplift"})
 
 
-def _checked(name: str, value: ArrayLike) -> Array:
+def _checked(name: str, value: ArrayLike) -> RealArray:
     array = np.array(value, dtype=np.float64)
     if array.size > MAX_SAMPLES:
         raise RecordInvalid(name, f"{array.size} numbers, more than {MAX_SAMPLES}")
@@ -133,7 +133,7 @@ def _checked(name: str, value: ArrayLike) -> Array:
     return array
 
 
-def _rate(time: Array) -> float:
+def _rate(time: RealArray) -> float:
     if time.ndim != 1 or time.size < 2:
         raise RecordInvalid("time", "fewer than two samples")
     step = (time[-1] - time[0]) / (time.size - 1)

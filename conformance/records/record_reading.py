@@ -5,10 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.input_files.atomic_writing import file_digest
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_model
-from pantocheck.conformance.records.record import LARGEST_NUMBER, Array, Record, RecordInvalid
+from pantocheck.conformance.records.record import LARGEST_NUMBER, Record, RecordInvalid
 from pantocheck.conformance.records.record_channels import CHANNELS, column_name
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.record_tables import FORMAT, Rows, check_complete, read_csv, read_hdf5
@@ -108,7 +109,7 @@ def _samples(rows: Rows, sidecar: RecordSidecar, where: str) -> RecordSamples:
                     "Write nan where a value is missing.",
                 )
     supports = sorted(rows.get("uplift", {}))
-    stacked: dict[str, Array] = {
+    stacked: dict[str, RealArray] = {
         name: np.ascontiguousarray(np.vstack([of[i] for i in sorted(of)])) for name, of in rows.items()
     }
     return RecordSamples(

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.records.record import MAX_SAMPLES, Array
+from pantocheck.conformance.records.record import MAX_SAMPLES
 from pantocheck.conformance.records.record_channels import (
     CHANNELS,
     RecordChannel,
@@ -21,7 +22,7 @@ from pantocheck.conformance.records.record_channels import (
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 
 FORMAT = "See docs/records.md for the format."
-Rows = dict[str, dict[int, Array]]
+Rows = dict[str, dict[int, RealArray]]
 """Rows of each channel by number from 1."""
 
 

@@ -6,10 +6,11 @@ from typing import Any
 import numpy as np
 import tomli_w
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.input_files.atomic_writing import file_digest, produce_atomically, write_atomically
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_toml
-from pantocheck.conformance.records.record import Array, Record
+from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_channels import column_name
 from pantocheck.conformance.records.record_sidecar import RECORD_SCHEMA, RecordSidecar
 
@@ -89,7 +90,7 @@ def check_record_path(path: Path) -> None:
         )
 
 
-def _channels(record: Record) -> dict[str, Array]:
+def _channels(record: Record) -> dict[str, RealArray]:
     channels = {
         "time_s": record.time[None],
         "position_m": record.position,
@@ -100,12 +101,12 @@ def _channels(record: Record) -> dict[str, Array]:
     return {key: values for key, values in channels.items() if values is not None}
 
 
-def _write_csv(path: Path, channels: dict[str, Array]) -> None:
+def _write_csv(path: Path, channels: dict[str, RealArray]) -> None:
     names = [column_name(key, i) for key, values in channels.items() for i in range(1, len(values) + 1)]
     np.savetxt(path, np.vstack(list(channels.values())).T, "%.12g", ",", header=",".join(names), comments="")
 
 
-def _write_hdf5(path: Path, channels: dict[str, Array]) -> None:
+def _write_hdf5(path: Path, channels: dict[str, RealArray]) -> None:
     import h5py
 
     # Without times in the file, the same record gives the same bytes.

@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pantocheck.conformance.records.record import Array, Record, RecordInvalid
+from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.records.record import Record, RecordInvalid
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 
 
@@ -31,13 +32,13 @@ class RecordSamples:
         [m].
     """
 
-    force: Array
-    time: Array | None = None
-    speed: Array | None = None
-    position: Array | None = None
-    contact_height: Array | None = None
-    uplift: Array | None = None
-    support_position: Array | None = None
+    force: RealArray
+    time: RealArray | None = None
+    speed: RealArray | None = None
+    position: RealArray | None = None
+    contact_height: RealArray | None = None
+    uplift: RealArray | None = None
+    support_position: RealArray | None = None
 
     def at(self, chosen: NDArray[np.bool_]) -> "RecordSamples":
         """The samples that a mask chooses."""
@@ -48,7 +49,7 @@ class RecordSamples:
 _SAMPLED = ("force", "time", "speed", "position", "contact_height", "uplift")
 
 
-def complete_samples(samples: RecordSamples, sidecar: RecordSidecar) -> tuple[Array, Array]:
+def complete_samples(samples: RecordSamples, sidecar: RecordSidecar) -> tuple[RealArray, RealArray]:
     """Time [s] (n,) and positions [m] (p, n) of all pantographs; what the table lacks follows from the speed.
 
     Raises
@@ -72,7 +73,7 @@ def complete_samples(samples: RecordSamples, sidecar: RecordSidecar) -> tuple[Ar
     return time, position
 
 
-def _integral(rate: Array, over: Array) -> Array:
+def _integral(rate: RealArray, over: RealArray) -> RealArray:
     """Integral by trapezoids, 0 at the first sample."""
     return np.concatenate([[0.0], np.cumsum((rate[1:] + rate[:-1]) / 2 * np.diff(over))])
 

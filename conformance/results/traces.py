@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.bands import amplitude_spectrum
 from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE, LowPass
 from pantocheck.conformance.quantities.signals import EXTENDED_CUTOFF_HZ, ForceSignals
@@ -11,8 +12,6 @@ from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.evaluation import line_signals, pantograph_signals
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.results.results_format import Histogram, Spectrum, Traces, UpliftTrace
-
-Array = NDArray[np.float64]
 
 MOST_POINTS = 1500
 
@@ -49,7 +48,7 @@ def build_pantograph_traces(record: Record, low_pass: LowPass, supports: list[fl
 
 
 def build_signal_traces(
-    signals: ForceSignals, position: Array, supports: list[float], spectrum: tuple[Array, Array]
+    signals: ForceSignals, position: RealArray, supports: list[float], spectrum: tuple[RealArray, RealArray]
 ) -> Traces:
     """What is drawn of one pantograph.
 
@@ -98,13 +97,13 @@ def build_uplift_traces(record: Record) -> list[UpliftTrace]:
     ]
 
 
-def thin_series(series: Array) -> list[float]:
+def thin_series(series: RealArray) -> list[float]:
     """Every k-th value, at most about 1500, rounded to six significant digits."""
     step = max(1, -(-series.size // MOST_POINTS))
     return [float(f"{value:.6g}") for value in series[::step]]
 
 
-def _drawn(force: Array) -> NDArray[np.intp]:
+def _drawn(force: RealArray) -> NDArray[np.intp]:
     """Samples of a long record that are drawn, at most 1500: the lowest and the highest of every few neighbours.
 
     A record of minutes thinned evenly would not show the one peak that its extremes are about.
@@ -120,7 +119,7 @@ def _drawn(force: Array) -> NDArray[np.intp]:
     return np.array(sorted(found), dtype=np.intp)
 
 
-def _peaks(frequency: Array, amplitude: Array) -> tuple[Array, Array]:
+def _peaks(frequency: RealArray, amplitude: RealArray) -> tuple[RealArray, RealArray]:
     """The highest line of every k neighbours: thinning a spectrum must not lose a peak."""
     step = max(1, -(-frequency.size // MOST_POINTS))
     firsts = range(0, frequency.size, step)
@@ -128,6 +127,6 @@ def _peaks(frequency: Array, amplitude: Array) -> tuple[Array, Array]:
     return frequency[at], amplitude[at]
 
 
-def _histogram(force: Array) -> Histogram:
+def _histogram(force: RealArray) -> Histogram:
     edges, share = force_histogram(force)
     return Histogram(edges_N=thin_series(edges), share_pct=thin_series(share))

@@ -5,9 +5,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.signal import firwin, kaiserord, resample_poly
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.drop_test import DropTest, MassDrop
 from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropRecord
@@ -16,8 +16,6 @@ from pantocheck.conformance.mass_drops.drop_record import DropLine as LineFacts
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.model import Catenary, Kind
 from pantocheck.model.dynamics.mass_drop import FreeDecay, MassDropSetup, simulate_mass_drop
-
-Array = NDArray[np.float64]
 
 SHORT_NAME = {"contact_wire": "CW", "messenger_wire": "MW"}
 ORDER = {"displacement": 0, "velocity": 1, "acceleration": 2}
@@ -100,7 +98,7 @@ def require_mass_drop(case: Case) -> MassDrop:
     return case.file.mass_drop
 
 
-def decimate(signals: Array, every: int) -> Array:
+def decimate(signals: RealArray, every: int) -> RealArray:
     """Every k-th sample after a linear-phase low-pass whose delay is taken out.
 
     Passes frequencies below 0.8 of half the new rate, and lowers all above half of it by 90 dB.
@@ -131,7 +129,7 @@ def _generator(test: DropTest, number: int) -> np.random.Generator:
     return np.random.default_rng(int.from_bytes(seed[:8], "little"))
 
 
-def _record(case: Case, told: MassDrop, test: DropTest, number: int, signals: Array) -> DropRecord:
+def _record(case: Case, told: MassDrop, test: DropTest, number: int, signals: RealArray) -> DropRecord:
     line = case.line
     return DropRecord(
         name=f"{case.id} drop {number}",

@@ -3,8 +3,8 @@
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.reports.figures.force_figures import FULL, GREY, INK, render_svg
 from pantocheck.model import DiscretisedLine, Kind, Wire
 
@@ -13,8 +13,6 @@ SPANS = 2
 EXAGGERATED = 10
 """Heights and lateral places are drawn so many times as large as lengths along the track."""
 WIDTHS = {Kind.CONTACT_WIRE: 1.8, Kind.MESSENGER_WIRE: 1.2, Kind.STITCH_WIRE: 0.9}
-
-Array = NDArray[np.float64]
 
 
 @render_svg
@@ -80,7 +78,7 @@ def _view(axes: Axes, line: DiscretisedLine, field: str, shown: tuple[float, flo
     axes.set_aspect(EXAGGERATED, adjustable="datalim" if field == "y" else "box")
 
 
-def _shape(line: DiscretisedLine, wire: Wire, field: str) -> tuple[Array, Array]:
+def _shape(line: DiscretisedLine, wire: Wire, field: str) -> tuple[RealArray, RealArray]:
     inside = (line.mesh.position >= wire.start - 1e-6) & (line.mesh.position <= wire.end + 1e-6)
     return line.mesh.position[inside], line.state.deflection[line.mesh.row_of[wire.name, field], inside, 0]
 

@@ -4,9 +4,8 @@ from collections.abc import Callable, Sequence
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from pantocheck.conformance.array_types import RealArray
 
 TOLERANCE = 0.02
 """A tuned mean contact force is this close to its target [N]."""
@@ -22,7 +21,7 @@ TunedRun = TypeVar("TunedRun")
 
 def tune_uplift(
     run: Callable[[tuple[float, ...]], TunedRun],
-    means: Callable[[TunedRun], Array],
+    means: Callable[[TunedRun], RealArray],
     start: Sequence[float],
     targets: Sequence[float | None],
 ) -> tuple[TunedRun, tuple[float, ...]]:

@@ -6,8 +6,8 @@ from importlib.metadata import version
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.records.evaluation import pantograph_signals
 from pantocheck.conformance.records.record import Record
@@ -110,7 +110,7 @@ def _run(case: Case, line: DiscretisedLine, step: float, uplift_forces: tuple[fl
     return PassageRun(record_passage(case, passage, history), passage.duration, time.perf_counter() - begin)
 
 
-def _means(case: Case, made: PassageRun) -> NDArray[np.float64]:
+def _means(case: Case, made: PassageRun) -> RealArray:
     """Mean contact force of every pantograph over the samples that are graded [N]."""
     low_pass, numbers = case.file.filter.low_pass, range(1, made.record.pantographs + 1)
     return np.array([pantograph_signals(made.record, i, low_pass).delivered.mean() for i in numbers])

@@ -4,12 +4,9 @@ import math
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from pantocheck.model.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.state import KernelArrays, Motion, Train
-
-Array = NDArray[np.float64]
 
 MIN_HALF_WIDTH = 30.0
 """So far around a pantograph all moves from the start: forces reach there in a step, or short waves run ahead [m]."""

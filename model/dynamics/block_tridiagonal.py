@@ -12,12 +12,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from pantocheck.model.arrays import Array, Indices
 from pantocheck.model.dynamics.mass_correction import mass_correction
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.beams import Beams, element_stiffness
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 # Where a column has fallen below this share of its peak, it is left out: a hundredth of the tolerance of the forces.
 NEGLIGIBLE = 1e-12

@@ -5,13 +5,10 @@ A change of tension changes the accelerations around its ends by the local colum
 
 import math
 
-import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from pantocheck.model.arrays import Array
 from pantocheck.model.dynamics.state import KernelArrays, Motion, Workspace
-
-Array = NDArray[np.float64]
 
 NEGLIGIBLE_FORCE = 1e-11
 """Changes of a force below this, a hundredth of what a step is solved to, are not passed on [N]."""

@@ -2,13 +2,11 @@
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from pantocheck.model.arrays import Array
 from pantocheck.model.dynamics.connector_step import NEGLIGIBLE_FORCE, add_column, larger
 from pantocheck.model.dynamics.state import KernelArrays, Motion, Train, Workspace
 from pantocheck.model.fem.residual_flexibility import local_flexibility
-
-Array = NDArray[np.float64]
 
 
 @njit(cache=True)

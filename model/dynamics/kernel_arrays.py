@@ -4,8 +4,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pantocheck.model.arrays import Array
 from pantocheck.model.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.active_window import max_wave_speed
 from pantocheck.model.dynamics.block_tridiagonal import column_half_width, factorise, inverse_columns, solve_rows
@@ -13,8 +13,6 @@ from pantocheck.model.dynamics.state import KernelArrays
 from pantocheck.model.fem.beams import Beams, element_stiffness
 from pantocheck.model.fem.residual_flexibility import condensed_bubbles
 from pantocheck.model.modal.modal_damping import build_modal_terms
-
-Array = NDArray[np.float64]
 
 
 class Load(NamedTuple):

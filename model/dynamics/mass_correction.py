@@ -8,12 +8,10 @@ to waves too short to matter, and the mass must stay positive definite, for then
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pantocheck.model.arrays import Array
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.beams import Beams
-
-Array = NDArray[np.float64]
 
 # An element's consistent mass less a multiple of its string stiffness is positive definite up to this times m h^2 / T:
 # ends moving apart by one each feel at least a tenth of the element's mass, and 4 T / h of stiffness.

@@ -4,8 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pantocheck.model.arrays import Array
 from pantocheck.model.catenary import GRAVITY, Catenary
 from pantocheck.model.discretised_line import discretise
 from pantocheck.model.dynamics.kernel_arrays import Load, build_kernel_arrays
@@ -19,8 +19,6 @@ from pantocheck.model.dynamics.simulation import (
 )
 from pantocheck.model.fem.assembly import point_load
 from pantocheck.model.statics.static_solver import StaticSolver
-
-Array = NDArray[np.float64]
 
 BLOCK = 5000
 """Steps between two reports of progress."""

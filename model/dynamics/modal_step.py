@@ -1,13 +1,10 @@
 """Damping forces on single modes within a time step, each solved exactly in turn; no full matrix is formed."""
 
-import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from pantocheck.model.arrays import Array
 from pantocheck.model.dynamics.connector_step import NEGLIGIBLE_FORCE, larger
 from pantocheck.model.dynamics.state import KernelArrays, Motion, Workspace
-
-Array = NDArray[np.float64]
 
 
 @njit(cache=True)

@@ -5,10 +5,9 @@ step is known in closed form, so each is solved exactly in turn, and the turns a
 more. Forces far apart do not feel each other within a step, so two or three turns do.
 """
 
-import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from pantocheck.model.arrays import Array, Indices
 from pantocheck.model.dynamics.active_window import active_stations, hold_outside
 from pantocheck.model.dynamics.block_tridiagonal import solve_line
 from pantocheck.model.dynamics.connector_step import larger, predict_connectors, sweep_connectors
@@ -16,9 +15,6 @@ from pantocheck.model.dynamics.contact_step import correct_train, predict_train,
 from pantocheck.model.dynamics.modal_step import predict_modes, sweep_modes
 from pantocheck.model.dynamics.state import KernelArrays, Motion, Train, Workspace
 from pantocheck.model.dynamics.wire_step import correct_wires, predict_wires, wire_forces
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 FORCE_TOLERANCE = 1e-9
 """A step has converged when no force changed by more than this in a turn [N]; forces are of the order of 100 N."""

@@ -5,8 +5,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pantocheck.model.arrays import Array, Indices
 from pantocheck.model.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays
 from pantocheck.model.dynamics.newmark import march
@@ -16,8 +16,6 @@ from pantocheck.model.fem.assembly import point_load
 from pantocheck.model.fem.residual_flexibility import local_flexibility
 from pantocheck.model.pantograph import Pantograph
 from pantocheck.model.statics.static_solver import Deflection, StaticSolver
-
-Array = NDArray[np.float64]
 
 BLOCK = 500
 """Steps between two reports of progress."""
@@ -181,9 +179,7 @@ def motion_at_rest(deflection: Deflection, modes: int = 0) -> Motion:
     return Motion(w, r, deflection.tension.copy(), np.zeros(modes), np.zeros(1))
 
 
-def recorded_stations(
-    line: DiscretisedLine, watched: tuple[tuple[str, float], ...]
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def recorded_stations(line: DiscretisedLine, watched: tuple[tuple[str, float], ...]) -> tuple[Indices, Indices]:
     """Rows and stations of the places whose motion is recorded."""
     rows = np.array([line.mesh.row_of[wire, "z"] for wire, _ in watched], dtype=np.int64)
     return rows, np.array([line.mesh.station(position) for _, position in watched], dtype=np.int64)

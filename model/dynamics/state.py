@@ -5,10 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from pantocheck.model.arrays import Array, Indices
 from pantocheck.model.dynamics.block_tridiagonal import Factor
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 PIECE = 256
 """Elements of a row that are worked on together."""

@@ -1,12 +1,9 @@
 """The wires' part of a time step: predictors, forces of stiffness and damping, correctors."""
 
-import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from pantocheck.model.arrays import Array
 from pantocheck.model.dynamics.state import PIECE, KernelArrays, Motion, Workspace
-
-Array = NDArray[np.float64]
 
 
 @njit(cache=True)

@@ -7,15 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
+from pantocheck.model.arrays import Array, Indices
 from pantocheck.model.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.mass_correction import mass_correction
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.beams import by_station, wire_matrices
 from pantocheck.model.fem.residual_flexibility import condensed_bubbles, local_flexibility
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -33,7 +31,7 @@ class GlobalMatrices:
     mass: sp.csc_array
     damping: sp.csc_array
     stiffness: sp.csc_array
-    free: NDArray[np.int64]
+    free: Indices
 
 
 def unknown(line: DiscretisedLine, row: int, station: int, slope: int = 0) -> int:
@@ -41,13 +39,13 @@ def unknown(line: DiscretisedLine, row: int, station: int, slope: int = 0) -> in
     return 2 * (station * line.mesh.rows + row) + slope
 
 
-def bandwidth_order(line: DiscretisedLine) -> NDArray[np.int64]:
+def bandwidth_order(line: DiscretisedLine) -> Indices:
     """For every unknown in global order, its place in a (rows, stations, 2) array laid flat."""
     rows, stations = line.mesh.rows, line.mesh.position.size
     return np.arange(rows * stations * 2).reshape(rows, stations, 2).transpose(1, 0, 2).ravel()
 
 
-def free_unknowns(line: DiscretisedLine) -> NDArray[np.int64]:
+def free_unknowns(line: DiscretisedLine) -> Indices:
     """Indices of the unknowns that can move and that some wire carries."""
     carried = np.zeros_like(line.beams.free)
     present = line.beams.mass_per_length > 0

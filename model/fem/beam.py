@@ -8,9 +8,8 @@ The unknowns of an element are (w1, r1, w2, r2); cubic Hermite shape functions m
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from pantocheck.model.arrays import Array
 
 
 def stiffness(h: float | Array, tension: float | Array, bending_stiffness: float | Array) -> Array:

@@ -10,11 +10,10 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from pantocheck.model.arrays import Array
 from pantocheck.model.catenary import Catenary, Kind, Rayleigh
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.mesh import Mesh
-
-Array = NDArray[np.float64]
 
 
 class Beams(NamedTuple):

@@ -12,12 +12,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from pantocheck.model.arrays import Array, Indices
 from pantocheck.model.catenary import Catenary, Kind, Rayleigh, SteadyArm
 from pantocheck.model.fem.beams import Beams
 from pantocheck.model.fem.mesh import Mesh
 from pantocheck.model.statics.initial_state import InitialState
-
-Array = NDArray[np.float64]
 
 # Stiff against the wires (about 1e5 N/m at a point) and yet far from the limits of double precision.
 RIGID = 1e8
@@ -53,7 +52,7 @@ class Connectors(NamedTuple):
         Whether the tension cannot be negative.
     """
 
-    station: NDArray[np.int64]
+    station: Indices
     coefficient: Array
     stiffness: Array
     damping: Array

@@ -9,11 +9,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pantocheck.model.arrays import Array
 from pantocheck.model.catenary import Catenary, Kind, Wire
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

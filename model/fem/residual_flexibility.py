@@ -10,9 +10,8 @@ functions with the cubic ones through the tension is left out: it vanishes with 
 import numpy as np
 from numba import njit
 from numpy.polynomial import Polynomial
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from pantocheck.model.arrays import Array
 
 FUNCTIONS = 3
 

@@ -7,13 +7,11 @@ modes exactly their ratios and leaves all others alone. As a matrix it is full, 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pantocheck.model.arrays import Array
 from pantocheck.model.discretised_line import DiscretisedLine
 from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order
 from pantocheck.model.modal.modes import Modes, compute_modes
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -3,14 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse.linalg import eigsh
 
+from pantocheck.model.arrays import Array
 from pantocheck.model.catenary import Kind, Rayleigh
 from pantocheck.model.discretised_line import DiscretisedLine, with_damping
 from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

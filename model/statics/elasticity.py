@@ -1,13 +1,11 @@
 """Static checks of a line: elasticity, working height, wave propagation."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pantocheck.model.arrays import Array
 from pantocheck.model.discretised_line import DiscretisedLine
 from pantocheck.model.fem.assembly import point_load
 from pantocheck.model.statics.static_solver import StaticSolver
-
-Array = NDArray[np.float64]
 
 
 def static_uplift(line: DiscretisedLine, position: Array, force: float) -> Array:

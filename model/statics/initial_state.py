@@ -12,13 +12,13 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from pantocheck.model.arrays import Array
 from pantocheck.model.catenary import GRAVITY, Catenary, Kind
 from pantocheck.model.fem.beams import Beams, weight, wire_stiffness
 from pantocheck.model.fem.mesh import Mesh
 from pantocheck.model.statics.lateral_state import compute_lateral_state
 from pantocheck.model.statics.prescribed_displacements import solve_with_prescribed_displacements
 
-Array = NDArray[np.float64]
 Stiffness = Callable[[Beams, int], sp.csr_array]
 
 

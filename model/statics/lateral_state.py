@@ -15,14 +15,12 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
+from pantocheck.model.arrays import Array
 from pantocheck.model.catenary import Catenary
 from pantocheck.model.fem.beams import Beams, wire_matrices
 from pantocheck.model.fem.mesh import Mesh
 from pantocheck.model.statics.prescribed_displacements import solve_with_prescribed_displacements
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.sparse.linalg import splu
 
-Array = NDArray[np.float64]
+from pantocheck.model.arrays import Array
 
 
 def solve_with_prescribed_displacements(

@@ -7,10 +7,9 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.sparse.linalg import splu
 
+from pantocheck.model.arrays import Array
 from pantocheck.model.discretised_line import DiscretisedLine
 from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, connector_directions
-
-Array = NDArray[np.float64]
 
 
 class NoEquilibrium(ArithmeticError):

@@ -7,17 +7,13 @@ so that the stations at the connectors are enough.
 import math
 from dataclasses import replace
 
-import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
 from pantocheck.model.catenary import Catenary
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.beams import Beams, build_beams, by_station
 from pantocheck.model.fem.mesh import build_mesh
 from pantocheck.model.statics.initial_state import InitialState, compute_initial_state
-
-Array = NDArray[np.float64]
 
 
 def string_state(catenary: Catenary) -> InitialState:

@@ -18,9 +18,8 @@ import numpy as np
 import scipy.optimize
 from numpy.typing import NDArray
 
+from pantocheck.conformance.array_types import IntegerArray, RealArray
 from pantocheck.conformance.input_files.input_error import InputError
-
-Real = NDArray[np.float64]
 
 MODEL_ERROR = 0.01  # relative error of a computed damping ratio by the line model alone
 FIT_REPLICATES = 400
@@ -44,12 +43,12 @@ class ModalEnergies:
         m_ej [-].
     """
 
-    frequency: Real
+    frequency: RealArray
     kinds: tuple[str, ...]
-    stiffness: Real
-    mass: Real
+    stiffness: RealArray
+    mass: RealArray
 
-    def columns(self) -> tuple[tuple[tuple[str, str], ...], Real]:
+    def columns(self) -> tuple[tuple[tuple[str, str], ...], RealArray]:
         """Names (kind, matrix) and what a unit of each coefficient adds to every damping ratio, (m, 2 e)."""
         names = tuple((kind, matrix) for kind in self.kinds for matrix in MATRICES)
         both = np.stack([self.stiffness, self.mass], axis=2).reshape(self.frequency.size, -1)
@@ -70,10 +69,10 @@ class MeasuredMode:
         Number of the group of span modes, 0 for none.
     """
 
-    frequency: Real
-    damping_ratio: Real
-    std: Real
-    group: NDArray[np.int64]
+    frequency: RealArray
+    damping_ratio: RealArray
+    std: RealArray
+    group: IntegerArray
 
 
 @dataclass(frozen=True)
@@ -116,7 +115,7 @@ class DampingFit:
     """
 
     coefficients: tuple[Coefficient, ...]
-    predicted: Real
+    predicted: RealArray
     used: NDArray[np.bool_]
     residual: float
 
@@ -178,12 +177,12 @@ def fit_damping_model(
     )
 
 
-def fit_deviation(measured: MeasuredMode) -> Real:
+def fit_deviation(measured: MeasuredMode) -> RealArray:
     """Standard deviation of measured less computed damping ratios, (m,): that of the measurement and of the model."""
     return np.hypot(measured.std, MODEL_ERROR * measured.damping_ratio)
 
 
-def fit_weights(std: Real, group: NDArray[np.int64], used: NDArray[np.bool_]) -> Real:
+def fit_weights(std: RealArray, group: IntegerArray, used: NDArray[np.bool_]) -> RealArray:
     """Square roots of the weights: 1 / std, over the root of the number of modes used in the mode's group.
 
     Parameters
@@ -199,7 +198,7 @@ def fit_weights(std: Real, group: NDArray[np.int64], used: NDArray[np.bool_]) ->
     return np.where(used, 1 / (std * np.sqrt(count)), 0.0)
 
 
-def solve_weighted(columns: Real, target: Real, weight: Real) -> Real:
+def solve_weighted(columns: RealArray, target: RealArray, weight: RealArray) -> RealArray:
     """Non-negative coefficients of weighted least squares, (e,).
 
     Parameters
@@ -216,7 +215,7 @@ def solve_weighted(columns: Real, target: Real, weight: Real) -> Real:
     return np.asarray(solution / scale)
 
 
-def _near_their_group(left: Real, std: Real, group: NDArray[np.int64]) -> NDArray[np.bool_]:
+def _near_their_group(left: RealArray, std: RealArray, group: IntegerArray) -> NDArray[np.bool_]:
     keep = np.ones(left.size, dtype=np.bool_)
     for number in np.unique(group):
         members = np.flatnonzero(group == number)
@@ -227,8 +226,13 @@ def _near_their_group(left: Real, std: Real, group: NDArray[np.int64]) -> NDArra
 
 
 def _interval(
-    columns: Real, target: Real, std: Real, noise: Real, group: NDArray[np.int64], used: NDArray[np.bool_]
-) -> tuple[Real, Real]:
+    columns: RealArray,
+    target: RealArray,
+    std: RealArray,
+    noise: RealArray,
+    group: IntegerArray,
+    used: NDArray[np.bool_],
+) -> tuple[RealArray, RealArray]:
     """2.5 and 97.5 percentiles over replicates: every group's modes drawn anew, and disturbed by their noise."""
     random = np.random.default_rng(20150817)
     numbers = [np.flatnonzero((group == number) & used) for number in np.unique(group)]
@@ -277,7 +281,7 @@ def fit_modal_bands(measured: MeasuredMode, last_group: int = 3) -> tuple[Fitted
     return tuple(bands)
 
 
-def add_modal_damping(frequency: Real, rayleigh: Real, bands: tuple[FittedModalBand, ...]) -> Real:
+def add_modal_damping(frequency: RealArray, rayleigh: RealArray, bands: tuple[FittedModalBand, ...]) -> RealArray:
     """Damping ratios of Rayleigh + modal: the bands' own ratio inside them, Rayleigh elsewhere, (m,)."""
     ratio = rayleigh.copy()
     for band in bands:

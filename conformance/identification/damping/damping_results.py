@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 import tomli_w
-from numpy.typing import NDArray
 
+from pantocheck.conformance.array_types import ComplexArray, RealArray
 from pantocheck.conformance.identification.damping.damping_model import (
     DampingFit,
     MeasuredMode,
@@ -22,8 +22,6 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.model import Catenary, DiscretisedLine, Kind, discretise
 from pantocheck.model.modal.modal_damping import modes_below
 from pantocheck.model.modal.modes import Modes, component_energies, damping_ratios, deflection_at
-
-Real = NDArray[np.float64]
 
 KIND_OF_WIRE = {"CW": Kind.CONTACT_WIRE, "MW": Kind.MESSENGER_WIRE, "SW": Kind.STITCH_WIRE}
 TABLE = {"dropper": "droppers", "steady_arm": "steady_arms", "messenger_support": "messenger_supports"}
@@ -134,7 +132,7 @@ def _places_of_sensors(usable: list[ModeRow], line: Catenary, source: str) -> se
 
 def _shapes_at_sensors(
     usable: list[ModeRow], mesh: DiscretisedLine, shapes: Modes, placed: set[tuple[str, float]]
-) -> tuple[list[NDArray[np.complex128]], list[Real]]:
+) -> tuple[list[ComplexArray], list[RealArray]]:
     """Measured and computed mode shapes at the sensors of each identified mode."""
     rows_of = {name: mesh.mesh.row_of[_wire(mesh.catenary, KIND_OF_WIRE[name]), "z"] for name, _ in placed}
     at = {(wire, x): deflection_at(mesh, shapes, rows_of[wire], x) for wire, x in placed}
@@ -185,7 +183,7 @@ def _wire(line: Catenary, kind: Kind) -> str:
     raise InputError("line", f"has no {kind.replace('_', ' ')}", "Name the case of the line measured.")
 
 
-def _rayleigh(energies: ModalEnergies, fit: DampingFit) -> Real:
+def _rayleigh(energies: ModalEnergies, fit: DampingFit) -> RealArray:
     names, columns = energies.columns()
     return np.asarray(columns @ np.array([fit.value(*name) for name in names]))
 
@@ -208,7 +206,7 @@ def _observability(energies: ModalEnergies, measured: MeasuredMode, fit: Damping
     ]
 
 
-def _pair_row(p: ModePair, row: ModeRow, fit: DampingFit, i: int, frequency: Real) -> dict[str, Any]:
+def _pair_row(p: ModePair, row: ModeRow, fit: DampingFit, i: int, frequency: RealArray) -> dict[str, Any]:
     return {
         "measured_Hz": row.frequency_Hz,
         "computed_Hz": round_significant(float(frequency[p.computed])),

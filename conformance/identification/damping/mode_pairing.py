@@ -3,11 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from pantocheck.conformance.array_types import ComplexArray, RealArray
 
 LARGEST_FREQUENCY_GAP = 0.05  # relative distance in frequency beyond which two modes are not the same
 LEAST_MAC = 0.5
@@ -22,14 +20,17 @@ class ModePair:
     mac: float
 
 
-def modal_assurance(measured: Complex, computed: Real) -> float:
+def modal_assurance(measured: ComplexArray, computed: RealArray) -> float:
     """Modal assurance criterion of two shapes at the same sensors; 1 if they are multiples of each other."""
     norm = float(np.sum(np.abs(measured) ** 2) * np.sum(computed**2))
     return float(np.abs(np.vdot(measured, computed)) ** 2) / norm if norm > 0 else 0.0
 
 
 def pair_modes(
-    measured_frequency: Real, measured_shapes: list[Complex], computed_frequency: Real, computed_shapes: list[Real]
+    measured_frequency: RealArray,
+    measured_shapes: list[ComplexArray],
+    computed_frequency: RealArray,
+    computed_shapes: list[RealArray],
 ) -> tuple[ModePair, ...]:
     """Pairs of least total distance.
 
@@ -66,7 +67,7 @@ def pair_modes(
     )
 
 
-def _common_factor(measured: Real, computed: Real, likeness: Real) -> float:
+def _common_factor(measured: RealArray, computed: RealArray, likeness: RealArray) -> float:
     trials = np.linspace(1 - LARGEST_FREQUENCY_GAP, 1 + LARGEST_FREQUENCY_GAP, 201)
 
     def misfit(factor: float) -> float:

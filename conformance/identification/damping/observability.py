@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.identification.damping.damping_model import (
     DampingFit,
     MeasuredMode,
@@ -13,8 +13,6 @@ from pantocheck.conformance.identification.damping.damping_model import (
     fit_weights,
     solve_weighted,
 )
-
-Real = NDArray[np.float64]
 
 PLAUSIBLE = {"stiffness": 1e-4, "mass": 0.1}  # [s], [1/s]: largest values the study finds for a wire
 SHARE_NEEDED = 0.05  # of a mode's damping, at the plausible value
@@ -98,7 +96,7 @@ def residual_without_column(
     return float(np.sqrt(np.mean(relative[fit.used] ** 2)))
 
 
-def _projected(columns: Real, vector: Real) -> Real:
+def _projected(columns: RealArray, vector: RealArray) -> RealArray:
     if columns.shape[1] == 0:
         return np.zeros_like(vector)
     q = np.linalg.qr(columns / np.maximum(np.linalg.norm(columns, axis=0), np.finfo(float).tiny))[0]

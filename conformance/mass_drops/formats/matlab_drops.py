@@ -7,9 +7,9 @@ from pathlib import Path
 import h5py
 import numpy as np
 import scipy.io
-from numpy.typing import NDArray
 from scipy.io.matlab import MatReadError
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.drop_assembly import DropColumn, DropColumns
 from pantocheck.conformance.mass_drops.drop_sidecar import DropSidecar
@@ -29,8 +29,6 @@ MATLAB_DAMAGE = (
     zlib.error,
 )
 """What scipy raises for files that are damaged."""
-
-Real = NDArray[np.float64]
 
 
 def read_matlab_drops(path: Path, sidecar: DropSidecar | None) -> list[DropColumns]:
@@ -54,12 +52,12 @@ def read_matlab_drops(path: Path, sidecar: DropSidecar | None) -> list[DropColum
     return [DropColumns(values, columns, time=time, rate=rate)]
 
 
-def _named(arrays: dict[str, Real], names: tuple[str, ...]) -> list[Real]:
+def _named(arrays: dict[str, RealArray], names: tuple[str, ...]) -> list[RealArray]:
     """Arrays of these names, in their order; capitals do not count."""
     return [array for wanted in names for name, array in arrays.items() if name.lower() == wanted]
 
 
-def _largest_table(data: dict[str, Real], source: str) -> Real:
+def _largest_table(data: dict[str, RealArray], source: str) -> RealArray:
     """The one table of samples, (n, c)."""
     tables = {name: array for name, array in data.items() if array.ndim == 2 and max(array.shape) > 1}
     if not tables:
@@ -80,7 +78,7 @@ def _largest_table(data: dict[str, Real], source: str) -> Real:
     return np.ascontiguousarray(table if table.shape[0] >= table.shape[1] else table.T)
 
 
-def _version_5(path: Path, source: str) -> dict[str, Real]:
+def _version_5(path: Path, source: str) -> dict[str, RealArray]:
     try:
         content = scipy.io.loadmat(path, struct_as_record=True)
     except MATLAB_DAMAGE as error:
@@ -92,7 +90,7 @@ def _version_5(path: Path, source: str) -> dict[str, Real]:
     }
 
 
-def _version_7_3(path: Path, source: str) -> dict[str, Real]:
+def _version_7_3(path: Path, source: str) -> dict[str, RealArray]:
     try:
         with h5py.File(path, "r") as file:
             return {

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import maximum_filter1d
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.measured.pooled_signals import PooledSignals
-from pantocheck.conformance.records.record import Array
 
 BOOTSTRAP_REPLICATES = 1000
 FEWEST_BLOCKS = 5
@@ -26,7 +26,7 @@ COVERAGE = 1.96
 class _Draws:
     """Which blocks each replicate is made of: (replicates, blocks) starts within the joined parts, and their length."""
 
-    starts: Array
+    starts: RealArray
     length: int
 
 
@@ -49,12 +49,12 @@ def bootstrap_uncertainties(signals: PooledSignals, block_s: float, digest: str)
     draws = _draws([part.delivered.size for part in parts], block_s * parts[0].rate, digest) if parts else None
     if draws is None:
         return {}
-    found: dict[str, Array] = {}
+    found: dict[str, RealArray] = {}
     mean = _means(signals.delivered, draws)
     found["mean_force_N"] = mean
     for name, ratio, series in (("std_force_N", "cov_20", "graded"), ("std_force_50_N", "cov_50", "extended")):
         try:
-            force: Array = getattr(signals, series)
+            force: RealArray = getattr(signals, series)
         except QuantityUnavailable:
             continue
         centred = force - force.mean()  # the difference of two large numbers would lose digits
@@ -90,13 +90,13 @@ def _draws(sizes: list[int], block: float, digest: str) -> _Draws | None:
     return _Draws(random.choice(np.concatenate(starts), size=(BOOTSTRAP_REPLICATES, blocks)), length)
 
 
-def _means(series: Array, draws: _Draws) -> Array:
+def _means(series: RealArray, draws: _Draws) -> RealArray:
     """Mean of a series in every replicate."""
     sums = np.concatenate([[0.0], np.cumsum(series)])
     return np.asarray((sums[draws.starts + draws.length] - sums[draws.starts]).mean(axis=1) / draws.length)
 
 
-def _maxima(series: Array, draws: _Draws) -> Array:
+def _maxima(series: RealArray, draws: _Draws) -> RealArray:
     """Maximum of a series in every replicate."""
     # The filter is centred; its origin is moved so that it looks forward from the start of a block.
     ahead = maximum_filter1d(series, draws.length, origin=-(draws.length // 2), mode="nearest")

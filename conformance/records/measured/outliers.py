@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import medfilt
 
-from pantocheck.conformance.records.record import Array
+from pantocheck.conformance.array_types import RealArray
 
 NEIGHBOURS = 7
 """Samples in the running median that a value is compared with."""
@@ -16,7 +16,7 @@ LEAST_N = 50.0
 """Distance below which nothing is called an outlier [N]."""
 
 
-def find_outliers(force: Array) -> NDArray[np.intp]:
+def find_outliers(force: RealArray) -> NDArray[np.intp]:
     """Indices of the samples that stand out of their neighbours.
 
     Parameters

@@ -5,9 +5,9 @@ from functools import cached_property
 
 import numpy as np
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.signals import PantographSignals
 from pantocheck.conformance.quantities.unavailable import StretchNotCovered
-from pantocheck.conformance.records.record import Array
 
 
 class NothingLeft(StretchNotCovered):
@@ -35,27 +35,27 @@ class PooledSignals:
         return self._present()[0].filter_applied_Hz
 
     @property
-    def delivered(self) -> Array:
+    def delivered(self) -> RealArray:
         """Force as delivered, stretch after stretch [N]."""
         return np.concatenate([part.delivered for part in self._present()])
 
     @cached_property
-    def graded(self) -> Array:
+    def graded(self) -> RealArray:
         """Force through the filter (0-20 Hz) [N]."""
         return np.concatenate([part.graded for part in self._present()])
 
     @cached_property
-    def extended(self) -> Array:
+    def extended(self) -> RealArray:
         """Force through the same kind of filter at 50 Hz [N]."""
         return np.concatenate([part.extended for part in self._present()])
 
     @property
-    def position(self) -> Array:
+    def position(self) -> RealArray:
         """Contact point along the track [m]."""
         return np.concatenate([part.position[part.inside] for part in self._present()])
 
     @property
-    def height(self) -> Array:
+    def height(self) -> RealArray:
         """Height of the contact point [m]."""
         return np.concatenate([part.height for part in self._present()])
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.quantities.signals import LineSignals, PantographSignals
 from pantocheck.conformance.records.measured.filtered_force import detect_filtered
@@ -18,7 +19,7 @@ from pantocheck.conformance.records.measured.usable_sections import (
     find_usable_sections,
     local_speed,
 )
-from pantocheck.conformance.records.record import MAX_SAMPLES, Array, RecordInvalid
+from pantocheck.conformance.records.record import MAX_SAMPLES, RecordInvalid
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.samples import RecordSamples
 
@@ -129,7 +130,7 @@ def prepare_record(
     )
 
 
-def _stretch_asked(sidecar: RecordSidecar, position: Array) -> tuple[float, float]:
+def _stretch_asked(sidecar: RecordSidecar, position: RealArray) -> tuple[float, float]:
     if sidecar.evaluated_m is not None:
         return sidecar.evaluated_m[0], sidecar.evaluated_m[1]
     return float(position[:, 0].max()), float(position[:, -1].min())
@@ -138,8 +139,8 @@ def _stretch_asked(sidecar: RecordSidecar, position: Array) -> tuple[float, floa
 def _pantograph(
     samples: RecordSamples,
     at: int,
-    time: Array,
-    position: Array,
+    time: RealArray,
+    position: RealArray,
     steady: NDArray[np.bool_],
     asked: PantographSignals,
     warnings: list[str],
@@ -193,7 +194,7 @@ def _evaluated_part(stretch: UsableSection, asked: PantographSignals) -> list[Pa
     ]  # fmt: skip
 
 
-def _mark_outliers(force: Array, position: Array, who: str, warnings: list[str]) -> None:
+def _mark_outliers(force: RealArray, position: RealArray, who: str, warnings: list[str]) -> None:
     found = find_outliers(force)
     if found.size:
         places = ", ".join(f"{force[i]:.4g} N at {position[i]:.1f} m" for i in found[:5])

@@ -3,14 +3,15 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from pantocheck.conformance.records.record import Array, RecordInvalid
+from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.records.record import RecordInvalid
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.samples import RecordSamples, complete_samples
 
 
 def place_samples(
     samples: RecordSamples, sidecar: RecordSidecar, warnings: list[str]
-) -> tuple[RecordSamples, Array, Array]:
+) -> tuple[RecordSamples, RealArray, RealArray]:
     """Samples that say when and where they are, their times [s] (n,) and positions [m] (p, n), both growing.
 
     Parameters
@@ -47,7 +48,9 @@ def place_samples(
     return samples, time, position
 
 
-def _without_steps(samples: RecordSamples, time: Array, position: Array) -> tuple[RecordSamples, Array, Array]:
+def _without_steps(
+    samples: RecordSamples, time: RealArray, position: RealArray
+) -> tuple[RecordSamples, RealArray, RealArray]:
     """Positions that grow: a counter of wheel turns stands still for some samples and then steps forwards."""
     grown = np.diff(position[0], prepend=-np.inf) > 0
     if grown.all() or (np.diff(position, axis=1) < 0).any() or grown.sum() < 2:

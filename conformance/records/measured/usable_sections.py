@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 from scipy.ndimage import uniform_filter1d
 
-from pantocheck.conformance.records.record import Array
+from pantocheck.conformance.array_types import RealArray
 
 SHORT_GAP_S = 0.01
 """A gap up to this long [s] is bridged: a fifth of a period at 20 Hz cannot hide anything below that."""
@@ -36,19 +36,19 @@ class UsableSection:
         Height of the contact point [m], or None.
     """
 
-    position: Array
-    force: Array
-    height: Array | None
+    position: RealArray
+    force: RealArray
+    height: RealArray | None
 
 
-def local_speed(time: Array, position: Array) -> Array:
+def local_speed(time: RealArray, position: RealArray) -> RealArray:
     """Speed of the train at each sample, averaged over about a second [m/s]."""
     speed = np.gradient(position, time)
     width = max(1, round(SPEED_AVERAGED_S / float(np.median(np.diff(time)))))
     return np.asarray(uniform_filter1d(speed, min(width, speed.size), mode="nearest"))
 
 
-def find_usable_sections(time: Array, usable: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
+def find_usable_sections(time: RealArray, usable: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
     """Indices of the usable samples between each two gaps; a gap of up to `SHORT_GAP_S` is no gap.
 
     Parameters
@@ -68,7 +68,7 @@ def find_usable_sections(time: Array, usable: NDArray[np.bool_]) -> list[NDArray
 
 
 def cut_section(
-    run: NDArray[np.intp], time: Array, position: Array, force: Array, height: Array | None, rate: float
+    run: NDArray[np.intp], time: RealArray, position: RealArray, force: RealArray, height: RealArray | None, rate: float
 ) -> UsableSection:
     """The samples of a run on a uniform time axis.
 
@@ -91,7 +91,7 @@ def cut_section(
     even = at[0] + np.arange(int(np.floor((at[-1] - at[0]) * rate * (1 + 1e-12))) + 1) / rate
     even[-1] = min(even[-1], at[-1])
 
-    def resampled(values: Array) -> Array:
+    def resampled(values: RealArray) -> RealArray:
         return np.asarray(PchipInterpolator(at, values)(even))
 
     return UsableSection(resampled(position[run]), resampled(force[run]), None if height is None else resampled(height))

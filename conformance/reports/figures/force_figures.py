@@ -7,12 +7,11 @@ from importlib.resources import as_file
 from typing import Any, ParamSpec
 
 import matplotlib
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.reports.page_text import format_value
 from pantocheck.conformance.reports.words import TEMPLATES
 
@@ -215,7 +214,7 @@ def _legend(axes: Axes) -> None:
     axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=5, borderaxespad=0.2, columnspacing=1.4)
 
 
-def draw_box(axes: Axes, values: NDArray[np.float64], at: float) -> None:
+def draw_box(axes: Axes, values: RealArray, at: float) -> None:
     """Quartiles and median of some values as a box at a place of the other axis, which keeps its ticks."""
     axes.boxplot(
         values,

@@ -1,15 +1,11 @@
 """Computed damping ratios of a line under the damping models of a case."""
 
-import numpy as np
-from numpy.typing import NDArray
-
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.model import Catenary, DiscretisedLine
 from pantocheck.model.discretised_line import with_damping
 from pantocheck.model.modal.modes import Modes, damping_ratios
-
-Array = NDArray[np.float64]
 
 
 def build_lines(case: Case) -> dict[str, Catenary]:
@@ -17,7 +13,7 @@ def build_lines(case: Case) -> dict[str, Catenary]:
     return {name: build_catenary(case.with_damping(name, damping).line) for name, damping in case.dampings.items()}
 
 
-def computed_damping_ratios(mesh: DiscretisedLine, shapes: Modes, line: Catenary) -> Array:
+def computed_damping_ratios(mesh: DiscretisedLine, shapes: Modes, line: Catenary) -> RealArray:
     """Damping ratio that a line's damping gives to the modes of the undamped line, modal bands in place of the rest.
 
     Parameters

@@ -12,8 +12,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import DropperDamping
 from pantocheck.conformance.input_files.input_error import InputError
@@ -28,8 +28,6 @@ from pantocheck.conformance.systems.reference_simulator import build_passage, re
 from pantocheck.model import Catenary, DiscretisedLine, Kind, Passage, Rayleigh, discretise, simulate_passage
 from pantocheck.model.discretised_line import with_damping
 from pantocheck.model.fem.dropper_laws import with_viscous_part_kept
-
-Array = NDArray[np.float64]
 
 OFF = 0.1
 """Relative change of the force at which the transition begins, and share of it at which it has ended."""
@@ -107,7 +105,7 @@ def run_dropper_damping(case: Case, study: DropperDamping) -> Outcome:
     )
 
 
-def find_transition(coefficient: Array, force: Array) -> dict[str, Value]:
+def find_transition(coefficient: RealArray, force: RealArray) -> dict[str, Value]:
     """Where the largest compensation force leaves the value it has without damping, and what is left of it.
 
     Parameters
@@ -136,7 +134,7 @@ def find_transition(coefficient: Array, force: Array) -> dict[str, Value]:
     return found
 
 
-def _crossing(x: Array, y: Array, level: float) -> float | None:
+def _crossing(x: RealArray, y: RealArray, level: float) -> float | None:
     """First place where a curve rises through a level, between two points on a straight line; None if it never does."""
     above = np.flatnonzero(y >= level)
     if not above.size:
@@ -167,7 +165,7 @@ def _largest(mesh: DiscretisedLine, passage: Passage, at: int, coefficient: floa
     return float(max(0.0, -taut.min()))
 
 
-def _chart(case: Case, study: DropperDamping, force: dict[str, Array]) -> Chart:
+def _chart(case: Case, study: DropperDamping, force: dict[str, RealArray]) -> Chart:
     marks = [
         Mark(label="printed: transition", axis="x", low=limit.lower, high=limit.upper)
         for limit in case.limits
