@@ -1,20 +1,29 @@
-"""The reference simulator: mechanics only; knows no standard, no file format, no report."""
+"""Reference simulator: mechanics only, without standards, file formats or reports.
 
-from pantocheck.model.catenary import (
-    Catenary,
-    Clamp,
-    Dropper,
-    Kind,
-    MessengerSupport,
-    ModalBand,
-    Rayleigh,
-    SteadyArm,
-    TensionChange,
-    Wire,
-)
-from pantocheck.model.discretised_line import DiscretisedLine, discretise, never_slack
-from pantocheck.model.dynamics.simulation import History, Passage, simulate_passage
-from pantocheck.model.pantograph import Pantograph, chain
+Every public name is loaded on first use: a program that only describes a line does not wait for scipy or numba.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from pantocheck.model.catenary import (
+        Catenary,
+        Clamp,
+        Dropper,
+        Kind,
+        MessengerSupport,
+        ModalBand,
+        Rayleigh,
+        SteadyArm,
+        TensionChange,
+        Wire,
+    )
+    from pantocheck.model.discretised_line import DiscretisedLine, discretise, never_slack
+    from pantocheck.model.dynamics.passage import History, Passage
+    from pantocheck.model.dynamics.simulation import simulate_passage
+    from pantocheck.model.failures import SimulationError
+    from pantocheck.model.pantograph import Pantograph, chain
 
 __all__ = [
     "Catenary",
@@ -28,6 +37,7 @@ __all__ = [
     "Pantograph",
     "Passage",
     "Rayleigh",
+    "SimulationError",
     "SteadyArm",
     "TensionChange",
     "Wire",
@@ -36,3 +46,23 @@ __all__ = [
     "never_slack",
     "simulate_passage",
 ]
+
+_MODULES = {
+    "DiscretisedLine": "discretised_line",
+    "History": "dynamics.passage",
+    "Pantograph": "pantograph",
+    "Passage": "dynamics.passage",
+    "SimulationError": "failures",
+    "chain": "pantograph",
+    "discretise": "discretised_line",
+    "never_slack": "discretised_line",
+    "simulate_passage": "dynamics.simulation",
+}
+"""Modules of the public names that are not defined in `catenary`."""
+
+
+def __getattr__(name: str) -> Any:
+    """Load a public name from its module."""
+    if name not in __all__:
+        raise AttributeError(f"module 'pantocheck.model' has no attribute {name!r}")
+    return getattr(import_module(f"pantocheck.model.{_MODULES.get(name, 'catenary')}"), name)

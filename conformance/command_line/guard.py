@@ -7,6 +7,7 @@ from typing import ParamSpec, TypeVar
 import typer
 
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.model.failures import SimulationError
 
 BAD_INPUT = 2
 INTERRUPTED = 130
@@ -28,9 +29,7 @@ def guard_command(command: Callable[P, R]) -> Callable[P, R]:
         except InputError as error:
             typer.echo(strip_control_characters(str(error)), err=True)
             raise typer.Exit(BAD_INPUT) from None
-        except (ArithmeticError, ValueError) as error:
-            if not _unsolvable(error):
-                raise
+        except SimulationError as error:
             typer.echo(strip_control_characters(f"{error}\n  Check the line's data."), err=True)
             raise typer.Exit(BAD_INPUT) from None
         except KeyboardInterrupt:
@@ -38,15 +37,6 @@ def guard_command(command: Callable[P, R]) -> Callable[P, R]:
             raise typer.Exit(INTERRUPTED) from None
 
     return run
-
-
-def _unsolvable(error: Exception) -> bool:
-    # Imported where something failed: the simulator is too slow to load for a command that only prints its help.
-    from pantocheck.model.dynamics.simulation import DidNotConverge
-    from pantocheck.model.statics.initial_state import NoInitialState
-    from pantocheck.model.statics.static_solver import NoEquilibrium
-
-    return isinstance(error, NoInitialState | NoEquilibrium | DidNotConverge)
 
 
 def strip_control_characters(text: str) -> str:

@@ -11,12 +11,12 @@ from pantocheck.model.discretised_line import discretise
 from pantocheck.model.dynamics.kernel_arrays import Load, build_kernel_arrays
 from pantocheck.model.dynamics.newmark import march
 from pantocheck.model.dynamics.simulation import (
-    DidNotConverge,
     build_workspace,
     empty_train,
     motion_at_rest,
     recorded_stations,
 )
+from pantocheck.model.failures import DidNotConverge
 from pantocheck.model.fem.assembly import point_load
 from pantocheck.model.statics.static_solver import StaticSolver
 

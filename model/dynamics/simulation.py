@@ -1,8 +1,6 @@
 """Runs: pantographs along a line, or a line left to itself."""
 
-import math
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -10,7 +8,9 @@ from pantocheck.model.arrays import Array, Indices
 from pantocheck.model.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays
 from pantocheck.model.dynamics.newmark import march
+from pantocheck.model.dynamics.passage import History, Passage
 from pantocheck.model.dynamics.state import PIECE, KernelArrays, Motion, Train, Workspace
+from pantocheck.model.failures import DidNotConverge, ImpossiblePassage
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.assembly import point_load
 from pantocheck.model.fem.residual_flexibility import local_flexibility
@@ -19,71 +19,6 @@ from pantocheck.model.statics.static_solver import Deflection, StaticSolver
 
 BLOCK = 500
 """Steps between two reports of progress."""
-
-
-class ImpossiblePassage(ValueError):
-    """There is no pantograph, or one would run off the line: beyond its ends there is nothing to press against."""
-
-
-class DidNotConverge(ArithmeticError):
-    """The forces of a time step did not settle; what followed would be noise."""
-
-
-@dataclass(frozen=True)
-class Passage:
-    """What is to be run.
-
-    Parameters
-    ----------
-    pantographs : tuple[Pantograph, ...]
-        In running order, the leading one first.
-    start : tuple[float, ...]
-        (pantographs,) place of each at the start [m].
-    speed : float
-        [m/s].
-    duration : float
-        [s].
-    time_step : float
-        [s].
-    watched : tuple[tuple[str, float], ...]
-        Wire and place of the stations whose vertical motion is recorded [-, m].
-    reach : float
-        What lies farther than this from every pantograph, or no wave has come to yet, is left standing still; all moves
-        where it is infinite [m].
-    """
-
-    pantographs: tuple[Pantograph, ...]
-    start: tuple[float, ...]
-    speed: float
-    duration: float
-    time_step: float
-    watched: tuple[tuple[str, float], ...] = ()
-    reach: float = math.inf
-
-
-@dataclass(frozen=True)
-class History:
-    """What a run gives; T steps, P pantographs, U watched places.
-
-    Parameters
-    ----------
-    time : (T,) ndarray
-        [s].
-    position : (P, T) ndarray
-        Of the pantographs [m].
-    force : (P, T) ndarray
-        Contact force, unfiltered [N].
-    height : (P, T) ndarray
-        Of the head over the contact wire at the supports [m].
-    motion : (U, T, 3) ndarray
-        Vertical displacement, velocity and acceleration at the watched places [m, m/s, m/s2].
-    """
-
-    time: Array
-    position: Array
-    force: Array
-    height: Array
-    motion: Array
 
 
 def simulate_passage(

@@ -14,16 +14,13 @@ from numpy.typing import NDArray
 
 from pantocheck.model.arrays import Array
 from pantocheck.model.catenary import GRAVITY, Catenary, Kind
+from pantocheck.model.failures import NoInitialState
 from pantocheck.model.fem.beams import Beams, weight, wire_stiffness
 from pantocheck.model.fem.mesh import Mesh
 from pantocheck.model.statics.lateral_state import compute_lateral_state
 from pantocheck.model.statics.prescribed_displacements import solve_with_prescribed_displacements
 
 Stiffness = Callable[[Beams, int], sp.csr_array]
-
-
-class NoInitialState(ValueError):
-    """The prescribed geometry has no equilibrium with taut droppers; a run from it would start with a lie."""
 
 
 @dataclass(frozen=True)

@@ -9,11 +9,8 @@ from scipy.sparse.linalg import splu
 
 from pantocheck.model.arrays import Array
 from pantocheck.model.discretised_line import DiscretisedLine
+from pantocheck.model.failures import NoEquilibrium
 from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, connector_directions
-
-
-class NoEquilibrium(ArithmeticError):
-    """The set of slack droppers does not settle; a state from it would not be at rest."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +87,7 @@ class StaticSolver:
             if np.array_equal(now_slack, slack):
                 return self._expand(solution, np.where(slack, 0.0, tension))
             slack = now_slack
-        raise NoEquilibrium("the droppers keep going slack and taut by turns")
+        raise NoEquilibrium("no static equilibrium: the set of slack droppers still changes after 100 iterations")
 
     def _expand(self, solution: Array, tension: Array) -> Deflection:
         full = np.zeros(self.line.beams.free.size)

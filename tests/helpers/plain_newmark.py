@@ -13,8 +13,8 @@ import numpy as np
 from scipy.linalg import solve
 
 from helpers.lines import Array, without_connectors
+from pantocheck.model import Passage
 from pantocheck.model.discretised_line import DiscretisedLine
-from pantocheck.model.dynamics.simulation import Passage
 from pantocheck.model.dynamics.state import Motion, Train
 from pantocheck.model.fem.assembly import (
     assemble_matrices,

@@ -10,8 +10,8 @@ from pantocheck.model import Dropper, MessengerSupport, Passage, SteadyArm, chai
 from pantocheck.model.discretised_line import discretise
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays
 from pantocheck.model.dynamics.newmark import step
-from pantocheck.model.dynamics.simulation import DidNotConverge, build_workspace, start_motion
-from pantocheck.model.statics.initial_state import NoInitialState
+from pantocheck.model.dynamics.simulation import build_workspace, start_motion
+from pantocheck.model.failures import DidNotConverge, NoInitialState
 
 PANTOGRAPH = chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.array([90.0, 10.0]), 120.0, 0, 50e3)
 PASSAGE = Passage((PANTOGRAPH,), (20.0,), 50.0, 0.05, 1e-3)

@@ -18,9 +18,7 @@ from pantocheck.conformance.command_line.guard import guard_command
 from pantocheck.conformance.records.record_reading import read_record
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.schemas import NAMES, schema_of
-from pantocheck.model.dynamics.simulation import DidNotConverge
-from pantocheck.model.statics.initial_state import NoInitialState
-from pantocheck.model.statics.static_solver import NoEquilibrium
+from pantocheck.model.failures import DidNotConverge, ImpossiblePassage, NoEquilibrium, NoInitialState
 
 
 def pantocheck(*arguments: object):
@@ -164,7 +162,7 @@ def test_error_of_the_program_itself_is_not_taken_for_one_of_the_input():
 
 @pytest.mark.parametrize(
     "error",
-    [NoInitialState("no state"), NoEquilibrium("no state"), DidNotConverge("no state")],
+    [failure("no state") for failure in (NoInitialState, NoEquilibrium, ImpossiblePassage, DidNotConverge)],
     ids=lambda error: type(error).__name__,
 )
 def test_every_failure_of_the_simulation_is_a_message(error, capsys):

@@ -1,0 +1,64 @@
+"""Passage of pantographs along a line: the task of a simulation and its result, as frozen values."""
+
+import math
+from dataclasses import dataclass
+
+from pantocheck.model.arrays import Array
+from pantocheck.model.pantograph import Pantograph
+
+
+@dataclass(frozen=True)
+class Passage:
+    """Pantographs, speed and duration of a simulation.
+
+    Parameters
+    ----------
+    pantographs : tuple of Pantograph
+        In running order, the leading one first.
+    start : tuple of float
+        Position of each pantograph at the start [m].
+    speed : float
+        Speed of the train [m/s].
+    duration : float
+        Simulated time [s].
+    time_step : float
+        Time step [s].
+    watched : tuple of (str, float)
+        Wire and position of the stations whose vertical motion is recorded [-, m].
+    reach : float
+        Half-width of the active window around the pantographs [m]: stations farther away, or ahead of the wave front,
+        are held at rest. Infinite: the whole line is active.
+    """
+
+    pantographs: tuple[Pantograph, ...]
+    start: tuple[float, ...]
+    speed: float
+    duration: float
+    time_step: float
+    watched: tuple[tuple[str, float], ...] = ()
+    reach: float = math.inf
+
+
+@dataclass(frozen=True)
+class History:
+    """Result of a passage; T steps, P pantographs, U watched stations.
+
+    Parameters
+    ----------
+    time : (T,) ndarray
+        Time at the end of each step [s].
+    position : (P, T) ndarray
+        Position of the pantographs [m].
+    force : (P, T) ndarray
+        Contact force, unfiltered [N].
+    height : (P, T) ndarray
+        Height of the head above the contact wire at the supports [m].
+    motion : (U, T, 3) ndarray
+        Vertical displacement, velocity and acceleration at the watched stations [m, m/s, m/s2].
+    """
+
+    time: Array
+    position: Array
+    force: Array
+    height: Array
+    motion: Array

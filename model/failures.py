@@ -1,0 +1,24 @@
+"""Failures of the simulator, in the order in which a simulation can meet them."""
+
+
+class SimulationError(Exception):
+    """The simulator cannot give a result that could be trusted.
+
+    The cause is in the data of the line or of the pantographs, so the message names the place and the reader can act.
+    """
+
+
+class NoInitialState(SimulationError):
+    """The prescribed geometry has no equilibrium with taut droppers: a simulation from it would not start at rest."""
+
+
+class NoEquilibrium(SimulationError):
+    """The set of slack droppers does not settle under a static load: the last iterate is not in equilibrium."""
+
+
+class ImpossiblePassage(SimulationError):
+    """There is no pantograph, or one would leave the line: beyond its ends there is no wire to press against."""
+
+
+class DidNotConverge(SimulationError):
+    """The forces of a time step did not converge: all later steps would be numerical noise."""
