@@ -6,6 +6,7 @@ from typing import Any
 from pypdf import PdfReader
 from pypdf.errors import PyPdfError
 
+from pantocheck.conformance.input_files.bounded_file import check_file
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.reports.formats.embedding import NAME
 from pantocheck.conformance.reports.page_text import clean_text
@@ -36,10 +37,8 @@ def open_document(path: Path) -> PdfReader:
     InputError
         No such file, too large, or not a PDF.
     """
+    check_file(path, str(path), MAX_DOCUMENT_BYTES)
     try:
-        size = path.stat().st_size
-        if size > MAX_DOCUMENT_BYTES:
-            raise InputError(str(path), f"{size} bytes", f"A certificate has at most {MAX_DOCUMENT_BYTES} bytes.")
         with path.open("rb") as file:
             start = file.read(1024)
     except OSError as error:

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.identification.frequency_response import compute_frequency_response
@@ -19,7 +19,7 @@ from pantocheck.conformance.identification.repeatability import (
     compare_records,
 )
 from pantocheck.conformance.input_files.atomic_writing import write_atomically
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.json_file import read_json, validate_json
 
 MAX_MODES_BYTES = 50_000_000  # bytes
 SIGNIFICANT = 8
@@ -132,23 +132,9 @@ def read_modes(path: Path) -> tuple[ModeRow, ...]:
     InputError
         It cannot be read, is no JSON, or is no list of modes.
     """
-    where = f"modes '{path.name}'"
-    try:
-        if path.stat().st_size > MAX_MODES_BYTES:
-            raise InputError(where, "is too large", f"A list of modes has at most {MAX_MODES_BYTES} bytes.")
-        content = path.read_bytes()
-    except OSError as error:
-        raise InputError(where, f"cannot be read from {path} ({error.strerror})", "Check the path.") from None
-    try:
-        return TypeAdapter(tuple[ModeRow, ...]).validate_json(content)
-    except ValidationError as error:
-        first = error.errors(include_url=False, include_input=False)[0]
-        at = ".".join(str(part + 1 if isinstance(part, int) else part) for part in first["loc"])
-        raise InputError(
-            f"{where}, {'mode ' + at if at else 'as a whole'}",
-            first["msg"][:1].lower() + first["msg"][1:],
-            "Give the modes.json that `pantocheck identify` writes.",
-        ) from None
+    data = read_json(path, "modes", MAX_MODES_BYTES)
+    hint = "Give the modes.json that `pantocheck identify` writes."
+    return tuple(validate_json(data, TypeAdapter(list[ModeRow]), f"modes '{path.name}'", hint))
 
 
 def round_significant(value: float) -> float:

@@ -1,4 +1,4 @@
-"""Reading a TOML file from a stranger."""
+"""TOML files: bounded reading, parsing and validation."""
 
 import tomllib
 from pathlib import Path
@@ -6,31 +6,32 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
+from pantocheck.conformance.input_files.bounded_file import read_text
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.validation_messages import build_input_error
 
 MAX_TOML_BYTES = 5_000_000
-"""Bytes of a TOML file; no line or case needs more, and a parser given gigabytes would hang."""
+"""Largest TOML file that is read [bytes]; no line or case needs more, and gigabytes would block the parser."""
 
 T = TypeVar("T", bound=BaseModel)
 
 
 def read_model(path: Path, model: type[T], kind: str) -> T:
-    """Read and check a TOML file.
+    """Read and validate a TOML file.
 
     Parameters
     ----------
     path : Path
         The file.
-    model : type[T]
-        What it must be.
+    model : type of BaseModel
+        Required structure.
     kind : str
-        What it is called in messages, e.g. `reference line`.
+        Name of its kind in messages, e.g. `reference line`.
 
     Raises
     ------
     InputError
-        It cannot be read, is not TOML, or does not fit the model.
+        It cannot be read, is not TOML or does not fit the model.
     """
     where = f"{kind} '{path.name}'"
     tree = read_toml(path, kind)
@@ -41,18 +42,15 @@ def read_model(path: Path, model: type[T], kind: str) -> T:
 
 
 def read_toml(path: Path, kind: str) -> dict[str, Any]:
-    """Read a TOML file without checking what it holds; parameters and errors as in `read_model`."""
+    """Read a TOML file without validation; parameters and errors as in `read_model`."""
     where = f"{kind} '{path.name}'"
+    text = read_text(path, where, MAX_TOML_BYTES)
     try:
-        if path.stat().st_size > MAX_TOML_BYTES:
-            raise InputError(where, f"{path.stat().st_size} bytes", f"A {kind} has at most {MAX_TOML_BYTES} bytes.")
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(where, f"cannot be read from {path} ({error.strerror})", "Check the path.") from None
-    except UnicodeDecodeError as error:
-        raise InputError(where, f"byte {error.start + 1} is not UTF-8 text", "Save the file as UTF-8.") from None
+        return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise InputError(where, f"is not valid TOML: {str(error)[:200]}", "Mend the line named; see toml.io.") from None
+        raise InputError(where, f"is not valid TOML: {str(error)[:200]}", "Correct this line; see toml.io.") from None
     except (ValueError, RecursionError):
-        # Numbers of thousands of digits and tables nested thousands deep get past the grammar.
-        raise InputError(where, "holds a number or a nesting that is too long to read", "Write it plainly.") from None
+        # The grammar allows numbers of thousands of digits and tables nested thousands of levels deep.
+        raise InputError(
+            where, "holds a number or a nesting that is too long to read", "Shorten the number, or nest less deeply."
+        ) from None

@@ -150,9 +150,9 @@ def test_garbage_is_refused(tmp_path, content, found):
         (lambda r: r.update(verdict="maybe"), "key verdict"),
         (lambda r: r.update(schema="other/1"), "key schema"),
         (lambda r: r.pop("cases"), "key cases"),
-        (lambda r: row(r).update(value=float("nan")), "cases.0.criteria.0.value"),
-        (lambda r: row(r).update(value=10**400), "cases.0.criteria.0.value"),
-        (lambda r: row(r).update(value="<script>"), "cases.0.criteria.0.value"),
+        (lambda r: row(r).update(value=float("nan")), r"cases\[1\]\.criteria\[1\]\.value"),
+        (lambda r: row(r).update(value=10**400), r"cases\[1\]\.criteria\[1\]\.value"),
+        (lambda r: row(r).update(value="<script>"), r"cases\[1\]\.criteria\[1\]\.value"),
     ],
 )
 def test_results_of_another_format_are_refused(results, tmp_path, change, key):

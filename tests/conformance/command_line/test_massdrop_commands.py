@@ -113,9 +113,9 @@ def test_fit_damping_returns_the_line_its_own_damping(folder):
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (b"", "invalid JSON"),
-        (b"{}", "valid array"),
-        (b'[{"frequency_Hz": -1}]', "mode 1"),
+        (b"", "not JSON"),
+        (b"{}", "valid list"),
+        (b'[{"frequency_Hz": -1}]', "key [1].frequency_Hz"),
         (b"[]", "holds no certain mode"),
     ],
 )

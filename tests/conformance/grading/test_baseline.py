@@ -113,7 +113,7 @@ def test_gate_on_the_command_line_and_in_a_plan(results, tmp_path):
         (lambda text: "", "not JSON"),
         (lambda text: text[:100], "not JSON"),
         (lambda text: "[" * 100_000, "not JSON"),
-        (lambda text: "{}", "key suite: Field required"),
+        (lambda text: "{}", "key suite: field required"),
         (lambda text: text.replace("27.6", "NaN"), "finite"),
         (lambda text: text.replace("27.6", "1e300"), "less than or equal to"),
         (lambda text: text.replace('"1": {', '"front": {', 1), "should match pattern"),

@@ -1,0 +1,79 @@
+"""JSON files: bounded reading, parsing and validation."""
+
+import json
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import TypeAdapter, ValidationError
+
+from pantocheck.conformance.input_files.bounded_file import read_bytes
+from pantocheck.conformance.input_files.input_error import InputError
+
+T = TypeVar("T")
+
+
+def read_json(path: Path, kind: str, largest: int) -> Any:
+    """Read a JSON file.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    kind : str
+        Name of its kind in messages, e.g. `results`.
+    largest : int
+        Limit of its size [bytes].
+
+    Raises
+    ------
+    InputError
+        It cannot be read, is too large or is not JSON.
+    """
+    where = f"{kind} '{path.name}'"
+    return parse_json(read_bytes(path, where, largest), where, largest)
+
+
+def parse_json(content: bytes, where: str, largest: int) -> Any:
+    """Parse JSON from bytes that may come from another file; parameters and errors as in `read_json`."""
+    if len(content) > largest:
+        raise InputError(where, f"{len(content)} bytes", f"At most {largest} bytes are read.")
+    try:
+        return json.loads(content)
+    except (ValueError, RecursionError) as error:
+        raise InputError(where, f"not JSON ({_clean(str(error))})", "Let the suite write it again.") from None
+
+
+def validate_json(data: Any, model: TypeAdapter[T], where: str, hint: str) -> T:
+    """Validate parsed JSON.
+
+    Parameters
+    ----------
+    data : Any
+        Parsed JSON.
+    model : TypeAdapter
+        Required structure.
+    where : str
+        Name of the file in messages.
+    hint : str
+        Source of a valid file.
+
+    Raises
+    ------
+    InputError
+        The data do not fit the model; the message names the first key at fault.
+    """
+    try:
+        return model.validate_python(data)
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_input=False)[0]
+        # Items of a list are numbered from 1, as in messages about TOML files.
+        parts = (f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in first["loc"])
+        key = "".join(parts).removeprefix(".")
+        raise InputError(
+            f"{where}, key {_clean(key) or 'top level'}", _clean(first["msg"][:1].lower() + first["msg"][1:]), hint
+        ) from None
+
+
+def _clean(text: str) -> str:
+    """One printable line of at most 300 characters."""
+    return "".join(c if c.isprintable() else "?" for c in " ".join(text.split()))[:300]
