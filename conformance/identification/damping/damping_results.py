@@ -16,7 +16,12 @@ from pantocheck.conformance.identification.damping.damping_model import (
     fit_modal_bands,
 )
 from pantocheck.conformance.identification.damping.mode_pairing import ModePair, pair_modes
-from pantocheck.conformance.identification.damping.observability import PLAUSIBLE, compute_observability
+from pantocheck.conformance.identification.damping.observability import (
+    PLAUSIBLE,
+    RATIO_NEEDED,
+    SHARE_NEEDED,
+    compute_observability,
+)
 from pantocheck.conformance.identification.identification_files import ModeRow, round_significant
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.model import Catenary, DiscretisedLine, Kind, discretise
@@ -95,6 +100,7 @@ def build_damping_results(rows: tuple[ModeRow, ...], line: Catenary, element: fl
             for b in bands
         ],
         "observability": _observability(own, measured, fit),
+        "thresholds": {"largest_share": SHARE_NEEDED, "plausible_over_std": RATIO_NEEDED},
         "pairs": [
             _pair_row(p, row, fit, i, shapes.frequency) for i, (p, row) in enumerate(zip(pairs, paired, strict=True))
         ],
