@@ -23,6 +23,7 @@ def simulate_command(
     from pantocheck.conformance.input_files.atomic_writing import check_writable
     from pantocheck.conformance.input_files.input_error import InputError
     from pantocheck.conformance.records.record_writing import check_record_path, write_record
+    from pantocheck.conformance.results.outcome import Delivered, missing_record_reason
     from pantocheck.conformance.systems.system_choice import choose_system
 
     check_record_path(out)
@@ -36,20 +37,15 @@ def simulate_command(
     with output.status(f"simulating {found[0].id}") if output.is_terminal else _nothing():
         # A record holds one run: the reference simulator's refined one would be thrown away.
         outcome = getattr(chosen, "run_unrefined", chosen.run)(found[0])
-    if outcome.record is None:
-        reason = outcome.errored or outcome.skipped or "the system delivered no record"
+    if not isinstance(outcome, Delivered) or outcome.record is None:
+        reason = missing_record_reason(outcome)
         raise InputError(f"case '{found[0].id}'", f"no record: {reason}", "Choose another case or system.")
     sidecar = write_record(
         out,
         outcome.record,
         case=found[0].id,
         system={"name": chosen.name, "version": chosen.version},
-        run={
-            "simulated_s": outcome.simulated_s,
-            "wall_s": outcome.wall_s,
-            "dt_s": outcome.dt_s,
-            "element_m": outcome.element_m,
-        },
+        run=outcome.run.model_dump(),
     )
     output.print(escape_text(f"{out} and {sidecar.name}"))
 

@@ -13,7 +13,7 @@ from pantocheck.conformance.grading.verdicts import Verdict, judge, margin, wors
 from pantocheck.conformance.input_files.trust import Trust, limit_counts
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.records.evaluation import LINE, Evaluation, Value, evaluate_record
-from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.results.outcome import Delivered, Errored, Outcome, Skipped
 from pantocheck.conformance.results.results_format import (
     CaseResult,
     Criterion,
@@ -37,10 +37,16 @@ def grade_case(case: Case, outcome: Outcome, lowest_trust: Trust) -> CaseResult:
     lowest_trust : Trust
         Lowest trust of the limits that carry a verdict.
     """
-    if outcome.errored is not None:
-        return build_ungraded(case, "error", outcome.errored, outcome)
-    if outcome.skipped is not None:
-        return build_ungraded(case, "skip", outcome.skipped, outcome)
+    match outcome:
+        case Skipped(reason):
+            return build_ungraded(case, "skip", reason)
+        case Errored(reason):
+            return build_ungraded(case, "error", reason)
+        case delivered:
+            return _grade_delivered(case, delivered, lowest_trust)
+
+
+def _grade_delivered(case: Case, outcome: Delivered, lowest_trust: Trust) -> CaseResult:
     if (mismatch := _mismatch(case, outcome)) is not None:
         return build_ungraded(case, "error", mismatch, outcome)
     evaluation, refined = _evaluated(case, outcome), _refined(case, outcome)
@@ -74,23 +80,23 @@ def grade_case(case: Case, outcome: Outcome, lowest_trust: Trust) -> CaseResult:
         spread={str(of): values for of, values in shifted.items()},
         traces=build_pantograph_traces(record, case.file.filter.low_pass, supports) if record is not None else {},
         uplift=build_uplift_traces(record) if record is not None else [],
-        charts=list(outcome.charts),
-        tables=list(outcome.tables),
+        charts=list(outcome.study.charts),
+        tables=list(outcome.study.tables),
     )
 
 
-def grade_criteria(case: Case, outcome: Outcome, lowest_trust: Trust) -> list[Criterion]:
+def grade_criteria(case: Case, outcome: Delivered, lowest_trust: Trust) -> list[Criterion]:
     """Every limit of a case against what was delivered; parameters as in `graded`."""
     evaluation, refined = _evaluated(case, outcome), _refined(case, outcome)
     return [grade_criterion(limit, evaluation, lowest_trust, refined) for limit in case.limits]
 
 
-def _refined(case: Case, outcome: Outcome) -> Evaluation | None:
+def _refined(case: Case, outcome: Delivered) -> Evaluation | None:
     """Quantities of the same case with element and time step halved, where a system delivers that."""
     return _evaluated(case, outcome.refined) if outcome.refined is not None else None
 
 
-def _mismatch(case: Case, outcome: Outcome) -> str | None:
+def _mismatch(case: Case, outcome: Delivered) -> str | None:
     """Why a record is not one of this case: graded all the same, its numbers would be believed."""
     record = outcome.record
     for name in sorted(outcome.static):
@@ -112,12 +118,12 @@ def _mismatch(case: Case, outcome: Outcome) -> str | None:
     return None
 
 
-def build_ungraded(case: Case, verdict: Verdict, reason: str, outcome: Outcome | None = None) -> CaseResult:
+def build_ungraded(case: Case, verdict: Verdict, reason: str, delivered: Delivered | None = None) -> CaseResult:
     """Result of a case that did not get as far as its limits."""
     line = " ".join(reason.split())
     return _result(
         case,
-        outcome or Outcome(),
+        delivered or Delivered(),
         verdict=verdict,
         reason=line,
         warnings=[],
@@ -131,7 +137,7 @@ def build_ungraded(case: Case, verdict: Verdict, reason: str, outcome: Outcome |
     )
 
 
-def _result(case: Case, outcome: Outcome, notes: Sequence[str], **parts: object) -> CaseResult:
+def _result(case: Case, outcome: Delivered, notes: Sequence[str], **parts: object) -> CaseResult:
     file, record = case.file, outcome.record
     return CaseResult.model_validate(
         {
@@ -141,10 +147,7 @@ def _result(case: Case, outcome: Outcome, notes: Sequence[str], **parts: object)
             "inputs": [InputGroup(group=i.group, trust=i.trust, source=source_text(i.source)) for i in case.inputs],
             "input_digest": case.digest,
             "run": RunFacts(
-                simulated_s=outcome.simulated_s,
-                wall_s=outcome.wall_s,
-                dt_s=outcome.dt_s,
-                element_m=outcome.element_m,
+                **outcome.run.model_dump(),
                 speed_km_h=file.speed_km_h,
                 rate_Hz=None if record is None else float(f"{record.rate:.9g}"),
                 filter=FilterFacts(**file.filter.model_dump()),
@@ -155,14 +158,14 @@ def _result(case: Case, outcome: Outcome, notes: Sequence[str], **parts: object)
     )
 
 
-def _evaluated(case: Case, outcome: Outcome) -> Evaluation:
+def _evaluated(case: Case, outcome: Delivered) -> Evaluation:
     if outcome.record is None:
         evaluation = outcome.summary or Evaluation({LINE: {}}, {LINE: {}})
     else:
         evaluation = evaluate_record(outcome.record, case.file.filter.low_pass)
     ordered = {name: outcome.static[name] for name in QUANTITIES if name in outcome.static}
     values = {**evaluation.values, LINE: {**evaluation.values[LINE], **ordered}}
-    for of, given in outcome.findings.items():
+    for of, given in outcome.study.findings.items():
         values[of] = {**values.get(of, {}), **{name: given[name] for name in QUANTITIES if name in given}}
     return Evaluation(values, evaluation.skipped)
 
@@ -267,7 +270,7 @@ def _close_calls(criteria: list[Criterion]) -> list[str]:
     return close
 
 
-def _edge_warnings(case: Case, outcome: Outcome) -> list[str]:
+def _edge_warnings(case: Case, outcome: Delivered) -> list[str]:
     """The filter's transients reach two periods of the cut-off into the record from its ends."""
     record = outcome.record
     if record is None:

@@ -1,7 +1,7 @@
 """What must be known of the band from 20 to 50 Hz before its numbers are believed."""
 
 from pantocheck.conformance.records.evaluation import LINE, Evaluation, Value
-from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.results.outcome import Delivered
 
 EXTENDED_BAND = "rms_20_50_N"
 LARGEST_CHANGE = 0.05
@@ -20,14 +20,14 @@ def find_unvalidated(evaluation: Evaluation) -> list[str]:
     return [NOT_VALIDATED] if _bands(evaluation) else []
 
 
-def extended_band_warnings(outcome: Outcome, evaluation: Evaluation, refined: Evaluation | None) -> list[str]:
+def extended_band_warnings(outcome: Delivered, evaluation: Evaluation, refined: Evaluation | None) -> list[str]:
     """Warnings that belong to the numbers between 20 and 50 Hz; none where there are no such numbers.
 
     Rate and filter of the record are checked where the numbers are made: what they do not allow is skipped.
 
     Parameters
     ----------
-    outcome : Outcome
+    outcome : Delivered
         What the system delivered.
     evaluation : Evaluation
         Its quantities.
@@ -38,7 +38,7 @@ def extended_band_warnings(outcome: Outcome, evaluation: Evaluation, refined: Ev
     if not bands:
         return []
     if refined is None:
-        step = "" if outcome.dt_s is None else f" (time step {outcome.dt_s:g} s)"
+        step = "" if outcome.run.dt_s is None else f" (time step {outcome.run.dt_s:g} s)"
         return [
             *warnings,
             f"{WARNING_PREFIX}no run with a finer mesh and time step{step} shows whether the band is resolved",

@@ -14,7 +14,7 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.records.record import Record, RecordInvalid
 from pantocheck.conformance.records.record_reading import read_record
-from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.results.results_format import CaseResult, Criterion
 from pantocheck.conformance.runner import run_case
 from pantocheck.conformance.systems.system import System
@@ -163,7 +163,7 @@ def grade_arrays(
             )
         except RecordInvalid as error:
             raise InputError(f"pantocheck_assess, {error.channel}", error.found, "See the docstring.") from None
-    return GradedCase(grade_case(asked, Outcome(record), trust))
+    return GradedCase(grade_case(asked, Delivered(record), trust))
 
 
 def _one(name: str) -> Case:

@@ -1,58 +1,95 @@
-"""Systems under test: the reference simulator, a record on disk, a command."""
+"""Outcome of a case on a system: a delivery, a skip with its reason, or an error with its reason."""
 
 from dataclasses import dataclass, field
 
 from pantocheck.conformance.records.evaluation import Evaluation, Value
 from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.records.record_sidecar import RunTable
 from pantocheck.conformance.results.results_format import Chart, TextTable
 
 
 @dataclass(frozen=True)
-class Outcome:
-    """What a system delivers for a case.
+class StudyResult:
+    """Result of a study that compares several runs.
+
+    Parameters
+    ----------
+    findings : dict of int to dict of str to Value
+        Quantities by pantograph (0: the line) and name.
+    charts : tuple of Chart
+        Figures for the report.
+    tables : tuple of TextTable
+        Tables for the report.
+    """
+
+    findings: dict[int, dict[str, Value]] = field(default_factory=dict)
+    charts: tuple[Chart, ...] = ()
+    tables: tuple[TextTable, ...] = ()
+
+
+@dataclass(frozen=True)
+class Delivered:
+    """Data that a system delivered for a case.
 
     Parameters
     ----------
     record : Record or None
-        Of the run; None for a static case, and when the system could not run.
-    static : dict[str, Value]
+        Record of the passage; None for a static case, a mass drop or a summary.
+    static : dict of str to Value
         Quantities of the line at rest, by name.
-    simulated_s : float or None
-        Time that was simulated or measured [s]; None if unknown.
-    wall_s : float or None
-        Time the computation took [s]; None if unknown.
-    dt_s, element_m : float or None
-        Time step [s] and length of an element [m]; None if unknown.
-    notes : tuple[str, ...]
-        What a reader of the report should know of this run.
-    warnings : tuple[str, ...]
-        What should make him careful.
-    skipped : str or None
-        Why the system does not run this case; None if it did.
-    errored : str or None
-        One line on what went wrong; None if nothing did.
-    findings : dict[int, dict[str, Value]]
-        Quantities of a study, by pantograph (0: the line) and name.
-    charts, tables : tuple[Chart, ...] or tuple[TextTable, ...]
-        Of a study, for the report.
+    run : RunTable
+        Simulated time, computing time, time step and element length, as far as they are known.
+    notes : tuple of str
+        Remarks on the run for the reader of the report.
+    warnings : tuple of str
+        Caveats for the reader of the report.
     summary : Evaluation or None
-        Quantities that were delivered as numbers, in place of a record.
-    refined : Outcome or None
-        The same case with element and time step halved, from which the discretisation error is taken.
+        Quantities delivered as numbers in place of a record.
+    study : StudyResult
+        Result of a study; empty for a single run.
+    refined : Delivered or None
+        The same case with element length and time step halved, for the discretisation error.
     """
 
     record: Record | None = None
     static: dict[str, Value] = field(default_factory=dict)
-    simulated_s: float | None = None
-    wall_s: float | None = None
-    dt_s: float | None = None
-    element_m: float | None = None
+    run: RunTable = field(default_factory=RunTable)
     notes: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
-    skipped: str | None = None
-    errored: str | None = None
-    findings: dict[int, dict[str, Value]] = field(default_factory=dict)
-    charts: tuple[Chart, ...] = ()
-    tables: tuple[TextTable, ...] = ()
     summary: Evaluation | None = None
-    refined: "Outcome | None" = None
+    study: StudyResult = field(default_factory=StudyResult)
+    refined: "Delivered | None" = None
+
+
+@dataclass(frozen=True)
+class Skipped:
+    """The system does not run this case.
+
+    Parameters
+    ----------
+    reason : str
+        One line for the report.
+    """
+
+    reason: str
+
+
+@dataclass(frozen=True)
+class Errored:
+    """The system failed on this case.
+
+    Parameters
+    ----------
+    reason : str
+        One line for the report.
+    """
+
+    reason: str
+
+
+Outcome = Delivered | Skipped | Errored
+
+
+def missing_record_reason(outcome: Outcome) -> str:
+    """Reason why an outcome holds no record."""
+    return "the system delivered no record" if isinstance(outcome, Delivered) else outcome.reason

@@ -10,7 +10,8 @@ from pantocheck.conformance.grading.case_grading import grade_case, grade_criter
 from pantocheck.conformance.grading.extended_band import WARNING_PREFIX
 from pantocheck.conformance.grading.verdicts import Verdict, worst_verdict
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.results.results_format import CaseResult
 from pantocheck.conformance.self_test.mutants import MILD, MUTANTS, Mutant
 from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
@@ -101,7 +102,7 @@ def run_self_test(cases: Sequence[Case], progress: Callable[[str], None] | None 
         if progress:
             progress("the right system")
         outcome = ReferenceSimulator().run_unrefined(case)
-        if outcome.record is None:
+        if not isinstance(outcome, Delivered) or outcome.record is None:
             raise NothingToMutate(f"{case.id}: the reference simulator delivered no record")
         result = grade_case(case, outcome, TRUST)
         right[case.id] = result.verdict, _reason(result)
@@ -109,23 +110,22 @@ def run_self_test(cases: Sequence[Case], progress: Callable[[str], None] | None 
             for mutant in mutants:
                 if progress:
                     progress(mutant.name)
-                found.append(_row(mutant, case, outcome))
+                found.append(_row(mutant, case, outcome.record))
     in_order = {mutants: tuple(row for m in mutants for row in rows[mutants] if row.mutant == m) for mutants in rows}
     return SelfTest(right, in_order[MUTANTS], in_order[MILD])
 
 
-def _row(mutant: Mutant, case: Case, right: Outcome) -> Row:
-    if right.record is None:
-        raise NothingToMutate(case.id)
+def _row(mutant: Mutant, case: Case, right: Record) -> Row:
     try:
-        outcome = mutant.make(case, right.record)
+        outcome = mutant.make(case, right)
     except InputError as error:  # what the suite refuses to read: the same as a case that ends in error
         caught = mutant.caught_by == "record file"
         return Row(mutant, case.id, "error", "skip", (), ("record file",), caught, f"{error.where}: {error.found}")
     result = grade_case(case, outcome, TRUST)
-    criteria = grade_criteria(case, outcome, TRUST)
+    criteria = grade_criteria(case, outcome, TRUST) if isinstance(outcome, Delivered) else []
     outside = tuple(item.quantity for item in criteria if item.verdict == "fail")
-    found = check_record(case, outcome.record) if outcome.record is not None else []
+    record = outcome.record if isinstance(outcome, Delivered) else None
+    found = [] if record is None else check_record(case, record)
     checks = tuple(finding.check for finding in found if finding.kind != "unchecked")
     reasons: tuple[str, ...] = checks if result.verdict == "error" else (*checks, *(["limits"] if outside else []))
     return Row(

@@ -11,7 +11,7 @@ import numpy as np
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_writing import write_record
-from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.results.outcome import Delivered, Outcome
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.systems.record_folder import open_record_folder
 from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator, run_line
@@ -46,7 +46,7 @@ class Mutant:
 
 def _changed(**change: Callable[[Case, Record], Any]) -> MakeMutant:
     """The right record with some of its fields replaced."""
-    return lambda case, record: Outcome(replace(record, **{name: of(case, record) for name, of in change.items()}))
+    return lambda case, record: Delivered(replace(record, **{name: of(case, record) for name, of in change.items()}))
 
 
 def _filtered(order: int) -> MakeMutant:
@@ -55,7 +55,7 @@ def _filtered(order: int) -> MakeMutant:
     def make(case: Case, record: Record) -> Outcome:
         low_pass = replace(case.file.filter.low_pass, order=order)
         force = np.array([low_pass(force, record.rate) for force in record.force])
-        return Outcome(replace(record, force=force, filter_applied_Hz=low_pass.cutoff_Hz))
+        return Delivered(replace(record, force=force, filter_applied_Hz=low_pass.cutoff_Hz))
 
     return make
 
@@ -84,7 +84,7 @@ def _cut(case: Case, record: Record) -> Outcome:
     """The record ends in the middle of the evaluated stretch."""
     n = int(np.searchsorted(record.position[0], np.mean(case.evaluated)))
     channels = {name: getattr(record, name) for name in SAMPLE_CHANNELS}
-    return Outcome(replace(record, **{k: value[..., :n] for k, value in channels.items() if value is not None}))
+    return Delivered(replace(record, **{k: value[..., :n] for k, value in channels.items() if value is not None}))
 
 
 def _damaged(case: Case, record: Record) -> Outcome:
@@ -144,7 +144,7 @@ MILD: tuple[Mutant, ...] = (
     Mutant(
         "time shift, force alone",
         "The force comes 0.1 s late, and the record has no contact height.",
-        lambda case, record: Outcome(
+        lambda case, record: Delivered(
             replace(record, force=np.roll(record.force, round(0.1 * record.rate), axis=1), contact_height=None)
         ),
         None,

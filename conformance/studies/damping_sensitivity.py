@@ -9,7 +9,7 @@ from pantocheck.conformance.cases.library import library_folder
 from pantocheck.conformance.cases.study_tables import DampingSensitivity
 from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.records.evaluation import LINE, Value, evaluate_record
-from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.results.outcome import Delivered, Outcome, StudyResult, missing_record_reason
 from pantocheck.conformance.results.results_format import TextTable
 from pantocheck.conformance.studies.force_charts import draw_band_bars
 from pantocheck.conformance.systems.system import System
@@ -64,20 +64,19 @@ def run_damping_sensitivity(case: Case, system: System) -> Outcome:
         Under test.
     """
     outcome = system.run(case.without_study())
-    if outcome.record is None:
+    if not isinstance(outcome, Delivered) or outcome.record is None:
         return outcome
     values, missing = {OWN: evaluate_record(outcome.record, case.file.filter.low_pass).values}, []
     for name, damping in case.dampings.items():
         run = _once(system, case.with_damping(name, damping))
-        if run.record is None:
-            missing.append(f"damping '{name}': {run.errored or run.skipped or 'no record was delivered'}")
-        else:
+        if isinstance(run, Delivered) and run.record is not None:
             values[name] = evaluate_record(run.record, case.file.filter.low_pass).values
+        else:
+            missing.append(f"damping '{name}': {missing_record_reason(run)}")
     return replace(
         outcome,
         warnings=(*outcome.warnings, *missing),
-        charts=(*outcome.charts, *draw_band_bars(values, {}, BANDS)),
-        tables=(*outcome.tables, _table(values)),
+        study=StudyResult(charts=draw_band_bars(values, {}, BANDS), tables=(_table(values),)),
     )
 
 

@@ -11,7 +11,7 @@ from pantocheck.conformance.quantities.filters import filter_force
 from pantocheck.conformance.quantities.signals import EXTENDED_CUTOFF_HZ
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.evaluation import LINE, Value
-from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.results.results_format import Chart, Series
 from pantocheck.conformance.results.traces import thin_series
 
@@ -56,14 +56,14 @@ def _bars(label: str, values: Mapping[str, Value], bands: Sequence[str]) -> Seri
     return Series(label=label, style="bars", x=[i for i, _ in there], y=[value for _, value in there])
 
 
-def trailing_force(case: Case, study: DampingChange, runs: Mapping[str, Outcome]) -> tuple[Chart, ...]:
+def trailing_force(case: Case, study: DampingChange, runs: Mapping[str, Delivered]) -> tuple[Chart, ...]:
     """Contact force of the last pantograph over one span, low-passed at 20 and at 50 Hz (the study's Figure 11).
 
     Parameters
     ----------
     case, study : Case or DampingChange
         Which span.
-    runs : Mapping[str, Outcome]
+    runs : Mapping[str, Delivered]
         Outcome by damping model.
     """
     span = case.line.geometry.span_m

@@ -8,7 +8,7 @@ from pantocheck.conformance.cases.study_tables import (
     ReleaseVelocity,
     SteadyArmDamper,
 )
-from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.results.outcome import Outcome, Skipped
 from pantocheck.conformance.systems.system import System
 
 ONLY_BUILTIN = "this study drives the reference simulator itself; other systems deliver no such runs"
@@ -36,7 +36,7 @@ def run_study(case: Case, system: System) -> Outcome:
 
             return run_damping_sensitivity(case, system)
         case _ if system.kind != "builtin":
-            return Outcome(skipped=ONLY_BUILTIN)
+            return Skipped(ONLY_BUILTIN)
         case None:
             from pantocheck.conformance.studies.vovan2015.mass_drop_study import run_mass_drop_study
 

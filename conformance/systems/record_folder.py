@@ -12,7 +12,7 @@ from pantocheck.conformance.records.record_opening import RECORD_SCHEMAS, open_r
 from pantocheck.conformance.records.record_reading import read_record
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.record_summary import RecordSummary
-from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.results.outcome import Delivered, Errored, Outcome, Skipped
 
 
 @dataclass(frozen=True)
@@ -36,25 +36,20 @@ class RecordFolder:
         """Read the record of a case; a case without one is skipped."""
         path = dict(self.sidecars).get(case.id)
         if path is None:
-            return Outcome(skipped="there is no record of this case")
+            return Skipped("there is no record of this case")
         said = open_record(path)
         if isinstance(said, RecordSummary):
             return _of_summary(said, case)
         record, sidecar = read_record(path, None if case.is_static else case.evaluated)
-        run = sidecar.run
-        return Outcome(record, {}, run.simulated_s, run.wall_s, run.dt_s, run.element_m)
+        return Delivered(record, run=sidecar.run)
 
 
 def _of_summary(summary: RecordSummary, case: Case) -> Outcome:
     if (mismatch := _mismatch(summary, case)) is not None:
-        return Outcome(errored=mismatch)
+        return Errored(mismatch)
     source = (summary.source,) if isinstance(summary.source, str) else tuple(summary.source)
-    run = summary.run
-    return Outcome(
-        simulated_s=run.simulated_s,
-        wall_s=run.wall_s,
-        dt_s=run.dt_s,
-        element_m=run.element_m,
+    return Delivered(
+        run=summary.run,
         notes=(
             f"The values are a summary record, graded as given ({summary.trust}): {source_text(source)}",
             *((summary.note.strip(),) if summary.note else ()),

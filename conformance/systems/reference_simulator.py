@@ -11,7 +11,8 @@ from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.records.evaluation import pantograph_signals
 from pantocheck.conformance.records.record import Record
-from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.records.record_sidecar import RunTable
+from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph, start_positions, watched_supports
 from pantocheck.conformance.simulation.static_quantities import compute_static_quantities, span_positions
@@ -46,14 +47,14 @@ class ReferenceSimulator:
     version: str = version("pantocheck")
     kind: Literal["builtin"] = "builtin"
 
-    def run(self, case: Case) -> Outcome:
+    def run(self, case: Case) -> Delivered:
         """Run a case."""
         steps = case.file.discretisation
         coarse, uplift_forces = _outcome(case, steps.element_m, steps.time_step_s)
         fine, _ = _outcome(case, steps.element_m / 2, steps.time_step_s / 2, uplift_forces)
         return replace(coarse, refined=fine)
 
-    def run_unrefined(self, case: Case) -> Outcome:
+    def run_unrefined(self, case: Case) -> Delivered:
         """Run a case once, at its own discretisation."""
         steps = case.file.discretisation
         return _outcome(case, steps.element_m, steps.time_step_s)[0]
@@ -61,13 +62,13 @@ class ReferenceSimulator:
 
 def _outcome(
     case: Case, element: float, step: float, uplift_forces: tuple[float, ...] | None = None
-) -> tuple[Outcome, tuple[float, ...]]:
+) -> tuple[Delivered, tuple[float, ...]]:
     return run_line(case, discretise(build_catenary(case.line), element), element, step, uplift_forces)
 
 
 def run_line(
     case: Case, line: DiscretisedLine, element: float, step: float, uplift_forces: tuple[float, ...] | None = None
-) -> tuple[Outcome, tuple[float, ...]]:
+) -> tuple[Delivered, tuple[float, ...]]:
     """Run a case on a line that is discretised already.
 
     Parameters
@@ -83,12 +84,12 @@ def run_line(
 
     Returns
     -------
-    tuple[Outcome, tuple[float, ...]]
+    tuple[Delivered, tuple[float, ...]]
         Outcome, uplift forces.
     """
-    outcome = Outcome(static=compute_static_quantities(case, line), dt_s=step, element_m=element)
+    static, run = compute_static_quantities(case, line), RunTable(dt_s=step, element_m=element)
     if case.is_static:
-        return outcome, ()
+        return Delivered(static=static, run=run), ()
     uses = case.file.pantograph
     begin = uplift_forces or tuple(use.uplift_force_N or use.target_mean_force_N or 0.0 for use in uses)
     simulate_passage(
@@ -100,7 +101,8 @@ def run_line(
         begin,
         [None if uplift_forces else use.target_mean_force_N for use in uses],
     )
-    return replace(outcome, record=made.record, simulated_s=made.simulated_s, wall_s=made.wall_s), forces
+    run = run.model_copy(update={"simulated_s": made.simulated_s, "wall_s": made.wall_s})
+    return Delivered(made.record, static, run), forces
 
 
 def _run(case: Case, line: DiscretisedLine, step: float, uplift_forces: tuple[float, ...]) -> PassageRun:

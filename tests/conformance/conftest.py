@@ -12,7 +12,8 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import library_folder, load_case
 from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.records.record import Record
-from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.records.record_sidecar import RunTable
+from pantocheck.conformance.results.outcome import Delivered, Outcome
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 
 MEAN, SIGMA, UPLIFT_MM = 119.0, 28.0, 50.0
@@ -31,8 +32,12 @@ class Wave:
 
     def run(self, case: Case) -> Outcome:
         record = self.record(case)
-        refined = Outcome(Wave(self.mean, 1.01 * self.sigma, 2 * self.rate).record(case))
-        return Outcome(record, {}, record.time[-1], 0.1, 1 / self.rate, 0.5, refined=refined)
+        refined = Delivered(Wave(self.mean, 1.01 * self.sigma, 2 * self.rate).record(case))
+        return Delivered(
+            record,
+            run=RunTable(simulated_s=float(record.time[-1]), wall_s=0.1, dt_s=1 / self.rate, element_m=0.5),
+            refined=refined,
+        )
 
     def record(self, case: Case) -> Record:
         time = np.arange(int((case.end - case.start) / case.speed * self.rate)) / self.rate

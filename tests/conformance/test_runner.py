@@ -13,7 +13,7 @@ from numpy.testing import assert_allclose
 from pantocheck.conformance.cases.library import select_cases, source_text
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.records.record_writing import write_record
-from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.results.outcome import Delivered, Errored, Skipped
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.runner import RunInterrupted, run_cases
 from pantocheck.conformance.schemas import schema_of
@@ -114,7 +114,7 @@ def test_provisional_limit_says_what_it_would_have_been_and_counts_when_asked(ca
 
 
 def test_one_broken_case_leaves_the_others(cases, wave):
-    good = Outcome(wave().record(cases[1]))
+    good = Delivered(wave().record(cases[1]))
     results = run_cases(cases, Scripted({cases[0].id: ZeroDivisionError("no mass\n at all"), cases[1].id: good}))
     assert [case.verdict for case in results.cases] == ["error", "fail"]
     assert results.cases[0].reason == "ZeroDivisionError: no mass at all"
@@ -125,13 +125,13 @@ def test_one_broken_case_leaves_the_others(cases, wave):
 def test_skipped_errored_and_foreign_outcomes(cases, wave):
     case = cases[0]
     for outcome, verdict, reason in (
-        (Outcome(skipped="no stitch wires"), "skip", "no stitch wires"),
-        (Outcome(errored="diverged at 1.2 s"), "error", "diverged at 1.2 s"),
-        (Outcome(), "error", "delivered no record"),
-        (Outcome(wave().record(cases[1])), "error", "made at 300 km/h, the case runs at 250 km/h"),
-        (Outcome(replace(wave().record(case), evaluated=(180.0, 300.0))), "error", "evaluates 180 m to 300 m"),
-        (Outcome(wave().record(case), {"beauty": 1.0}), "error", "unknown quantity 'beauty'"),
-        (Outcome(wave().record(case), {"max_uplift_at_support_mm": 52.0}), "error", "it follows from the record"),
+        (Skipped("no stitch wires"), "skip", "no stitch wires"),
+        (Errored("diverged at 1.2 s"), "error", "diverged at 1.2 s"),
+        (Delivered(), "error", "delivered no record"),
+        (Delivered(wave().record(cases[1])), "error", "made at 300 km/h, the case runs at 250 km/h"),
+        (Delivered(replace(wave().record(case), evaluated=(180.0, 300.0))), "error", "evaluates 180 m to 300 m"),
+        (Delivered(wave().record(case), {"beauty": 1.0}), "error", "unknown quantity 'beauty'"),
+        (Delivered(wave().record(case), {"max_uplift_at_support_mm": 52.0}), "error", "it follows from the record"),
     ):
         (result,) = run_cases([case], Scripted({case.id: outcome})).cases
         assert result.verdict == verdict
@@ -145,7 +145,7 @@ def test_truncated_record_never_passes(case_250, wave):
         whole, time=whole.time[:n], position=whole.position[:, :n], force=whole.force[:, :n],
         contact_height=None, support_uplift=whole.support_uplift[:, :n],
     )  # fmt: skip
-    (result,) = run_cases([case_250], Scripted({case_250.id: Outcome(cut)})).cases
+    (result,) = run_cases([case_250], Scripted({case_250.id: Delivered(cut)})).cases
     assert result.verdict == "error"
     assert result.quantities.keys() == {"0"}
     assert not result.criteria
@@ -162,7 +162,7 @@ def test_short_run_out_is_warned_of(case_250, wave):
         record, time=record.time[:n], position=record.position[:, :n], force=record.force[:, :n],
         contact_height=None, support_uplift=record.support_uplift[:, :n],
     )  # fmt: skip
-    (result,) = run_cases([case_250], Scripted({case_250.id: Outcome(cut)})).cases
+    (result,) = run_cases([case_250], Scripted({case_250.id: Delivered(cut)})).cases
     assert any("run-out" in warning for warning in result.warnings)
     assert not any("run-out" in warning for warning in run_cases([case_250], wave()).cases[0].warnings)
 
@@ -181,7 +181,7 @@ def test_list_valued_static_quantity_is_graded_item_by_item(case_250, wave):
         Limit(quantity="dropper_length_m", item=i, lower=x - 0.001, upper=x + 0.001, trust="secondary", source="test")
         for i, x in enumerate((1.017, 0.9, 0.81, 0.7), 1)
     )
-    outcome = Outcome(wave().record(case_250), {"dropper_length_m": lengths})
+    outcome = Delivered(wave().record(case_250), {"dropper_length_m": lengths})
     (result,) = run_cases([replace(case_250, limits=limits)], Scripted({case_250.id: outcome})).cases
     assert [item.verdict for item in result.criteria] == ["pass", "fail", "pass", "skip"]
     assert result.quantities["0"]["dropper_length_m"] == list(lengths)
@@ -190,17 +190,17 @@ def test_list_valued_static_quantity_is_graded_item_by_item(case_250, wave):
 def test_unknown_quantity_of_a_line_at_rest_is_an_error():
     """Passed over, a misspelt name would end as a case without values, which is skipped."""
     (case,) = select_cases(["en50318-2018/ac-simple/static"])
-    (result,) = run_cases([case], Scripted({case.id: Outcome(static={"dropper_lenght_m": (1.0,)})})).cases
+    (result,) = run_cases([case], Scripted({case.id: Delivered(static={"dropper_lenght_m": (1.0,)})})).cases
     assert (result.verdict, result.reason) == ("error", "the system delivered an unknown quantity 'dropper_lenght_m'")
 
 
 def test_close_call_of_the_line_is_not_called_a_pantograph(case_250, wave):
     """A dropper 0.4 mm from its limit with a discretisation error of 1 mm: which one, and whose."""
     limit = Limit(quantity="dropper_length_m", item=2, lower=0.8956, upper=1.0, trust="secondary", source="test")
-    outcome = Outcome(
+    outcome = Delivered(
         wave().record(case_250),
         {"dropper_length_m": (1.017, 0.896)},
-        refined=Outcome(wave().record(case_250), {"dropper_length_m": (1.017, 0.897)}),
+        refined=Delivered(wave().record(case_250), {"dropper_length_m": (1.017, 0.897)}),
     )
     (result,) = run_cases([replace(case_250, limits=(limit,))], Scripted({case_250.id: outcome})).cases
     assert any(text.startswith("dropper_length_m[2] of the line lies 0.0004 m") for text in result.warnings)
@@ -218,7 +218,7 @@ def test_failed_precondition_skips_what_builds_on_it(cases, wave):
 
 
 def test_interrupted_run_keeps_what_was_finished(cases, wave):
-    system = Scripted({cases[0].id: Outcome(wave().record(cases[0])), cases[1].id: KeyboardInterrupt()})
+    system = Scripted({cases[0].id: Delivered(wave().record(cases[0])), cases[1].id: KeyboardInterrupt()})
     seen = []
     with pytest.raises(RunInterrupted) as caught:
         run_cases(cases, system, progress=lambda result: seen.append(result.id))

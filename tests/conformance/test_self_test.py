@@ -46,11 +46,11 @@ def test_document_is_of_these_mutants(done):
 
 def test_missed_mutant_is_a_failed_self_test(monkeypatch, tmp_path):
     """A mutant that is not one: the self-test must be able to fail as well."""
-    from pantocheck.conformance.results.outcome import Outcome
+    from pantocheck.conformance.results.outcome import Delivered
     from pantocheck.conformance.self_test import bench
     from pantocheck.conformance.self_test.mutants import Mutant
 
-    harmless = Mutant("harmless", "Nothing.", lambda case, record: Outcome(record), "limits")
+    harmless = Mutant("harmless", "Nothing.", lambda case, record: Delivered(record), "limits")
     monkeypatch.setattr(bench, "MUTANTS", (harmless,))
     monkeypatch.setattr(bench, "MILD", ())
     done = CliRunner().invoke(app, ["self-test", "en50318-2002/250", "--markdown", str(tmp_path / "page.md")])

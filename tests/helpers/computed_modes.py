@@ -8,7 +8,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.identification.mode import Mode
 from pantocheck.conformance.mass_drops.drop_record import DropChannel
-from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.results.outcome import Delivered, StudyResult
 from pantocheck.conformance.results.results_format import Criterion
 from pantocheck.conformance.studies.vovan2015.damping_models import computed_damping_ratios
 from pantocheck.model import Catenary, discretise
@@ -43,6 +43,8 @@ def computed_modes(line: Catenary, spans: int, highest: float) -> list[Mode]:
 def verdicts(case: Case, findings: dict) -> dict[tuple[str, int | None], Criterion]:
     """Criteria of a case for findings, by quantity and item (or pantograph where there is one)."""
     result = grade_case(
-        replace(case, file=case.file.model_copy(update={"speed_km_h": None})), Outcome(findings=findings), "primary"
+        replace(case, file=case.file.model_copy(update={"speed_km_h": None})),
+        Delivered(study=StudyResult(findings)),
+        "primary",
     )
     return {(row.quantity, row.item or row.pantograph or None): row for row in result.criteria}

@@ -6,7 +6,14 @@ from dataclasses import replace
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import DampingChange
 from pantocheck.conformance.records.evaluation import LINE, Value, evaluate_record
-from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.results.outcome import (
+    Delivered,
+    Errored,
+    Outcome,
+    Skipped,
+    StudyResult,
+    missing_record_reason,
+)
 from pantocheck.conformance.results.results_format import TextTable
 from pantocheck.conformance.studies.force_charts import draw_band_bars, trailing_force
 from pantocheck.conformance.studies.vovan2015.findings_table import build_findings_table
@@ -32,31 +39,36 @@ def run_damping_change(case: Case, study: DampingChange, system: System) -> Outc
         Under test; it is asked for both passages.
     """
     ((name, damping),) = case.dampings.items()
-    before, after = system.run(case.with_damping(name, damping)), system.run(case.without_study())
-    for run, of in ((before, name), (after, study.after)):
-        if run.record is None:
-            reason = run.errored or run.skipped or "no record was delivered"
-            return Outcome(skipped=run.skipped and f"{of}: {reason}", errored=run.errored and f"{of}: {reason}")
+    runs: dict[str, Delivered] = {}
+    for model, variant in ((name, case.with_damping(name, damping)), (study.after, case.without_study())):
+        outcome = system.run(variant)
+        if not isinstance(outcome, Delivered) or outcome.record is None:
+            failure = Skipped if isinstance(outcome, Skipped) else Errored
+            return failure(f"{model}: {missing_record_reason(outcome)}")
+        runs[model] = outcome
+    before, after = runs[name], runs[study.after]
     values = {name: _values(case, before), study.after: _values(case, after)}
     found = band_changes(values[name], values[study.after])
     refined = after.refined
     if refined is not None and before.refined is not None:
         fine = band_changes(_values(case, before.refined), _values(case, refined))
-        refined = replace(refined, findings=fine)
+        refined = replace(refined, study=StudyResult(fine))
     printed = {(one.model, one.pantograph): one.values for one in study.printed}
     paper = _printed_changes(printed, name, study.after)
     return replace(
         after,
-        findings=found,
         refined=refined,
-        charts=(
-            *draw_band_bars(values, printed, BANDS),
-            *trailing_force(case, study, {name: before, study.after: after}),
-        ),
-        tables=(
-            build_findings_table(case.limits, found, paper),
-            _beside(values, printed),
-            build_provenance_table(case),
+        study=StudyResult(
+            findings=found,
+            charts=(
+                *draw_band_bars(values, printed, BANDS),
+                *trailing_force(case, study, runs),
+            ),
+            tables=(
+                build_findings_table(case.limits, found, paper),
+                _beside(values, printed),
+                build_provenance_table(case),
+            ),
         ),
     )
 
@@ -85,7 +97,7 @@ def band_changes(before: Values, after: Values) -> dict[int, dict[str, Value]]:
     return found
 
 
-def _values(case: Case, outcome: Outcome) -> Values:
+def _values(case: Case, outcome: Delivered) -> Values:
     if outcome.record is None:
         return {}
     return evaluate_record(outcome.record, case.file.filter.low_pass).values

@@ -18,7 +18,8 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import DropperDamping
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.evaluation import LINE, Value
-from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.records.record_sidecar import RunTable
+from pantocheck.conformance.results.outcome import Delivered, StudyResult
 from pantocheck.conformance.results.results_format import Chart, Mark, Series
 from pantocheck.conformance.results.traces import thin_series
 from pantocheck.conformance.simulation.catenary_model import build_catenary
@@ -58,7 +59,7 @@ LAWS = {
 GRADED = "only the elastic force is compensated"
 
 
-def run_dropper_damping(case: Case, study: DropperDamping) -> Outcome:
+def run_dropper_damping(case: Case, study: DropperDamping) -> Delivered:
     """Run the case's passage once for every coefficient and law.
 
     Parameters
@@ -89,15 +90,19 @@ def run_dropper_damping(case: Case, study: DropperDamping) -> Outcome:
     }
     findings = {LINE: find_transition(coefficients, force[GRADED])}
     runs = 1 + len(LAWS) * coefficients.size
-    return Outcome(
+    return Delivered(
         record=record_passage(case, passage, at_rest),
-        simulated_s=runs * passage.duration,
-        wall_s=time.perf_counter() - begin,
-        dt_s=steps.time_step_s,
-        element_m=steps.element_m,
-        findings=findings,
-        charts=(_chart(case, study, force),),
-        tables=(build_findings_table(case.limits, findings, {}), build_provenance_table(case)),
+        run=RunTable(
+            simulated_s=runs * passage.duration,
+            wall_s=time.perf_counter() - begin,
+            dt_s=steps.time_step_s,
+            element_m=steps.element_m,
+        ),
+        study=StudyResult(
+            findings=findings,
+            charts=(_chart(case, study, force),),
+            tables=(build_findings_table(case.limits, findings, {}), build_provenance_table(case)),
+        ),
         notes=(
             "Which force the study compensates is not printed. Graded is the law that compensates the elastic force "
             "only: it locks the dropper as the study describes; the law of the reference simulator does not lock it.",

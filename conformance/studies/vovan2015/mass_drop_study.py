@@ -7,7 +7,8 @@ import numpy as np
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.identification.identify import Identification, identify_modes
 from pantocheck.conformance.records.evaluation import LINE
-from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.records.record_sidecar import RunTable
+from pantocheck.conformance.results.outcome import Delivered, StudyResult
 from pantocheck.conformance.results.results_format import Chart, Mark, Series
 from pantocheck.conformance.results.traces import thin_series
 from pantocheck.conformance.simulation.catenary_model import build_catenary
@@ -20,7 +21,7 @@ from pantocheck.model import discretise
 from pantocheck.model.modal.modal_damping import modes_below
 
 
-def run_mass_drop_study(case: Case) -> Outcome:
+def run_mass_drop_study(case: Case) -> Delivered:
     """Simulate a case's drops, identify the modes from their records, and report on groups, models and fit.
 
     Parameters
@@ -40,16 +41,20 @@ def run_mass_drop_study(case: Case) -> Outcome:
         + ("no dropper slack after the release." if last is None else f"droppers slack until {last:.2f} s after it.")
         for i, (test, last) in enumerate(zip(told.drop, slack, strict=True), 1)
     ]
-    return Outcome(
-        simulated_s=len(drops) * (told.hanging_s + told.record_s),
-        wall_s=time.perf_counter() - begin,
-        dt_s=steps.time_step_s,
-        element_m=steps.element_m,
+    return Delivered(
+        run=RunTable(
+            simulated_s=len(drops) * (told.hanging_s + told.record_s),
+            wall_s=time.perf_counter() - begin,
+            dt_s=steps.time_step_s,
+            element_m=steps.element_m,
+        ),
         notes=tuple(notes),
         warnings=found.warnings,
-        findings={LINE: compute_group_findings(found.modes)},
-        charts=(_against_frequency(case, found, bound), _boxes(found, bound), *fit_charts),
-        tables=(build_provenance_table(case), *fit_tables),
+        study=StudyResult(
+            findings={LINE: compute_group_findings(found.modes)},
+            charts=(_against_frequency(case, found, bound), _boxes(found, bound), *fit_charts),
+            tables=(build_provenance_table(case), *fit_tables),
+        ),
     )
 
 

@@ -7,7 +7,8 @@ import numpy as np
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import ReleaseVelocity
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.records.record_sidecar import RunTable
+from pantocheck.conformance.results.outcome import Delivered, StudyResult
 from pantocheck.conformance.results.results_format import Chart, Series, TextTable
 from pantocheck.conformance.results.traces import thin_series
 from pantocheck.conformance.simulation.drop_simulation import ORDER, SimulatedDrop, require_mass_drop, simulate_drop
@@ -15,7 +16,7 @@ from pantocheck.conformance.studies.vovan2015.damping_models import build_lines
 from pantocheck.conformance.studies.vovan2015.provenance_table import build_provenance_table
 
 
-def run_release_velocity(case: Case, study: ReleaseVelocity) -> Outcome:
+def run_release_velocity(case: Case, study: ReleaseVelocity) -> Delivered:
     """Simulate the case's first drop under each damping model and draw the velocity in every window.
 
     Parameters
@@ -46,19 +47,23 @@ def run_release_velocity(case: Case, study: ReleaseVelocity) -> Outcome:
     for name, run in runs.items():
         rms = [float(np.sqrt(np.mean(_window(run, study, window)[1] ** 2))) for window in study.windows_s]
         rows.append([name, *(f"{1e3 * value:.4g} mm/s" for value in rms)])
-    return Outcome(
-        simulated_s=len(runs) * (told.hanging_s + told.record_s),
-        wall_s=time.perf_counter() - begin,
-        dt_s=steps.time_step_s,
-        element_m=steps.element_m,
-        charts=tuple(_chart(runs, study, window, where) for window in study.windows_s),
-        tables=(
-            TextTable(
-                caption=f"RMS of the velocity of the {where}",
-                columns=["Damping", *(f"{start:g} s to {end:g} s" for start, end in study.windows_s)],
-                rows=rows,
+    return Delivered(
+        run=RunTable(
+            simulated_s=len(runs) * (told.hanging_s + told.record_s),
+            wall_s=time.perf_counter() - begin,
+            dt_s=steps.time_step_s,
+            element_m=steps.element_m,
+        ),
+        study=StudyResult(
+            charts=tuple(_chart(runs, study, window, where) for window in study.windows_s),
+            tables=(
+                TextTable(
+                    caption=f"RMS of the velocity of the {where}",
+                    columns=["Damping", *(f"{start:g} s to {end:g} s" for start, end in study.windows_s)],
+                    rows=rows,
+                ),
+                build_provenance_table(case),
             ),
-            build_provenance_table(case),
         ),
     )
 

@@ -9,7 +9,8 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import SteadyArmDamper
 from pantocheck.conformance.identification.identify import Identification, identify_modes
 from pantocheck.conformance.records.evaluation import LINE, Value
-from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.records.record_sidecar import RunTable
+from pantocheck.conformance.results.outcome import Delivered, StudyResult
 from pantocheck.conformance.results.results_format import Chart, Mark, Series, TextTable
 from pantocheck.conformance.results.traces import thin_series
 from pantocheck.conformance.simulation.catenary_model import build_catenary
@@ -20,7 +21,7 @@ from pantocheck.conformance.studies.vovan2015.provenance_table import build_prov
 Bands = tuple[tuple[float, float], ...]
 
 
-def run_steady_arm_damper(case: Case, study: SteadyArmDamper) -> Outcome:
+def run_steady_arm_damper(case: Case, study: SteadyArmDamper) -> Delivered:
     """Simulate and identify the case's drops without and with the damper, and compare band by band.
 
     Parameters
@@ -41,18 +42,22 @@ def run_steady_arm_damper(case: Case, study: SteadyArmDamper) -> Outcome:
     without, damped = found.values()
     medians = tuple(_medians(one, study.bands_Hz) for one in (without, damped))
     findings = {LINE: damping_gains(*medians)}
-    return Outcome(
-        simulated_s=2 * len(told.drop) * (told.hanging_s + told.record_s),
-        wall_s=time.perf_counter() - begin,
-        dt_s=steps.time_step_s,
-        element_m=steps.element_m,
+    return Delivered(
+        run=RunTable(
+            simulated_s=2 * len(told.drop) * (told.hanging_s + told.record_s),
+            wall_s=time.perf_counter() - begin,
+            dt_s=steps.time_step_s,
+            element_m=steps.element_m,
+        ),
         warnings=tuple(dict.fromkeys(text for one in found.values() for text in one.warnings)),
-        findings=findings,
-        charts=(_chart(found, study.bands_Hz[-1][0]),),
-        tables=(
-            build_findings_table(case.limits, findings, {}),
-            _table(study.bands_Hz, *medians),
-            build_provenance_table(case),
+        study=StudyResult(
+            findings=findings,
+            charts=(_chart(found, study.bands_Hz[-1][0]),),
+            tables=(
+                build_findings_table(case.limits, findings, {}),
+                _table(study.bands_Hz, *medians),
+                build_provenance_table(case),
+            ),
         ),
     )
 

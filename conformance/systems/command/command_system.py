@@ -9,7 +9,7 @@ from typing import Literal
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.results.outcome import Errored, Outcome, Skipped
 from pantocheck.conformance.systems.command.case_message import build_case_message
 from pantocheck.conformance.systems.command.delivery import DeliveryRefused, read_delivery
 from pantocheck.conformance.systems.command.program import Program, ProgramFailed
@@ -57,7 +57,7 @@ class CommandSystem:
     def run(self, case: Case) -> Outcome:
         """Run a case in a fresh process; whatever goes wrong there is the error of this case alone."""
         if self.broken is not None:
-            return Outcome(errored=self.broken)
+            return Errored(self.broken)
         with tempfile.TemporaryDirectory(prefix="pantocheck-", ignore_cleanup_errors=True) as name:
             folder = Path(name)
             try:
@@ -77,11 +77,17 @@ class CommandSystem:
                     wall = time.monotonic() - begin
                     program.send(encode_message("stop"))
                     warnings = () if program.ended() else (f"{self.name} did not end when told to, and was ended",)
-                return replace(_outcome(case, answer, folder, wall), warnings=warnings)
+                match answer:
+                    case SkippedAnswer():
+                        return Skipped(answer.reason)
+                    case ErroredAnswer():
+                        return Errored(answer.reason)
+                    case DeliveredAnswer():
+                        return replace(read_delivery(case, answer, folder, wall), warnings=warnings)
             except (ProgramFailed, AnswerRefused, DeliveryRefused) as error:
-                return Outcome(errored=f"{self.name}: {error}")
+                return Errored(f"{self.name}: {error}")
             except InputError as error:
-                return Outcome(errored=f"{self.name}: {error.where}: {error.found}")
+                return Errored(f"{self.name}: {error.where}: {error.found}")
 
 
 def _answer(line: bytes) -> DeliveredAnswer | SkippedAnswer | ErroredAnswer:
@@ -91,14 +97,6 @@ def _answer(line: bytes) -> DeliveredAnswer | SkippedAnswer | ErroredAnswer:
     if answer.id != RUN:
         raise AnswerRefused(f"its answer is to run {answer.id}, asked was run {RUN}")
     return answer
-
-
-def _outcome(case: Case, answer: DeliveredAnswer | SkippedAnswer | ErroredAnswer, folder: Path, wall: float) -> Outcome:
-    if isinstance(answer, SkippedAnswer):
-        return Outcome(skipped=answer.reason)
-    if isinstance(answer, ErroredAnswer):
-        return Outcome(errored=answer.reason)
-    return read_delivery(case, answer, folder, wall)
 
 
 def start_program(program: Program, limit: float) -> Started:

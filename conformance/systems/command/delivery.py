@@ -6,7 +6,8 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.input_files.atomic_writing import file_digest
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record_reading import MAX_RECORD_BYTES, read_record
-from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.records.record_sidecar import RunTable
+from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.systems.command.protocol_messages import DeliveredAnswer, File
 
 
@@ -14,7 +15,7 @@ class DeliveryRefused(ValueError):
     """Files are missing, changed, out of place or of another case: graded, they would speak for a run they are not."""
 
 
-def read_delivery(case: Case, answer: DeliveredAnswer, folder: Path, wall: float) -> Outcome:
+def read_delivery(case: Case, answer: DeliveredAnswer, folder: Path, wall: float) -> Delivered:
     """Read what was delivered; to be called when the program has ended and can change its files no more.
 
     Parameters
@@ -36,7 +37,7 @@ def read_delivery(case: Case, answer: DeliveredAnswer, folder: Path, wall: float
         The record itself is wrong.
     """
     if answer.record is None:
-        return Outcome(static=dict(answer.static), wall_s=wall, notes=answer.notes)
+        return Delivered(static=dict(answer.static), run=RunTable(wall_s=wall), notes=answer.notes)
     sidecar_path, table_path = (_checked(file, folder) for file in (answer.record.sidecar, answer.record.table))
     record, sidecar = read_record(sidecar_path, None if case.is_static else case.evaluated)
     if sidecar_path.parent / sidecar.file != table_path:
@@ -44,15 +45,9 @@ def read_delivery(case: Case, answer: DeliveredAnswer, folder: Path, wall: float
     if sidecar.case != case.id:
         raise DeliveryRefused(f"the record is of case {sidecar.case!r}, asked was {case.id!r}")
     run = sidecar.run
-    return Outcome(
-        record,
-        dict(answer.static),
-        simulated_s=run.simulated_s,
-        wall_s=wall if run.wall_s is None else run.wall_s,
-        dt_s=run.dt_s,
-        element_m=run.element_m,
-        notes=answer.notes,
-    )
+    if run.wall_s is None:
+        run = run.model_copy(update={"wall_s": wall})
+    return Delivered(record, dict(answer.static), run, answer.notes)
 
 
 def _checked(file: File, folder: Path) -> Path:

@@ -11,7 +11,7 @@ from pantocheck.conformance.consistency.force_dynamics import fit_motion
 from pantocheck.conformance.consistency.record_checks import check_record
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.quantities.filters import LowPass
-from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.results.outcome import Delivered
 
 
 @pytest.fixture
@@ -120,10 +120,10 @@ def test_positions_against_speed_supports_and_stretch(case_250, record):
 
 
 def test_contradiction_is_the_error_of_its_case_and_a_missing_channel_a_note(case_250, record):
-    wrong = grade_case(case_250, Outcome(replace(record, force=1.05 * record.force)), "secondary")
+    wrong = grade_case(case_250, Delivered(replace(record, force=1.05 * record.force)), "secondary")
     assert (wrong.verdict, wrong.criteria) == ("error", [])
     assert "is its gain or unit right?" in (wrong.reason or "")
     assert wrong.quantities["1"]["mean_force_N"] == pytest.approx(1.05 * 119.0, rel=1e-4)
-    bare = grade_case(case_250, Outcome(replace(record, contact_height=None)), "secondary")
+    bare = grade_case(case_250, Delivered(replace(record, contact_height=None)), "secondary")
     assert bare.criteria
     assert any(note.startswith("not checked, force against motion") for note in bare.notes)

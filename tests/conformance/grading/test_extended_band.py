@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pantocheck.conformance.grading.extended_band import NOT_VALIDATED
-from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.records.record_sidecar import RunTable
+from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.runner import run_cases
 
 
@@ -15,12 +16,12 @@ def rippled(wave, case, amplitude):
     return replace(record, force=record.force + amplitude * np.sin(2 * np.pi * 35.0 * record.time))
 
 
-def warnings(wave, case, fine, **facts):
+def warnings(wave, case, fine, **run):
     @dataclass(frozen=True)
     class Rippled(wave):
         def run(self, case):
-            refined = None if fine is None else Outcome(rippled(wave, case, fine))
-            return Outcome(rippled(wave, case, 10.0), refined=refined, **facts)
+            refined = None if fine is None else Delivered(rippled(wave, case, fine))
+            return Delivered(rippled(wave, case, 10.0), run=RunTable(**run), refined=refined)
 
     (result,) = run_cases([case], Rippled()).cases
     return [text for text in result.warnings if text.startswith("20-50 Hz")]
@@ -49,7 +50,7 @@ def test_no_warning_where_there_is_no_such_band(case_250, wave):
     @dataclass(frozen=True)
     class Filtered(wave):
         def run(self, case):
-            return Outcome(replace(wave().record(case), filter_applied_Hz=20.0))
+            return Delivered(replace(wave().record(case), filter_applied_Hz=20.0))
 
     (result,) = run_cases([case_250], Filtered()).cases
     assert not [text for text in result.warnings if text.startswith("20-50 Hz")]

@@ -10,7 +10,7 @@ from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.grading.section_spread import section_spread
 from pantocheck.conformance.records.evaluation import evaluate_record
 from pantocheck.conformance.reports.certificate.criteria_rows import shifted
-from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.results.outcome import Delivered
 
 
 @pytest.fixture
@@ -59,7 +59,7 @@ def test_verdict_that_another_stretch_could_turn_is_named(growing):
     value = evaluate_record(record, case.file.filter.low_pass).values[1]["mean_force_N"]
     assert isinstance(value, float)
     limit = Limit(quantity="mean_force_N", lower=value - 1.0, upper=value + 50, trust="secondary", source="test")
-    result = grade_case(replace(case, limits=(limit,)), Outcome(record), "secondary")
+    result = grade_case(replace(case, limits=(limit,)), Delivered(record), "secondary")
     (row,) = result.criteria
     assert row.spread == result.spread["1"]["mean_force_N"]
     assert any("less than its spread over stretches of 2 N" in text for text in result.warnings)
@@ -69,7 +69,7 @@ def test_verdict_that_another_stretch_could_turn_is_named(growing):
 
 
 def test_case_that_does_not_ask_has_none(case_250, wave):
-    result = grade_case(case_250, Outcome(wave().record(case_250)), "secondary")
+    result = grade_case(case_250, Delivered(wave().record(case_250)), "secondary")
     assert result.spread == {}
     assert all(row.spread is None for row in result.criteria)
     assert np.isfinite([row.value for row in result.criteria]).all()

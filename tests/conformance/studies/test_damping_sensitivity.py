@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.results.outcome import Delivered, Skipped
 from pantocheck.conformance.runner import run_cases
 from pantocheck.conformance.studies.damping_sensitivity import MODELS, OWN, add_damping_study
 
@@ -15,7 +15,7 @@ def told_apart(wave):
     class Damped(wave):
         def run(self, case):
             stiffness = case.line.damping.contact_wire.stiffness_coefficient_s
-            return Outcome(wave(sigma=20 + 1e5 * stiffness).record(case))
+            return Delivered(wave(sigma=20 + 1e5 * stiffness).record(case))
 
     return Damped()
 
@@ -43,7 +43,7 @@ def test_a_system_that_cannot_run_a_model_is_named_in_a_warning(case_250, wave):
     @dataclass(frozen=True)
     class Only(wave):
         def run(self, case):
-            return wave().run(case) if case.id == case_250.id else Outcome(skipped="there is no record of this case")
+            return wave().run(case) if case.id == case_250.id else Skipped("there is no record of this case")
 
     (result,) = run_cases([add_damping_study(case_250)], Only()).cases
     assert [w for w in result.warnings if w.startswith("damping '")] == [

@@ -13,7 +13,7 @@ def test_record_is_found_by_its_case(case_250, wave, tmp_path):
     system = choose_system(f"record:{tmp_path}")
     outcome = system.run(case_250)
     assert outcome.record is not None
-    assert outcome.dt_s == 0.002
+    assert outcome.run.dt_s == 0.002
     assert system.name == tmp_path.name
 
 

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from pantocheck.conformance.cases.damping_file import Damping
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.grading.case_grading import grade_case
-from pantocheck.conformance.results.outcome import Outcome
+from pantocheck.conformance.results.outcome import Delivered, Skipped, StudyResult
 from pantocheck.conformance.studies.force_charts import draw_band_bars
 from pantocheck.conformance.studies.study_dispatch import run_study
 from pantocheck.conformance.studies.vovan2015.damping_change import band_changes
@@ -81,7 +81,9 @@ def test_the_printed_values_meet_every_limit(case):
     printed = {(one.model, one.pantograph): dict(one.values) for one in case.file.study.printed}
     found = band_changes(*({p: printed[name, p] for p in (1, 2)} for name in ("initial", "updated")))
     static = replace(case, file=case.file.model_copy(update={"speed_km_h": None, "study": None}))
-    assert {row.verdict for row in grade_case(static, Outcome(findings=found), "primary").criteria} == {"pass"}
+    assert {row.verdict for row in grade_case(static, Delivered(study=StudyResult(found)), "primary").criteria} == {
+        "pass"
+    }
 
 
 def test_the_updated_damping_brings_more_above_20_hz(case):
@@ -125,7 +127,7 @@ def test_a_system_without_a_record_of_one_model_is_skipped(case):
     @dataclass(frozen=True)
     class OneModel(Once):
         def run(self, case):
-            return Outcome(skipped="there is no record of this case")
+            return Skipped("there is no record of this case")
 
     result = grade_case(case, run_study(case, OneModel()), "primary")
     assert result.verdict == "skip"

@@ -66,13 +66,13 @@ def test_the_law_that_compensates_the_elastic_force_locks_and_the_other_does_not
         update={"discretisation": coarse, "study": study, "evaluated_spans": (4, 5), "run_out_m": 0.0}
     )
     outcome = run_dropper_damping(replace(case, file=file), study)
-    (chart,) = outcome.charts
+    (chart,) = outcome.study.charts
     nothing, elastic = (series.y for series in chart.series)
     # Neither law knows the other without damping: they agree to what a coefficient of 1e-6 s does.
     assert_allclose(nothing[0], elastic[0], rtol=0.01)
     assert nothing[-1] > nothing[0]
     assert elastic[-1] < 0.1 * elastic[0]
-    assert outcome.findings[LINE]["dropper_locked_force_pct"] < 10
+    assert outcome.study.findings[LINE]["dropper_locked_force_pct"] < 10
     assert outcome.record is not None
 
 
