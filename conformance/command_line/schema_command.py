@@ -1,41 +1,31 @@
-"""`pantocheck schema`: the file formats, for editors and validators."""
+"""`pantocheck schema`: JSON Schemas of the file formats."""
 
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from pantocheck.conformance.input_files.atomic_writing import write_atomically
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.suggestions import suggest_names
+from pantocheck.conformance.schemas import FORMAT_NAMES, build_schema, format_schema
+
 
 def schema_command(
     name: Annotated[
-        str | None,
-        typer.Argument(
-            help="case, line, pantograph, damping, limits, plan, record, summary, profile, results, command-request or "
-            "command-answer; without: all"
-        ),
+        str | None, typer.Argument(help=f"Format: {', '.join(FORMAT_NAMES)}; all if omitted.", show_default=False)
     ] = None,
-    out: Annotated[Path | None, typer.Option(help="Folder to write NAME.schema.json to, in place of printing.")] = None,
+    out: Annotated[Path | None, typer.Option(help="Write NAME.schema.json to this folder instead of printing.")] = None,
 ) -> None:
-    """Print the JSON Schema of a file format.
+    """Print or write the JSON Schema of a file format, for editors and validators.
 
     Example: pantocheck schema case > case.schema.json
     """
-    from pantocheck.conformance.input_files.atomic_writing import write_atomically
-    from pantocheck.conformance.input_files.input_error import InputError
-    from pantocheck.conformance.input_files.suggestions import suggest_names
-    from pantocheck.conformance.schemas import NAMES, schema_of
-
-    if name is not None and name not in NAMES:
-        raise InputError(f"schema '{name}'", "there is no such format", suggest_names(name, NAMES))
-    wanted = {each: schema_of(each) for each in (NAMES if name is None else (name,))}
+    if name is not None and name not in FORMAT_NAMES:
+        raise InputError(f"schema '{name}'", "there is no such format", suggest_names(name, FORMAT_NAMES))
+    schemas = {each: build_schema(each) for each in (FORMAT_NAMES if name is None else (name,))}
     if out is None:
-        typer.echo(_text(wanted if name is None else wanted[name]), nl=False)
+        typer.echo(format_schema(schemas if name is None else schemas[name]), nl=False)
         return
-    for each, content in wanted.items():
-        write_atomically(out / f"{each}.schema.json", _text(content).encode())
-
-
-def _text(content: object) -> str:
-    import json
-
-    return json.dumps(content, indent=2) + "\n"
+    for each, schema in schemas.items():
+        write_atomically(out / f"{each}.schema.json", format_schema(schema).encode())

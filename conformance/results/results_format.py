@@ -235,8 +235,3 @@ class Results(ResultsPart):
     def to_json(self) -> bytes:
         """Content of results.json: the same results give the same bytes."""
         return (json.dumps(self.to_dict(), indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
-
-
-def results_schema() -> dict[str, Any]:
-    """JSON Schema of results.json."""
-    return Results.model_json_schema(by_alias=True, mode="serialization")

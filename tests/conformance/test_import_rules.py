@@ -17,7 +17,7 @@ FILES = sorted(path for folder in ("model", "conformance") for path in (ROOT / f
 KNOWN_CYCLES = {"pytest_plugin"}
 """Folders whose cycles are still to be removed."""
 
-KNOWN_NAMES = {"BANDS", "BLOCK", "LEAST_DRAWN", "P", "ROWS", "Values"}
+KNOWN_NAMES = {"BANDS", "BLOCK", "LEAST_DRAWN", "ROWS", "Values"}
 """Public names whose second meaning is still to be removed."""
 
 
@@ -60,6 +60,8 @@ def _public_names(tree: ast.Module) -> Iterator[str]:
         match node:
             case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
                 names = [name]
+            case ast.Assign(value=ast.Call(func=ast.Name(id="TypeVar" | "ParamSpec"))):
+                names = []  # A type variable has a meaning inside one signature only.
             case ast.Assign(targets=targets):
                 names = [target.id for target in targets if isinstance(target, ast.Name)]
             case ast.AnnAssign(target=ast.Name(id=name)):

@@ -16,7 +16,7 @@ from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.results.outcome import Delivered, Errored, Skipped
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.runner import RunInterrupted, run_cases
-from pantocheck.conformance.schemas import schema_of
+from pantocheck.conformance.schemas import build_schema
 from pantocheck.conformance.systems.record_folder import open_record_folder
 
 
@@ -52,7 +52,7 @@ def limited(case, *bounds, trust="secondary"):
 def test_results_follow_their_schema_and_hold_the_numbers(cases, wave):
     results = run_cases(cases, wave())
     content = json.loads(results.to_json())
-    jsonschema.validate(content, schema_of("results"))
+    jsonschema.validate(content, build_schema("results"))
     assert content["schema"] == "pantocheck.results/1"
     assert content["verdict"] == "fail"
     first = content["cases"][0]
@@ -119,7 +119,7 @@ def test_one_broken_case_leaves_the_others(cases, wave):
     assert [case.verdict for case in results.cases] == ["error", "fail"]
     assert results.cases[0].reason == "ZeroDivisionError: no mass at all"
     assert results.verdict == "error"
-    jsonschema.validate(json.loads(results.to_json()), schema_of("results"))
+    jsonschema.validate(json.loads(results.to_json()), build_schema("results"))
 
 
 def test_skipped_errored_and_foreign_outcomes(cases, wave):
@@ -229,7 +229,7 @@ def test_interrupted_run_keeps_what_was_finished(cases, wave):
         "skip",
         "the run was interrupted before this case was finished",
     )
-    jsonschema.validate(json.loads(results.to_json()), schema_of("results"))
+    jsonschema.validate(json.loads(results.to_json()), build_schema("results"))
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from pathlib import Path
 from jsonschema import validate
 
 from pantocheck.conformance.mass_drops.drop_sidecar import read_drop_sidecar
-from pantocheck.conformance.schemas import schema_of
+from pantocheck.conformance.schemas import build_schema
 
 PAGE = Path(__file__).parents[2] / "docs" / "identification.md"
 
@@ -18,4 +18,4 @@ def test_the_sidecar_is_read_and_agrees_with_its_schema(tmp_path):
     sidecar = read_drop_sidecar(tmp_path / "drop.csv")
     assert (sidecar.drop.mass_kg, sidecar.record.trigger_nominal_s) == (40.0, 6.0)
     assert [channel.unit for channel in sidecar.channel] == ["m/s2"]
-    validate(tomllib.loads(text), schema_of("mass-drop"))
+    validate(tomllib.loads(text), build_schema("mass-drop"))

@@ -6,7 +6,7 @@ from pathlib import Path
 import jsonschema
 
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.schemas import schema_of
+from pantocheck.conformance.schemas import build_schema
 from pantocheck.conformance.systems.command.case_message import build_case_message
 
 PAGE = Path(__file__).parents[2] / "docs" / "systems.md"
@@ -17,7 +17,7 @@ def test_conversation_follows_the_schemas():
     messages = [(line[0], json.loads(line[2:])) for line in shown]
     assert [message["message"] for _, message in messages] == ["start", "started", "run", "delivered", "stop"]
     for side, message in messages:
-        jsonschema.validate(message, schema_of("command-request" if side == ">" else "command-answer"))
+        jsonschema.validate(message, build_schema("command-request" if side == ">" else "command-answer"))
     (case,) = select_cases(["en50318-2002/250"])
     assert messages[2][1]["case"] == build_case_message(case), (
         "the page shows an older case: put json.dumps(given(case)) there"

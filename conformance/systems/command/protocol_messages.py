@@ -4,6 +4,7 @@ import json
 from typing import Annotated, Any, Final, Literal
 
 from pydantic import Field, TypeAdapter, ValidationError
+from pydantic.json_schema import GenerateJsonSchema
 
 from pantocheck.conformance.cases.case_file import Discretisation, Filter
 from pantocheck.conformance.cases.line_file import LineFile
@@ -166,15 +167,15 @@ def parse_message(line: bytes) -> Answer:
         raise AnswerRefused(f"its answer is not JSON: {shown!r} (a log belongs on standard error)") from None
 
 
-def request_schema() -> dict[str, Any]:
-    """JSON Schema of the messages to a program: tables of a case without what is said of their sources."""
-    schema = _REQUEST.json_schema()
+def request_schema(generator: type[GenerateJsonSchema]) -> dict[str, Any]:
+    """JSON Schema of the messages to a program; the tables of a case have no provenance."""
+    schema = _REQUEST.json_schema(schema_generator=generator)
     for table in schema["$defs"].values():
         table["properties"] = {key: value for key, value in table["properties"].items() if key not in PROVENANCE}
         table["required"] = [key for key in table.get("required", []) if key not in PROVENANCE]
     return schema
 
 
-def answer_schema() -> dict[str, Any]:
+def answer_schema(generator: type[GenerateJsonSchema]) -> dict[str, Any]:
     """JSON Schema of the messages of a program."""
-    return _ANSWER.json_schema()
+    return _ANSWER.json_schema(schema_generator=generator)

@@ -17,7 +17,7 @@ from pantocheck.conformance.grading.assessed_record import load_assessed_record
 from pantocheck.conformance.grading.profile_grading import assess_record
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record_sidecar import LineTable
-from pantocheck.conformance.schemas import schema_of
+from pantocheck.conformance.schemas import build_schema
 
 NAMES = ("acceptance-ac", "acceptance-dc-3kv", "acceptance-dc-1500v", "line-test")
 PASSING = library_folder() / "en50318-2002" / "known-passing-code"
@@ -66,7 +66,7 @@ def test_shipped_profiles_follow_their_schema(name):
     import tomllib
 
     text = (library_folder() / "profiles" / f"{name}.toml").read_text()
-    jsonschema.validate(tomllib.loads(text), schema_of("profile"))
+    jsonschema.validate(tomllib.loads(text), build_schema("profile"))
     assert load_profile(name).name == name
 
 
@@ -93,7 +93,7 @@ def test_good_line_is_accepted_with_its_uncertainty(train):
     assert 0 < rows["cov_20"].uncertainty < 0.02
     assert results.cases[0].uncertainty["1"]["cov_20"] == rows["cov_20"].uncertainty
     assert find_discrepancies(results.to_dict()) == []
-    jsonschema.validate(results.to_dict(), schema_of("results"))
+    jsonschema.validate(results.to_dict(), build_schema("results"))
 
 
 @pytest.mark.parametrize(

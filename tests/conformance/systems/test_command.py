@@ -16,7 +16,7 @@ from pantocheck.conformance.plan import read_plan
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.results.outcome import Delivered, Errored
 from pantocheck.conformance.runner import run_cases
-from pantocheck.conformance.schemas import schema_of
+from pantocheck.conformance.schemas import build_schema
 from pantocheck.conformance.systems.command.program_arguments import split_arguments
 from pantocheck.conformance.systems.command.protocol_messages import AnswerRefused, parse_message
 from pantocheck.conformance.systems.system_choice import choose_system
@@ -142,7 +142,7 @@ def test_case_is_given_whole_and_without_limits(program, case_250, tmp_path):
     messages = [json.loads(line) for line in (tmp_path / "log").read_text().splitlines()][2:]
     assert [message["message"] for message in messages] == ["start", "run", "stop"]
     for message in messages:
-        jsonschema.validate(message, schema_of("command-request"))
+        jsonschema.validate(message, build_schema("command-request"))
     given = messages[1]["case"]
     text = json.dumps(given)
     for withheld in ("limit", "trust", "source", "note", "provisional"):
@@ -163,7 +163,7 @@ def test_answers_of_the_program_follow_their_schema():
         {"message": "skipped", "id": 1, "reason": "why"},
         {"message": "errored", "id": 1, "reason": "why"},
     ):
-        jsonschema.validate(message, schema_of("command-answer"))
+        jsonschema.validate(message, build_schema("command-answer"))
         assert parse_message(json.dumps(message).encode()).message == message["message"]
 
 
