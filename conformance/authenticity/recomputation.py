@@ -7,8 +7,8 @@ from typing import Any
 
 from pantocheck.conformance.grading.verdicts import judge, margin, worst_verdict
 from pantocheck.conformance.input_files.trust import limit_counts
+from pantocheck.conformance.quantities.bands import BANDS
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, statistical_extremes
-from pantocheck.conformance.reports.figures.force_figures import BANDS_Hz
 
 # Numbers of results.json carry all their digits, so only the last bits may differ; traces are rounded to six digits.
 EXACT, ROUNDED = 1e-9, 2e-5
@@ -121,7 +121,7 @@ def _bands(quantities: dict[str, Any], frequency: list[float], amplitude: list[f
     whole = len(frequency) == len(amplitude) and steps and max(steps) - min(steps) <= ROUNDED * max(frequency)
     if not whole:
         return
-    for low, high, name in BANDS_Hz:
+    for low, high, name in BANDS:
         # Rounding may have moved a line onto an edge, so that its band cannot be told.
         doubtful = any(abs(f - edge) <= ROUNDED * edge for f in frequency for edge in (low, high) if edge)
         if name not in quantities or doubtful:

@@ -1,9 +1,9 @@
 """What must be known of the band from 20 to 50 Hz before its numbers are believed."""
 
+from pantocheck.conformance.quantities.bands import EXTENDED_BAND
 from pantocheck.conformance.records.evaluation import LINE, Evaluation, Value
 from pantocheck.conformance.results.outcome import Delivered
 
-EXTENDED_BAND = "rms_20_50_N"
 LARGEST_CHANGE = 0.05
 """Change of the band's RMS by halving element and time step above which the mesh does not resolve it."""
 
@@ -44,7 +44,7 @@ def extended_band_warnings(outcome: Delivered, evaluation: Evaluation, refined: 
             f"{WARNING_PREFIX}no run with a finer mesh and time step{step} shows whether the band is resolved",
         ]
     for of, value in bands.items():
-        fine = refined.values.get(of, {}).get(EXTENDED_BAND)
+        fine = refined.values.get(of, {}).get(EXTENDED_BAND.quantity)
         if isinstance(value, float) and isinstance(fine, float) and abs(value - fine) > LARGEST_CHANGE * fine:
             warnings.append(
                 f"{WARNING_PREFIX}halving element and time step changes the RMS of pantograph {of} from "
@@ -56,5 +56,7 @@ def extended_band_warnings(outcome: Delivered, evaluation: Evaluation, refined: 
 def _bands(evaluation: Evaluation) -> dict[int, Value]:
     """RMS of the band, by pantograph."""
     return {
-        of: values[EXTENDED_BAND] for of, values in evaluation.values.items() if of != LINE and EXTENDED_BAND in values
+        of: values[EXTENDED_BAND.quantity]
+        for of, values in evaluation.values.items()
+        if of != LINE and EXTENDED_BAND.quantity in values
     }

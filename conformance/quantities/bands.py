@@ -1,4 +1,6 @@
-"""Contact-force bands: how the variance of the force is shared out over frequency."""
+"""Frequency bands of the contact force, their RMS values and the amplitude spectrum."""
+
+from typing import NamedTuple
 
 import numpy as np
 
@@ -7,7 +9,25 @@ from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandNotObservable
 
 MIN_BAND_LINES = 4
-"""Spectral lines a band must hold at least: with fewer, its rms is decided by where the stretch begins and ends."""
+"""Smallest number of spectral lines in a band: with fewer, the RMS depends on the ends of the analysis section."""
+
+
+class Band(NamedTuple):
+    """Frequency band ]low, high] [Hz] and the name of the quantity that states its RMS."""
+
+    low: float
+    high: float
+    quantity: str
+
+
+BANDS = (Band(0, 5, "rms_0_5_N"), Band(5, 20, "rms_5_20_N"), Band(20, 50, "rms_20_50_N"))
+"""Bands that partition the variance of the contact force up to 50 Hz (Vo Van et al. 2015, Table 1)."""
+
+BAND_QUANTITIES = tuple(band.quantity for band in BANDS)
+"""Names of the quantities that state the RMS of each band."""
+
+EXTENDED_BAND = BANDS[-1]
+"""Band above the 20 Hz of EN 50318."""
 
 
 def band_rms(force: RealArray, rate: float, low: float, high: float, filter_applied_Hz: float | None = None) -> float:
@@ -19,25 +39,25 @@ def band_rms(force: RealArray, rate: float, low: float, high: float, filter_appl
     Parameters
     ----------
     force : (n,) ndarray
-        Contact force over the evaluated stretch [N].
+        Contact force over the analysis section [N].
     rate : float
-        Samples per second [Hz].
+        Sampling rate [Hz].
     low, high : float
         Edges of the band ]low, high] [Hz].
     filter_applied_Hz : float or None
-        Cut-off of a low-pass the force has been through [Hz]; None: unfiltered.
+        Cut-off of the low-pass filter applied before delivery [Hz]; None: unfiltered.
 
     Returns
     -------
     float
-        [N].
+        RMS value [N].
 
     Raises
     ------
     BandNotObservable
-        The stretch is too short for the band, or the rate too low for its upper edge.
+        The analysis section is too short for the band, or the rate too low for its upper edge.
     AlreadyFiltered
-        The force was filtered below the upper edge before it was delivered.
+        The force was filtered below the upper edge before delivery.
     """
     if high > HIGHEST_SHARE_OF_RATE * rate:
         raise BandNotObservable(
@@ -46,29 +66,46 @@ def band_rms(force: RealArray, rate: float, low: float, high: float, filter_appl
         )
     if filter_applied_Hz is not None and filter_applied_Hz < 0.999 * high:
         raise AlreadyFiltered(
-            f"the force was delivered filtered at {filter_applied_Hz:g} Hz; the band {low:g}-{high:g} Hz is gone"
+            f"the force was delivered filtered at {filter_applied_Hz:g} Hz; the band {low:g}-{high:g} Hz was removed"
         )
     duration = force.size / rate
     if (high - low) * duration < MIN_BAND_LINES:
         raise BandNotObservable(
             f"a band of {high - low:g} Hz needs at least {MIN_BAND_LINES / (high - low):g} s; "
-            f"the evaluated stretch lasts {duration:.3g} s"
+            f"the analysis section lasts {duration:.3g} s"
         )
     frequency, power = _power(force, rate)
     return float(np.sqrt(power[(frequency > low) & (frequency <= high)].sum()))
 
 
 def amplitude_spectrum(force: RealArray, rate: float, highest: float) -> tuple[RealArray, RealArray]:
-    """Single-sided amplitude spectrum of the force about its mean: frequencies ]0, highest] [Hz], amplitudes [N]."""
+    """Single-sided amplitude spectrum of the force about its mean.
+
+    Parameters
+    ----------
+    force : (n,) ndarray
+        Contact force [N].
+    rate : float
+        Sampling rate [Hz].
+    highest : float
+        Highest frequency of the spectrum [Hz].
+
+    Returns
+    -------
+    frequency : ndarray
+        Frequencies ]0, highest] [Hz].
+    amplitude : ndarray
+        Amplitudes [N].
+    """
     frequency, power = _power(force, rate)
     inside = (frequency > 0) & (frequency <= highest)
     return frequency[inside], np.sqrt(2 * power[inside])
 
 
 def _power(force: RealArray, rate: float) -> tuple[RealArray, RealArray]:
-    """Frequencies [Hz] and the share of the variance at each [N2].
+    """Frequencies [Hz] and contribution of each spectral line to the variance [N2].
 
-    Each line stands for itself and its mirror image. The one at half the rate has none, but lies above every band.
+    Each line includes its mirror image. The line at half the rate has none, but lies above every band.
     """
     power = 2 * np.abs(np.fft.rfft(force - force.mean()) / force.size) ** 2
     frequency = np.fft.rfftfreq(force.size, 1 / rate)

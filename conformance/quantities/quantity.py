@@ -1,30 +1,79 @@
-"""What a quantity is."""
+"""Quantity: a number that can be graded, with everything that is said about it."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
+from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.quantities.sampling import Sampling
+from pantocheck.conformance.quantities.signals import ForceSignals, LineSignals
 
-@dataclass(frozen=True)
+QuantityTable = Literal["bands", "damping models"]
+"""Tables that show a fixed set of quantities: frequency bands of the certificate, and the damping sensitivity study."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class Quantity:
     """A number that can be graded.
 
     Parameters
     ----------
     name : str
-        As it stands in case files and results, the unit at its end.
+        Name in case files and results, with the unit at its end.
+    label : str
+        Name on pages.
     unit : str
-        As printed; empty for a ratio.
+        Unit as printed; empty for a ratio.
     definition : str
-        One sentence.
+        Definition in one sentence.
     needs : str
-        What a record, or a static check, must deliver for it.
-    scope : Literal[pantograph, line, static, mass_drop, study]
-        `pantograph` (one value each), `line` (one value a run), `static` (of the line at rest), `mass_drop`, `study`
-        (what a comparison of runs shows).
+        Channel of a record, or result of a static check, that the quantity is computed from.
+    scope : {'pantograph', 'line', 'static', 'mass_drop', 'study'}
+        `pantograph` (one value each), `line` (one value of a run), `static` (the line at rest), `mass_drop`
+        (identified modes), `study` (comparison of several runs).
+    source : str
+        Document that defines the quantity.
+    never_negative : bool
+        Whether a negative value is impossible.
+    tables : tuple of str
+        Fixed tables that show the quantity.
     """
 
     name: str
+    label: str
     unit: str
     definition: str
     needs: str
     scope: Literal["pantograph", "line", "static", "mass_drop", "study"]
+    source: str = "pantocheck"
+    never_negative: bool = False
+    tables: tuple[QuantityTable, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class PantographQuantity(Quantity):
+    """A statistic of the signals of one pantograph.
+
+    Parameters
+    ----------
+    compute : callable
+        Function of the signals and of a `Sampling`. The same function gives the value of the record and the values of
+        its bootstrap replicates, from which the uncertainty follows.
+    """
+
+    compute: Callable[[ForceSignals, Sampling], RealArray]
+    scope: Literal["pantograph"] = "pantograph"
+
+
+@dataclass(frozen=True, kw_only=True)
+class LineQuantity(Quantity):
+    """A quantity computed from the uplift at the supports.
+
+    Parameters
+    ----------
+    compute : callable
+        Function of the signals of the line.
+    """
+
+    compute: Callable[[LineSignals], float]
+    scope: Literal["line"] = "line"

@@ -7,12 +7,12 @@ from typing import Protocol
 import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.quantities.bands import band_rms
+from pantocheck.conformance.quantities.bands import EXTENDED_BAND, band_rms
 from pantocheck.conformance.quantities.filters import LowPass, filter_force
 from pantocheck.conformance.quantities.unavailable import BandNotObservable, ChannelMissing, StretchNotCovered
 
-EXTENDED_CUTOFF_HZ = 50.0
-"""Upper end of the extended band [Hz]."""
+EXTENDED_CUTOFF_HZ = float(EXTENDED_BAND.high)
+"""Upper edge of the extended band [Hz]."""
 
 SHORTEST_PERIODS = 4
 """Periods of the cut-off frequency that the evaluated stretch must last: less is not a statistic."""

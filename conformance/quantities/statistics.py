@@ -1,12 +1,18 @@
-"""Statistics of the contact force over the evaluated stretch."""
+"""Statistics of the contact force over the analysis section."""
+
+from typing import TypeVar
 
 import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.quantities.sampling import WHOLE_RECORD, Sampling
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, NoMeanForce
 
+Estimate = TypeVar("Estimate", float, RealArray)
+"""A statistic of a record, or one value per bootstrap replicate."""
 
-def coefficient_of_variation(mean: float, deviation: float) -> float:
+
+def coefficient_of_variation(mean: Estimate, deviation: Estimate) -> Estimate:
     """Standard deviation over mean force [-] (EN 50317 practice; Vo Van et al. 2015, Table 1).
 
     Raises
@@ -14,41 +20,65 @@ def coefficient_of_variation(mean: float, deviation: float) -> float:
     NoMeanForce
         The mean is not positive.
     """
-    if mean <= 0:
-        raise NoMeanForce(f"the mean force is {mean:.4g} N: a variation relative to it means nothing")
+    if np.min(mean) <= 0:
+        raise NoMeanForce(f"the mean force is {np.min(mean):.4g} N: a coefficient of variation is not defined")
     return deviation / mean
 
 
-def statistical_extremes(mean: float, deviation: float) -> tuple[float, float]:
+def statistical_extremes(mean: Estimate, deviation: Estimate) -> tuple[Estimate, Estimate]:
     """Statistical minimum and maximum, mean -+ 3 standard deviations [N]."""
     return mean - 3 * deviation, mean + 3 * deviation
 
 
-def contact_loss(force: RealArray, filter_applied_Hz: float | None = None) -> float:
+def contact_loss(
+    force: RealArray, filter_applied_Hz: float | None = None, sampling: Sampling = WHOLE_RECORD
+) -> RealArray:
     """Share of samples without contact [%].
 
     Parameters
     ----------
     force : (n,) ndarray
-        Unfiltered contact force over the evaluated stretch [N]; no contact is zero force.
+        Unfiltered contact force over the analysis section [N]; no contact is zero force.
     filter_applied_Hz : float or None
-        Cut-off of a low-pass the force has been through [Hz]; None: unfiltered.
+        Cut-off of the low-pass filter applied before delivery [Hz]; None: unfiltered.
+    sampling : Sampling
+        Whole record, or bootstrap replicates.
+
+    Returns
+    -------
+    ndarray
+        One share per sample of the population [%].
 
     Raises
     ------
     AlreadyFiltered
-        a filter smears a loss of contact into a low force, so that none would be counted.
+        The force was filtered: a filter turns a loss of contact into a low force.
     """
     if filter_applied_Hz is not None:
         raise AlreadyFiltered(
             f"the force was delivered filtered at {filter_applied_Hz:g} Hz; "
-            "losses of contact can only be counted in the unfiltered force"
+            "contact losses can only be counted in the unfiltered force"
         )
-    return float(100 * np.count_nonzero(force <= 0) / force.size)
+    return sampling.percentage(force <= 0)
 
 
 def force_histogram(force: RealArray, bins: int = 30) -> tuple[RealArray, RealArray]:
-    """Edges of the classes [N] and share of the samples in each [%]; widths are 1, 2 or 5 times a power of ten."""
+    """Histogram of a force; class widths are 1, 2 or 5 times a power of ten.
+
+    Parameters
+    ----------
+    force : (n,) ndarray
+        Contact force [N].
+    bins : int
+        Approximate number of classes.
+
+    Returns
+    -------
+    edges : (k + 1,) ndarray
+        Class edges [N].
+    share : (k,) ndarray
+        Share of the samples in each class [%].
+    """
     spread = float(np.ptp(force))
     raw = max(spread, 1.0) / bins
     decade = 10 ** np.floor(np.log10(raw))

@@ -1,25 +1,29 @@
-"""Why a quantity cannot be given: each reason becomes `skip` in a report, because a number would be believed."""
+"""Reasons why a quantity is not available. Each reason is shown as `skip` in a report."""
 
 
 class QuantityUnavailable(ValueError):
-    """The record cannot support a quantity; the message is the reason a reader of the report sees."""
+    """The record does not support a quantity; the message states the reason to the reader of the report."""
 
 
 class BandNotObservable(QuantityUnavailable):
-    """The rate is too low, or the stretch too short, for a frequency band: its rms would describe something else."""
+    """The rate is too low, or the analysis section too short, for a frequency band: its RMS would be meaningless."""
 
 
 class AlreadyFiltered(QuantityUnavailable):
-    """The force was filtered before it was delivered: what lies above the cut-off is gone, not zero."""
+    """The force was filtered before delivery: content above the cut-off was removed and cannot be graded as zero."""
 
 
 class StretchNotCovered(QuantityUnavailable):
-    """The record does not reach over the evaluated stretch: statistics of a part of it are those of another case."""
+    """Partial coverage of the analysis section would yield the statistics of a different section."""
 
 
 class ChannelMissing(QuantityUnavailable):
-    """The record has no channel for a quantity, so that nothing is known about it."""
+    """The record has no channel for the quantity."""
 
 
 class NoMeanForce(QuantityUnavailable):
-    """The mean force is not positive: divided by it, the worst record of all would have the lowest variation."""
+    """The mean force is not positive: a ratio to it would give the worst record the lowest variation."""
+
+
+class NotResampled(QuantityUnavailable):
+    """The quantity has no bootstrap replicates, and therefore no uncertainty from the length of the record."""

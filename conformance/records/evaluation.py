@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from pantocheck.conformance.quantities.filters import LowPass
-from pantocheck.conformance.quantities.registry import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES
+from pantocheck.conformance.quantities.force_quantities import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES
+from pantocheck.conformance.quantities.sampling import WHOLE_RECORD
 from pantocheck.conformance.quantities.signals import ForceSignals, LineSignals, PantographSignals
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.record import Record
@@ -73,7 +74,7 @@ def evaluate_signals(pantographs: Mapping[int, ForceSignals], line: LineSignals)
         values[pantograph], skipped[pantograph] = {}, {}
         for quantity in PANTOGRAPH_QUANTITIES:
             try:
-                values[pantograph][quantity.name] = quantity.compute(signals)
+                values[pantograph][quantity.name] = float(quantity.compute(signals, WHOLE_RECORD))
             except QuantityUnavailable as reason:
                 skipped[pantograph][quantity.name] = str(reason)
     for line_quantity in LINE_QUANTITIES:

@@ -8,7 +8,8 @@ from pydantic import Field, model_validator
 from pantocheck.conformance.input_files.sourced_table import NumberList, SourcedTable, validation_problem
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.toml_file import read_model
-from pantocheck.conformance.quantities.registry import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES, QUANTITIES
+from pantocheck.conformance.quantities.force_quantities import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES
+from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, statistical_extremes
 from pantocheck.conformance.records.evaluation import LINE, Evaluation, Value
 from pantocheck.conformance.records.record_sidecar import LineTable, RunTable, Speed, SystemTable
@@ -16,20 +17,6 @@ from pantocheck.conformance.records.record_sidecar import LineTable, RunTable, S
 SUMMARY_SCHEMA = "pantocheck.summary/1"
 
 SummaryValues = Annotated[dict[str, Annotated[float, Field(ge=-1e9, le=1e9)]], Field(max_length=100)]
-
-NEVER_NEGATIVE = frozenset(
-    {
-        "std_force_N",
-        "std_force_50_N",
-        "rms_0_5_N",
-        "rms_5_20_N",
-        "rms_20_50_N",
-        "contact_loss_pct",
-        "contact_height_range_mm",
-        "wave_speed_m_s",
-        "elasticity_mm_N",
-    }
-)
 
 
 class RecordSummary(SourcedTable):
@@ -114,7 +101,7 @@ def _check(values: dict[str, float], table: str, known: list[str]) -> None:
             raise validation_problem(
                 f"{table}.{name[:80]}", "there is no such quantity here", suggest_names(name[:80], known)
             )
-        if value < 0 and name in NEVER_NEGATIVE:
+        if value < 0 and QUANTITIES[name].never_negative:
             raise validation_problem(
                 f"{table}.{name}", f"{value:g} is negative", QUANTITIES[name].definition.capitalize() + "."
             )

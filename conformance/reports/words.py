@@ -18,7 +18,7 @@ def read_words() -> dict[str, Any]:
 
 def quantity_label(quantity: str) -> str:
     """What a quantity is called; its own name if it has no other."""
-    return str(read_words()["quantity"].get(quantity, quantity))
+    return QUANTITIES[quantity].label if quantity in QUANTITIES else quantity
 
 
 def quantity_unit(quantity: str) -> str:

@@ -8,6 +8,8 @@ from pantocheck.conformance.cases.damping_file import DampingFile
 from pantocheck.conformance.cases.library import library_folder
 from pantocheck.conformance.cases.study_tables import DampingSensitivity
 from pantocheck.conformance.input_files.toml_file import read_model
+from pantocheck.conformance.quantities.bands import BAND_QUANTITIES
+from pantocheck.conformance.quantities.registry import table_quantities
 from pantocheck.conformance.records.evaluation import LINE, Value, evaluate_record
 from pantocheck.conformance.results.outcome import Delivered, Outcome, StudyResult, missing_record_reason
 from pantocheck.conformance.results.results_format import TextTable
@@ -16,19 +18,7 @@ from pantocheck.conformance.systems.system import System
 
 MODELS = {name: f"vovan2015/damping/{name}.toml" for name in ("benchmark", "initial", "updated")}
 """Damping files of the library that a study of any line uses."""
-BANDS = ("rms_0_5_N", "rms_5_20_N", "rms_20_50_N")
-ROWS = (
-    "mean_force_N",
-    "std_force_N",
-    "std_force_50_N",
-    "cov_20",
-    "cov_50",
-    *BANDS,
-    "max_force_N",
-    "min_force_N",
-    "contact_loss_pct",
-    "max_uplift_at_support_mm",
-)
+ROWS = table_quantities("damping models")
 OWN = "of the case"
 
 Values = Mapping[int, Mapping[str, Value]]
@@ -76,7 +66,7 @@ def run_damping_sensitivity(case: Case, system: System) -> Outcome:
     return replace(
         outcome,
         warnings=(*outcome.warnings, *missing),
-        study=StudyResult(charts=draw_band_bars(values, {}, BANDS), tables=(_table(values),)),
+        study=StudyResult(charts=draw_band_bars(values, {}, BAND_QUANTITIES), tables=(_table(values),)),
     )
 
 

@@ -1,103 +1,126 @@
 """Uncertainty of statistics from the length of a record: the moving-block bootstrap.
 
-The force repeats itself from span to span, but not exactly; a longer record would have a somewhat different mean, sigma
-and extremes. Blocks of one span, drawn at random with replacement from the record, stand for other records of the same
-length (Kuensch 1989, doi:10.1214/aos/1176347265); how much a statistic varies among them is its uncertainty.
+The force changes from span to span. A longer record would have a somewhat different mean, standard deviation and
+extremes. Blocks of one span, drawn at random with replacement, stand for other records of the same length (Kuensch
+1989, doi:10.1214/aos/1176347265). The scatter of a statistic among these replicates is its uncertainty.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d
 
 from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
+from pantocheck.conformance.quantities.bands import Band
+from pantocheck.conformance.quantities.force_quantities import PANTOGRAPH_QUANTITIES
+from pantocheck.conformance.quantities.signals import ForceSignals
+from pantocheck.conformance.quantities.unavailable import NotResampled, QuantityUnavailable
 from pantocheck.conformance.records.measured.pooled_signals import PooledSignals
 
 BOOTSTRAP_REPLICATES = 1000
 FEWEST_BLOCKS = 5
-"""Blocks a record must hold: from fewer, the spread of a statistic cannot be told."""
+"""Smallest number of blocks in a record: from fewer, the scatter of a statistic cannot be estimated."""
 
 COVERAGE = 1.96
-"""Standard deviations to either side of an interval of 95 %."""
+"""Half-width of a 95 % interval in standard deviations."""
 
 
 @dataclass(frozen=True)
-class _Draws:
-    """Which blocks each replicate is made of: (replicates, blocks) starts within the joined parts, and their length."""
+class BlockReplicates:
+    """Statistics of each bootstrap replicate; an implementation of `Sampling`.
 
-    starts: RealArray
+    Parameters
+    ----------
+    starts : (replicates, blocks) ndarray
+        First sample of each block within the joined parts of the record.
+    length : int
+        Number of samples in a block.
+    """
+
+    starts: NDArray[np.intp]
     length: int
+
+    def mean(self, series: RealArray) -> RealArray:
+        """Mean value of each replicate."""
+        sums = np.concatenate([[0.0], np.cumsum(series)])
+        return np.asarray((sums[self.starts + self.length] - sums[self.starts]).mean(axis=1) / self.length)
+
+    def std(self, series: RealArray) -> RealArray:
+        """Standard deviation of each replicate."""
+        centred = series - series.mean()  # the difference of two large numbers would lose digits
+        return np.asarray(np.sqrt(np.maximum(self.mean(centred**2) - self.mean(centred) ** 2, 0)))
+
+    def largest(self, series: RealArray) -> RealArray:
+        """Largest value of each replicate."""
+        # The filter is centred; its origin is moved so that it looks forward from the start of a block.
+        ahead = maximum_filter1d(series, self.length, origin=-(self.length // 2), mode="nearest")
+        return np.asarray(ahead[self.starts].max(axis=1))
+
+    def smallest(self, series: RealArray) -> RealArray:
+        """Smallest value of each replicate."""
+        return -self.largest(-series)
+
+    def percentage(self, condition: NDArray[np.bool_]) -> RealArray:
+        """Share of the samples that meet a condition [%], for each replicate."""
+        return 100 * self.mean(condition.astype(np.float64))
+
+    def band_rms(self, signals: ForceSignals, band: Band) -> RealArray:
+        """RMS of a band has no replicates.
+
+        Raises
+        ------
+        NotResampled
+            Always: the joints between blocks would add content to the spectrum.
+        """
+        raise NotResampled(f"the RMS in {band.low:g}-{band.high:g} Hz has no bootstrap uncertainty")
 
 
 def bootstrap_uncertainties(signals: PooledSignals, block_s: float, digest: str) -> dict[str, float]:
-    """Half-width of the 95 % interval of the statistics of a record, by quantity; none if the record is too short.
+    """Half-widths of the 95 % intervals of the statistics of a record.
 
-    For the largest and smallest value it says how much depends on single events of the record; that a longer record
-    can bring larger ones, no resampling shows.
+    For the largest and smallest value, the uncertainty shows how much they depend on single events of the record.
+    No resampling shows that a longer record can bring larger ones.
 
     Parameters
     ----------
     signals : PooledSignals
-        Of one pantograph.
+        Signals of one pantograph.
     block_s : float
-        Length of a block [s]; one span.
+        Length of a block: one span [s].
     digest : str
-        SHA-256 of the record in hexadecimal, from which the random numbers are seeded.
+        SHA-256 of the record in hexadecimal, the seed of the random numbers.
+
+    Returns
+    -------
+    dict of str to float
+        Half-widths by quantity; empty if the record is too short.
     """
     parts = signals.parts
-    draws = _draws([part.delivered.size for part in parts], block_s * parts[0].rate, digest) if parts else None
-    if draws is None:
+    replicates = (
+        _draw_blocks([part.delivered.size for part in parts], block_s * parts[0].rate, digest) if parts else None
+    )
+    if replicates is None:
         return {}
-    found: dict[str, RealArray] = {}
-    mean = _means(signals.delivered, draws)
-    found["mean_force_N"] = mean
-    for name, ratio, series in (("std_force_N", "cov_20", "graded"), ("std_force_50_N", "cov_50", "extended")):
+    # The scatter among n blocks is taken about their own mean: smaller by (n - 1) / n than about the true one.
+    blocks = replicates.starts.shape[1]
+    wider = COVERAGE * np.sqrt(blocks / (blocks - 1))
+    uncertainties = {}
+    for quantity in PANTOGRAPH_QUANTITIES:
         try:
-            force: RealArray = getattr(signals, series)
+            uncertainties[quantity.name] = float(wider * quantity.compute(signals, replicates).std())
         except QuantityUnavailable:
             continue
-        centred = force - force.mean()  # the difference of two large numbers would lose digits
-        deviation = np.sqrt(np.maximum(_means(centred**2, draws) - _means(centred, draws) ** 2, 0))
-        found[name] = deviation
-        if mean.min() > 0:
-            found[ratio] = deviation / mean
-        if series == "graded":
-            found["statistical_min_N"], found["statistical_max_N"] = mean - 3 * deviation, mean + 3 * deviation
-            found["max_force_N"], found["min_force_N"] = _maxima(force, draws), -_maxima(-force, draws)
-    if signals.filter_applied_Hz is None:
-        found["contact_loss_pct"] = 100 * _means((signals.delivered <= 0).astype(np.float64), draws)
-    try:
-        height = 1e3 * signals.height
-        found["contact_height_range_mm"] = _maxima(height, draws) + _maxima(-height, draws)
-    except QuantityUnavailable:
-        pass
-    # The spread among n blocks is that about their own mean: smaller by (n - 1) / n than about the true one.
-    blocks = draws.starts.shape[1]
-    wider = COVERAGE * np.sqrt(blocks / (blocks - 1))
-    return {name: float(wider * values.std()) for name, values in found.items()}
+    return uncertainties
 
 
-def _draws(sizes: list[int], block: float, digest: str) -> _Draws | None:
+def _draw_blocks(sizes: list[int], block: float, digest: str) -> BlockReplicates | None:
     length = max(1, round(block))
     blocks = round(sum(sizes) / length)
     firsts = np.cumsum([0, *sizes[:-1]])
-    # A block lies within one part: across a gap there is no span.
+    # A block lies within one part, because the samples of both sides of a gap do not belong to one span.
     starts = [first + np.arange(size - length + 1) for first, size in zip(firsts, sizes, strict=True) if size >= length]
     if blocks < FEWEST_BLOCKS or not starts:
         return None
     random = np.random.default_rng(int(digest[:16], 16))
-    return _Draws(random.choice(np.concatenate(starts), size=(BOOTSTRAP_REPLICATES, blocks)), length)
-
-
-def _means(series: RealArray, draws: _Draws) -> RealArray:
-    """Mean of a series in every replicate."""
-    sums = np.concatenate([[0.0], np.cumsum(series)])
-    return np.asarray((sums[draws.starts + draws.length] - sums[draws.starts]).mean(axis=1) / draws.length)
-
-
-def _maxima(series: RealArray, draws: _Draws) -> RealArray:
-    """Maximum of a series in every replicate."""
-    # The filter is centred; its origin is moved so that it looks forward from the start of a block.
-    ahead = maximum_filter1d(series, draws.length, origin=-(draws.length // 2), mode="nearest")
-    return np.asarray(ahead[draws.starts].max(axis=1))
+    return BlockReplicates(random.choice(np.concatenate(starts), size=(BOOTSTRAP_REPLICATES, blocks)), length)

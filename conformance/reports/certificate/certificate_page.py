@@ -4,6 +4,7 @@ import json
 from functools import lru_cache
 from typing import Any
 
+from pantocheck.conformance.quantities.bands import BANDS
 from pantocheck.conformance.reports.certificate import case_facts as facts
 from pantocheck.conformance.reports.certificate import quantity_tables as tables
 from pantocheck.conformance.reports.certificate import verdict_reasons as reasons
@@ -121,7 +122,7 @@ def _force(key: str, trace: dict[str, Any], rows: list[dict[str, Any]]) -> Figur
 def _spectrum(key: str, trace: dict[str, Any], quantities: dict[str, Any]) -> Figure:
     bands = [
         f"{low} to {high} Hz: {format_value(quantities[name])} N"
-        for low, high, name in figures.BANDS_Hz
+        for low, high, name in BANDS
         if quantities.get(name) is not None
     ]
     caption = f"Pantograph {key}: amplitude spectrum of the force, with the RMS of its bands."

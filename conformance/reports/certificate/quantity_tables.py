@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from pantocheck.conformance.quantities.registry import QUANTITIES, table_quantities
 from pantocheck.conformance.reports.certificate.page_content import QuantityTable
 from pantocheck.conformance.reports.page_text import format_value
 from pantocheck.conformance.reports.words import holder, quantity_label, quantity_unit, read_words
@@ -38,7 +39,7 @@ def bands(case: dict[str, Any]) -> QuantityTable:
         tuple(heading(key) for key in pantographs),
         tuple(
             (quantity_label(name), name, quantity_unit(name), tuple(cell(name, key) for key in pantographs))
-            for name in read_words()["bands"]["rows"]
+            for name in table_quantities("bands")
         )
         if pantographs
         else (),
@@ -48,7 +49,7 @@ def bands(case: dict[str, Any]) -> QuantityTable:
 def quantities(case: dict[str, Any]) -> QuantityTable:
     """Every quantity of a case; what is neither there nor skipped is left blank."""
     keys = columns(case)
-    order = list(read_words()["quantity"])
+    order = list(QUANTITIES)
     names = {name for key in keys for name in (*case["quantities"].get(key, {}), *case["skipped"].get(key, {}))}
     ordered = sorted(names, key=lambda name: (order.index(name) if name in order else len(order), name))
 

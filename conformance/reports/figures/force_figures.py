@@ -12,13 +12,13 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
 from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.quantities.bands import BANDS
 from pantocheck.conformance.reports.page_text import format_value
 from pantocheck.conformance.reports.words import TEMPLATES
 
 INK, GREY, PALE = "#1a1d21", "#8a929b", "#e9edf1"
 SHADES = (INK, "#6b747e", "#9aa3ac", "#c3cad2")
 FULL, HALF = 6.9, 3.4  # widths of a figure [in]: across an A4 page's text, and two beside each other
-BANDS_Hz = ((0, 5, "rms_0_5_N"), (5, 20, "rms_5_20_N"), (20, 50, "rms_20_50_N"))
 # Force limits drawn beside the force, in this order, under short names.
 FORCE_LIMITS = {
     "mean_force_N": "mean",
@@ -134,7 +134,7 @@ def draw_spectrum(trace: dict[str, Any], quantities: dict[str, Any]) -> Figure:
     figure = Figure(figsize=(HALF, 2.3))
     axes = figure.subplots()
     axes.plot(frequency, amplitude, color=INK, linewidth=0.9)
-    for at, (low, high, name) in enumerate(BANDS_Hz):
+    for at, (low, high, name) in enumerate(BANDS):
         axes.axvspan(low, high, color=PALE if at % 2 == 0 else "white", zorder=0)
         axes.axvline(high, color=GREY, linewidth=0.8, linestyle="--")
         rms = quantities.get(name)

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import DampingChange
+from pantocheck.conformance.quantities.bands import BAND_QUANTITIES
 from pantocheck.conformance.records.evaluation import LINE, Value, evaluate_record
 from pantocheck.conformance.results.outcome import (
     Delivered,
@@ -20,8 +21,7 @@ from pantocheck.conformance.studies.vovan2015.findings_table import build_findin
 from pantocheck.conformance.studies.vovan2015.provenance_table import build_provenance_table
 from pantocheck.conformance.systems.system import System
 
-BANDS = ("rms_0_5_N", "rms_5_20_N", "rms_20_50_N")
-ROWS = ("cov_20", "cov_50", *BANDS)
+ROWS = ("cov_20", "cov_50", *BAND_QUANTITIES)
 
 Values = Mapping[int, Mapping[str, Value]]
 
@@ -61,7 +61,7 @@ def run_damping_change(case: Case, study: DampingChange, system: System) -> Outc
         study=StudyResult(
             findings=found,
             charts=(
-                *draw_band_bars(values, printed, BANDS),
+                *draw_band_bars(values, printed, BAND_QUANTITIES),
                 *trailing_force(case, study, runs),
             ),
             tables=(
@@ -84,7 +84,7 @@ def band_changes(before: Values, after: Values) -> dict[int, dict[str, Value]]:
     found: dict[int, dict[str, Value]] = {}
     for pantograph in before.keys() & after.keys() - {LINE}:
         found[pantograph] = {}
-        for band in BANDS:
+        for band in BAND_QUANTITIES:
             old, new = before[pantograph].get(band), after[pantograph].get(band)
             if isinstance(old, float) and isinstance(new, float) and old > 0:
                 found[pantograph][f"change_{band.removesuffix('_N')}_pct"] = 100 * (new / old - 1)

@@ -70,12 +70,12 @@ def test_rate_too_low_for_the_band():
 
 
 def test_stretch_too_short_for_the_band():
-    with pytest.raises(BandNotObservable, match=r"needs at least 0\.8 s; the evaluated stretch lasts 0\.6 s"):
+    with pytest.raises(BandNotObservable, match=r"needs at least 0\.8 s; the analysis section lasts 0\.6 s"):
         band_rms(noise(1, 300), RATE, 0, 5)
 
 
 def test_band_above_a_filter_is_gone():
-    with pytest.raises(AlreadyFiltered, match="20-50 Hz is gone"):
+    with pytest.raises(AlreadyFiltered, match="20-50 Hz was removed"):
         band_rms(noise(1), RATE, 20, 50, filter_applied_Hz=20.0)
     assert band_rms(noise(1), RATE, 5, 20, filter_applied_Hz=20.0) > 0
 
