@@ -19,10 +19,10 @@ ALLOWED_PCT = dict.fromkeys(QUANTITIES[:4], 1.0) | dict.fromkeys(QUANTITIES[4:],
 
 def run_figures(case: Case, built: Catenary, element: float, step: float) -> dict[str, float]:
     """Quantities of one run, the last eight spans but two evaluated."""
-    spans, span = case.line.geometry.spans, case.line.geometry.span_m
+    geometry, spans = case.line.geometry, case.line.geometry.spans
     line = discretise(built, element)
-    way = passage(case, line, step, 1, (spans - 1.5) * span, math.inf)
-    return figures(way, simulate_passage(line, way), ((spans - 10) * span, (spans - 2) * span))
+    way = passage(case, line, step, 1, geometry.mid_span(spans - 1), math.inf)
+    return figures(way, simulate_passage(line, way), geometry.section(spans - 9, spans - 2))
 
 
 def table(title: str, rows: list[tuple[str, dict[str, float]]]) -> None:

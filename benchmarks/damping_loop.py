@@ -35,7 +35,7 @@ SPANS, MASS, PLACE, HANGING, DURATION, STEP, ELEMENT, NOISE = 6, 30.0, 165.0, 6.
 def main() -> None:
     """Run the loop once."""
     case = select_cases(["en50318-2002/250"])[0]
-    six_spans = case.line.geometry.model_copy(update={"spans": SPANS})
+    six_spans = case.line.geometry.shorten(SPANS)
     line = replace(build_catenary(case.line.model_copy(update={"geometry": six_spans})), damping=PUT_IN)
     test = SimulatedDrop(MASS, "contact wire", PLACE, 0.0, HANGING, DURATION, STEP, SENSORS)
     decay = simulate_mass_drop(line, ELEMENT, test)
@@ -49,7 +49,7 @@ def main() -> None:
         signals,
         tuple(DropChannel(f"S{i}_z", i, "z", SHORT[wire], x) for i, (wire, x) in enumerate(SENSORS, 1)),
         drop=DropDescription(MASS, "CW", PLACE, HANGING),
-        line=DropLine((case.line.geometry.span_m,) * SPANS),
+        line=DropLine(six_spans.span_lengths),
     )
     with TemporaryDirectory() as folder:
         path = Path(folder, "modes.json")

@@ -85,18 +85,17 @@ def passage(
     reach : float
         What lies farther than this from every pantograph stands still [m].
     """
-    span = case.line.geometry.span_m
+    geometry = case.line.geometry
+    first = geometry.span(1)[1]
     model = build_pantograph(case.pantographs[0], UPLIFT_FORCE, 0.06)
-    starts = tuple(span + SPACING * (pantographs - 1 - i) for i in range(pantographs))
+    starts = tuple(first + SPACING * (pantographs - 1 - i) for i in range(pantographs))
     return Passage(
         pantographs=(model,) * pantographs,
         start=starts,
         speed=case.speed,
-        duration=(until - span) / case.speed,
+        duration=(until - first) / case.speed,
         time_step=step,
-        watched=tuple(
-            ("contact wire", float(x)) for x in np.arange(span, span * case.line.geometry.spans - 1e-6, span)
-        ),
+        watched=tuple(("contact wire", x) for x in geometry.supports),
         reach=reach,
     )
 

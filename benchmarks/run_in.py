@@ -23,16 +23,16 @@ RESERVE = 10
 def table(speed: int, spans: int) -> None:
     """Figures over ten spans after more and more spans of run-in, and how far they move when it is doubled."""
     case = ac_simple(spans, case=f"en50318-2018/ac-simple/{speed}")
-    span = case.line.geometry.span_m
+    geometry = case.line.geometry
     line = discretise(staggered(case), 0.5)
     use = case.file.pantograph[0]
     own = build_passage(case, line, 1e-3, (use.uplift_force_N,)).pantographs
-    way = replace(passage(case, line, 1e-3, 1, (spans - RESERVE + 1) * span, 660.0), pantographs=own)
+    way = replace(passage(case, line, 1e-3, 1, geometry.span(spans - RESERVE + 1)[1], 660.0), pantographs=own)
     history = simulate_passage(line, way)
 
     def after(first: int) -> np.ndarray:
         """The quantities over the ten spans after the first so many."""
-        return np.array(list(figures(way, history, (first * span, (first + EVALUATED) * span)).values()))
+        return np.array(list(figures(way, history, geometry.section(first + 1, first + EVALUATED)).values()))
 
     print(f"\n### {speed} km/h\n\n| run-in [spans] | {' | '.join(QUANTITIES)} |")
     print(f"| --: |{' --: |' * len(QUANTITIES)}")

@@ -47,7 +47,7 @@ class Case:
         One per [[pantograph]] table, in running order.
     limits : tuple[Limit, ...]
         Those of the file, or a user's in their place.
-    measured : PantographFile or None
+    static_pantograph : PantographFile or None
         Pantograph whose apparent mass a static case takes.
     dampings : Mapping[str, Damping]
         Other damping models that a study or a comparison needs, by name.
@@ -57,8 +57,13 @@ class Case:
     line: LineFile
     pantographs: tuple[PantographFile, ...]
     limits: tuple[Limit, ...]
-    measured: PantographFile | None = None
+    static_pantograph: PantographFile | None = None
     dampings: Mapping[str, Damping] = field(default_factory=dict)
+
+    @property
+    def pantograph_files(self) -> tuple[PantographFile, ...]:
+        """Pantographs of the run, or the one of a static case."""
+        return self.pantographs if self.static_pantograph is None else (*self.pantographs, self.static_pantograph)
 
     @property
     def id(self) -> str:
@@ -76,26 +81,26 @@ class Case:
         return (self.file.speed_km_h or 0.0) / 3.6
 
     @property
-    def evaluated(self) -> tuple[float, float]:
+    def analysis_section(self) -> tuple[float, float]:
         """Start and end of the evaluated stretch [m]; the line begins at 0."""
-        spans, span = self.file.evaluated_spans or (1, self.line.geometry.spans), self.line.geometry.span_m
-        return (spans[0] - 1) * span, spans[-1] * span
+        spans = self.file.evaluated_spans or (1, self.line.geometry.spans)
+        return self.line.geometry.section(spans[0], spans[-1])
 
     @property
-    def shifted(self) -> tuple[tuple[float, float], ...]:
+    def shifted_sections(self) -> tuple[tuple[float, float], ...]:
         """The evaluated stretch shifted span by span along the compared spans, itself among them [m]."""
-        if self.file.compared_spans is None:
+        if self.file.compared_spans is None or self.file.evaluated_spans is None:
             return ()
-        (first, last), span = self.file.compared_spans, self.line.geometry.span_m
-        start, end = self.evaluated
-        count = last - first + 2 - round((end - start) / span)
-        starts = [(first - 1 + i) * span for i in range(count)]
-        return tuple((at, at + end - start) for at in starts)
+        (first, last), spans = self.file.compared_spans, self.file.evaluated_spans
+        further = spans[-1] - spans[0]
+        return tuple(self.line.geometry.section(i, i + further) for i in range(first, last + 1 - further))
 
     @property
-    def compared(self) -> tuple[float, float]:
-        """Start and end of the stretch that has to be recorded: the compared spans, or else the evaluated [m]."""
-        return (self.shifted[0][0], self.shifted[-1][1]) if self.shifted else self.evaluated
+    def recorded_section(self) -> tuple[float, float]:
+        """Start and end of the section that a record has to cover: the compared spans, or the analysis section [m]."""
+        if self.file.compared_spans is None:
+            return self.analysis_section
+        return self.line.geometry.section(*self.file.compared_spans)
 
     @property
     def offsets(self) -> tuple[float, ...]:
@@ -106,17 +111,18 @@ class Case:
     @property
     def start(self) -> float:
         """Where the last pantograph is at the beginning of a run [m]."""
-        return self.line.geometry.span_m if self.file.start_m is None else self.file.start_m
+        return self.line.geometry.span(1)[1] if self.file.start_m is None else self.file.start_m
 
     @property
     def end(self) -> float:
         """Where the last pantograph is at the end of a run [m]; by default up to a span past the evaluated stretch."""
-        geometry, (_, evaluated_end), behind = self.line.geometry, self.compared, self.offsets[-1]
+        geometry, (_, section_end) = self.line.geometry, self.recorded_section
         if self.file.run_out_m is not None:
-            return evaluated_end + self.file.run_out_m
+            return section_end + self.file.run_out_m
+        last_start, last_end = geometry.span((self.file.compared_spans or self.file.evaluated_spans or (1,))[-1])
         # The first pantograph stays on the line, half a span away from its end.
-        furthest = (geometry.spans - 0.5) * geometry.span_m - behind
-        return max(evaluated_end, min(evaluated_end + geometry.span_m, furthest))
+        furthest = geometry.mid_span(geometry.spans) - self.offsets[-1]
+        return max(section_end, min(section_end + last_end - last_start, furthest))
 
     @cached_property
     def digest(self) -> str:
@@ -125,7 +131,9 @@ class Case:
             "line": _numbers(self.line.model_dump(mode="json")),
             "pantographs": [_numbers(pantograph.model_dump(mode="json")) for pantograph in self.pantographs],
             "case": _numbers(self.file.model_dump(mode="json", exclude=self._not_told)),
-            "measured": None if self.measured is None else _numbers(self.measured.model_dump(mode="json")),
+            "measured": None
+            if self.static_pantograph is None
+            else _numbers(self.static_pantograph.model_dump(mode="json")),
         }
         if self.dampings and "study" not in self._not_told:
             inputs["dampings"] = {name: _numbers(d.model_dump(mode="json")) for name, d in self.dampings.items()}
@@ -141,7 +149,7 @@ class Case:
         return {"limit", "line", "requires", "damping", "on_request"} | unused
 
     @property
-    def groups(self) -> dict[str, SourcedTable]:
+    def sourced_tables(self) -> dict[str, SourcedTable]:
         """Every group of inputs that names its source, by dotted name: of the case, the line, and the pantographs."""
         tables: dict[str, object] = {"case": self.file}
         tables |= {f"line.{name}": getattr(self.line, name) for name in type(self.line).model_fields}
@@ -150,15 +158,18 @@ class Case:
             tables |= {f"pantograph {i}.{name}": getattr(model, name) for name in type(model).model_fields}
         tables |= {"mass_drop": self.file.mass_drop, "study": self.file.study}
         tables |= {f"damping '{name}'": damping for name, damping in self.dampings.items()}
-        if self.measured is not None:
-            tables |= {f"pantograph.{name}": getattr(self.measured, name) for name in type(self.measured).model_fields}
+        if self.static_pantograph is not None:
+            tables |= {
+                f"pantograph.{name}": getattr(self.static_pantograph, name)
+                for name in type(self.static_pantograph).model_fields
+            }
         return {name: table for name, table in tables.items() if isinstance(table, SourcedTable)}
 
     @property
     def inputs(self) -> tuple[InputProvenance, ...]:
         """Where every group of inputs comes from; keys that are less certain than their group follow it."""
         found = []
-        for name, table in self.groups.items():
+        for name, table in self.sourced_tables.items():
             source = (table.source,) if isinstance(table.source, str) else tuple(table.source)
             found.append(InputProvenance(name, table.trust, source))
             found += [InputProvenance(f"{name}.{key}", "provisional", ("untraced",)) for key in table.provisional]
@@ -167,9 +178,8 @@ class Case:
     @property
     def notes(self) -> tuple[str, ...]:
         """What the files want a reader to know: on the whole, then group by group."""
-        models = [*self.pantographs, *([] if self.measured is None else [self.measured])]
-        notes = [self.line.note, *(model.note for model in models)]
-        notes += [f"{name}: {table.note}" for name, table in self.groups.items() if table.note]
+        notes = [self.line.note, *(pantograph.note for pantograph in self.pantograph_files)]
+        notes += [f"{name}: {table.note}" for name, table in self.sourced_tables.items() if table.note]
         return tuple(dict.fromkeys(note.strip() for note in notes if note))
 
     def with_limits(self, limits: tuple[Limit, ...]) -> "Case":

@@ -201,10 +201,10 @@ class CaseFile(SourcedTable):
     def _check_limits(self) -> None:
         seen = set()
         for i, limit in enumerate(self.limit, 1):
-            if limit.of > len(self.pantograph):
+            if limit.owner > len(self.pantograph):
                 raise validation_problem(
                     f"limit[{i}].pantograph",
-                    f"there is no pantograph {limit.of}",
+                    f"there is no pantograph {limit.owner}",
                     f"The case has {len(self.pantograph)}, numbered from 1 at the front.",
                 )
             if limit.target in seen:

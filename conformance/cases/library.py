@@ -154,18 +154,18 @@ def _check_geometry(case: Case, path: Path) -> None:
             raise InputError(
                 f"{where}, key {key}", f"span {last} does not exist", f"The line has {geometry.spans} spans."
             )
-    if case.start >= case.compared[0]:
+    if case.start >= case.recorded_section[0]:
         raise InputError(
             f"{where}, key start_m",
             f"the last pantograph starts at {case.start:g} m, not before the evaluated "
-            f"spans, which begin at {case.compared[0]:g} m",
+            f"spans, which begin at {case.recorded_section[0]:g} m",
             "Start earlier, or evaluate later spans.",
         )
-    length, front = geometry.span_m * geometry.spans, case.end + case.offsets[-1]
-    if front >= length:
+    front = case.end + case.offsets[-1]
+    if front >= geometry.length:
         raise InputError(
             f"{where}, key run_out_m",
-            f"the first pantograph would run to {front:g} m on a line of {length:g} m",
+            f"the first pantograph would run to {front:g} m on a line of {geometry.length:g} m",
             "Add spans, evaluate earlier ones, or shorten run_out_m.",
         )
 
@@ -174,7 +174,7 @@ def _check_drops(case: Case, path: Path) -> None:
     drops = case.file.mass_drop
     if drops is None:
         return
-    length, where = case.line.geometry.span_m * case.line.geometry.spans, f"case '{path.name}'"
+    length, where = case.line.geometry.length, f"case '{path.name}'"
     places = {"drop": [test.x_m for test in drops.drop], "sensor": [sensor.x_m for sensor in drops.sensor]}
     for name, along in places.items():
         for i, x in enumerate(along, 1):
@@ -214,13 +214,15 @@ def overlay_limits(cases: Sequence[Case], limits: Sequence[LimitOverride]) -> li
                 f"no case that is run matches {limit.case!r}",
                 suggest_names(limit.case, [case.id for case in cases]),
             )
-        if limit.of > max(len(case.pantographs) for case in meant):
+        if limit.owner > max(len(case.pantographs) for case in meant):
             raise InputError(
-                f"{where}.pantograph", f"there is no pantograph {limit.of}", "They are numbered from 1 at the front."
+                f"{where}.pantograph", f"there is no pantograph {limit.owner}", "They are numbered from 1 at the front."
             )
     return [
         case.with_limits(
-            tuple(limit for limit in limits if fnmatchcase(case.id, limit.case) and limit.of <= len(case.pantographs))
+            tuple(
+                limit for limit in limits if fnmatchcase(case.id, limit.case) and limit.owner <= len(case.pantographs)
+            )
         )
         for case in cases
     ]

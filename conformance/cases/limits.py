@@ -53,8 +53,8 @@ class Limit(InputTable):
         return self
 
     @property
-    def of(self) -> int:
-        """Pantograph the limit is for, from 1; 0 for the line."""
+    def owner(self) -> int:
+        """Number of the pantograph that the limit is for, from 1; 0 for the line."""
         if QUANTITIES[self.quantity].scope != "pantograph":
             return 0
         return self.pantograph or 1
@@ -62,7 +62,7 @@ class Limit(InputTable):
     @property
     def target(self) -> tuple[str, int, int | None]:
         """What is limited; a limit for the same target replaces another."""
-        return self.quantity, self.of, self.item
+        return self.quantity, self.owner, self.item
 
 
 class LimitOverride(Limit):

@@ -37,6 +37,47 @@ class Geometry(SourcedTable):
         float, Field(ge=-1, le=1, description="lateral offset at supports, its sign alternating [m]")
     ] = 0.0
 
+    @property
+    def span_lengths(self) -> tuple[float, ...]:
+        """Length of every span [m]."""
+        return (self.span_m,) * self.spans
+
+    @property
+    def span_limits(self) -> tuple[float, ...]:
+        """Positions of the first anchor, of every support and of the last anchor [m]; the line begins at 0."""
+        return tuple(self.span_m * i for i in range(self.spans + 1))
+
+    @property
+    def supports(self) -> tuple[float, ...]:
+        """Positions of the supports between the first span and the last [m]; the wires end in anchors beyond them."""
+        return self.span_limits[1:-1]
+
+    @property
+    def length(self) -> float:
+        """Length of the line from anchor to anchor [m]."""
+        return self.span_limits[-1]
+
+    @property
+    def middle_span(self) -> int:
+        """Number of the span half way along the line, counted from 1."""
+        return self.spans // 2 + 1
+
+    def span(self, number: int) -> tuple[float, float]:
+        """Start and end of a span, counted from 1 [m]."""
+        return self.section(number, number)
+
+    def mid_span(self, number: int) -> float:
+        """Position half way along a span, counted from 1 [m]."""
+        return sum(self.span(number)) / 2
+
+    def section(self, first: int, last: int) -> tuple[float, float]:
+        """Start of one span and end of another, counted from 1 [m]."""
+        return self.span_limits[first - 1], self.span_limits[last]
+
+    def shorten(self, spans: int) -> "Geometry":
+        """The same line with no more than its first spans."""
+        return self.model_copy(update={"spans": min(self.spans, spans)})
+
 
 class WireTable(SourcedTable):
     """Contact wire or messenger wire; two of them run side by side, each with these numbers."""

@@ -99,9 +99,9 @@ def _check_owners(limits: "Sequence[Limit]", pantographs: int) -> None:
     from pantocheck.conformance.input_files.input_error import InputError
 
     for i, limit in enumerate(limits, 1):
-        if limit.of > pantographs:
+        if limit.owner > pantographs:
             raise InputError(
                 f"limits, key limit[{i}].pantograph",
-                f"there is no pantograph {limit.of}",
+                f"there is no pantograph {limit.owner}",
                 f"The record has {pantographs}, numbered from 1 at the front.",
             )

@@ -12,7 +12,7 @@ from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.records.evaluation import Value
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph
-from pantocheck.conformance.simulation.static_quantities import compute_static_quantities, first_modes, span_positions
+from pantocheck.conformance.simulation.static_quantities import compute_static_quantities, first_modes, sample_span
 from pantocheck.model import discretise
 from pantocheck.model.pantograph import apparent_mass
 
@@ -35,7 +35,7 @@ def build_rest_tables(case: Case) -> "list[RenderableType]":
     found = compute_static_quantities(case, discretise(build_catenary(case.line), element))
     found.setdefault("natural_frequency_Hz", tuple(map(float, first_modes(case.line, element).frequency)))
     parts = [_quantities(found), _elasticity(case, found)]
-    models = dict.fromkeys([*case.pantographs, *([] if case.measured is None else [case.measured])])
+    models = dict.fromkeys(case.pantograph_files)
     for model in models:
         table = _table(f"Apparent mass at the head: {model.title}", "frequency [Hz]", "size [kg]", "phase [deg]")
         response = apparent_mass(build_pantograph(model, 0.0, 0.0), np.array(FREQUENCIES_Hz))
@@ -60,7 +60,8 @@ def _elasticity(case: Case, found: dict[str, Value]) -> Table:
     table = _table("Elasticity along the span", "from the support [m]", "small load [mm/N]", "200 N [mm/N]")
     columns = [found[f"{name}{ALONG}"] for name in ("elasticity", "elasticity_200_N")]
     small, large = (column if isinstance(column, tuple) else (column,) for column in columns)
-    for x, one, other in zip(span_positions(0.0, case.line.geometry.span_m), small, large, strict=True):
+    start, end = case.line.geometry.span(case.line.geometry.middle_span)
+    for x, one, other in zip(sample_span(0.0, end - start), small, large, strict=True):
         table.add_row(f"{x:.2f}", format_number(one), format_number(other))
     return table
 

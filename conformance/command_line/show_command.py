@@ -67,10 +67,9 @@ def _draw(case: "Case", path: Path) -> None:
 
     check_writable(path.parent)
     # All spans are alike: a few show the line as well as all of them.
-    few = case.line.geometry.model_copy(update={"spans": min(case.line.geometry.spans, 6)})
-    drawn = case.line.model_copy(update={"geometry": few})
-    line = discretise(build_catenary(drawn), case.file.discretisation.element_m)
-    write_atomically(path, draw_line(line, case.line.title, case.line.geometry.span_m).encode())
+    short = case.line.model_copy(update={"geometry": case.line.geometry.shorten(6)})
+    line = discretise(build_catenary(short), case.file.discretisation.element_m)
+    write_atomically(path, draw_line(line, short.title, short.geometry).encode())
 
 
 def _parts(case: "Case") -> list["RenderableType"]:
@@ -83,12 +82,12 @@ def _parts(case: "Case") -> list["RenderableType"]:
 
     parts: list[RenderableType] = [Text(f"{case.id}  ", "bold") + escape_text(case.file.title)]
     if not case.is_static:
-        start, end = case.evaluated
+        start, end = case.analysis_section
         parts.append(escape_text(f"{case.file.speed_km_h:g} km/h, evaluated {start:g} m to {end:g} m, {case.digest}"))
     mesh = case.file.discretisation
     parts.append(escape_text(f"mesh of the reference simulator: {mesh.element_m:g} m, {mesh.time_step_s:g} s"))
     inputs = Table("input", "value", "trust", "source", title="Inputs", title_justify="left", box=None, pad_edge=False)
-    for name, table in case.groups.items():
+    for name, table in case.sourced_tables.items():
         for key, value in _numbers(table):
             trust = "provisional" if key.split(".")[0] in table.provisional else table.trust
             inputs.add_row(escape_text(f"{name}.{key}"), escape_text(value), trust, escape_text(_short(table.source)))
@@ -96,13 +95,12 @@ def _parts(case: "Case") -> list["RenderableType"]:
         "limit", "lower", "upper", "trust", "source", title="Limits", title_justify="left", box=None, pad_edge=False
     )
     for limit in case.limits:
-        name = (
-            f"{limit.quantity}{f'[{limit.item}]' if limit.item else ''}{f', pantograph {limit.of}' if limit.of else ''}"
-        )
+        item = f"[{limit.item}]" if limit.item else ""
+        name = f"{limit.quantity}{item}{f', pantograph {limit.owner}' if limit.owner else ''}"
         limits.add_row(
             name, format_number(limit.lower), format_number(limit.upper), limit.trust, escape_text(_short(limit.source))
         )
-    said = [*(table.source for table in case.groups.values()), *(limit.source for limit in case.limits)]
+    said = [*(table.source for table in case.sourced_tables.values()), *(limit.source for limit in case.limits)]
     keys = dict.fromkeys(key for source in said for key in _keys(source))
     sources = [escape_text(f"{key}: {source_text(key)}") for key in keys if source_text(key) != key]
     parts += [

@@ -51,16 +51,14 @@ def _grade_delivered(case: Case, outcome: Delivered, lowest_trust: Trust) -> Cas
         return build_ungraded(case, "error", mismatch, outcome)
     evaluation, refined = _evaluated(case, outcome), _refined(case, outcome)
     record = outcome.record
-    shifted = (
-        {} if record is None else section_spread(record, case.shifted, case.file.filter.low_pass, evaluation.values)
-    )
+    low_pass = case.file.filter.low_pass
+    shifted = {} if record is None else section_spread(record, case.shifted_sections, low_pass, evaluation.values)
     found = check_record(case, record) if record is not None else []
     contradiction = next((finding for finding in found if finding.kind == "contradiction"), None)
     # Numbers of a record that contradicts itself are shown, but not held against limits: some would pass.
     limits = case.limits if contradiction is None else ()
     criteria = [_with_spread(grade_criterion(limit, evaluation, lowest_trust, refined), shifted) for limit in limits]
-    span, spans = case.line.geometry.span_m, case.line.geometry.spans
-    supports = [i * span for i in range(spans + 1)]
+    supports = list(case.line.geometry.span_limits)
     return _result(
         case,
         outcome,
@@ -78,7 +76,7 @@ def _grade_delivered(case: Case, outcome: Delivered, lowest_trust: Trust) -> Cas
         quantities={str(of): finite_values(evaluation.values[of]) for of in evaluation.values if evaluation.values[of]},
         skipped={str(of): evaluation.skipped[of] for of in evaluation.skipped if evaluation.skipped[of]},
         spread={str(of): values for of, values in shifted.items()},
-        traces=build_pantograph_traces(record, case.file.filter.low_pass, supports) if record is not None else {},
+        traces=build_pantograph_traces(record, low_pass, supports) if record is not None else {},
         uplift=build_uplift_traces(record) if record is not None else [],
         charts=list(outcome.study.charts),
         tables=list(outcome.study.tables),
@@ -112,8 +110,8 @@ def _mismatch(case: Case, outcome: Delivered) -> str | None:
         return f"the record has {record.pantographs} pantographs, the case has {len(case.pantographs)}"
     if abs(record.speed / case.speed - 1) > 0.005:
         return f"the record was made at {3.6 * record.speed:.4g} km/h, the case runs at {3.6 * case.speed:.4g} km/h"
-    if any(abs(a - b) > 0.01 for a, b in zip(record.evaluated, case.evaluated, strict=True)):
-        (start, end), (first, last) = record.evaluated, case.evaluated
+    if any(abs(a - b) > 0.01 for a, b in zip(record.evaluated, case.analysis_section, strict=True)):
+        (start, end), (first, last) = record.evaluated, case.analysis_section
         return f"the record evaluates {start:g} m to {end:g} m, the case {first:g} m to {last:g} m"
     return None
 
@@ -151,7 +149,7 @@ def _result(case: Case, outcome: Delivered, notes: Sequence[str], **parts: objec
                 speed_km_h=file.speed_km_h,
                 rate_Hz=None if record is None else float(f"{record.rate:.9g}"),
                 filter=FilterFacts(**file.filter.model_dump()),
-                evaluated_m=None if case.is_static else case.evaluated,
+                evaluated_m=None if case.is_static else case.analysis_section,
             ),
             **parts,
         }
@@ -191,7 +189,7 @@ def grade_criterion(
     verdict: Verdict = "skip"
     reason: str | None = None
     if value is None:
-        reason = evaluation.skipped.get(limit.of, {}).get(limit.quantity, "the system delivers no such quantity")
+        reason = evaluation.skipped.get(limit.owner, {}).get(limit.quantity, "the system delivers no such quantity")
     else:
         verdict = judge(value, limit.lower, limit.upper)
         if verdict == "fail":
@@ -201,7 +199,7 @@ def grade_criterion(
         verdict, reason = "info", f"{would}; the limit is {limit.trust} and does not count"
     return Criterion(
         quantity=limit.quantity,
-        pantograph=limit.of,
+        pantograph=limit.owner,
         item=limit.item,
         value=value,
         unit=QUANTITIES[limit.quantity].unit,
@@ -237,7 +235,7 @@ def find_value(limit: Limit, values: Mapping[int, Mapping[str, Value]]) -> float
     values : Mapping[int, Mapping[str, Value]]
         By pantograph (0: the line) and name.
     """
-    value = values.get(limit.of, {}).get(limit.quantity)
+    value = values.get(limit.owner, {}).get(limit.quantity)
     if isinstance(value, tuple):
         at = (limit.item or 1) - 1
         value = value[at] if at < len(value) else None

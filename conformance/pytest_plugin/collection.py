@@ -58,7 +58,7 @@ class CaseNode(pytest.Collector):
 
     def collect(self) -> "Iterator[PantographNode | WholeCase]":
         """Its pantographs and, for quantities that belong to none, its line."""
-        for of in dict.fromkeys(limit.of for limit in self.case.limits):
+        for of in dict.fromkeys(limit.owner for limit in self.case.limits):
             yield PantographNode.from_parent(self, name=str(of) if of else "line", of=of)
         if not self.case.limits:
             yield WholeCase.from_parent(self, name="run")
@@ -91,7 +91,7 @@ class PantographNode(pytest.Collector):
         if not isinstance(self.parent, CaseNode):
             raise TypeError("a pantograph belongs to a case")
         for limit in self.parent.case.limits:
-            if limit.of == self.of:
+            if limit.owner == self.of:
                 name = f"{limit.quantity}[{limit.item}]" if limit.item else limit.quantity
                 yield CriterionItem.from_parent(self, name=name, case_node=self.parent, limit=limit)
 

@@ -145,7 +145,7 @@ def grade_arrays(
     """
     asked = _one(case)
     if isinstance(record, str | Path):
-        record, _ = read_record(Path(record), None if asked.is_static else asked.evaluated)
+        record, _ = read_record(Path(record), None if asked.is_static else asked.analysis_section)
     if record is None:
         if time_s is None or position_m is None or force_N is None:
             raise InputError("pantocheck_assess", "no record", "Give a record, or time_s, position_m and force_N.")
@@ -155,7 +155,7 @@ def grade_arrays(
                 speed=asked.speed,
                 position=np.atleast_2d(np.asarray(position_m, dtype=np.float64)),
                 force=np.atleast_2d(np.asarray(force_N, dtype=np.float64)),
-                evaluated=asked.evaluated,
+                evaluated=asked.analysis_section,
                 filter_applied_Hz=filter_applied_Hz,
                 contact_height=None if contact_height_m is None else np.atleast_2d(np.asarray(contact_height_m)),
                 support_position=None if support_position_m is None else np.asarray(support_position_m),

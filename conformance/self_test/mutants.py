@@ -82,7 +82,7 @@ def _bilateral(case: Case, record: Record) -> Outcome:
 
 def _cut(case: Case, record: Record) -> Outcome:
     """The record ends in the middle of the evaluated stretch."""
-    n = int(np.searchsorted(record.position[0], np.mean(case.evaluated)))
+    n = int(np.searchsorted(record.position[0], np.mean(case.analysis_section)))
     channels = {name: getattr(record, name) for name in SAMPLE_CHANNELS}
     return Delivered(replace(record, **{k: value[..., :n] for k, value in channels.items() if value is not None}))
 

@@ -62,11 +62,6 @@ def build_catenary(line: LineFile) -> Catenary:
     return built
 
 
-def _supports(line: LineFile) -> list[float]:
-    """Places of the supports; the wires end in anchors one span before the first and after the last [m]."""
-    return [line.geometry.span_m * i for i in range(1, line.geometry.spans)]
-
-
 def _names(line: LineFile, name: str) -> list[str]:
     number = (line.contact_wire if name == "contact wire" else line.messenger_wire).number
     return [name] if number == 1 else [f"{name} {i + 1}" for i in range(number)]
@@ -78,18 +73,16 @@ def _wires(line: LineFile, name: str, kind: Kind) -> list[Wire]:
     stagger = geometry.stagger_contact_wire_m if kind is Kind.CONTACT_WIRE else geometry.stagger_messenger_m
     lateral = geometry.stagger_contact_wire_m != 0.0 or geometry.stagger_messenger_m != 0.0
     names = _names(line, name)
-    end = geometry.span_m * geometry.spans
-    places = [0.0, *_supports(line), end]
     wires = []
     for i, own in enumerate(names):
         beside = (file.spacing_m or 0.0) * (i - (len(names) - 1) / 2)
-        plan = tuple((x, (stagger if n % 2 == 0 else -stagger) + beside) for n, x in enumerate(places))
+        plan = tuple((x, (stagger if n % 2 == 0 else -stagger) + beside) for n, x in enumerate(geometry.span_limits))
         wires.append(
             Wire(
                 own,
                 kind,
                 0.0,
-                end,
+                geometry.length,
                 file.tension_N,
                 file.mass_kg_m,
                 file.bending_stiffness_N_m2,
@@ -105,7 +98,7 @@ def _messenger_wires(line: LineFile) -> list[Wire]:
     if line.stitch_wire is None:
         return wires
     half, relief = line.stitch_wire.length_m / 2, -line.stitch_wire.tension_N
-    changes = tuple(TensionChange(x - half, x + half, relief) for x in _supports(line))
+    changes = tuple(TensionChange(x - half, x + half, relief) for x in line.geometry.supports)
     return [replace(wire, tension_changes=changes) for wire in wires]
 
 
@@ -114,7 +107,7 @@ def _stitch_wires(line: LineFile) -> Iterator[Wire]:
     if stitch is not None:
         half = stitch.length_m / 2
         for messenger in _names(line, "messenger wire"):
-            for i, x in enumerate(_supports(line), 1):
+            for i, x in enumerate(line.geometry.supports, 1):
                 name = _stitch_name(messenger, i)
                 yield Wire(
                     name,
@@ -135,7 +128,7 @@ def _clamps(line: LineFile) -> Iterator[Clamp]:
     stitch = line.stitch_wire
     if stitch is not None:
         for messenger in _names(line, "messenger wire"):
-            for i, x in enumerate(_supports(line), 1):
+            for i, x in enumerate(line.geometry.supports, 1):
                 for end in (x - stitch.length_m / 2, x + stitch.length_m / 2):
                     yield Clamp(end, messenger, _stitch_name(messenger, i), stitch.clamp_kg)
 
@@ -143,10 +136,10 @@ def _clamps(line: LineFile) -> Iterator[Clamp]:
 def _droppers(line: LineFile) -> Iterator[Dropper]:
     file, messengers = line.droppers, _names(line, "messenger wire")
     presag = file.presag_m or (0.0,) * len(file.x_m)
-    for span in range(line.geometry.spans):
+    for span_start in line.geometry.span_limits[:-1]:
         for x, sag in zip(file.x_m, presag, strict=True):
             for i, contact in enumerate(_names(line, "contact wire")):
-                position = line.geometry.span_m * span + x
+                position = span_start + x
                 yield Dropper(
                     position,
                     _upper_wire(line, messengers[min(i, len(messengers) - 1)], position),
@@ -163,7 +156,7 @@ def _droppers(line: LineFile) -> Iterator[Dropper]:
 def _upper_wire(line: LineFile, messenger: str, position: float) -> str:
     """What a dropper hangs on: the stitch wire if one passes there, else the messenger."""
     if line.stitch_wire is not None:
-        for i, x in enumerate(_supports(line), 1):
+        for i, x in enumerate(line.geometry.supports, 1):
             if abs(position - x) < line.stitch_wire.length_m / 2:
                 return _stitch_name(messenger, i)
     return messenger
@@ -173,7 +166,7 @@ def _steady_arms(line: LineFile) -> Iterator[SteadyArm]:
     arm = line.steady_arm
     # A bar that turns about its hinge moves a third of its mass with the claw.
     mass = arm.mass_kg_m * (arm.length_m or 0.0) / 3 + arm.clamp_kg
-    for x in _supports(line):
+    for x in line.geometry.supports:
         for contact in _names(line, "contact wire"):
             yield SteadyArm(
                 x,
@@ -189,7 +182,7 @@ def _steady_arms(line: LineFile) -> Iterator[SteadyArm]:
 
 def _messenger_supports(line: LineFile) -> Iterator[MessengerSupport]:
     support = line.messenger_support
-    for x in _supports(line):
+    for x in line.geometry.supports:
         for messenger in _names(line, "messenger wire"):
             yield MessengerSupport(
                 x, messenger, line.geometry.encumbrance_m, support.stiffness_N_m, support.damping_N_s_m

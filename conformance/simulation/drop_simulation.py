@@ -142,7 +142,5 @@ def _record(case: Case, told: MassDrop, test: DropTest, number: int, signals: Re
         ),
         quantity=told.quantity,
         drop=DropFacts(test.mass_kg, SHORT_NAME[test.wire], test.x_m, told.hanging_s),
-        line=LineFacts(
-            (line.geometry.span_m,) * line.geometry.spans, line.contact_wire.tension_N, line.messenger_wire.tension_N
-        ),
+        line=LineFacts(line.geometry.span_lengths, line.contact_wire.tension_N, line.messenger_wire.tension_N),
     )

@@ -5,6 +5,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.cases.line_file import Geometry
 from pantocheck.conformance.reports.figures.force_figures import FULL, GREY, INK, render_svg
 from pantocheck.model import DiscretisedLine, Kind, Wire
 
@@ -16,7 +17,7 @@ WIDTHS = {Kind.CONTACT_WIRE: 1.8, Kind.MESSENGER_WIRE: 1.2, Kind.STITCH_WIRE: 0.
 
 
 @render_svg
-def draw_line(line: DiscretisedLine, title: str, span: float) -> Figure:
+def draw_line(line: DiscretisedLine, title: str, geometry: Geometry) -> Figure:
     """Side view and plan view of two spans, half a span more on either side.
 
     Parameters
@@ -25,29 +26,34 @@ def draw_line(line: DiscretisedLine, title: str, span: float) -> Figure:
         The discretised line.
     title : str
         What it is.
-    span : float
-        Length of its spans [m].
+    geometry : Geometry
+        Spans of the line.
     """
-    last = float(line.mesh.position[-1])
-    middle = round(last / span / 2) * span
-    shown = (max(0.0, middle - (SPANS + 1) * span / 2), min(last, middle + (SPANS + 1) * span / 2))
+    before = round(geometry.spans / 2)
+    first, last = before - SPANS // 2, before + 1 + SPANS // 2
+    shown = (
+        geometry.mid_span(first) if first >= 1 else 0.0,
+        geometry.mid_span(last) if last <= geometry.spans else geometry.length,
+    )
+    labelled = geometry.span(min(before + 1, geometry.spans))
     lateral = line.catenary.has_lateral_field
     figure = Figure(figsize=(FULL, 3.6 if lateral else 2.4))
     axes = figure.subplots(2 if lateral else 1, 1, sharex=True, squeeze=False)[:, 0]
-    _view(axes[0], line, "z", shown)
+    _view(axes[0], line, "z", shown, labelled)
     axes[0].set_ylabel("height [m]")
     axes[0].set_title(f"{title}: side view", fontsize=8, loc="left")
     if lateral:
-        _view(axes[1], line, "y", shown)
+        _view(axes[1], line, "y", shown, labelled)
         axes[1].set_ylabel("lateral [m]")
         axes[1].set_title("plan view", fontsize=8, loc="left")
     axes[-1].set_xlabel(f"along the track [m]; heights and lateral places drawn {EXAGGERATED} times as large")
     return figure
 
 
-def _view(axes: Axes, line: DiscretisedLine, field: str, shown: tuple[float, float]) -> None:
+def _view(
+    axes: Axes, line: DiscretisedLine, field: str, shown: tuple[float, float], labelled: tuple[float, float]
+) -> None:
     start, end = shown
-    middle = (start + end) / 2
     for wire in line.catenary.wires:
         if wire.end < start or end < wire.start:
             continue
@@ -58,7 +64,7 @@ def _view(axes: Axes, line: DiscretisedLine, field: str, shown: tuple[float, flo
             continue
         ends = [_at(line, name, field, dropper.position) for name in (dropper.lower, dropper.upper)]
         axes.plot([dropper.position] * 2, ends, color=GREY, linewidth=0.8)
-        if field == "z" and 0 <= dropper.position - middle < (end - start) / (SPANS + 1):
+        if field == "z" and labelled[0] <= dropper.position < labelled[1]:
             length = f"{line.state.dropper_length[n]:.3f}"
             axes.annotate(length, (dropper.position, sum(ends) / 2), fontsize=5, rotation=90, ha="right", va="center")
     for support in line.catenary.messenger_supports:

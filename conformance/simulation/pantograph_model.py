@@ -57,7 +57,7 @@ def start_positions(case: Case) -> tuple[float, ...]:
 
 def watched_supports(case: Case, line: DiscretisedLine) -> tuple[tuple[str, float], ...]:
     """The first contact wire at the supports within and at the ends of the compared stretch."""
-    first, last = case.compared
+    first, last = case.recorded_section
     wire = line.catenary.contact_wires[0].name
     return tuple(
         (wire, arm.position)

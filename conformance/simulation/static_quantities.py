@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.records.evaluation import Value
@@ -42,18 +43,17 @@ def compute_static_quantities(case: Case, line: DiscretisedLine) -> dict[str, Va
     found |= _elasticity(case.line, line)
     found |= _waves(case, line.catenary)
     if case.is_static:
-        if case.measured is not None and case.file.apparent_mass is not None:
-            response = apparent_mass(
-                build_pantograph(case.measured, 0.0, 0.0), np.array(case.file.apparent_mass.frequency_Hz)
-            )
+        if case.static_pantograph is not None and case.file.apparent_mass is not None:
+            pantograph = build_pantograph(case.static_pantograph, 0.0, 0.0)
+            response = apparent_mass(pantograph, np.array(case.file.apparent_mass.frequency_Hz))
             found["apparent_mass_kg"] = tuple(map(float, np.abs(response)))
         found["natural_frequency_Hz"] = tuple(map(float, first_modes(case.line, _element(line)).frequency))
     return found
 
 
-def span_positions(start: float, span: float) -> np.ndarray:
-    """Places along a span, its end left out [m]."""
-    return start + span * np.arange(SAMPLES_PER_SPAN) / SAMPLES_PER_SPAN
+def sample_span(start: float, end: float) -> RealArray:
+    """Equidistant positions along a span, its end left out [m]."""
+    return start + (end - start) * np.arange(SAMPLES_PER_SPAN) / SAMPLES_PER_SPAN
 
 
 def first_modes(line: LineFile, element: float) -> Modes:
@@ -66,8 +66,8 @@ def first_modes(line: LineFile, element: float) -> Modes:
     element : float
         Longest element [m].
     """
-    few = line.geometry.model_copy(update={"spans": min(line.geometry.spans, SPANS_OF_MODES)})
-    short = discretise(build_catenary(line.model_copy(update={"geometry": few})), element)
+    few_spans = line.model_copy(update={"geometry": line.geometry.shorten(SPANS_OF_MODES)})
+    short = discretise(build_catenary(few_spans), element)
     lateral = [row for row in range(short.mesh.rows) if short.mesh.row_field[row] == "y"]
     count = MODES * (2 if lateral else 1)
     while True:
@@ -79,13 +79,10 @@ def first_modes(line: LineFile, element: float) -> Modes:
         count *= 2
 
 
-def _middle(line: LineFile) -> int:
-    return line.geometry.spans // 2
-
-
 def _droppers(line: LineFile, built: Catenary) -> list[int]:
     """Droppers of the middle span."""
-    return [i for i, d in enumerate(built.droppers) if d.position // line.geometry.span_m == _middle(line)]
+    start, end = line.geometry.span(line.geometry.middle_span)
+    return [i for i, dropper in enumerate(built.droppers) if start <= dropper.position < end]
 
 
 def _element(line: DiscretisedLine) -> float:
@@ -113,10 +110,10 @@ def _dropper_lengths(file: LineFile, line: DiscretisedLine) -> dict[str, Value]:
 
 
 def _elasticity(file: LineFile, line: DiscretisedLine) -> dict[str, Value]:
-    places = span_positions(_middle(file) * file.geometry.span_m, file.geometry.span_m)
+    positions = sample_span(*file.geometry.span(file.geometry.middle_span))
     found: dict[str, Value] = {}
     for name, load in (("elasticity", SMALL_LOAD), ("elasticity_200_N", LARGE_LOAD)):
-        elasticity = 1e3 * static_uplift(line, places, load) / load
+        elasticity = 1e3 * static_uplift(line, positions, load) / load
         found[f"{name}_mm_N"] = float(elasticity.max())
         found[f"{name}_non_uniformity_pct"] = 100 * non_uniformity(elasticity)
         found[f"{name}_along_span_mm_N"] = tuple(map(float, elasticity))

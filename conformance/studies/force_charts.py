@@ -66,8 +66,7 @@ def trailing_force(case: Case, study: DampingChange, runs: Mapping[str, Delivere
     runs : Mapping[str, Delivered]
         Outcome by damping model.
     """
-    span = case.line.geometry.span_m
-    start, end = (study.span - 1) * span, study.span * span
+    start, end = case.line.geometry.span(study.span)
     charts = []
     for cutoff in (case.file.filter.cutoff_Hz, EXTENDED_CUTOFF_HZ):
         series = []

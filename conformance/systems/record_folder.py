@@ -40,7 +40,7 @@ class RecordFolder:
         said = open_record(path)
         if isinstance(said, RecordSummary):
             return _of_summary(said, case)
-        record, sidecar = read_record(path, None if case.is_static else case.evaluated)
+        record, sidecar = read_record(path, None if case.is_static else case.analysis_section)
         return Delivered(record, run=sidecar.run)
 
 
@@ -71,8 +71,8 @@ def _mismatch(summary: RecordSummary, case: Case) -> str | None:
             f"the summary record's force was filtered at {summary.filter_cutoff_Hz:g} Hz, the case asks {cutoff:g} Hz"
         )
     stretch = summary.evaluated_m
-    if stretch is not None and any(abs(a - b) > 0.01 for a, b in zip(stretch, case.evaluated, strict=True)):
-        (first, last) = case.evaluated
+    if stretch is not None and any(abs(a - b) > 0.01 for a, b in zip(stretch, case.analysis_section, strict=True)):
+        (first, last) = case.analysis_section
         return f"the summary record evaluates {stretch[0]:g} m to {stretch[1]:g} m, the case {first:g} m to {last:g} m"
     return None
 

@@ -15,7 +15,7 @@ from pantocheck.conformance.records.record_sidecar import RunTable
 from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph, start_positions, watched_supports
-from pantocheck.conformance.simulation.static_quantities import compute_static_quantities, span_positions
+from pantocheck.conformance.simulation.static_quantities import compute_static_quantities, sample_span
 from pantocheck.conformance.simulation.uplift_tuning import tune_uplift
 from pantocheck.model import DiscretisedLine, History, Passage, discretise, simulate_passage
 from pantocheck.model.dynamics.active_window import causal_reach
@@ -120,10 +120,11 @@ def _means(case: Case, made: PassageRun) -> RealArray:
 
 def build_passage(case: Case, line: DiscretisedLine, step: float, uplift_forces: tuple[float, ...]) -> Passage:
     """The passage of a case with given uplift forces, on a line that is discretised already."""
-    places = span_positions(case.evaluated[0], case.line.geometry.span_m)
+    first_span = (case.file.evaluated_spans or (1,))[0]
+    positions = sample_span(*case.line.geometry.span(first_span))
     models = []
     for file, force in zip(case.pantographs, uplift_forces, strict=True):
-        height = float(static_uplift(line, places, force).mean()) + force / file.contact.stiffness_N_m
+        height = float(static_uplift(line, positions, force).mean()) + force / file.contact.stiffness_N_m
         models.append(build_pantograph(file, force, height))
     duration = (case.end - case.start) / case.speed
     wanted = case.file.discretisation.reach_m
@@ -146,7 +147,7 @@ def record_passage(case: Case, passage: Passage, history: History) -> Record:
         speed=passage.speed,
         position=history.position,
         force=history.force,
-        evaluated=case.evaluated,
+        evaluated=case.analysis_section,
         contact_height=history.height,
         support_position=np.array([position for _, position in passage.watched]),
         support_uplift=history.motion[:, :, 0],

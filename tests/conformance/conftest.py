@@ -43,12 +43,13 @@ class Wave:
         time = np.arange(int((case.end - case.start) / case.speed * self.rate)) / self.rate
         last = case.start + case.speed * time
         position = np.array([last + case.offsets[-1] - behind for behind in case.offsets])
-        span = case.line.geometry.span_m
+        start, end = case.line.geometry.span(1)
+        span = end - start
         force = self.mean + np.sqrt(2) * self.sigma * np.sin(2 * np.pi * position / span)
-        supports = np.arange(case.line.geometry.spans + 1) * span
+        supports = np.array(case.line.geometry.span_limits)
         uplift = 1e-3 * UPLIFT_MM * np.exp(-(((position[0] - supports[:, None]) / 5) ** 2))
         height = np.array([self.height(*of, case.speed, span) for of in zip(case.pantographs, position, strict=True)])
-        return Record(time, case.speed, position, force, case.evaluated, None, height, supports, uplift)
+        return Record(time, case.speed, position, force, case.analysis_section, None, height, supports, uplift)
 
     def height(self, file: PantographFile, position: np.ndarray, speed: float, span: float) -> np.ndarray:
         """Motion of a pantograph's head under that force, once it has settled."""

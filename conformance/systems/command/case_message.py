@@ -16,7 +16,7 @@ def build_case_message(case: Case) -> object:
         "id": case.id,
         "title": file.title,
         "speed_km_h": file.speed_km_h,
-        "evaluated_m": list(case.evaluated),
+        "evaluated_m": list(case.analysis_section),
         "filter": file.filter.model_dump(mode="json"),
         "discretisation": file.discretisation.model_dump(mode="json"),
         "line": case.line.model_dump(mode="json"),

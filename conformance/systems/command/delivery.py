@@ -39,7 +39,7 @@ def read_delivery(case: Case, answer: DeliveredAnswer, folder: Path, wall: float
     if answer.record is None:
         return Delivered(static=dict(answer.static), run=RunTable(wall_s=wall), notes=answer.notes)
     sidecar_path, table_path = (_checked(file, folder) for file in (answer.record.sidecar, answer.record.table))
-    record, sidecar = read_record(sidecar_path, None if case.is_static else case.evaluated)
+    record, sidecar = read_record(sidecar_path, None if case.is_static else case.analysis_section)
     if sidecar_path.parent / sidecar.file != table_path:
         raise DeliveryRefused(f"the sidecar is of {sidecar.file!r}, the answer names {answer.record.table.file!r}")
     if sidecar.case != case.id:

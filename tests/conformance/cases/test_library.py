@@ -43,7 +43,7 @@ def test_limits_are_the_published_ones_with_their_trust(name):
     assert {limit.quantity: (limit.lower, limit.upper) for limit in case.limits} == LIMITS[name]
     assert {limit.trust for limit in case.limits} == {"secondary"}
     assert case.speed == pytest.approx(float(name[-3:]) / 3.6)
-    assert case.evaluated == (240.0, 360.0)
+    assert case.analysis_section == (240.0, 360.0)
 
 
 def test_inputs_say_what_is_provisional(case_250):

@@ -23,9 +23,9 @@ def growing(case_250, wave):
 
 def test_stretches_are_shifted_span_by_span(growing):
     case, _ = growing
-    assert case.evaluated == (240.0, 360.0)
-    assert case.shifted == tuple((60.0 * n, 60.0 * (n + 2)) for n in (2, 3, 4, 5, 6))
-    assert case.compared == (120.0, 480.0)
+    assert case.analysis_section == (240.0, 360.0)
+    assert case.shifted_sections == tuple((60.0 * n, 60.0 * (n + 2)) for n in (2, 3, 4, 5, 6))
+    assert case.recorded_section == (120.0, 480.0)
     assert case.end >= 480.0
 
 
@@ -33,7 +33,7 @@ def test_spread_is_the_largest_departure(growing):
     """Spans 3-4 to 7-8 about 5-6: two spans, 2 N, either way; a sample of 0.07 m more or less gives 1e-3 N."""
     case, record = growing
     values = evaluate_record(record, case.file.filter.low_pass).values
-    found = section_spread(record, case.shifted, case.file.filter.low_pass, values)
+    found = section_spread(record, case.shifted_sections, case.file.filter.low_pass, values)
     assert found[1]["mean_force_N"] == pytest.approx(2.0, abs=5e-3)
     assert found[1]["contact_loss_pct"] == 0.0
 
@@ -51,7 +51,7 @@ def test_record_that_covers_too_few_stretches_has_no_spread(growing):
         support_uplift=None,
     )
     values = evaluate_record(short, case.file.filter.low_pass).values
-    assert section_spread(short, case.shifted, case.file.filter.low_pass, values) == {}
+    assert section_spread(short, case.shifted_sections, case.file.filter.low_pass, values) == {}
 
 
 def test_verdict_that_another_stretch_could_turn_is_named(growing):

@@ -16,8 +16,9 @@ from pantocheck.model import discretise
 def shortened(name, spans=8):
     """A case of the library on a shorter line: what is checked in a span half way along hardly feels the ends."""
     case = next(one for one in select_cases([name]) if one.id == name)
-    geometry = case.line.geometry.model_copy(update={"spans": spans})
-    return replace(case, line=case.line.model_copy(update={"geometry": geometry}))
+    line = case.line.model_copy(update={"geometry": case.line.geometry.shorten(spans)})
+    sections = {} if case.is_static else {"evaluated_spans": (3, 4), "compared_spans": None}
+    return replace(case, line=line, file=case.file.model_copy(update=sections))
 
 
 @pytest.fixture(scope="module")

@@ -4,6 +4,7 @@ import pytest
 
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record_writing import write_record
+from pantocheck.conformance.results.outcome import Skipped
 from pantocheck.conformance.systems.record_folder import open_record_folder
 from pantocheck.conformance.systems.system_choice import choose_system
 
@@ -19,7 +20,7 @@ def test_record_is_found_by_its_case(case_250, wave, tmp_path):
 
 def test_case_without_record_is_skipped(case_250, wave, tmp_path):
     write_record(tmp_path / "a.csv", wave().record(case_250), "another/case")
-    assert open_record_folder(tmp_path).run(case_250).skipped == "there is no record of this case"
+    assert open_record_folder(tmp_path).run(case_250) == Skipped("there is no record of this case")
 
 
 def test_wrong_folders(case_250, wave, tmp_path):

@@ -12,7 +12,7 @@ SECOND = Limit(quantity="mode_frequency_Hz", item=2, lower=1.0, upper=2.0, trust
 
 
 def row(limit, value):
-    of = {limit.of: {limit.quantity: value}}
+    of = {limit.owner: {limit.quantity: value}}
     (found,) = build_findings_table([limit], of, {}).rows
     return found[2:]
 
