@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 from lines import QUANTITIES, ac_simple, figures, passage, staggered
 
-from pantocheck.conformance.systems.reference_simulator import build_passage
+from pantocheck.conformance.simulation.case_run import build_passage
 from pantocheck.model import discretise, simulate_passage
 
 EVALUATED = 10
@@ -26,7 +26,7 @@ def table(speed: int, spans: int) -> None:
     geometry = case.line.geometry
     line = discretise(staggered(case), 0.5)
     use = case.file.pantograph[0]
-    own = build_passage(case, line, 1e-3, (use.uplift_force_N,)).pantographs
+    own = build_passage(case, line, case.file.discretisation, (use.uplift_force_N,)).pantographs
     way = replace(passage(case, line, 1e-3, 1, geometry.span(spans - RESERVE + 1)[1], 660.0), pantographs=own)
     history = simulate_passage(line, way)
 

@@ -124,6 +124,16 @@ class Case:
         furthest = geometry.mid_span(geometry.spans) - self.offsets[-1]
         return max(section_end, min(section_end + last_end - last_start, furthest))
 
+    @property
+    def start_positions(self) -> tuple[float, ...]:
+        """Position of every pantograph at the beginning of a run, from the front [m]."""
+        return tuple(self.start + self.offsets[-1] - offset for offset in self.offsets)
+
+    @property
+    def end_positions(self) -> tuple[float, ...]:
+        """Position of every pantograph at the end of a run, from the front [m]."""
+        return tuple(self.end + self.offsets[-1] - offset for offset in self.offsets)
+
     @cached_property
     def digest(self) -> str:
         """SHA-256 of everything a system is told: the inputs without provenance, title and limits."""

@@ -75,6 +75,10 @@ class Discretisation(InputTable):
         ),
     ] = None
 
+    def halve(self) -> "Discretisation":
+        """Half the element length and half the time step."""
+        return self.model_copy(update={"element_m": self.element_m / 2, "time_step_s": self.time_step_s / 2})
+
 
 class ApparentMass(InputTable):
     """Frequency response of a pantograph at its head, taken in a static case."""

@@ -161,7 +161,7 @@ def _check_geometry(case: Case, path: Path) -> None:
             f"spans, which begin at {case.recorded_section[0]:g} m",
             "Start earlier, or evaluate later spans.",
         )
-    front = case.end + case.offsets[-1]
+    front = case.end_positions[0]
     if front >= geometry.length:
         raise InputError(
             f"{where}, key run_out_m",

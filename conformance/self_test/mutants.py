@@ -12,9 +12,11 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.results.outcome import Delivered, Outcome
+from pantocheck.conformance.simulation.case_run import run_passage
 from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.simulation.static_quantities import compute_static_quantities
 from pantocheck.conformance.systems.record_folder import open_record_folder
-from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator, run_line
+from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
 from pantocheck.model import discretise, never_slack
 
 MakeMutant = Callable[[Case, Record], Outcome]
@@ -77,7 +79,8 @@ def _coarse(element: float) -> MakeMutant:
 def _bilateral(case: Case, record: Record) -> Outcome:
     steps = case.file.discretisation
     line = never_slack(discretise(build_catenary(case.line), steps.element_m))
-    return run_line(case, line, steps.element_m, steps.time_step_s)[0]
+    passage = run_passage(case, line, steps)
+    return Delivered(passage.record, compute_static_quantities(case, line), passage.run)
 
 
 def _cut(case: Case, record: Record) -> Outcome:

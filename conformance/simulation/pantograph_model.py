@@ -1,11 +1,9 @@
-"""From a case to the reference simulator's terms: its pantographs, and where they run."""
+"""Pantograph of the reference simulator from a pantograph file."""
 
 import numpy as np
 
-from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.pantograph_file import PantographFile
-from pantocheck.model import DiscretisedLine, Pantograph, chain
-from pantocheck.model.pantograph import from_matrices, from_modes
+from pantocheck.model.pantograph import Pantograph, chain, from_matrices, from_modes
 
 
 def build_pantograph(file: PantographFile, uplift_force: float, working_height: float) -> Pantograph:
@@ -48,19 +46,3 @@ def build_pantograph(file: PantographFile, uplift_force: float, working_height: 
     preload = omega**2 * shape * working_height / (shape @ shape)
     force = uplift_force * shape + preload
     return from_modes(np.array(modes.frequency_Hz), np.array(modes.damping_ratio), shape, force, uplift_force, contact)
-
-
-def start_positions(case: Case) -> tuple[float, ...]:
-    """Where each pantograph starts, the leading one first [m]."""
-    return tuple(case.start + case.offsets[-1] - offset for offset in case.offsets)
-
-
-def watched_supports(case: Case, line: DiscretisedLine) -> tuple[tuple[str, float], ...]:
-    """The first contact wire at the supports within and at the ends of the compared stretch."""
-    first, last = case.recorded_section
-    wire = line.catenary.contact_wires[0].name
-    return tuple(
-        (wire, arm.position)
-        for arm in line.catenary.steady_arms
-        if arm.wire == wire and first - 1e-6 <= arm.position <= last + 1e-6
-    )

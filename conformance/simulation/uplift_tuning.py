@@ -1,4 +1,4 @@
-"""Uplift forces with which mean contact forces meet their targets."""
+"""Uplift forces that give the mean contact forces a case asks for."""
 
 from collections.abc import Callable, Sequence
 from typing import TypeVar
@@ -6,14 +6,15 @@ from typing import TypeVar
 import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
+from pantocheck.model.failures import SimulationError
 
 TOLERANCE = 0.02
-"""A tuned mean contact force is this close to its target [N]."""
-MOST_RUNS = 12
+"""Largest difference between a tuned mean contact force and its target [N]."""
+MAX_RUNS = 12
 
 
-class TuningFailed(ArithmeticError):
-    """The uplift force that gives the target mean was not found; grading another mean would compare the wrong run."""
+class TuningFailed(SimulationError):
+    """No uplift force gives the target: any other mean contact force would be that of a different run."""
 
 
 TunedRun = TypeVar("TunedRun")
@@ -21,52 +22,56 @@ TunedRun = TypeVar("TunedRun")
 
 def tune_uplift(
     run: Callable[[tuple[float, ...]], TunedRun],
-    means: Callable[[TunedRun], RealArray],
+    mean_forces: Callable[[TunedRun], RealArray],
     start: Sequence[float],
     targets: Sequence[float | None],
-) -> tuple[TunedRun, tuple[float, ...]]:
-    """Secant on every pantograph's own force.
+) -> TunedRun:
+    """Tune the uplift forces by the secant method, each pantograph with its own slope.
 
     Parameters
     ----------
-    run : Callable[[tuple[float, ...]], TunedRun]
-        Makes a run with the given uplift forces [N].
-    means : Callable[[TunedRun], ndarray]
-        Mean contact forces of a run [N].
-    start : Sequence[float]
-        Forces of the first run [N].
-    targets : Sequence[float or None]
-        Mean contact forces that are wanted; None leaves a force as it is [N].
+    run : callable
+        Function that runs the passage with the given uplift forces [N].
+    mean_forces : callable
+        Function that gives the mean contact force of every pantograph of a run [N].
+    start : sequence of float
+        Uplift forces of the first run [N].
+    targets : sequence of float or None
+        Target of every mean contact force [N]; None keeps the uplift force of this pantograph.
 
     Returns
     -------
-    tuple[TunedRun, tuple[float, ...]]
-        The run that meets the targets, and its forces.
+    TunedRun
+        The run that meets the targets.
 
     Raises
     ------
-    NotTuned
-        It is not among the first runs.
+    TuningFailed
+        None of the first runs meets the targets.
     """
-    wanted = np.array([np.nan if target is None else target for target in targets])
-    aimed = np.isfinite(wanted)
+    target = np.array([np.nan if value is None else value for value in targets])
+    has_target = np.isfinite(target)
     forces = np.array(start, dtype=float)
-    # The mean follows the uplift force nearly one to one.
+    # The mean contact force follows the uplift force nearly one to one.
     slope = np.ones(forces.size)
-    made = run(tuple(map(float, forces)))
-    found = means(made)
-    for made_runs in range(1, MOST_RUNS + 1):
-        missing = np.where(aimed, wanted - found, 0.0)
-        if np.abs(missing).max(initial=0.0) <= TOLERANCE:
-            return made, tuple(map(float, forces))
-        if made_runs == MOST_RUNS:
+    tuned = run(tuple(map(float, forces)))
+    means = mean_forces(tuned)
+    for run_count in range(1, MAX_RUNS + 1):
+        error = np.where(has_target, target - means, 0.0)
+        if np.abs(error).max(initial=0.0) <= TOLERANCE:
+            return tuned
+        if run_count == MAX_RUNS:
             break
-        change = missing / slope
+        change = error / slope
         forces = forces + change
-        made = run(tuple(map(float, forces)))
-        now = means(made)
-        # Two pantographs act on each other: a quotient far from one is the other's doing.
+        tuned = run(tuple(map(float, forces)))
+        new_means = mean_forces(tuned)
+        # A quotient far from one is caused by the change of another pantograph's force.
         moved = np.abs(change) > TOLERANCE / 10
-        quotient = np.divide(now - found, change, out=slope.copy(), where=moved)
-        slope, found = np.clip(quotient, 0.5, 2.0), now
-    raise TuningFailed(f"a mean contact force is still {np.nanmax(np.abs(wanted - found)):.2f} N off its target")
+        quotient = np.divide(new_means - means, change, out=slope.copy(), where=moved)
+        slope, means = np.clip(quotient, 0.5, 2.0), new_means
+    worst = int(np.nanargmax(np.abs(target - means)))
+    raise TuningFailed(
+        f"pantograph {worst + 1}: after {MAX_RUNS} runs the mean contact force is {means[worst]:.2f} N, "
+        f"its target_mean_force_N is {target[worst]:.2f} N"
+    )

@@ -22,10 +22,10 @@ from pantocheck.conformance.records.record_sidecar import RunTable
 from pantocheck.conformance.results.outcome import Delivered, StudyResult
 from pantocheck.conformance.results.results_format import Chart, Mark, Series
 from pantocheck.conformance.results.traces import thin_series
+from pantocheck.conformance.simulation.case_run import build_passage, record_passage
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.studies.vovan2015.findings_table import build_findings_table
 from pantocheck.conformance.studies.vovan2015.provenance_table import build_provenance_table
-from pantocheck.conformance.systems.reference_simulator import build_passage, record_passage
 from pantocheck.model import Catenary, DiscretisedLine, Kind, Passage, Rayleigh, discretise, simulate_passage
 from pantocheck.model.discretised_line import with_damping
 from pantocheck.model.fem.dropper_laws import with_viscous_part_kept
@@ -81,7 +81,7 @@ def run_dropper_damping(case: Case, study: DropperDamping) -> Delivered:
     if not all(forces):
         raise InputError(f"case '{case.id}', key pantograph", "no uplift_force_N", "This study tunes no forces.")
     mesh = discretise(line, steps.element_m)
-    passage = build_passage(case, mesh, steps.time_step_s, forces)
+    passage = build_passage(case, mesh, steps, forces)
     at_rest = simulate_passage(mesh, passage)
     coefficients = np.array(study.coefficients_s)
     force = {

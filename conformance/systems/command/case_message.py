@@ -25,10 +25,12 @@ def build_case_message(case: Case) -> object:
                 **model.model_dump(mode="json", exclude={"title"}),
                 "uplift_force_N": use.uplift_force_N,
                 "target_mean_force_N": use.target_mean_force_N,
-                "start_m": case.start + case.offsets[-1] - behind,
-                "end_m": case.end + case.offsets[-1] - behind,
+                "start_m": start,
+                "end_m": end,
             }
-            for use, model, behind in zip(file.pantograph, case.pantographs, case.offsets, strict=True)
+            for use, model, start, end in zip(
+                file.pantograph, case.pantographs, case.start_positions, case.end_positions, strict=True
+            )
         ],
     }
     return drop_keys(content, PROVENANCE)

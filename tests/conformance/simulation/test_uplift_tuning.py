@@ -1,50 +1,97 @@
-"""Tuning: few runs, the last one kept."""
+"""Tuning of the uplift forces: few runs, the run of the tuned forces is kept, and a failure has a name."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
-from pantocheck.conformance.simulation.uplift_tuning import MOST_RUNS, TOLERANCE, TuningFailed, tune_uplift
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.command_line.app import app
+from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.records.record_sidecar import RunTable
+from pantocheck.conformance.simulation import case_run
+from pantocheck.conformance.simulation.case_run import PassageRun
+from pantocheck.conformance.simulation.uplift_tuning import MAX_RUNS, TOLERANCE, TuningFailed, tune_uplift
 
 
-class Line:
-    """Mean forces that follow the uplift forces, each a little the other's; counts its runs."""
+@dataclass(frozen=True)
+class MeanForces:
+    """Result of a made-up run."""
+
+    uplift: tuple[float, ...]
+    means: np.ndarray
+
+
+class CoupledPantographs:
+    """Mean contact forces that depend on the pantograph's own uplift force and a little on the other's; counts runs."""
 
     def __init__(self, gain: float, cross: float = 0.0) -> None:
         self.matrix, self.runs = np.array([[gain, cross], [cross, gain]]), 0
 
-    def __call__(self, forces: tuple[float, ...]) -> np.ndarray:
+    def __call__(self, forces: tuple[float, ...]) -> MeanForces:
         self.runs += 1
-        return self.matrix @ np.array(forces) + 3.0
+        return MeanForces(forces, self.matrix @ np.array(forces) + 3.0)
 
 
-@pytest.mark.parametrize(("gain", "cross", "most"), [(1.0, 0.0, 2), (0.93, 0.0, 3), (0.98, 0.05, 5), (0.8, -0.1, 7)])
-def test_targets_are_met_in_few_runs(gain, cross, most):
-    line = Line(gain, cross)
-    made, forces = tune_uplift(line, lambda run: run, (150.0, 150.0), (144.0, 169.0))
-    assert np.abs(made - [144.0, 169.0]).max() <= TOLERANCE
-    assert made == pytest.approx(line(forces))  # the run that is kept is the one of these forces
-    assert line.runs - 1 <= most
+def means(run: MeanForces) -> np.ndarray:
+    return run.means
 
 
-def test_force_without_a_target_stays_and_needs_one_run():
-    line = Line(1.0)
-    _, forces = tune_uplift(line, lambda run: run, (120.0, 130.0), (None, None))
-    assert forces == (120.0, 130.0)
-    assert line.runs == 1
+@pytest.mark.parametrize(
+    ("gain", "cross", "most_runs"), [(1.0, 0.0, 2), (0.93, 0.0, 3), (0.98, 0.05, 5), (0.8, -0.1, 7)]
+)
+def test_targets_are_met_in_few_runs(gain: float, cross: float, most_runs: int) -> None:
+    run = CoupledPantographs(gain, cross)
+    tuned = tune_uplift(run, means, (150.0, 150.0), (144.0, 169.0))
+    assert np.abs(tuned.means - [144.0, 169.0]).max() <= TOLERANCE
+    assert run.runs <= most_runs
 
 
-def test_last_run_counts():
-    """A mean that stands still until the last run allowed, and then meets its target."""
-    runs = []
+def test_force_without_a_target_is_kept_after_one_run() -> None:
+    run = CoupledPantographs(1.0)
+    assert tune_uplift(run, means, (120.0, 130.0), (None, None)).uplift == (120.0, 130.0)
+    assert run.runs == 1
 
-    def run(forces: tuple[float, ...]) -> np.ndarray:
+
+def test_last_allowed_run_can_meet_the_target() -> None:
+    runs: list[tuple[float, ...]] = []
+
+    def run(forces: tuple[float, ...]) -> MeanForces:
         runs.append(forces)
-        return np.array([144.0 if len(runs) == MOST_RUNS else 50.0])
+        return MeanForces(forces, np.array([144.0 if len(runs) == MAX_RUNS else 50.0]))
 
-    made, _ = tune_uplift(run, lambda made: made, (120.0,), (144.0,))
-    assert (made[0], len(runs)) == (144.0, MOST_RUNS)
+    assert tune_uplift(run, means, (120.0,), (144.0,)).means[0] == 144.0
+    assert len(runs) == MAX_RUNS
 
 
-def test_mean_that_does_not_follow_is_refused():
-    with pytest.raises(TuningFailed, match="off its target"):
-        tune_uplift(lambda forces: forces, lambda run: np.full(1, 50.0), (120.0,), (144.0,))
+def test_mean_that_does_not_follow_its_uplift_force_is_a_failure() -> None:
+    with pytest.raises(TuningFailed, match=r"^pantograph 1: .* is 50\.00 N, its target_mean_force_N is 144\.00 N$"):
+        tune_uplift(lambda forces: MeanForces(forces, np.full(1, 50.0)), means, (120.0,), (144.0,))
+
+
+@pytest.fixture
+def untunable(own_case, wave, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A case with a target that no run meets: every run has a mean contact force of 119 N."""
+    case: Path = own_case("250.toml", "uplift_force_N = 120.0", "target_mean_force_N = 150.0")
+
+    def run_once(case: Case, line: object, steps: object, uplift_forces: tuple[float, ...]) -> PassageRun:
+        record: Record = wave().record(case)
+        return PassageRun(replace(record), RunTable(), uplift_forces)
+
+    monkeypatch.setattr(case_run, "_run_once", run_once)
+    return case
+
+
+def test_simulate_reports_failed_tuning_with_exit_code_2(untunable: Path, tmp_path: Path) -> None:
+    done = CliRunner().invoke(app, ["simulate", str(untunable), "--out", str(tmp_path / "record.csv")])
+    assert done.exit_code == 2
+    assert "mean contact force is 119.00 N, its target_mean_force_N is 150.00 N" in done.output
+    assert "Traceback" not in done.output
+
+
+def test_run_reports_failed_tuning_as_the_error_of_the_case(untunable: Path, tmp_path: Path) -> None:
+    done = CliRunner().invoke(app, ["run", str(untunable), "--formats", "json", "--out", str(tmp_path / "report")])
+    assert done.exit_code == 2
+    assert "TuningFailed: pantograph 1: after 12 runs" in " ".join(done.output.split())

@@ -1,0 +1,139 @@
+"""Run of a case: from the case to the passage that is simulated, and from its history to a record."""
+
+import time
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.case_file import Discretisation
+from pantocheck.conformance.records.evaluation import pantograph_signals
+from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.records.record_sidecar import RunTable
+from pantocheck.conformance.simulation.pantograph_model import build_pantograph
+from pantocheck.conformance.simulation.static_quantities import sample_span
+from pantocheck.conformance.simulation.uplift_tuning import tune_uplift
+from pantocheck.model import DiscretisedLine, History, Passage, simulate_passage
+from pantocheck.model.dynamics.active_window import causal_reach
+from pantocheck.model.statics.elasticity import static_uplift
+
+
+@dataclass(frozen=True)
+class PassageRun:
+    """Simulated passage of a case.
+
+    Parameters
+    ----------
+    record : Record
+        Record of the passage.
+    run : RunTable
+        Simulated time, computing time, time step and element length.
+    uplift_forces : tuple of float
+        Uplift force of every pantograph [N].
+    """
+
+    record: Record
+    run: RunTable
+    uplift_forces: tuple[float, ...]
+
+
+def run_passage(
+    case: Case, line: DiscretisedLine, steps: Discretisation, uplift_forces: tuple[float, ...] | None = None
+) -> PassageRun:
+    """Simulate the passage of a case on a discretised line.
+
+    Parameters
+    ----------
+    case : Case
+        Case with a speed.
+    line : DiscretisedLine
+        Its line, discretised with the element length of `steps`.
+    steps : Discretisation
+        Element length and time step.
+    uplift_forces : tuple of float, optional
+        Uplift force of every pantograph [N]; default: those of the case, tuned where it asks for a mean contact force.
+
+    Raises
+    ------
+    TuningFailed
+        No uplift force gives the mean contact force that the case asks for.
+    """
+    uses = case.file.pantograph
+    start = uplift_forces or tuple(use.uplift_force_N or use.target_mean_force_N or 0.0 for use in uses)
+    # Compiles the kernels, which is not part of the computing time.
+    simulate_passage(line, replace(build_passage(case, line, steps, start), duration=0.0))
+    return tune_uplift(
+        lambda forces: _run_once(case, line, steps, forces),
+        lambda passage_run: _mean_forces(case, passage_run.record),
+        start,
+        [None if uplift_forces else use.target_mean_force_N for use in uses],
+    )
+
+
+def _run_once(case: Case, line: DiscretisedLine, steps: Discretisation, uplift_forces: tuple[float, ...]) -> PassageRun:
+    passage = build_passage(case, line, steps, uplift_forces)
+    begin = time.perf_counter()
+    history = simulate_passage(line, passage)
+    record = record_passage(case, passage, history)
+    run = RunTable(
+        simulated_s=passage.duration,
+        wall_s=time.perf_counter() - begin,
+        dt_s=steps.time_step_s,
+        element_m=steps.element_m,
+    )
+    return PassageRun(record, run, uplift_forces)
+
+
+def _mean_forces(case: Case, record: Record) -> RealArray:
+    """Mean contact force of every pantograph over the analysis section [N]."""
+    low_pass, numbers = case.file.filter.low_pass, range(1, record.pantographs + 1)
+    return np.array([pantograph_signals(record, number, low_pass).delivered.mean() for number in numbers])
+
+
+def build_passage(
+    case: Case, line: DiscretisedLine, steps: Discretisation, uplift_forces: tuple[float, ...]
+) -> Passage:
+    """Passage of a case on a discretised line, with given uplift forces [N]."""
+    first_span = (case.file.evaluated_spans or (1,))[0]
+    positions = sample_span(*case.line.geometry.span(first_span))
+    pantographs = []
+    for file, force in zip(case.pantographs, uplift_forces, strict=True):
+        height = float(static_uplift(line, positions, force).mean()) + force / file.contact.stiffness_N_m
+        pantographs.append(build_pantograph(file, force, height))
+    duration = (case.end - case.start) / case.speed
+    reach = causal_reach(line, case.speed, duration)
+    return Passage(
+        pantographs=tuple(pantographs),
+        start=case.start_positions,
+        speed=case.speed,
+        duration=duration,
+        time_step=steps.time_step_s,
+        watched=_watched_supports(case, line),
+        reach=reach if steps.reach_m is None else min(steps.reach_m, reach),
+    )
+
+
+def _watched_supports(case: Case, line: DiscretisedLine) -> tuple[tuple[str, float], ...]:
+    """First contact wire and position of every support of the recorded section, its ends included."""
+    first, last = case.recorded_section
+    wire = line.catenary.contact_wires[0].name
+    return tuple(
+        (wire, arm.position)
+        for arm in line.catenary.steady_arms
+        if arm.wire == wire and first - 1e-6 <= arm.position <= last + 1e-6
+    )
+
+
+def record_passage(case: Case, passage: Passage, history: History) -> Record:
+    """Record of the passage of a case."""
+    return Record(
+        time=history.time,
+        speed=passage.speed,
+        position=history.position,
+        force=history.force,
+        evaluated=case.analysis_section,
+        contact_height=history.height,
+        support_position=np.array([position for _, position in passage.watched]),
+        support_uplift=history.motion[:, :, 0],
+    )
