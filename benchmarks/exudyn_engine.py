@@ -66,7 +66,7 @@ class DroppersAndContact:
         moving = [train.z[0, p, :size] for p, size in enumerate(sizes)]
         self.at_rest = np.concatenate([at_rest, *moving])
         self.rest = line.state.deflection.ravel()[place]
-        self.bubble = stepping.bubble[0]
+        self.bubble = stepping.contact.bubble[0]
         unilateral = line.connectors.unilateral
         self.bars = sp.csr_matrix(
             sp.vstack(

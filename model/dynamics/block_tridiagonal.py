@@ -1,9 +1,17 @@
-"""The effective matrix of a Newmark step, factored once per run, and the local columns of its inverse.
+"""Solver of the block tridiagonal effective matrix of each row of beams, with 2 x 2 blocks (w, r) per station.
 
-The step solves A a = f for the accelerations of the rows of beams, A = M + dt/2 C + dt^2/4 K with the mass M of
-`dispersion`. Each row is block tridiagonal with 2 x 2 blocks (w, r). Within one step a force is felt over a few times
-sqrt(T / m) dt / 2 only (0.1 m at 1 ms): the columns of the inverse are short, so that a connector or a contact is a
-correction of a few stations.
+With diagonal blocks A_s and sub-diagonal blocks B_s, block elimination from the left gives
+
+    D_0 = A_0,    L_s = B_s D_(s-1)^-1,    D_s = A_s - L_s B_s'
+    forward   g_s = f_s - L_s g_(s-1)
+    back      x_s = D_s^-1 g_s - L_(s+1)' x_(s+1)
+
+The same elimination runs from the right. Both meet at the middle station m of the stretch that is solved:
+
+    0 -> 1 -> ... -> m <- ... <- S-2 <- S-1        (D_m^left + D_m^right - A_m) x_m = f_m - both contributions
+
+The two chains are independent, which keeps the processor twice as busy as one chain. With both sets of factors at hand
+they can meet at any station, so that any stretch of the line (`active_window`) is solved with the same factors.
 """
 
 from typing import NamedTuple
@@ -12,29 +20,22 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from pantocheck.model.arrays import Array, Indices
-from pantocheck.model.dynamics.mass_correction import mass_correction
-from pantocheck.model.fem import beam
-from pantocheck.model.fem.beams import Beams, element_stiffness
+from pantocheck.model.arrays import Array
 
-# Where a column has fallen below this share of its peak, it is left out: a hundredth of the tolerance of the forces.
-NEGLIGIBLE = 1e-12
+Pair = tuple[float, float]
 
 
 class Factor(NamedTuple):
-    """Block factors of the rows, eliminated from the left and from the right.
-
-    Two eliminations that do not wait for each other, from the ends of a stretch towards its middle, keep the processor
-    twice as busy as one from end to end; with both at hand they can meet at any station.
+    """Block factors of B rows with S stations, eliminated from the left (index 0) and from the right (index 1).
 
     Parameters
     ----------
     inverse : (2, B, S, 3) ndarray
-        Entries ww, wr, rr of the inverse of the diagonal block; zero for what cannot move.
+        Entries ww, wr, rr of D_s^-1; zero for fixed unknowns.
     link : (2, B, S, 4) ndarray
-        Entries ww, wr, rw, rr of the block that takes a station's share on to its neighbour.
+        Entries ww, wr, rw, rr of the factor L that passes the force of station s on to its inward neighbour.
     meeting : (B, S, 3) ndarray
-        Inverse of the diagonal block where both eliminations have arrived.
+        Inverse of the diagonal block where both eliminations meet.
     """
 
     inverse: Array
@@ -42,91 +43,52 @@ class Factor(NamedTuple):
     meeting: Array
 
 
-def build_effective_blocks(beams: Beams, time_step: float) -> tuple[Array, Array]:
-    """Diagonal and below-diagonal blocks of A.
+def factorise_blocks(diagonal: Array, below: Array, free: NDArray[np.bool_]) -> Factor:
+    """Eliminate all rows from both ends.
 
     Parameters
     ----------
-    beams : Beams
-        The rows.
-    time_step : float
-        [s].
-
-    Returns
-    -------
-    diagonal : (B, S, 2, 2) ndarray
-    below : (B, S, 2, 2) ndarray
-        Entry s links station s to station s - 1.
-    """
-    rows, stations = beams.lumped_mass.shape
-    diagonal, below = np.zeros((rows, stations, 2, 2)), np.zeros((rows, stations, 2, 2))
-    half, quarter = time_step / 2, time_step**2 / 4
-    for row in range(rows):
-        on_mass = 1 + half * beams.mass_coefficient[row]
-        on_stiffness = quarter + half * beams.stiffness_coefficient[row]
-        element = on_mass * beam.mass(beams.length, beams.mass_per_length[row])
-        element += on_stiffness * element_stiffness(beams, row) - mass_correction(beams, row, time_step)
-        diagonal[row, :-1] += element[:, :2, :2]
-        diagonal[row, 1:] += element[:, 2:, 2:]
-        below[row, 1:] = element[:, 2:, :2]
-    diagonal[:, :, 0, 0] += beams.lumped_mass + half * beams.lumped_damping + quarter * beams.lumped_stiffness
-    fixed = ~beams.free
-    for i in range(2):
-        diagonal[fixed[:, :, i], i, :] = 0.0
-        diagonal[fixed[:, :, i], :, i] = 0.0
-        diagonal[fixed[:, :, i], i, i] = 1.0
-        below[fixed[:, :, i], i, :] = 0.0
-        below[:, 1:][fixed[:, :-1, i], :, i] = 0.0
-    return diagonal, below
-
-
-def factorise(beams: Beams, time_step: float) -> Factor:
-    """Factor A.
-
-    Parameters
-    ----------
-    beams : Beams
-        The rows.
-    time_step : float
-        [s].
+    diagonal, below : (B, S, 2, 2) ndarray
+        Blocks; entry s of `below` couples station s to station s - 1.
+    free : (B, S, 2) ndarray
+        Whether deflection and slope can move.
 
     Returns
     -------
     Factor
-        Its block factors.
+        Block factors.
     """
-    diagonal, below = build_effective_blocks(beams, time_step)
     rows, stations = diagonal.shape[:2]
     inverse, link = np.zeros((2, rows, stations, 3)), np.zeros((2, rows, stations, 4))
     meeting = np.zeros((rows, stations, 3))
     for row in range(rows):
         from_left, from_right = diagonal[row].copy(), diagonal[row, ::-1].copy()
-        _eliminate(from_left, below[row, 1:], beams.free[row], inverse[0, row], link[0, row])
+        _eliminate(from_left, below[row, 1:], free[row], inverse[0, row], link[0, row])
         coupling = below[row, :0:-1].transpose(0, 2, 1)
-        _eliminate(from_right, coupling, beams.free[row, ::-1], inverse[1, row, ::-1], link[1, row, ::-1])
-        _invert(from_left + from_right[::-1] - diagonal[row], beams.free[row], meeting[row])
+        _eliminate(from_right, coupling, free[row, ::-1], inverse[1, row, ::-1], link[1, row, ::-1])
+        _invert(from_left + from_right[::-1] - diagonal[row], free[row], meeting[row])
     return Factor(inverse, link, meeting)
 
 
 @njit(cache=True)
 def _eliminate(diagonal: Array, coupling: Array, free: NDArray[np.bool_], inverse: Array, link: Array) -> None:
-    """Eliminate station by station, coupling s leading on to s + 1; the diagonal blocks become those that are left."""
+    """Eliminate station by station; block s of `coupling` is B_(s+1), and the diagonal blocks A_s become D_s."""
     _invert(diagonal[:1], free[:1], inverse[:1])
     for s in range(diagonal.shape[0] - 1):
         ww, wr, rr = inverse[s]
-        a, g = coupling[s], link[s]
-        for p in range(2):
-            g[2 * p] = a[p, 0] * ww + a[p, 1] * wr
-            g[2 * p + 1] = a[p, 0] * wr + a[p, 1] * rr
-        for p in range(2):
-            for q in range(2):
-                diagonal[s + 1, p, q] -= g[2 * p] * a[q, 0] + g[2 * p + 1] * a[q, 1]
+        b, l = coupling[s], link[s]  # noqa: E741
+        for i in range(2):
+            l[2 * i] = b[i, 0] * ww + b[i, 1] * wr
+            l[2 * i + 1] = b[i, 0] * wr + b[i, 1] * rr
+        for i in range(2):
+            for j in range(2):
+                diagonal[s + 1, i, j] -= l[2 * i] * b[j, 0] + l[2 * i + 1] * b[j, 1]
         _invert(diagonal[s + 1 : s + 2], free[s + 1 : s + 2], inverse[s + 1 : s + 2])
 
 
 @njit(cache=True)
 def _invert(blocks: Array, free: NDArray[np.bool_], inverse: Array) -> None:
-    """Inverse of symmetric 2 x 2 blocks, zero for what cannot move: the blocks are the identity there."""
+    """Inverse of symmetric 2 x 2 blocks, zero for fixed unknowns, where the blocks are the identity."""
     for s in range(blocks.shape[0]):
         block = blocks[s]
         determinant = block[0, 0] * block[1, 1] - block[0, 1] * block[1, 0]
@@ -142,9 +104,9 @@ def solve_line(factor: Factor, first: int, last: int, w: Array, r: Array) -> Non
     Parameters
     ----------
     factor : Factor
-        Factor.
+        Block factors of A.
     first, last : int
-        Stations where the stretch begins and ends.
+        First and last station of the stretch.
     w, r : (B, S) ndarray
         On entry forces and moments, on return accelerations of deflection and slope.
     """
@@ -154,141 +116,62 @@ def solve_line(factor: Factor, first: int, last: int, w: Array, r: Array) -> Non
 
 @njit(cache=True)
 def solve_row(factor: Factor, row: int, first: int, w: Array, r: Array) -> None:
-    """As `solve` for one row: eliminate from both ends to the middle, and go back.
+    """Solve one row as in `solve_line`: eliminate from both ends to the middle, then substitute back.
 
-    Counting both halves from the ends inwards gives two chains in registers that do not wait for each other.
+    Both chains are counted from the ends inwards. They stay in registers and do not wait for each other.
     """
     n = w.size
     middle = n // 2
-    pairs, at = n - 1 - middle, slice(first, first + n)
-    # An even number of stations leaves one more on the left; it goes first on the way in, and last on the way back.
-    one_more = middle - pairs
-    inverse, link = factor.inverse[0, row, at][one_more:middle], factor.link[0, row, at][one_more:middle]
-    inverse_, link_ = factor.inverse[1, row, at][:middle:-1], factor.link[1, row, at][:middle:-1]
-    w0, r0, w1, r1 = w[one_more:middle], r[one_more:middle], w[:middle:-1], r[:middle:-1]
-    p, q, u, v = 0.0, 0.0, 0.0, 0.0
-    if one_more > 0:
-        p, q = _passed_on(factor.link[0, row, at], 0, w[0], r[0])
+    pairs, stretch = n - 1 - middle, slice(first, first + n)
+    # An even number of stations leaves one more on the left: it comes first on the way in and last on the way back.
+    extra = middle - pairs
+    left_inverse = factor.inverse[0, row, stretch][extra:middle]
+    left_link = factor.link[0, row, stretch][extra:middle]
+    right_inverse = factor.inverse[1, row, stretch][:middle:-1]
+    right_link = factor.link[1, row, stretch][:middle:-1]
+    w_left, r_left, w_right, r_right = w[extra:middle], r[extra:middle], w[:middle:-1], r[:middle:-1]
+    # Force and moment that the two chains pass on.
+    left_f, left_m, right_f, right_m = 0.0, 0.0, 0.0, 0.0
+    if extra > 0:
+        left_f, left_m = _pass_on(factor.link[0, row, stretch], 0, w[0], r[0])
     for s in range(pairs):
-        f, m = w0[s] - p, r0[s] - q
-        g, k = w1[s] - u, r1[s] - v
-        w0[s], r0[s] = f, m
-        w1[s], r1[s] = g, k
-        p, q = _passed_on(link, s, f, m)
-        u, v = _passed_on(link_, s, g, k)
-    x, y = _times(factor.meeting[row, at], middle, w[middle] - p - u, r[middle] - q - v)
-    w[middle], r[middle] = x, y
-    u, v = x, y
+        f0, m0 = w_left[s] - left_f, r_left[s] - left_m
+        f1, m1 = w_right[s] - right_f, r_right[s] - right_m
+        w_left[s], r_left[s] = f0, m0
+        w_right[s], r_right[s] = f1, m1
+        left_f, left_m = _pass_on(left_link, s, f0, m0)
+        right_f, right_m = _pass_on(right_link, s, f1, m1)
+    middle_f, middle_m = w[middle] - left_f - right_f, r[middle] - left_m - right_m
+    left = right = _multiply(factor.meeting[row, stretch], middle, middle_f, middle_m)
+    w[middle], r[middle] = left
     for back in range(pairs):
         s = pairs - 1 - back
-        x, y = _back(inverse, link, s, w0[s], r0[s], x, y)
-        u, v = _back(inverse_, link_, s, w1[s], r1[s], u, v)
-        w0[s], r0[s] = x, y
-        w1[s], r1[s] = u, v
-    if one_more > 0:
-        w[0], r[0] = _back(factor.inverse[0, row, at], factor.link[0, row, at], 0, w[0], r[0], x, y)
+        left = _substitute(left_inverse, left_link, s, (w_left[s], r_left[s]), left)
+        right = _substitute(right_inverse, right_link, s, (w_right[s], r_right[s]), right)
+        w_left[s], r_left[s] = left
+        w_right[s], r_right[s] = right
+    if extra > 0:
+        inverse, link = factor.inverse[0, row, stretch], factor.link[0, row, stretch]
+        w[0], r[0] = _substitute(inverse, link, 0, (w[0], r[0]), left)
 
 
 @njit(cache=True)
-def _passed_on(link: Array, s: int, f: float, m: float) -> tuple[float, float]:
-    return link[s, 0] * f + link[s, 1] * m, link[s, 2] * f + link[s, 3] * m
+def _pass_on(link: Array, s: int, force: float, moment: float) -> Pair:
+    """Share of force and moment at a station that its inward neighbour takes: L g."""
+    return link[s, 0] * force + link[s, 1] * moment, link[s, 2] * force + link[s, 3] * moment
 
 
 @njit(cache=True)
-def _times(inverse: Array, s: int, f: float, m: float) -> tuple[float, float]:
-    return inverse[s, 0] * f + inverse[s, 1] * m, inverse[s, 1] * f + inverse[s, 2] * m
+def _multiply(inverse: Array, s: int, force: float, moment: float) -> Pair:
+    """Product of a symmetric inverse block with force and moment."""
+    return inverse[s, 0] * force + inverse[s, 1] * moment, inverse[s, 1] * force + inverse[s, 2] * moment
 
 
 @njit(cache=True)
-def _back(inverse: Array, link: Array, s: int, f: float, m: float, x: float, y: float) -> tuple[float, float]:
-    """Solution at a station from what was left there and the solution at its inward neighbour."""
-    p, q = _times(inverse, s, f, m)
-    return p - (link[s, 0] * x + link[s, 2] * y), q - (link[s, 1] * x + link[s, 3] * y)
-
-
-@njit(cache=True)
-def inverse_column(factor: Factor, row: int, station: int, slope: int, half_width: int, w: Array, r: Array) -> float:
-    """One column of the inverse of A around the loaded station; returns its relative tail.
-
-    Parameters
-    ----------
-    factor : Factor
-        Factor.
-    row, station : int
-        Where the unit load acts.
-    slope : int
-        0 for a unit force, 1 for a unit moment.
-    half_width : int
-        Stations kept before the loaded one, and one less behind it.
-    w, r : (2 half_width,) ndarray
-        The column, the loaded station at half_width; zero beyond the ends of the line.
-    """
-    stations = factor.meeting.shape[1]
-    w[:] = 0.0
-    r[:] = 0.0
-    if slope == 0:
-        w[half_width] = 1.0
-    else:
-        r[half_width] = 1.0
-    first, last = max(0, station - half_width), min(stations, station + half_width)
-    there = slice(first + half_width - station, last + half_width - station)
-    solve_row(factor, row, first, w[there], r[there])
-    size = np.abs(w) + np.abs(r)
-    tail = 0.0
-    if first == station - half_width:
-        tail = size[0]
-    if last == station + half_width:
-        tail = max(tail, size[-1])
-    peak = size.max()
-    return tail / peak if peak > 0 else 0.0
-
-
-def column_half_width(factor: Factor, loads: list[tuple[int, int]]) -> int:
-    """Stations either side after which every column asked for is negligible.
-
-    Parameters
-    ----------
-    factor : Factor
-        The factors.
-    loads : list[tuple[int, int]]
-        (row, station) of the loads.
-
-    Returns
-    -------
-    int
-        Stations on either side.
-    """
-    width = 8
-    while width < factor.meeting.shape[1]:
-        w, r = np.zeros(2 * width), np.zeros(2 * width)
-        if all(inverse_column(factor, row, s, slope, width, w, r) < NEGLIGIBLE for row, s in loads for slope in (0, 1)):
-            break
-        width += 8  # whole vector registers
-    return width
-
-
-@njit(cache=True)
-def inverse_columns(factor: Factor, rows: Indices, stations: Indices, slopes: Indices, half_width: int) -> Array:
-    """Columns of the inverse for many loads.
-
-    Parameters
-    ----------
-    factor : Factor
-        Factor.
-    rows, stations, slopes : (L,) int ndarray
-        Where each unit load acts, and whether it is a moment.
-    half_width : int
-        Stations kept on either side.
-
-    Returns
-    -------
-    (L, 2, 2 half_width) ndarray
-        Deflection and slope around each load.
-    """
-    columns = np.zeros((rows.size, 2, 2 * half_width))
-    for n in range(rows.size):
-        inverse_column(factor, rows[n], stations[n], slopes[n], half_width, columns[n, 0], columns[n, 1])
-    return columns
+def _substitute(inverse: Array, link: Array, s: int, force: Pair, inward: Pair) -> Pair:
+    """Solution (w, r) at a station from its reduced force and moment and the solution at its inward neighbour."""
+    w, r = _multiply(inverse, s, force[0], force[1])
+    return w - (link[s, 0] * inward[0] + link[s, 2] * inward[1]), r - (link[s, 1] * inward[0] + link[s, 3] * inward[1])
 
 
 @njit(cache=True)
@@ -298,18 +181,18 @@ def solve_rows(factor: Factor, force: Array) -> Array:
     Parameters
     ----------
     factor : Factor
-        Factor.
+        Block factors of A.
     force : (n, B, S, 2) ndarray
         Forces and moments.
 
     Returns
     -------
     (n, B, S, 2) ndarray
-        Accelerations.
+        Accelerations of deflection and slope.
     """
-    solved = np.empty_like(force)
+    solution = np.empty_like(force)
     for n in range(force.shape[0]):
         w, r = force[n, :, :, 0].copy(), force[n, :, :, 1].copy()
         solve_line(factor, 0, w.shape[1] - 1, w, r)
-        solved[n, :, :, 0], solved[n, :, :, 1] = w, r
-    return solved
+        solution[n, :, :, 0], solution[n, :, :, 1] = w, r
+    return solution

@@ -1,78 +1,156 @@
-"""The connectors' part of a time step: every tension solved exactly in turn.
+"""Connectors in a time step: Gauss-Seidel sweeps over their tensions.
 
-A change of tension changes the accelerations around its ends by the local columns of the inverse.
+With the predicted elongation d and its rate d', the tension N at the end of a step of a connector with coefficients c
+on the rows at its station is
+
+    N = max(0, N0 + k d + c_d d' + g a),    a = sum of c times the row accelerations,    g = k dt^2/4 + c_d dt/2
+
+A change of N changes a by -(compliance) N, through the local columns of the inverse (`inverse_columns`). With all other
+forces held, N is solved exactly: N = (N0 + k d + c_d d' + g a + g_c N_old) / (1 + g_c), with g_c = g times compliance.
 """
 
-import math
+from typing import NamedTuple
 
+import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
-from pantocheck.model.arrays import Array
-from pantocheck.model.dynamics.state import KernelArrays, Motion, Workspace
+from pantocheck.model.arrays import Array, Indices
+from pantocheck.model.dynamics.active_window import Window
+from pantocheck.model.dynamics.block_tridiagonal import Factor
+from pantocheck.model.dynamics.inverse_columns import add_column, inverse_columns
+from pantocheck.model.dynamics.motion import Motion
+from pantocheck.model.dynamics.sweeps import NEGLIGIBLE_FORCE, maximum
+from pantocheck.model.fem.connectors import Connectors
 
-NEGLIGIBLE_FORCE = 1e-11
-"""Changes of a force below this, a hundredth of what a step is solved to, are not passed on [N]."""
+
+class ConnectorArrays(NamedTuple):
+    """Connectors of a line in a time step; N connectors with at most E ends, L ends in total.
+
+    Parameters
+    ----------
+    station : (N,) int ndarray
+        Stations of the connectors.
+    end_row, end_column : (N, E) int ndarray
+        Row of each end, and its column in `columns`.
+    end_coefficient : (N, E) ndarray
+        Coefficient of each end in the elongation; zero for a missing end [-].
+    columns : (L, 2, 2H) ndarray
+        Columns of the inverse around the ends.
+    stiffness, damping, preload : (N,) ndarray
+        Coefficients and tension in the initial state [N/m, N s/m, N].
+    tension_per_acceleration : (N,) ndarray
+        Tension per acceleration of the elongation within a step, g [kg].
+    self_compliance : (N,) ndarray
+        g times the acceleration of the elongation per tension [-].
+    unilateral : (N,) ndarray
+        Whether the tension cannot be negative.
+    """
+
+    station: Indices
+    end_row: Indices
+    end_column: Indices
+    end_coefficient: Array
+    columns: Array
+    stiffness: Array
+    damping: Array
+    preload: Array
+    tension_per_acceleration: Array
+    self_compliance: Array
+    unilateral: NDArray[np.bool_]
+
+
+def connector_ends(connectors: Connectors) -> list[tuple[int, int]]:
+    """Row and station of all ends, connector by connector."""
+    number, row = np.nonzero(connectors.coefficient)
+    return list(zip(row.tolist(), connectors.station[number].tolist(), strict=True))
+
+
+def build_connector_arrays(
+    connectors: Connectors, factor: Factor, time_step: float, half_width: int
+) -> ConnectorArrays:
+    """Connectors of a line in a time step.
+
+    Parameters
+    ----------
+    connectors : Connectors
+        Connectors of the line.
+    factor : Factor
+        Block factors of the effective matrix.
+    time_step : float
+        Time step [s].
+    half_width : int
+        Number of stations H on either side of a column.
+
+    Returns
+    -------
+    ConnectorArrays
+        Arrays for `sweep_connectors`.
+    """
+    number, row = np.nonzero(connectors.coefficient)
+    end = np.arange(number.size) - np.searchsorted(number, number)
+    shape = (len(connectors.station), int(end.max(initial=-1)) + 1)
+    end_row, end_column = (np.zeros(shape, dtype=np.int64) for _ in range(2))
+    end_coefficient = np.zeros(shape)
+    end_row[number, end], end_column[number, end] = row, np.arange(number.size)
+    end_coefficient[number, end] = connectors.coefficient[number, row]
+    columns = inverse_columns(factor, row, connectors.station[number], np.zeros_like(row), half_width)
+    gain = time_step**2 / 4 * connectors.stiffness + time_step / 2 * connectors.damping
+    return ConnectorArrays(
+        station=connectors.station,
+        end_row=end_row,
+        end_column=end_column,
+        end_coefficient=end_coefficient,
+        columns=columns,
+        stiffness=connectors.stiffness,
+        damping=connectors.damping,
+        preload=connectors.preload,
+        tension_per_acceleration=gain,
+        self_compliance=gain * (end_coefficient**2 * columns[end_column, 0, half_width]).sum(axis=1),
+        unilateral=connectors.unilateral,
+    )
 
 
 @njit(cache=True)
-def predict_connectors(line: KernelArrays, motion: Motion, work: Workspace, first: int, last: int) -> None:
-    """Predicted tensions; the connectors pull with their tensions of the last step to begin with."""
-    for n in range(line.station.size):
-        s = line.station[n]
-        if s < first or s > last:
+def predict_connectors(connectors: ConnectorArrays, motion: Motion, predicted: Array, window: Window) -> None:
+    """Fill the predicted tensions, and load the rows with the tensions of the last step as a first guess."""
+    for n in range(connectors.station.size):
+        s = connectors.station[n]
+        if s < window.first or s > window.last:
             continue
-        change = motion.tension[n] - line.preload[n]
-        d, rate = 0.0, 0.0
-        for e in range(line.end_row.shape[1]):
-            row, c = line.end_row[n, e], line.end_coefficient[n, e]
-            d += c * motion.w[0, row, s]
+        change = motion.tension[n] - connectors.preload[n]
+        elongation, rate = 0.0, 0.0
+        for e in range(connectors.end_row.shape[1]):
+            row, c = connectors.end_row[n, e], connectors.end_coefficient[n, e]
+            elongation += c * motion.w[0, row, s]
             rate += c * motion.w[1, row, s]
             motion.w[2, row, s] -= c * change
-        work.tension[n] = line.preload[n] + line.stiffness[n] * d + line.damping[n] * rate
+        predicted[n] = connectors.preload[n] + connectors.stiffness[n] * elongation + connectors.damping[n] * rate
 
 
 @njit(cache=True)
-def add_column(w: Array, r: Array, column: Array, station: int, value: float, limits: tuple[int, int]) -> None:
-    """Add `value` times a local column of the inverse to the accelerations of one row, between two stations."""
-    half = column.shape[1] // 2
-    first, last = max(limits[0], station - half), min(limits[1] + 1, station + half)
-    shift = half - station
-    of_w, of_r = column[0, first + shift : last + shift], column[1, first + shift : last + shift]
-    w, r = w[first:last], r[first:last]
-    for i in range(w.size):
-        w[i] += value * of_w[i]
-        r[i] += value * of_r[i]
-
-
-@njit(cache=True)
-def larger(a: float, b: float) -> float:
-    """The larger of two numbers, or NaN where either is: `max` would drop it, and a lost run would look settled."""
-    return a if a >= b or math.isnan(a) else b
-
-
-@njit(cache=True)
-def sweep_connectors(
-    line: KernelArrays, motion: Motion, work: Workspace, w: Array, r: Array, first: int, last: int
-) -> float:
-    """Solve every connector between two stations once, the others held; returns the largest change of a tension [N]."""
+def sweep_connectors(connectors: ConnectorArrays, motion: Motion, predicted: Array, window: Window) -> float:
+    """Solve every active connector once, all other forces held; return the largest change of a tension [N]."""
+    w, r = motion.w[2], motion.r[2]
     largest = 0.0
-    for n in range(line.station.size):
-        s = line.station[n]
-        if s < first or s > last:
+    for n in range(connectors.station.size):
+        s = connectors.station[n]
+        if s < window.first or s > window.last:
             continue
         acceleration = 0.0
-        for e in range(line.end_row.shape[1]):
-            acceleration += line.end_coefficient[n, e] * w[line.end_row[n, e], s]
-        linear = work.tension[n] + line.gain[n] * acceleration
-        tension = (linear + line.yielding[n] * motion.tension[n]) / (1 + line.yielding[n])
-        if line.unilateral[n] and tension < 0.0:
+        for e in range(connectors.end_row.shape[1]):
+            acceleration += connectors.end_coefficient[n, e] * w[connectors.end_row[n, e], s]
+        linear = predicted[n] + connectors.tension_per_acceleration[n] * acceleration
+        compliance = connectors.self_compliance[n]
+        tension = (linear + compliance * motion.tension[n]) / (1 + compliance)
+        if connectors.unilateral[n] and tension < 0.0:
             tension = 0.0
         change = tension - motion.tension[n]
         if abs(change) > NEGLIGIBLE_FORCE:
             motion.tension[n] = tension
-            for e in range(line.end_row.shape[1]):
-                row, f = line.end_row[n, e], line.end_coefficient[n, e]
-                if f != 0.0:
-                    add_column(w[row], r[row], line.columns[line.end_column[n, e]], s, -f * change, (first, last))
-        largest = larger(largest, abs(change))
+            for e in range(connectors.end_row.shape[1]):
+                row, c = connectors.end_row[n, e], connectors.end_coefficient[n, e]
+                if c != 0.0:
+                    add_column(w[row], r[row], connectors.columns[connectors.end_column[n, e]], s, -c * change, window)
+        largest = maximum(largest, abs(change))
     return largest

@@ -1,18 +1,127 @@
-"""The pantographs' part of a time step: predictors, and every contact force solved exactly in turn."""
+"""Contact of pantographs and contact wires in a time step: Gauss-Seidel sweeps over the contact forces.
+
+The contact is a unilateral spring between head and wire: the penalty and the residual flexibility of the wire element
+in series (`residual_flexibility`). With the predicted overlap d of head and wire, the force at the end of a step is
+
+    F = max(0, k (d + dt^2/4 a)),    a = acceleration of the head minus acceleration of the wire
+
+A change of F changes a by -(compliance) F, and F is solved exactly with all other forces held.
+"""
+
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
-from pantocheck.model.arrays import Array
-from pantocheck.model.dynamics.connector_step import NEGLIGIBLE_FORCE, add_column, larger
-from pantocheck.model.dynamics.state import KernelArrays, Motion, Train, Workspace
-from pantocheck.model.fem.residual_flexibility import local_flexibility
+from pantocheck.model.arrays import Array, Indices
+from pantocheck.model.discretised_line import DiscretisedLine
+from pantocheck.model.dynamics.active_window import Window
+from pantocheck.model.dynamics.block_tridiagonal import Factor
+from pantocheck.model.dynamics.inverse_columns import add_column, inverse_columns
+from pantocheck.model.dynamics.motion import Motion
+from pantocheck.model.dynamics.sweeps import NEGLIGIBLE_FORCE, maximum
+from pantocheck.model.dynamics.train import Train
+from pantocheck.model.fem.mesh import find_element
+from pantocheck.model.fem.residual_flexibility import element_bubbles, local_flexibility
+
+_find_element = njit(cache=True)(find_element)
+
+
+class ContactArrays(NamedTuple):
+    """Contact wires of a line in a time step; W contact wires, S stations.
+
+    Parameters
+    ----------
+    time_step : float
+        Time step [s].
+    position : (S,) ndarray
+        Positions of the stations [m].
+    row : (W,) int ndarray
+        Rows of the contact wires.
+    rest : (W, S, 2) ndarray
+        Height and slope of the contact wires in the initial state [m, -].
+    bubble : (W, S-1, 6) ndarray
+        Residual flexibility of the elements, see `condensed_bubbles` [m/N].
+    columns : (W, S, 2, 2, 2H) ndarray
+        Columns of the inverse around every station, for a force and for a moment.
+    """
+
+    time_step: float
+    position: Array
+    row: Indices
+    rest: Array
+    bubble: Array
+    columns: Array
+
+
+class ContactWorkspace(NamedTuple):
+    """Predictors of the contacts of one step; P pantographs, W contact wires.
+
+    Parameters
+    ----------
+    element : (P,) int ndarray
+        Element above each pantograph.
+    shape : (P, W, 4) ndarray
+        Hermite functions at the contacts.
+    stiffness : (P, W) ndarray
+        Penalty and residual flexibility in series [N/m].
+    overlap : (P, W) ndarray
+        Predicted overlap of head and wire [m].
+    compliance : (P, W) ndarray
+        Relative acceleration of head and wire per contact force [1/kg].
+    """
+
+    element: Indices
+    shape: Array
+    stiffness: Array
+    overlap: Array
+    compliance: Array
+
+
+def build_contact_arrays(line: DiscretisedLine, factor: Factor, time_step: float, half_width: int) -> ContactArrays:
+    """Contact wires of a line in a time step.
+
+    Parameters
+    ----------
+    line : DiscretisedLine
+        Discretised line.
+    factor : Factor
+        Block factors of the effective matrix.
+    time_step : float
+        Time step [s].
+    half_width : int
+        Number of stations H on either side of a column.
+
+    Returns
+    -------
+    ContactArrays
+        Arrays for `sweep_contacts`.
+    """
+    row, stations = np.array(line.contact_rows, dtype=np.int64), line.mesh.position.size
+    loads = np.indices((row.size, stations, 2)).reshape(3, -1)
+    columns = inverse_columns(factor, row[loads[0]], loads[1], loads[2], half_width)
+    return ContactArrays(
+        time_step=time_step,
+        position=line.mesh.position,
+        row=row,
+        rest=np.ascontiguousarray(line.state.deflection[line.contact_rows]),
+        bubble=np.array([element_bubbles(line.beams, r) for r in line.contact_rows]),
+        columns=columns.reshape(row.size, stations, 2, 2, 2 * half_width),
+    )
+
+
+def contact_workspace(train: Train) -> ContactWorkspace:
+    """Scratch arrays for the simulation of a train."""
+    pantographs, wires = train.contact.shape
+    stiffness, overlap, compliance = (np.zeros((pantographs, wires)) for _ in range(3))
+    element, shape = np.zeros(pantographs, dtype=np.int64), np.zeros((pantographs, wires, 4))
+    return ContactWorkspace(element, shape, stiffness, overlap, compliance)
 
 
 @njit(cache=True)
-def predict_train(line: KernelArrays, motion: Motion, train: Train, work: Workspace) -> None:
-    """Move the pantographs on, predict them, and press with the contact forces of the last step to begin with."""
-    dt = line.time_step
+def predict_train(contact: ContactArrays, motion: Motion, train: Train, work: ContactWorkspace) -> None:
+    """Move and predict the pantographs, and press with the contact forces of the last step as a first guess."""
+    dt = contact.time_step
     unknowns = train.z.shape[2]
     train.elapsed[0] += dt
     for p in range(train.position.size):
@@ -20,96 +129,91 @@ def predict_train(line: KernelArrays, motion: Motion, train: Train, work: Worksp
         for i in range(unknowns):
             train.z[0, p, i] += dt * train.z[1, p, i] + dt * dt / 4 * train.z[2, p, i]
             train.z[1, p, i] += dt / 2 * train.z[2, p, i]
-        pressing = 0.0
+        contact_force = 0.0
         for k in range(train.contact.shape[1]):
-            pressing += train.contact[p, k]
+            contact_force += train.contact[p, k]
         head, compliance = 0.0, 0.0
         for i in range(unknowns):
-            a = 0.0
+            acceleration = 0.0
             for j in range(unknowns):
-                f = train.force[p, j] - train.head[p, j] * pressing
+                force = train.force[p, j] - train.head[p, j] * contact_force
                 for m in range(unknowns):
-                    f -= train.damping[p, j, m] * train.z[1, p, m] + train.stiffness[p, j, m] * train.z[0, p, m]
-                a += train.inverse[p, i, j] * f
+                    force -= train.damping[p, j, m] * train.z[1, p, m] + train.stiffness[p, j, m] * train.z[0, p, m]
+                acceleration += train.inverse[p, i, j] * force
                 compliance += train.head[p, i] * train.inverse[p, i, j] * train.head[p, j]
-            train.z[2, p, i] = a
+            train.z[2, p, i] = acceleration
             head += train.head[p, i] * train.z[0, p, i]
+        work.overlap[p] = head
+        work.compliance[p] = compliance
         for k in range(train.contact.shape[1]):
-            _predict_contact(line, motion, train, work, p, k, head, compliance)
+            _predict_contact(contact, motion, train, work, p, k)
 
 
 @njit(cache=True)
 def _predict_contact(
-    line: KernelArrays,
-    motion: Motion,
-    train: Train,
-    work: Workspace,
-    p: int,
-    k: int,
-    head: float,
-    head_compliance: float,
+    contact: ContactArrays, motion: Motion, train: Train, work: ContactWorkspace, p: int, k: int
 ) -> None:
-    """Where a head touches a wire, how far it has closed on it, and what a newton between them would do."""
-    half = line.columns.shape[2] // 2
-    x, row, n = train.position[p], line.contact_row[k], work.shape[p, k]
-    e = min(max(np.searchsorted(line.position, x) - 1, 0), line.position.size - 2)
-    h = line.position[e + 1] - line.position[e]
-    s = (x - line.position[e]) / h
+    """Complete overlap and compliance of pantograph p, so far those of its head, by those of contact wire k."""
+    half_width = contact.columns.shape[4] // 2
+    row, n = contact.row[k], work.shape[p, k]
+    e, h, s = _find_element(contact.position, train.position[p])
+    # Hermite functions, as in `beam.shape`.
     n[0], n[1] = (1 + 2 * s) * (1 - s) ** 2, h * s * (1 - s) ** 2
     n[2], n[3] = s * s * (3 - 2 * s), h * s * s * (s - 1)
-    wire, compliance = 0.0, head_compliance
+    wire, compliance = 0.0, work.compliance[p, k]
     for i in range(2):
-        wire += n[2 * i] * (line.rest[k, e + i, 0] + motion.w[0, row, e + i])
-        wire += n[2 * i + 1] * (line.rest[k, e + i, 1] + motion.r[0, row, e + i])
+        wire += n[2 * i] * (contact.rest[k, e + i, 0] + motion.w[0, row, e + i])
+        wire += n[2 * i + 1] * (contact.rest[k, e + i, 1] + motion.r[0, row, e + i])
         motion.w[2, row, e + i] += n[2 * i] * train.contact[p, k]
         motion.r[2, row, e + i] += n[2 * i + 1] * train.contact[p, k]
         for j in range(2):
-            for m in range(2):
-                column = line.contact_columns[k, e + j, m]
-                at = half + i - j
-                compliance += n[2 * j + m] * (n[2 * i] * column[0, at] + n[2 * i + 1] * column[1, at])
+            for slope in range(2):
+                column = contact.columns[k, e + j, slope]
+                station = half_width + i - j
+                compliance += n[2 * j + slope] * (n[2 * i] * column[0, station] + n[2 * i + 1] * column[1, station])
     work.element[p] = e
-    work.stiffness[p, k] = 1 / (1 / train.contact_stiffness[p] + local_flexibility(line.bubble[k, e], s))
-    work.closing[p, k] = head - wire
+    work.stiffness[p, k] = 1 / (1 / train.contact_stiffness[p] + local_flexibility(contact.bubble[k, e], s))
+    work.overlap[p, k] -= wire
     work.compliance[p, k] = compliance
 
 
 @njit(cache=True)
 def sweep_contacts(
-    line: KernelArrays, train: Train, work: Workspace, w: Array, r: Array, first: int, last: int
+    contact: ContactArrays, motion: Motion, train: Train, work: ContactWorkspace, window: Window
 ) -> float:
-    """Solve every contact once, the other forces held; returns the largest change of a contact force [N]."""
-    dt = line.time_step
+    """Solve every contact once, all other forces held; return the largest change of a contact force [N]."""
+    dt = contact.time_step
+    w, r = motion.w[2], motion.r[2]
     largest = 0.0
     for p in range(train.position.size):
         e = work.element[p]
         for m in range(train.contact.shape[1]):
-            row, n, k = line.contact_row[m], work.shape[p, m], work.stiffness[p, m]
+            row, n, k = contact.row[m], work.shape[p, m], work.stiffness[p, m]
             approach = 0.0
             for i in range(train.z.shape[2]):
                 approach += train.head[p, i] * train.z[2, p, i]
             approach -= n[0] * w[row, e] + n[1] * r[row, e] + n[2] * w[row, e + 1] + n[3] * r[row, e + 1]
             gain = k * dt * dt / 4
-            stiff = gain * work.compliance[p, m]
-            force = (k * work.closing[p, m] + gain * approach + stiff * train.contact[p, m]) / (1 + stiff)
-            force = max(force, 0.0)
+            compliance = gain * work.compliance[p, m]
+            linear = k * work.overlap[p, m] + gain * approach
+            force = max((linear + compliance * train.contact[p, m]) / (1 + compliance), 0.0)
             change = force - train.contact[p, m]
             if abs(change) > NEGLIGIBLE_FORCE:
                 train.contact[p, m] = force
                 for i in range(2):
                     for j in range(2):
-                        column, value = line.contact_columns[m, e + i, j], n[2 * i + j] * change
-                        add_column(w[row], r[row], column, e + i, value, (first, last))
+                        column, value = contact.columns[m, e + i, j], n[2 * i + j] * change
+                        add_column(w[row], r[row], column, e + i, value, window)
                 for i in range(train.z.shape[2]):
                     for j in range(train.z.shape[2]):
                         train.z[2, p, i] -= train.inverse[p, i, j] * train.head[p, j] * change
-            largest = larger(largest, abs(change))
+            largest = maximum(largest, abs(change))
     return largest
 
 
 @njit(cache=True)
 def correct_train(dt: float, train: Train) -> None:
-    """Turn the predictors back into displacement and velocity, with the accelerations that were found."""
+    """Complete the predictors of the pantographs with the accelerations at the end of the step."""
     for p in range(train.position.size):
         for i in range(train.z.shape[2]):
             train.z[0, p, i] += dt * dt / 4 * train.z[2, p, i]

@@ -1,10 +1,17 @@
-"""The mass that a time step works with, so that waves on the wires do not run late.
+"""Mass correction that removes the leading period error of the average-acceleration method.
 
-Average acceleration slows an oscillation of circular frequency w down by the share (w dt)^2 / 12: waves of 20 Hz and
-more come back from droppers and supports late, and the smallest contact force, which they make, suffers first. The
-step takes w for (2 / dt) tan(w dt / 2), whose square is w^2 (1 + (w dt)^2 / 6 + ...), so that M - dt^2/6 K in place of
-M leaves an error of fourth order. Taken is only the string's share of K, with linear shape functions: bending matters
-to waves too short to matter, and the mass must stay positive definite, for then the method is stable at any time step.
+Average acceleration replaces a circular frequency w by (2 / dt) tan(w dt / 2), so that waves of 20 Hz and more return
+late from droppers and supports, by the share (w dt)^2 / 12. The mass M - dt^2/6 K in place of M turns the recurrence in
+the displacements q of an undamped system into
+
+    M (q+ - 2 q + q-) / dt^2 + K (q+ + 10 q + q-) / 12 = f
+
+This is Newmark's method with gamma = 1/2, beta = 1/12, the Fox-Goodwin method, with a period error of fourth order
+(Hughes, The Finite Element Method, 1987, section 9.1). It is stable for w dt < sqrt(6), as long as M - dt^2/6 K is
+positive definite.
+
+Only the string part of K is corrected (linear shape functions): bending affects only waves too short to be of interest.
+Where an element is too short for the stability bound, the correction is limited and the method stays stable.
 """
 
 import numpy as np
@@ -13,27 +20,29 @@ from pantocheck.model.arrays import Array
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.beams import Beams
 
-# An element's consistent mass less a multiple of its string stiffness is positive definite up to this times m h^2 / T:
-# ends moving apart by one each feel at least a tenth of the element's mass, and 4 T / h of stiffness.
 STABLE_SHARE = 1 / 40
+"""Largest correction as a share of m h^2 / T, for which the corrected mass of an element is positive definite.
+
+When the ends of an element move apart by one each, they feel at least a tenth of its mass, and 4 T / h of stiffness.
+"""
 
 
 def mass_correction(beams: Beams, row: int, time_step: float) -> Array:
-    """What a time step takes off the mass of every element of one row.
+    """Matrices that a time step subtracts from the mass of the elements of one row.
 
     Parameters
     ----------
     beams : Beams
-        The rows.
+        Rows of beams.
     row : int
-        Which one.
+        Index of the row.
     time_step : float
-        [s].
+        Time step [s].
 
     Returns
     -------
     (S-1, 4, 4) ndarray
-        Matrices [kg]; less than dt^2/6 K where an element is shorter than 2.6 times the way of a wave in a step.
+        dt^2/6 K of a string; less where an element is shorter than 2.6 times the path of a wave in one step [kg].
     """
     h, tension, mass_per_length = beams.length, beams.tension[row], beams.mass_per_length[row]
     # An element without a wire has neither tension nor mass.

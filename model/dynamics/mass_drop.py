@@ -1,4 +1,4 @@
-"""Mass drop: a mass hangs on a wire, is let go, and the line swings free."""
+"""Simulation of a mass drop: a mass hangs on a wire, is released, and the line vibrates freely."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -9,43 +9,35 @@ from pantocheck.model.arrays import Array
 from pantocheck.model.catenary import GRAVITY, Catenary
 from pantocheck.model.discretised_line import discretise
 from pantocheck.model.dynamics.kernel_arrays import Load, build_kernel_arrays
-from pantocheck.model.dynamics.newmark import march
-from pantocheck.model.dynamics.simulation import (
-    build_workspace,
-    empty_train,
-    motion_at_rest,
-    recorded_stations,
-)
-from pantocheck.model.failures import DidNotConverge
+from pantocheck.model.dynamics.motion import motion_at_rest
+from pantocheck.model.dynamics.recording import allocate_recording, simulate_steps
+from pantocheck.model.dynamics.train import empty_train
 from pantocheck.model.fem.assembly import point_load
 from pantocheck.model.statics.static_solver import StaticSolver
-
-BLOCK = 5000
-"""Steps between two reports of progress."""
 
 
 @dataclass(frozen=True)
 class MassDropSetup:
-    """What is hung where, how it is let go, and what is recorded.
+    """Mass, position and release of a mass drop, and the recorded signals.
 
     Parameters
     ----------
     mass : float
-        [kg].
+        Dropped mass [kg].
     wire : str
-        Name of the wire it hangs on.
+        Name of the wire that carries it.
     position : float
-        [m].
+        Position of the mass [m].
     release_duration : float
-        Over which its weight fades linearly; 0 for at once [s].
+        Time in which its weight decreases linearly to zero; 0: at once [s].
     hanging : float
         Time recorded before the release [s].
     duration : float
         Time recorded after the release [s].
     time_step : float
-        [s].
-    sensors : tuple[tuple[str, float], ...]
-        Wire and place of each sensor [-, m].
+        Time step [s].
+    sensors : tuple of (str, float)
+        Wire and position of each sensor [-, m].
     """
 
     mass: float
@@ -60,18 +52,18 @@ class MassDropSetup:
 
 @dataclass(frozen=True)
 class FreeDecay:
-    """What a drop gives; T samples, U sensors, N droppers.
+    """Result of a mass drop; T samples, U sensors.
 
     Parameters
     ----------
     time : (T,) ndarray
-        From the release on, negative before [s].
+        Time after the release, negative before [s].
     motion : (U, T, 3) ndarray
         Vertical displacement, velocity, acceleration [m, m/s, m/s2].
     last_slack : float or None
-        When a dropper was slack for the last time after the release; None if never [s].
+        Last time after the release at which a dropper was slack; None if never [s].
     slack_at_start : int
-        Droppers that are slack under the hanging mass.
+        Number of slack droppers under the hanging mass.
     """
 
     time: Array
@@ -88,61 +80,48 @@ def simulate_mass_drop(
     Parameters
     ----------
     catenary : Catenary
-        The line.
+        Line.
     element_length : float
-        Longest element [m].
+        Largest length of an element [m].
     test : MassDropSetup
-        Mass, place, sensors.
-    progress : Callable[[float], None] or None
-        Called now and then with the share done, 0 to 1.
+        Mass, position, sensors.
+    progress : callable or None
+        Called from time to time with the completed share, 0 to 1.
 
     Returns
     -------
     FreeDecay
-        The free decay.
+        Free decay at the sensors.
 
     Raises
     ------
     NoInitialState, NoEquilibrium
-        The line has no rest, without or with the mass.
+        The line has no equilibrium, without or with the mass.
     DidNotConverge
-        a time step has no solution.
+        The forces of a time step did not converge.
     """
     places = (test.position, *(position for _, position in test.sensors))
     line = discretise(catenary, element_length, places)
     load = Load(line.mesh.row_of[test.wire, "z"], line.mesh.station(test.position))
-    stepping = build_kernel_arrays(line, test.time_step, load=load)
+    kernel = build_kernel_arrays(line, test.time_step, load=load)
     weight = -test.mass * GRAVITY
     hanging = StaticSolver(line).deflection(weight * point_load(line, load.row, test.position))
-    motion, train = motion_at_rest(hanging, stepping.modal_damping.size), empty_train(len(line.contact_rows))
+    motion, train = motion_at_rest(hanging, kernel.modal.damping.size), empty_train(len(line.contact_rows))
     before, after = (round(duration / test.time_step) for duration in (test.hanging, test.duration))
     time: Array = test.time_step * np.arange(1 - before, after + 1).astype(np.float64)
-    history = weight * _share_left(time, test.release_duration)
-    rows, stations = recorded_stations(line, test.sensors)
-    recorded = np.zeros((time.size, rows.size, 3))
-    droppers = len(catenary.droppers)
-    work = build_workspace(stepping, train)
-    last_slack = None
-    for first in range(0, time.size, BLOCK):
-        part = slice(first, min(first + BLOCK, time.size))
-        steps = part.stop - first
-        tension, nothing = np.zeros((steps, droppers)), np.zeros((steps, 0))
-        outputs = (nothing, nothing, recorded[part], tension)
-        done = march(stepping, motion, train, work, history[part], rows, stations, *outputs)
-        if done < steps:
-            raise DidNotConverge(f"the forces of the step at {time[first + done]:.4f} s did not settle")
-        slack = np.flatnonzero((tension == 0.0).any(axis=1))
-        if slack.size and time[first + slack[-1]] > 0:
-            last_slack = float(time[first + slack[-1]])
-        if progress:
-            progress(part.stop / time.size)
+    recording = allocate_recording(line, test.sensors, time.size, pantographs=0)
+    simulate_steps(kernel, motion, train, weight * _hanging_share(time, test.release_duration), recording, progress)
+    slack = time[(recording.slack > 0) & (time > 0)]
     return FreeDecay(
-        time, recorded.transpose(1, 0, 2).copy(), last_slack, int((hanging.tension[:droppers] == 0.0).sum())
+        time=time,
+        motion=recording.motion.transpose(1, 0, 2).copy(),
+        last_slack=float(slack[-1]) if slack.size else None,
+        slack_at_start=int((hanging.slack & line.connectors.unilateral).sum()),
     )
 
 
-def _share_left(time: Array, duration: float) -> Array:
-    """Share of the weight that still hangs: one until the release, then a ramp down to zero."""
+def _hanging_share(time: Array, duration: float) -> Array:
+    """Share of the weight that still hangs: one until the release, then a linear decrease to zero."""
     if duration == 0:
         return np.where(time <= 0, 1.0, 0.0)
     return np.clip(1 - time / duration, 0.0, 1.0)

@@ -1,17 +1,145 @@
-"""The wires' part of a time step: predictors, forces of stiffness and damping, correctors."""
+"""Wires in a time step: predictors, forces of stiffness and damping, correctors.
 
+The forces of an element with deflections w1, w2 and slopes r1, r2 split into a symmetric and an antisymmetric part:
+
+    ^ F1      ^ F2        F1 = -(drag + shear)    drag :  both ends are pushed in the same direction
+    o---------o           F2 = -(drag - shear)    shear:  the ends are pushed in opposite directions
+    M1        M2          M1 = -(tilt + bend)     tilt :  both ends are turned in the same direction
+                          M2 = -(tilt - bend)     bend :  the ends are turned in opposite directions
+
+With the stiffness entries kij of the element and the deflections q + beta v (stiffness-proportional damping beta),
+
+    shear = k11 (w1 - w2) + k12 (r1 + r2)           drag = 0
+    tilt  = k12 (w1 - w2) + (k22 + k24)/2 (r1 + r2)
+    bend  = (k22 - k24)/2 (r1 - r2)
+
+With the velocities v, u of w, r and the damped mass m = alpha m_l h / 420 (mass-proportional damping alpha), the
+consistent mass adds, in the same splitting,
+
+    shear = m [ 51  (v1 - v2) +  4.5 h (u1 + u2)]       drag = m   [105   (v1 + v2) + 17.5 h (u1 - u2)]
+    tilt  = m h [4.5 (v1 - v2) + 0.5 h (u1 + u2)]       bend = m h [ 17.5 (v1 + v2) +  3.5 h (u1 - u2)]
+"""
+
+from typing import NamedTuple
+
+import numpy as np
 from numba import njit
 
-from pantocheck.model.arrays import Array
-from pantocheck.model.dynamics.state import PIECE, KernelArrays, Motion, Workspace
+from pantocheck.model.arrays import Array, Indices
+from pantocheck.model.dynamics.active_window import Window
+from pantocheck.model.dynamics.motion import Motion
+from pantocheck.model.fem.beams import Beams, element_stiffness
+
+PIECE = 256
+"""Number of elements of a row that are processed together, so that they stay in the fastest cache."""
+
+# Consistent mass over m_l h / 420 in the splitting above; a slope counts times h.
+MASS_SHEAR, MASS_SHEAR_TILT, MASS_TILT = 51.0, 4.5, 0.5
+MASS_DRAG, MASS_DRAG_BEND, MASS_BEND = 105.0, 17.5, 3.5
+
+
+class WireArrays(NamedTuple):
+    """Wires of a line in a time step; B rows, S stations.
+
+    Parameters
+    ----------
+    length : (S-1,) ndarray
+        Lengths of the elements [m].
+    stiffness : (B, 4, S-1) ndarray
+        Entries k11, k12, (k22 + k24) / 2, (k22 - k24) / 2 of the stiffness of each element [N/m, N, N m, N m].
+    damped_mass : (B, S-1) ndarray
+        Mass of each element times its mass-proportional damping, over 420 [kg/s].
+    mass_coefficient, stiffness_coefficient : (B,) ndarray
+        Rayleigh damping of the wires [1/s, s].
+    lumped_row, lumped_station : (Q,) int ndarray
+        Positions of the springs and dampers that act on a single row.
+    lumped_stiffness, lumped_damping : (Q,) ndarray
+        Their coefficients [N/m, N s/m].
+    """
+
+    length: Array
+    stiffness: Array
+    damped_mass: Array
+    mass_coefficient: Array
+    stiffness_coefficient: Array
+    lumped_row: Indices
+    lumped_station: Indices
+    lumped_stiffness: Array
+    lumped_damping: Array
+
+
+class ElementForces(NamedTuple):
+    """Forces of a piece of wire; entry 0 belongs to the last element of the piece before, the others to its elements.
+
+    Parameters
+    ----------
+    shear, drag : (PIECE + 1,) ndarray
+        Antisymmetric and symmetric force on the ends [N].
+    tilt, bend : (PIECE + 1,) ndarray
+        Symmetric and antisymmetric moment on the ends [N m].
+    """
+
+    shear: Array
+    drag: Array
+    tilt: Array
+    bend: Array
+
+
+class WireWorkspace(NamedTuple):
+    """Scratch arrays of `apply_wire_forces`.
+
+    Parameters
+    ----------
+    w, r : (PIECE + 1,) ndarray
+        Deflection and slope of a piece of wire, plus damping times their rates.
+    forces : ElementForces
+        Forces of its elements.
+    """
+
+    w: Array
+    r: Array
+    forces: ElementForces
+
+
+class PieceStiffness(NamedTuple):
+    """Stiffness entries k11, k12, (k22 + k24) / 2, (k22 - k24) / 2 of the elements of a piece, (n,) ndarrays."""
+
+    shear: Array
+    coupling: Array
+    tilt: Array
+    bend: Array
+
+
+def build_wire_arrays(beams: Beams) -> WireArrays:
+    """Wires of a line in a time step."""
+    matrices = np.array([element_stiffness(beams, row) for row in range(len(beams.mass_per_length))])
+    k11, k12, k22, k24 = (matrices[:, :, i, j] for i, j in ((0, 0), (0, 1), (1, 1), (1, 3)))
+    lumped = np.nonzero((beams.lumped_stiffness != 0) | (beams.lumped_damping != 0))
+    return WireArrays(
+        length=beams.length,
+        stiffness=np.stack([k11, k12, (k22 + k24) / 2, (k22 - k24) / 2], axis=1),
+        damped_mass=beams.mass_coefficient[:, None] * beams.mass_per_length * beams.length / 420,
+        mass_coefficient=beams.mass_coefficient,
+        stiffness_coefficient=beams.stiffness_coefficient,
+        lumped_row=lumped[0],
+        lumped_station=lumped[1],
+        lumped_stiffness=beams.lumped_stiffness[lumped],
+        lumped_damping=beams.lumped_damping[lumped],
+    )
+
+
+def wire_workspace() -> WireWorkspace:
+    """Scratch arrays for one simulation."""
+    arrays = [np.zeros(PIECE + 1) for _ in range(6)]
+    return WireWorkspace(arrays[0], arrays[1], ElementForces(*arrays[2:]))
 
 
 @njit(cache=True)
-def predict_wires(dt: float, motion: Motion, first: int, last: int) -> None:
-    """Turn displacement and velocity between two stations into Newmark's predictors, in place."""
-    for now in (motion.w, motion.r):
-        for b in range(now.shape[1]):
-            q, v, a = now[0, b, first : last + 1], now[1, b, first : last + 1], now[2, b, first : last + 1]
+def predict_wires(dt: float, motion: Motion, window: Window) -> None:
+    """Replace displacement and velocity of the active stations by Newmark's predictors."""
+    for field in (motion.w, motion.r):
+        for b in range(field.shape[1]):
+            q, v, a = _active(field, b, window)
             for s in range(q.size):
                 q[s] += dt * v[s] + dt * dt / 4 * a[s]
             for s in range(q.size):
@@ -19,11 +147,11 @@ def predict_wires(dt: float, motion: Motion, first: int, last: int) -> None:
 
 
 @njit(cache=True)
-def correct_wires(dt: float, motion: Motion, first: int, last: int) -> None:
-    """Turn the predictors back into displacement and velocity, with the accelerations that were found."""
-    for now in (motion.w, motion.r):
-        for b in range(now.shape[1]):
-            q, v, a = now[0, b, first : last + 1], now[1, b, first : last + 1], now[2, b, first : last + 1]
+def correct_wires(dt: float, motion: Motion, window: Window) -> None:
+    """Complete the predictors with the accelerations at the end of the step."""
+    for field in (motion.w, motion.r):
+        for b in range(field.shape[1]):
+            q, v, a = _active(field, b, window)
             for s in range(q.size):
                 q[s] += dt * dt / 4 * a[s]
             for s in range(q.size):
@@ -31,96 +159,111 @@ def correct_wires(dt: float, motion: Motion, first: int, last: int) -> None:
 
 
 @njit(cache=True)
-def wire_forces(line: KernelArrays, motion: Motion, work: Workspace, first: int, last: int) -> None:
-    """Forces and moments that wires and lumped parts exert on the stations, in place of their accelerations.
+def _active(field: Array, row: int, window: Window) -> tuple[Array, Array, Array]:
+    """Displacement, velocity and acceleration of the active stations of a row."""
+    first, end = window.first, window.last + 1
+    return field[0, row, first:end], field[1, row, first:end], field[2, row, first:end]
 
-    Each element pushes its ends alike (drag) and apart (shear), and turns them alike (tilt) and apart (bend). The line
-    is cut into pieces that stay in the fastest cache, and every loop fills one or two arrays from a few others: in that
-    form they compile to vector instructions. One station more on either side stands still and holds the moving part.
+
+@njit(cache=True)
+def apply_wire_forces(wires: WireArrays, motion: Motion, work: WireWorkspace, window: Window) -> None:
+    """Store forces and moments of wires and lumped parts on the active stations in place of their accelerations.
+
+    The rows are processed in pieces that stay in the fastest cache, and every loop fills one or two arrays from a few
+    others: in this form they compile to vector instructions. One more station on either side, at rest, holds the
+    active part.
     """
-    lo, hi = max(first - 1, 0), min(last + 1, line.position.size - 1)
+    first, last = max(window.first - 1, 0), min(window.last + 1, motion.w.shape[2] - 1)
+    forces = work.forces
     for b in range(motion.w.shape[1]):
-        work.forces[:, 0] = 0.0  # there is no element before the first
-        for start in range(lo, hi, PIECE):
-            end = min(start + PIECE, hi)
+        for force in forces:
+            force[:] = 0.0  # there is no element before the first
+        for start in range(first, last, PIECE):
+            end = min(start + PIECE, last)
             n = end - start
             v, u = motion.w[1, b, start : end + 1], motion.r[1, b, start : end + 1]
-            seen_w, seen_r = work.seen[0, : n + 1], work.seen[1, : n + 1]
-            shear, drag, tilt, bend = (
-                work.forces[0, : n + 1],
-                work.forces[1, : n + 1],
-                work.forces[2, : n + 1],
-                work.forces[3, : n + 1],
+            w, r = work.w[: n + 1], work.r[: n + 1]
+            _add_rate(motion.w[0, b, start : end + 1], v, wires.stiffness_coefficient[b], w)
+            _add_rate(motion.r[0, b, start : end + 1], u, wires.stiffness_coefficient[b], r)
+            elements = ElementForces(
+                forces.shear[1 : n + 1], forces.drag[1 : n + 1], forces.tilt[1 : n + 1], forces.bend[1 : n + 1]
             )
-            _add_rate(motion.w[0, b, start : end + 1], v, line.stiffness_coefficient[b], seen_w)
-            _add_rate(motion.r[0, b, start : end + 1], u, line.stiffness_coefficient[b], seen_r)
-            # Not cut from one slice of all four: their entries must be known to lie side by side.
-            k11, k12 = line.stiffness_entries[b, 0, start:end], line.stiffness_entries[b, 1, start:end]
-            alike, apart = line.stiffness_entries[b, 2, start:end], line.stiffness_entries[b, 3, start:end]
-            _stiffness_forces(k11, k12, alike, apart, seen_w, seen_r, shear[1:], tilt[1:], bend[1:])
-            if line.mass_coefficient[b] == 0.0:
-                drag[1:] = 0.0
+            # Four slices instead of one: the compiler must know that the entries of each lie side by side.
+            stiffness = PieceStiffness(
+                wires.stiffness[b, 0, start:end],
+                wires.stiffness[b, 1, start:end],
+                wires.stiffness[b, 2, start:end],
+                wires.stiffness[b, 3, start:end],
+            )
+            _stiffness_forces(stiffness, w, r, elements)
+            if wires.mass_coefficient[b] == 0.0:
+                elements.drag[:] = 0.0
             else:
-                mass, length = line.damping_mass[b, start:end], line.length[start:end]
-                _add_apart(mass, length, v, u, shear[1:], tilt[1:])
-                _add_alike(mass, length, v, u, drag[1:], bend[1:])
-            _gather(shear, drag, motion.w[2, b, start:end])
-            _gather(bend, tilt, motion.r[2, b, start:end])
-            for i in range(4):
-                work.forces[i, 0] = work.forces[i, n]
-        motion.w[2, b, hi] = work.forces[0, 0] - work.forces[1, 0]
-        motion.r[2, b, hi] = work.forces[3, 0] - work.forces[2, 0]
-    for n in range(line.lumped_row.size):
-        b, s = line.lumped_row[n], line.lumped_station[n]
-        if first <= s <= last:
-            held = line.lumped_stiffness[n] * motion.w[0, b, s] + line.lumped_damping[n] * motion.w[1, b, s]
-            motion.w[2, b, s] -= held
+                mass, length = wires.damped_mass[b, start:end], wires.length[start:end]
+                _add_antisymmetric_damping(mass, length, v, u, elements)
+                _add_symmetric_damping(mass, length, v, u, elements)
+            _gather(forces.shear[: n + 1], forces.drag[: n + 1], motion.w[2, b, start:end])
+            _gather(forces.bend[: n + 1], forces.tilt[: n + 1], motion.r[2, b, start:end])
+            for force in forces:
+                force[0] = force[n]
+        motion.w[2, b, last] = forces.shear[0] - forces.drag[0]
+        motion.r[2, b, last] = forces.bend[0] - forces.tilt[0]
+    for n in range(wires.lumped_row.size):
+        b, s = wires.lumped_row[n], wires.lumped_station[n]
+        if window.first <= s <= window.last:
+            elastic, viscous = (
+                wires.lumped_stiffness[n] * motion.w[0, b, s],
+                wires.lumped_damping[n] * motion.w[1, b, s],
+            )
+            motion.w[2, b, s] -= elastic + viscous
 
 
 @njit(cache=True)
-def _add_rate(q: Array, v: Array, c: float, seen: Array) -> None:
-    """What a stiffness with damping in proportion sees."""
-    for s in range(seen.size):
-        seen[s] = q[s] + c * v[s]
+def _add_rate(q: Array, v: Array, coefficient: float, damped: Array) -> None:
+    """Displacement plus stiffness-proportional damping times velocity."""
+    for s in range(damped.size):
+        damped[s] = q[s] + coefficient * v[s]
 
 
 @njit(cache=True)
-def _stiffness_forces(
-    k11: Array, k12: Array, alike: Array, apart: Array, w: Array, r: Array, shear: Array, tilt: Array, bend: Array
-) -> None:
-    """Forces of beam elements in deflections w and slopes r."""
+def _stiffness_forces(stiffness: PieceStiffness, w: Array, r: Array, forces: ElementForces) -> None:
+    """Forces of the stiffness under deflections w and slopes r; the drag is zero."""
     w0, w1, r0, r1 = w[:-1], w[1:], r[:-1], r[1:]
+    shear, tilt, bend = forces.shear, forces.tilt, forces.bend
+    k11, k12, k_tilt, k_bend = stiffness.shear, stiffness.coupling, stiffness.tilt, stiffness.bend
     for e in range(shear.size):
-        d, s = w0[e] - w1[e], r0[e] + r1[e]
-        shear[e] = k11[e] * d + k12[e] * s
-        tilt[e] = k12[e] * d + alike[e] * s
+        difference, total = w0[e] - w1[e], r0[e] + r1[e]
+        shear[e] = k11[e] * difference + k12[e] * total
+        tilt[e] = k12[e] * difference + k_tilt[e] * total
     for e in range(shear.size):
-        bend[e] = apart[e] * (r0[e] - r1[e])
+        bend[e] = k_bend[e] * (r0[e] - r1[e])
 
 
 @njit(cache=True)
-def _add_apart(mass: Array, length: Array, v: Array, u: Array, shear: Array, tilt: Array) -> None:
-    """Damping by the consistent mass of elements whose ends move apart with velocities v and turn alike with u."""
+def _add_antisymmetric_damping(mass: Array, length: Array, v: Array, u: Array, forces: ElementForces) -> None:
+    """Damping of the consistent mass against deflection velocities v that differ and slope velocities u that add."""
     v0, v1, u0, u1 = v[:-1], v[1:], u[:-1], u[1:]
+    shear, tilt = forces.shear, forces.tilt
     for e in range(shear.size):
-        d, s = v0[e] - v1[e], length[e] * (u0[e] + u1[e])
-        shear[e] += mass[e] * (51.0 * d + 4.5 * s)
-        tilt[e] += mass[e] * length[e] * (4.5 * d + 0.5 * s)
+        difference, total = v0[e] - v1[e], length[e] * (u0[e] + u1[e])
+        shear[e] += mass[e] * (MASS_SHEAR * difference + MASS_SHEAR_TILT * total)
+        tilt[e] += mass[e] * length[e] * (MASS_SHEAR_TILT * difference + MASS_TILT * total)
 
 
 @njit(cache=True)
-def _add_alike(mass: Array, length: Array, v: Array, u: Array, drag: Array, bend: Array) -> None:
-    """The same of elements whose ends move alike and turn apart."""
+def _add_symmetric_damping(mass: Array, length: Array, v: Array, u: Array, forces: ElementForces) -> None:
+    """Damping of the consistent mass against deflection velocities v that add and slope velocities u that differ."""
     v0, v1, u0, u1 = v[:-1], v[1:], u[:-1], u[1:]
+    drag, bend = forces.drag, forces.bend
     for e in range(drag.size):
-        s, d = v0[e] + v1[e], length[e] * (u0[e] - u1[e])
-        drag[e] = mass[e] * (105.0 * s + 17.5 * d)
-        bend[e] += mass[e] * length[e] * (17.5 * s + 3.5 * d)
+        total, difference = v0[e] + v1[e], length[e] * (u0[e] - u1[e])
+        drag[e] = mass[e] * (MASS_DRAG * total + MASS_DRAG_BEND * difference)
+        bend[e] += mass[e] * length[e] * (MASS_DRAG_BEND * total + MASS_BEND * difference)
 
 
 @njit(cache=True)
-def _gather(apart: Array, alike: Array, force: Array) -> None:
-    """Forces on stations from those of the elements before and after them, which resist."""
-    a0, a1, b0, b1 = apart[:-1], apart[1:], alike[:-1], alike[1:]
+def _gather(antisymmetric: Array, symmetric: Array, force: Array) -> None:
+    """Reaction of the elements before and after each station."""
+    a0, a1, s0, s1 = antisymmetric[:-1], antisymmetric[1:], symmetric[:-1], symmetric[1:]
     for s in range(force.size):
-        force[s] = (a0[s] - a1[s]) - (b0[s] + b1[s])
+        force[s] = (a0[s] - a1[s]) - (s0[s] + s1[s])

@@ -13,6 +13,7 @@ from pantocheck.model.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.mass_correction import mass_correction
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.beams import by_station, wire_matrices
+from pantocheck.model.fem.mesh import find_element
 from pantocheck.model.fem.residual_flexibility import condensed_bubbles, local_flexibility
 
 
@@ -141,14 +142,12 @@ def point_load(line: DiscretisedLine, row: int, position: float) -> Array:
     (unknowns,) ndarray
         [-, m].
     """
-    x = line.mesh.position
-    e = int(np.clip(np.searchsorted(x, position) - 1, 0, x.size - 2))
-    h = x[e + 1] - x[e]
+    element, length, s = find_element(line.mesh.position, position)
     share = np.zeros(line.beams.free.size)
-    n = beam.shape((position - x[e]) / h, h)
+    n = beam.shape(s, length)
     for i in range(2):
-        share[unknown(line, row, e + i, 0)] = n[2 * i]
-        share[unknown(line, row, e + i, 1)] = n[2 * i + 1]
+        share[unknown(line, row, element + i, 0)] = n[2 * i]
+        share[unknown(line, row, element + i, 1)] = n[2 * i + 1]
     return share
 
 
@@ -171,8 +170,7 @@ def contact_stiffness(line: DiscretisedLine, row: int, position: float, penalty:
     float
         [N/m].
     """
-    x, beams = line.mesh.position, line.beams
-    e = int(np.clip(np.searchsorted(x, position) - 1, 0, x.size - 2))
-    h = float(x[e + 1] - x[e])
-    bubble = condensed_bubbles(h, float(beams.tension[row, e]), float(beams.bending_stiffness[row, e]))
-    return 1 / (1 / penalty + local_flexibility(bubble, (position - float(x[e])) / h))
+    beams = line.beams
+    element, length, s = find_element(line.mesh.position, position)
+    tension, bending_stiffness = float(beams.tension[row, element]), float(beams.bending_stiffness[row, element])
+    return 1 / (1 / penalty + local_flexibility(condensed_bubbles(length, tension, bending_stiffness), s))

@@ -48,6 +48,26 @@ class Mesh:
         return nearest
 
 
+def find_element(stations: Array, position: float) -> tuple[int, float, float]:
+    """Element at a position along the track.
+
+    Parameters
+    ----------
+    stations : (S,) ndarray
+        Positions of the stations [m].
+    position : float
+        Position along the track [m].
+
+    Returns
+    -------
+    tuple of (int, float, float)
+        Index and length of the element, and the position within it as a share of its length [-, m, -].
+    """
+    element = min(max(int(np.searchsorted(stations, position)) - 1, 0), stations.size - 2)
+    length = stations[element + 1] - stations[element]
+    return element, length, (position - stations[element]) / length
+
+
 def build_mesh(catenary: Catenary, element_length: float, places: tuple[float, ...] = ()) -> Mesh:
     """Stations at every connector, with elements no longer than asked for in between.
 

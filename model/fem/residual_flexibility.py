@@ -12,6 +12,7 @@ from numba import njit
 from numpy.polynomial import Polynomial
 
 from pantocheck.model.arrays import Array
+from pantocheck.model.fem.beams import Beams
 
 FUNCTIONS = 3
 
@@ -48,6 +49,19 @@ def condensed_bubbles(h: float, tension: float, bending_stiffness: float) -> Arr
         ]
     )
     return np.asarray(np.linalg.inv(stiffness)[np.triu_indices(FUNCTIONS)])
+
+
+def element_bubbles(beams: Beams, row: int) -> Array:
+    """Flexibilities of all elements of one row, (S-1, 6); equal elements are computed once [m/N]."""
+    known: dict[tuple[float, float, float], Array] = {}
+    bubbles = np.zeros((beams.length.size, 6))
+    for e in np.flatnonzero(beams.mass_per_length[row]):
+        data = (float(beams.length[e]), float(beams.tension[row, e]), float(beams.bending_stiffness[row, e]))
+        key = (round(data[0], 9), *data[1:])
+        if key not in known:
+            known[key] = condensed_bubbles(*data)
+        bubbles[e] = known[key]
+    return bubbles
 
 
 def _integral(polynomial: Polynomial) -> float:

@@ -15,7 +15,8 @@ from scipy.linalg import solve
 from helpers.lines import Array, without_connectors
 from pantocheck.model import Passage
 from pantocheck.model.discretised_line import DiscretisedLine
-from pantocheck.model.dynamics.state import Motion, Train
+from pantocheck.model.dynamics.motion import Motion
+from pantocheck.model.dynamics.train import Train
 from pantocheck.model.fem.assembly import (
     assemble_matrices,
     bandwidth_order,

@@ -8,9 +8,9 @@ import pytest
 from helpers.lines import simple_line
 from pantocheck.model import Dropper, MessengerSupport, Passage, SteadyArm, chain, simulate_passage
 from pantocheck.model.discretised_line import discretise
-from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays
+from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
 from pantocheck.model.dynamics.newmark import step
-from pantocheck.model.dynamics.simulation import build_workspace, start_motion
+from pantocheck.model.dynamics.simulation import start_motion
 from pantocheck.model.failures import DidNotConverge, NoInitialState
 
 PANTOGRAPH = chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.array([90.0, 10.0]), 120.0, 0, 50e3)

@@ -6,7 +6,9 @@ from scipy.sparse.linalg import splu
 
 from helpers.lines import DAMPED, Array, simple_line, without_connectors
 from pantocheck.model.discretised_line import DiscretisedLine, discretise
-from pantocheck.model.dynamics.block_tridiagonal import column_half_width, factorise, inverse_columns, solve_line
+from pantocheck.model.dynamics.block_tridiagonal import solve_line
+from pantocheck.model.dynamics.effective_matrix import factorise
+from pantocheck.model.dynamics.inverse_columns import column_half_width, inverse_columns
 from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, stepping_mass
 
 

@@ -8,10 +8,11 @@ from scipy.linalg import eigh
 from helpers.lines import Array, bare_wire, simple_line
 from pantocheck.model import Passage, chain
 from pantocheck.model.discretised_line import discretise
-from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays
+from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
+from pantocheck.model.dynamics.motion import Motion
 from pantocheck.model.dynamics.newmark import step
-from pantocheck.model.dynamics.simulation import build_workspace, empty_train, start_motion
-from pantocheck.model.dynamics.state import Motion
+from pantocheck.model.dynamics.simulation import start_motion
+from pantocheck.model.dynamics.train import empty_train
 from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order
 
 

@@ -9,10 +9,10 @@ from scipy.sparse import csc_array
 from helpers.lines import Array, simple_line, without_connectors
 from pantocheck.model.catenary import Kind, Rayleigh
 from pantocheck.model.discretised_line import DiscretisedLine, discretise
-from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays
+from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
+from pantocheck.model.dynamics.motion import Motion, motion_at_rest
 from pantocheck.model.dynamics.newmark import step
-from pantocheck.model.dynamics.simulation import build_workspace, empty_train, motion_at_rest
-from pantocheck.model.dynamics.state import Motion
+from pantocheck.model.dynamics.train import empty_train
 from pantocheck.model.fem.assembly import (
     assemble_matrices,
     bandwidth_order,

@@ -10,9 +10,9 @@ from helpers.lines import DAMPED, Array, bare_wire, simple_line
 from helpers.plain_newmark import PlainNewmark
 from pantocheck.model import Catenary, Kind, Passage, Rayleigh, chain
 from pantocheck.model.discretised_line import DiscretisedLine, discretise
-from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays
+from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
 from pantocheck.model.dynamics.newmark import step
-from pantocheck.model.dynamics.simulation import build_workspace, start_motion
+from pantocheck.model.dynamics.simulation import start_motion
 from pantocheck.model.fem.assembly import bandwidth_order
 from pantocheck.model.pantograph import Pantograph
 

@@ -7,10 +7,10 @@ from scipy.linalg import eig
 
 from helpers.lines import Array, simple_line
 from pantocheck.model import DiscretisedLine, Kind, ModalBand, Rayleigh, discretise
-from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays
+from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
+from pantocheck.model.dynamics.motion import Motion
 from pantocheck.model.dynamics.newmark import step
-from pantocheck.model.dynamics.simulation import build_workspace, empty_train
-from pantocheck.model.dynamics.state import Motion
+from pantocheck.model.dynamics.train import empty_train
 from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, stepping_mass
 from pantocheck.model.modal.modal_damping import build_modal_terms
 from pantocheck.model.modal.modes import compute_modes, damping_ratios
@@ -69,7 +69,7 @@ def test_the_step_equals_one_with_the_full_matrix() -> None:
     tension = line.connectors.preload + line.connectors.stiffness * np.einsum(
         "nb,nb->n", line.connectors.coefficient, w[0].T[line.connectors.station]
     )
-    motion = Motion(w, r, tension, np.zeros(stepping.modal_damping.size), np.zeros(1))
+    motion = Motion(w, r, tension, np.zeros(stepping.modal.damping.size), np.zeros(1))
     train = empty_train(1)
     work = build_workspace(stepping, train)
     effective = mass + dt / 2 * damping + dt**2 / 4 * stiffness

@@ -1,0 +1,147 @@
+"""Driver of the time step: advances line and pantographs and records their motion."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from pantocheck.model.arrays import Array, Indices
+from pantocheck.model.discretised_line import DiscretisedLine
+from pantocheck.model.dynamics.kernel_arrays import KernelArrays, Workspace, build_workspace
+from pantocheck.model.dynamics.motion import Motion
+from pantocheck.model.dynamics.newmark import step
+from pantocheck.model.dynamics.train import Train
+from pantocheck.model.failures import DidNotConverge
+
+BLOCK = 500
+"""Number of steps between two reports of progress."""
+
+
+class Recording(NamedTuple):
+    """Recorded time series; T steps, P pantographs, U stations.
+
+    Parameters
+    ----------
+    row, station : (U,) int ndarray
+        Rows and stations whose motion is recorded.
+    contact : (T, P) ndarray
+        Contact force of each pantograph, summed over the contact wires [N].
+    height : (T, P) ndarray
+        Height of the heads [m].
+    motion : (T, U, 3) ndarray
+        Displacement, velocity, acceleration at the stations [m, m/s, m/s2].
+    slack : (T,) int ndarray
+        Number of slack droppers.
+    """
+
+    row: Indices
+    station: Indices
+    contact: Array
+    height: Array
+    motion: Array
+    slack: Indices
+
+
+def simulate_steps(
+    kernel: KernelArrays,
+    motion: Motion,
+    train: Train,
+    load: Array,
+    recording: Recording,
+    progress: Callable[[float], None] | None = None,
+) -> None:
+    """Advance line and pantographs by as many steps as the recording has, and fill it.
+
+    Parameters
+    ----------
+    kernel : KernelArrays
+        Arrays of the line.
+    motion, train : Motion, Train
+        States at the start, advanced in place.
+    load : (T,) ndarray
+        External load in each step [N].
+    recording : Recording
+        Filled in place.
+    progress : callable or None
+        Called from time to time with the completed share, 0 to 1.
+
+    Raises
+    ------
+    DidNotConverge
+        The forces of a time step did not converge.
+    """
+    work = build_workspace(kernel, train)
+    for first in range(0, load.size, BLOCK):
+        block = slice(first, min(first + BLOCK, load.size))
+        part = recording._replace(
+            contact=recording.contact[block],
+            height=recording.height[block],
+            motion=recording.motion[block],
+            slack=recording.slack[block],
+        )
+        steps = march(kernel, motion, train, work, load[block], part)
+        if steps < block.stop - first:
+            raise DidNotConverge(
+                f"the contact, dropper and damping forces of the time step at"
+                f" {(first + steps + 1) * kernel.time_step:.3f} s after the start did not converge"
+            )
+        if progress:
+            progress(block.stop / load.size)
+
+
+@njit(cache=True)
+def march(
+    kernel: KernelArrays, motion: Motion, train: Train, work: Workspace, load: Array, recording: Recording
+) -> int:
+    """Advance by one step per value of the load and record; return the number of completed steps."""
+    connectors = kernel.connectors
+    for n in range(load.size):
+        motion.load[0] = load[n]
+        if step(kernel, motion, train, work) == 0:
+            return n
+        for p in range(train.position.size):
+            total, head = 0.0, 0.0
+            for k in range(train.contact.shape[1]):
+                total += train.contact[p, k]
+            for i in range(train.z.shape[2]):
+                head += train.head[p, i] * train.z[0, p, i]
+            recording.contact[n, p], recording.height[n, p] = total, head
+        for u in range(recording.row.size):
+            for i in range(3):
+                recording.motion[n, u, i] = motion.w[i, recording.row[u], recording.station[u]]
+        slack = 0
+        for c in range(connectors.station.size):
+            if connectors.unilateral[c] and motion.tension[c] == 0.0:
+                slack += 1
+        recording.slack[n] = slack
+    return int(load.size)
+
+
+def allocate_recording(
+    line: DiscretisedLine, watched: tuple[tuple[str, float], ...], steps: int, pantographs: int
+) -> Recording:
+    """Empty recording.
+
+    Parameters
+    ----------
+    line : DiscretisedLine
+        Discretised line.
+    watched : tuple of (str, float)
+        Wire and position of the stations whose vertical motion is recorded [-, m].
+    steps, pantographs : int
+        Numbers of time steps and of pantographs.
+
+    Returns
+    -------
+    Recording
+        Arrays of zeros.
+    """
+    return Recording(
+        row=np.array([line.mesh.row_of[wire, "z"] for wire, _ in watched], dtype=np.int64),
+        station=np.array([line.mesh.station(position) for _, position in watched], dtype=np.int64),
+        contact=np.zeros((steps, pantographs)),
+        height=np.zeros((steps, pantographs)),
+        motion=np.zeros((steps, len(watched), 3)),
+        slack=np.zeros(steps, dtype=np.int64),
+    )

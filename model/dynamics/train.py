@@ -1,0 +1,113 @@
+"""Pantographs of a train as plain arrays, with their state."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from pantocheck.model.arrays import Array
+from pantocheck.model.dynamics.passage import Passage
+from pantocheck.model.pantograph import Pantograph
+
+
+class Train(NamedTuple):
+    """Pantographs and their state; P pantographs of at most n unknowns, each touching W contact wires.
+
+    Parameters
+    ----------
+    position : (P,) ndarray
+        Position along the track [m].
+    speed : (1,) ndarray
+        Speed of the train [m/s].
+    elapsed : (1,) ndarray
+        Time since the start [s].
+    inverse : (P, n, n) ndarray
+        Inverse of the effective matrix M + dt/2 C + dt^2/4 K of each pantograph [1/kg].
+    damping, stiffness : (P, n, n) ndarray
+        Matrices of each pantograph [N s/m, N/m].
+    head : (P, n) ndarray
+        Selects the displacement of the head [-].
+    force : (P, n) ndarray
+        Constant forces [N].
+    contact_stiffness : (P,) ndarray
+        Stiffness of the penalty contact [N/m].
+    z : (3, P, n) ndarray
+        Displacement, velocity, acceleration [m, m/s, m/s2].
+    contact : (P, W) ndarray
+        Contact forces [N].
+    """
+
+    position: Array
+    speed: Array
+    elapsed: Array
+    inverse: Array
+    damping: Array
+    stiffness: Array
+    head: Array
+    force: Array
+    contact_stiffness: Array
+    z: Array
+    contact: Array
+
+
+def empty_train(contact_wires: int) -> Train:
+    """Train without a pantograph, for the free motion of a line."""
+    return _allocate(0, 1, contact_wires)
+
+
+def build_train(passage: Passage, wire_height: Array, flexibility: Array) -> Train:
+    """Pantographs at rest, each pressing with its static force.
+
+    Parameters
+    ----------
+    passage : Passage
+        Pantographs, their positions, speed and time step.
+    wire_height : (P, W) ndarray
+        Height of each contact wire above each head, under the static forces [m].
+    flexibility : (P, W) ndarray
+        Residual flexibility of the contact wires there [m/N].
+
+    Returns
+    -------
+    Train
+        State at the start.
+    """
+    wires = wire_height.shape[1]
+    train = _allocate(len(passage.pantographs), max(p.head.size for p in passage.pantographs), wires)
+    train.position[:], train.speed[0] = passage.start, passage.speed
+    half, quarter = passage.time_step / 2, passage.time_step**2 / 4
+    for p, pantograph in enumerate(passage.pantographs):
+        n = pantograph.head.size
+        effective = pantograph.mass + half * pantograph.damping + quarter * pantograph.stiffness
+        train.inverse[p, :n, :n] = np.linalg.inv(effective)
+        train.damping[p, :n, :n], train.stiffness[p, :n, :n] = pantograph.damping, pantograph.stiffness
+        train.head[p, :n], train.force[p, :n] = pantograph.head, pantograph.force
+        train.contact_stiffness[p] = pantograph.contact_stiffness
+        train.contact[p] = pantograph.static_force / wires
+        overlap = train.contact[p, 0] * (1 / pantograph.contact_stiffness + float(flexibility[p].mean()))
+        train.z[0, p, :n] = _equilibrium(pantograph, float(wire_height[p].mean()) + overlap)
+    return train
+
+
+def _allocate(pantographs: int, unknowns: int, contact_wires: int) -> Train:
+    return Train(
+        position=np.zeros(pantographs),
+        speed=np.zeros(1),
+        elapsed=np.zeros(1),
+        inverse=np.zeros((pantographs, unknowns, unknowns)),
+        damping=np.zeros((pantographs, unknowns, unknowns)),
+        stiffness=np.zeros((pantographs, unknowns, unknowns)),
+        head=np.zeros((pantographs, unknowns)),
+        force=np.zeros((pantographs, unknowns)),
+        contact_stiffness=np.zeros(pantographs),
+        z=np.zeros((3, pantographs, unknowns)),
+        contact=np.zeros((pantographs, contact_wires)),
+    )
+
+
+def _equilibrium(pantograph: Pantograph, head_height: float) -> Array:
+    """Displacements of a pantograph with the head held at a height and all other parts in equilibrium."""
+    n = pantograph.head.size
+    system = np.zeros((n + 1, n + 1))
+    system[:n, :n] = pantograph.stiffness
+    system[:n, n] = system[n, :n] = pantograph.head
+    return np.asarray(np.linalg.solve(system, np.append(pantograph.force, head_height))[:n])
