@@ -1,28 +1,38 @@
-"""Plans: the options of a run in a file, for a pipeline."""
+"""Plans: the options of a run in a file, and their preparation for the run."""
 
 import shlex
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 from pydantic import Field
 
-from pantocheck.conformance.cases.library import library_folder
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.library import library_folder, overlay_limits, read_limits, select_cases
+from pantocheck.conformance.grading.baseline import compare_with_baseline
+from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.sourced_table import InputTable
 from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.reports.formats.report_writers import check_formats
+from pantocheck.conformance.results.results_format import Results
+from pantocheck.conformance.results.results_reading import read_results
+from pantocheck.conformance.studies.damping_sensitivity import add_damping_study
 from pantocheck.conformance.systems.command.program_arguments import split_arguments
+from pantocheck.conformance.systems.system import System
+from pantocheck.conformance.systems.system_choice import choose_system
 
 Names = Annotated[tuple[str, ...], Field(strict=False, max_length=1000)]
 
 
 class Plan(InputTable):
-    """What `pantocheck run` shall do; an option on the command line goes before the plan's."""
+    """Options of `pantocheck run`; an option of the command line replaces that of the plan."""
 
-    cases: Annotated[Names, Field(description="ids, globs or paths of cases; left out: every case with limits")] = ()
+    cases: Annotated[Names, Field(description="ids, globs or paths of cases; default: every case with limits")] = ()
     system: Annotated[str, Field(description="builtin, record:DIR or command:PROGRAM ARGUMENTS")] = "builtin"
     timeout_s: Annotated[float, Field(gt=0, description="time that a program may take for a case [s]")] = 600.0
-    out: Annotated[str, Field(description="folder for the results")] = "report"
-    formats: Annotated[Names, Field(description="what is written: html, pdf, json, junit, md, badge")] = (
+    out: Annotated[str, Field(description="folder of the results")] = "report"
+    formats: Annotated[Names, Field(description="formats of the report: html, pdf, json, junit, md, badge")] = (
         "html",
         "pdf",
         "json",
@@ -30,15 +40,73 @@ class Plan(InputTable):
         "md",
     )
     trust: Annotated[Trust, Field(description="lowest trust of the limits that carry a verdict")] = "secondary"
-    limits: Annotated[str | None, Field(description="file of limits to be laid over the cases")] = None
-    baseline: Annotated[str | None, Field(description="results.json that values may not drift from")] = None
-    drift_pct: Annotated[
-        float, Field(gt=0, le=100, description="how far a value may be from that of the baseline [%]")
-    ] = 1.0
-    jobs: Annotated[int, Field(ge=1, le=256, description="cases that are run side by side")] = 1
+    limits: Annotated[str | None, Field(description="file of limits that replace or extend those of the cases")] = None
+    baseline: Annotated[str | None, Field(description="earlier results.json; a value that drifts from it fails")] = None
+    drift_pct: Annotated[float, Field(gt=0, le=100, description="largest drift of a value from its baseline [%]")] = 1.0
+    jobs: Annotated[int, Field(ge=1, le=256, description="number of cases that run in parallel")] = 1
     damping_study: Annotated[
-        bool, Field(description="run every case also with benchmark, initial and updated damping")
+        bool, Field(description="run every case also with the benchmark, initial and updated damping models")
     ] = False
+
+
+@dataclass(frozen=True)
+class PreparedPlan:
+    """Plan whose files are read and checked, ready to run.
+
+    Parameters
+    ----------
+    plan : Plan
+        Options of the run.
+    cases : tuple of Case
+        Selected cases with the limits and studies of the plan.
+    formats : tuple of str
+        Formats of the report in the order they are written.
+    out : Path
+        Folder of the results; it can be written.
+    baseline : Results or None
+        Earlier results that values are compared with.
+    """
+
+    plan: Plan
+    cases: tuple[Case, ...]
+    formats: tuple[str, ...]
+    out: Path
+    baseline: Results | None
+
+    def start_system(self) -> System:
+        """System under test; a program is started once to learn its name.
+
+        Raises
+        ------
+        InputError
+            There is no such system.
+        """
+        return choose_system(self.plan.system, self.plan.timeout_s)
+
+    def compare(self, results: Results) -> Results:
+        """Results with a failed criterion for every value that drifts from the baseline."""
+        if self.baseline is None or self.plan.baseline is None:
+            return results
+        return compare_with_baseline(results, self.baseline, self.plan.drift_pct, Path(self.plan.baseline).name)
+
+
+def prepare_plan(plan: Plan) -> PreparedPlan:
+    """Select and read the cases of a plan, and check its options.
+
+    Raises
+    ------
+    InputError
+        A case, the limits, the baseline or a format is wrong, or the folder of the results cannot be written.
+    """
+    cases = select_cases(plan.cases)
+    if plan.limits is not None:
+        cases = overlay_limits(cases, read_limits(Path(plan.limits)))
+    if plan.damping_study:
+        cases = [add_damping_study(case) for case in cases]
+    formats = check_formats(plan.formats)
+    baseline = None if plan.baseline is None else read_results(Path(plan.baseline))
+    check_writable(Path(plan.out))
+    return PreparedPlan(plan, tuple(cases), formats, Path(plan.out), baseline)
 
 
 def read_plan(path: Path) -> Plan:
@@ -47,7 +115,7 @@ def read_plan(path: Path) -> Plan:
     Raises
     ------
     InputError
-        It cannot be read, or is wrong.
+        The file cannot be read or is wrong.
     """
     plan, folder = read_model(path, Plan, "plan"), path.parent
     kind, _, rest = plan.system.partition(":")
@@ -68,6 +136,6 @@ def read_plan(path: Path) -> Plan:
 
 
 def _beside(folder: Path, records: str) -> Path:
-    """A folder of records beside the plan, or else of the library."""
+    """Folder of records beside the plan, or that of the library if there is none."""
     beside = folder / records
     return Path(records) if not beside.is_dir() and (library_folder() / records).is_dir() else beside

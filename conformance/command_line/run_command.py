@@ -57,19 +57,15 @@ def run_command(
 
     pantocheck run --plan conformance.toml --baseline baseline/results.json --drift 2
     """
-    from pantocheck.conformance.cases.library import overlay_limits, read_limits, select_cases
     from pantocheck.conformance.command_line.guard import INTERRUPTED
     from pantocheck.conformance.command_line.results_output import (
         EXIT_CODES,
         print_results,
         report_progress,
     )
-    from pantocheck.conformance.grading.baseline import compare_with_baseline
-    from pantocheck.conformance.input_files.atomic_writing import check_writable
-    from pantocheck.conformance.reports.formats.report_writers import check_formats, write_all
-    from pantocheck.conformance.results.results_reading import read_results
+    from pantocheck.conformance.plan import prepare_plan
+    from pantocheck.conformance.reports.formats.report_writers import write_all
     from pantocheck.conformance.runner import RunInterrupted, run_cases
-    from pantocheck.conformance.systems.system_choice import choose_system
 
     options = build_options(
         plan,
@@ -85,25 +81,15 @@ def run_command(
         damping_study=damping_study or None,
         timeout_s=timeout,
     )
-    chosen = select_cases(options.cases)
-    if options.limits is not None:
-        chosen = overlay_limits(chosen, read_limits(Path(options.limits)))
-    if options.damping_study:
-        from pantocheck.conformance.studies.damping_sensitivity import add_damping_study
-
-        chosen = [add_damping_study(case) for case in chosen]
-    written = check_formats(options.formats)
-    earlier = None if options.baseline is None else read_results(Path(options.baseline))
-    tested, folder = choose_system(options.system, options.timeout_s), Path(options.out)
-    check_writable(folder)
+    prepared = prepare_plan(options)
+    system_under_test, cases = prepared.start_system(), prepared.cases
     interrupted = False
     try:
-        with report_progress(len(chosen)) as progress:
-            results = run_cases(chosen, tested, options.trust, min(options.jobs, len(chosen)), progress)
+        with report_progress(len(cases)) as progress:
+            results = run_cases(cases, system_under_test, options.trust, min(options.jobs, len(cases)), progress)
     except RunInterrupted as stopped:
         results, interrupted = stopped.results, True
         typer.echo("Interrupted: what was finished is kept.", err=True)
-    if earlier is not None and options.baseline is not None:
-        results = compare_with_baseline(results, earlier, options.drift_pct, Path(options.baseline).name)
-    print_results(results, write_all(results, folder, written))
+    results = prepared.compare(results)
+    print_results(results, write_all(results, prepared.out, prepared.formats))
     raise typer.Exit(INTERRUPTED if interrupted else EXIT_CODES[results.verdict])

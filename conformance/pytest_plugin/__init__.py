@@ -1,40 +1,36 @@
 """pytest plugin: every criterion of a plan is a test, and a certificate is written at the end of the session.
 
-This module is imported by every pytest of an environment, so it imports nothing but pytest until it is asked for.
+Every pytest of an environment imports this module, so it imports nothing but pytest until a plan is named.
 """
 
-import shutil
-import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from pantocheck.conformance.pytest_plugin.session import FOLDER_KEY, created_folder, remove_folder, shared_folder
+
 if TYPE_CHECKING:
     from pantocheck.conformance.pytest_plugin.user_fixtures import GradedCase
 
-FOLDER = "pantocheck_folder"
-"""Key under which a worker of pytest-xdist is told the folder that all of them share."""
-
-_FOLDER = pytest.StashKey[str]()
 _LINES = pytest.StashKey[list[str]]()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Options of the plugin."""
     group = parser.getgroup("pantocheck", "conformance of pantograph-catenary simulators (pytest PLAN.toml)")
-    group.addoption("--pantocheck-out", metavar="DIR", help="folder of the certificate, in place of the plan's")
-    group.addoption("--pantocheck-formats", metavar="LIST", help="e.g. html,json, in place of the plan's")
+    group.addoption("--pantocheck-out", metavar="DIR", help="folder of the certificate; replaces that of the plan")
+    group.addoption("--pantocheck-formats", metavar="LIST", help="e.g. html,json; replaces the formats of the plan")
     group.addoption(
         "--pantocheck-trust",
         choices=("primary", "secondary", "provisional"),
-        help="lowest trust of limits that count, in place of the plan's",
+        help="lowest trust of limits that count; replaces that of the plan",
     )
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
-    """A plan is collected if it is named: as an argument, or in `testpaths`."""
+    """Collect a plan if it is named: as an argument, or in `testpaths`."""
     if file_path.suffix != ".toml" or not _named(file_path, parent.config):
         return None
     from pantocheck.conformance.pytest_plugin.collection import PlanFile
@@ -44,34 +40,21 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Col
 
 
 def _named(path: Path, config: pytest.Config) -> bool:
-    # pytest drops an argument that lies inside another one, so what it will look at is no help.
+    # pytest drops an argument that lies inside another one, so the paths it collects cannot be used here.
     arguments = (argument.partition("::")[0] for argument in config.args)
     return any((config.invocation_params.dir / argument).resolve() == path.resolve() for argument in arguments)
 
 
-def shared_folder(config: pytest.Config) -> Path:
-    """Folder of this session for results of cases, the same in all workers of pytest-xdist."""
-    worker: dict[str, Any] | None = getattr(config, "workerinput", None)
-    if worker is not None:
-        return Path(worker[FOLDER])
-    if _FOLDER not in config.stash:
-        config.stash[_FOLDER] = tempfile.mkdtemp(prefix="pantocheck-")
-    return Path(config.stash[_FOLDER])
-
-
 @pytest.hookimpl(optionalhook=True)
 def pytest_configure_node(node: Any) -> None:
-    """Tell a worker of pytest-xdist the shared folder."""
-    node.workerinput[FOLDER] = str(shared_folder(node.config))
+    """Send the shared folder to a worker of pytest-xdist."""
+    node.workerinput[FOLDER_KEY] = str(shared_folder(node.config))
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:
-    """Write the certificate of every plan that was run, once all workers are done."""
-    config = session.config
-    if hasattr(config, "workerinput") or _FOLDER not in config.stash:
-        return
-    folder = shared_folder(config)
-    if any(folder.iterdir()):
+    """Write the certificate of every plan of which a case was run, after all workers have finished."""
+    config, folder = session.config, created_folder(session.config)
+    if folder is not None and any(folder.iterdir()):
         from pantocheck.conformance.input_files.input_error import InputError
         from pantocheck.conformance.pytest_plugin.collection import write_certificates
 
@@ -84,7 +67,7 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
 
 
 def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
-    """Say where the certificates are."""
+    """Print where the certificates are."""
     if lines := config.stash.get(_LINES, []):
         terminalreporter.section("pantocheck")
         for line in lines:
@@ -93,13 +76,12 @@ def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> Non
 
 def pytest_unconfigure(config: pytest.Config) -> None:
     """Remove the shared folder."""
-    if _FOLDER in config.stash:
-        shutil.rmtree(config.stash[_FOLDER], ignore_errors=True)
+    remove_folder(config)
 
 
 @pytest.fixture(scope="session")
 def pantocheck_run(pytestconfig: pytest.Config) -> "Callable[..., GradedCase]":
-    """Function that runs a case on a system and grades it; see `pytest_grading.run`."""
+    """Function that runs a case on a system and grades it; see `user_fixtures.run_and_grade`."""
     from functools import partial
 
     from pantocheck.conformance.pytest_plugin.user_fixtures import run_and_grade
@@ -109,7 +91,7 @@ def pantocheck_run(pytestconfig: pytest.Config) -> "Callable[..., GradedCase]":
 
 @pytest.fixture(scope="session")
 def pantocheck_assess(pytestconfig: pytest.Config) -> "Callable[..., GradedCase]":
-    """Function that grades a record, or arrays of force, as a run of a case; see `pytest_grading.assess`."""
+    """Function that grades a record, or arrays of force, as a run of a case; see `user_fixtures.grade_arrays`."""
     from functools import partial
 
     from pantocheck.conformance.pytest_plugin.user_fixtures import grade_arrays

@@ -8,7 +8,6 @@ import pytest
 
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.pytest_plugin import collection  # noqa: F401 - once here, or anew in every session below
-from pantocheck.conformance.pytest_plugin.campaign import PlanSession
 from pantocheck.conformance.records.record_writing import write_record
 
 pytest_plugins = ["pytester"]
@@ -92,13 +91,6 @@ def test_items_are_chosen_by_id_and_options_go_before_the_plan(pytester, plan):
     assert results["trust"] == "primary"
     assert results["cases"][1]["reason"] == "not run in this session of pytest"
     assert [path.name for path in (pytester.path / "asked").iterdir()] == ["results.json"]
-
-
-def test_plan_with_a_damping_study_runs_it(tmp_path):
-    path = tmp_path / "conformance.toml"
-    path.write_text("cases = ['en50318-2002/250']\ndamping_study = true\n")
-    campaign = PlanSession.of_plan(path, tmp_path, str(tmp_path / "out"), None, None)
-    assert campaign.cases[0].file.study is not None
 
 
 @pytest.mark.parametrize("workers", [(), ("-n2",)])
@@ -186,7 +178,8 @@ def test_loading_the_plugin_imports_nothing_heavy():
     assert "pantocheck.conformance.pytest_plugin" in loaded
     assert not loaded & {"numpy", "scipy", "numba", "pydantic", "typer", "rich", "h5py", "matplotlib", "filelock"}
     ours = {name for name in loaded if name.startswith("pantocheck")}
-    assert ours <= {"pantocheck", "pantocheck.conformance", "pantocheck.conformance.pytest_plugin"}
+    plugin = "pantocheck.conformance.pytest_plugin"
+    assert ours <= {"pantocheck", "pantocheck.conformance", plugin, f"{plugin}.session"}
 
 
 def test_fixtures_grade_records_and_arrays(pytester, plan):
