@@ -62,7 +62,7 @@ class PreparedPlan:
     formats : tuple of str
         Formats of the report in the order they are written.
     out : Path
-        Folder of the results; it can be written.
+        Folder of the results.
     baseline : Results or None
         Earlier results that values are compared with.
     """
@@ -79,9 +79,11 @@ class PreparedPlan:
         Raises
         ------
         InputError
-            There is no such system.
+            There is no such system, or the folder of the results cannot be written.
         """
-        return choose_system(self.plan.system, self.plan.timeout_s)
+        system = choose_system(self.plan.system, self.plan.timeout_s)
+        check_writable(self.out)
+        return system
 
     def compare(self, results: Results) -> Results:
         """Results with a failed criterion for every value that drifts from the baseline."""
@@ -96,7 +98,7 @@ def prepare_plan(plan: Plan) -> PreparedPlan:
     Raises
     ------
     InputError
-        A case, the limits, the baseline or a format is wrong, or the folder of the results cannot be written.
+        A case, the limits, the baseline or a format is wrong.
     """
     cases = select_cases(plan.cases)
     if plan.limits is not None:
@@ -105,7 +107,6 @@ def prepare_plan(plan: Plan) -> PreparedPlan:
         cases = [add_damping_study(case) for case in cases]
     formats = check_formats(plan.formats)
     baseline = None if plan.baseline is None else read_results(Path(plan.baseline))
-    check_writable(Path(plan.out))
     return PreparedPlan(plan, tuple(cases), formats, Path(plan.out), baseline)
 
 

@@ -1,8 +1,8 @@
 """The `pantocheck` command."""
 
+from pantocheck.conformance.command_line.app import app
+
 
 def main() -> None:
     """Entry point of the `pantocheck` command."""
-    from pantocheck.conformance.command_line.app import app
-
     app(prog_name="pantocheck")

@@ -1,24 +1,56 @@
-"""The commands, each from its own file. What is heavy is imported by a command when it runs, so that help is quick."""
+"""The commands. The file of a command is imported when the command runs, so that help is fast."""
 
-from typing import Annotated
+from importlib import import_module
+from importlib.metadata import version
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperCommand, TyperGroup
+from typer.main import get_command
 
-from pantocheck.conformance.command_line.assess_command import assess_command
-from pantocheck.conformance.command_line.cases_command import cases_command
-from pantocheck.conformance.command_line.drop_command import drop_command
-from pantocheck.conformance.command_line.fit_damping_command import fit_damping_command
 from pantocheck.conformance.command_line.guard import guard_command
-from pantocheck.conformance.command_line.identify_command import identify_command
-from pantocheck.conformance.command_line.run_command import run_command
-from pantocheck.conformance.command_line.schema_command import schema_command
-from pantocheck.conformance.command_line.self_test_command import self_test_command
-from pantocheck.conformance.command_line.show_command import show_command
-from pantocheck.conformance.command_line.simulate_command import simulate_command
-from pantocheck.conformance.command_line.verify_command import verify_command
+
+COMMANDS = {
+    "run": "Run cases on a system, grade them, and write the results and the certificate.",
+    "assess": "Assess a simulated or measured record by the rules of a profile.",
+    "cases": "List the cases of the library with the number and the trust of their limits.",
+    "show": "Show the inputs, the limits and the notes of a case with their trust and source.",
+    "simulate": "Simulate a case and write its record.",
+    "drop": "Simulate the mass drops of a case and write their records.",
+    "identify": "Identify frequencies, damping ratios and mode shapes from mass-drop records.",
+    "fit-damping": "Fit a damping model of a line to identified modes.",
+    "verify": "Check that the verdict of a certificate follows from its numbers.",
+    "schema": "Print or write the JSON Schema of a file format, for editors and validators.",
+    "self-test": "Test the suite with faulty systems: each fault must be detected.",
+}
+"""Name and summary of each command; the summary is the first line of its docstring, too."""
+
+
+class LazyGroup(TyperGroup):
+    """Group of commands that knows their names and summaries, and imports a command when it is called."""
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(**settings)
+        self.commands = {name: TyperCommand(name, help=summary) for name, summary in COMMANDS.items()}
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> tuple[str | None, Any, list[str]]:
+        """Replace the summary of the command by the command itself."""
+        name, command, rest = super().resolve_command(ctx, args)
+        return name, load_command(name) if name in COMMANDS else command, rest
+
+
+def load_command(name: str) -> Any:
+    """Command of a name, imported from its file."""
+    name_in_code = f"{name.replace('-', '_')}_command"
+    module = import_module(f"pantocheck.conformance.command_line.{name_in_code}")
+    single = typer.Typer(add_completion=False)
+    single.command(name)(guard_command(getattr(module, name_in_code)))
+    return get_command(single)
+
 
 app = typer.Typer(
     name="pantocheck",
+    cls=LazyGroup,
     help="Open conformance suite and reference simulator for pantograph-catenary interaction.",
     epilog="Exit codes: 0 pass, 1 not passed, 2 error or bad input, 130 interrupted.",
     no_args_is_help=True,
@@ -26,26 +58,9 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
-for command in (
-    run_command,
-    assess_command,
-    cases_command,
-    show_command,
-    simulate_command,
-    drop_command,
-    identify_command,
-    fit_damping_command,
-    verify_command,
-    schema_command,
-    self_test_command,
-):
-    app.command(command.__name__.removesuffix("_command").replace("_", "-"))(guard_command(command))
 
-
-def _print_version(asked: bool) -> None:
-    if asked:
-        from importlib.metadata import version
-
+def _print_version(requested: bool) -> None:
+    if requested:
         typer.echo(f"pantocheck {version('pantocheck')}")
         raise typer.Exit
 

@@ -1,17 +1,26 @@
-"""`pantocheck assess`: a record by the rules of a profile."""
+"""`pantocheck assess`: grading of a record by the rules of a profile."""
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
+from pydantic import ValidationError
 
+from pantocheck.conformance.cases.library import read_limits
+from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.command_line.options import BaselineOption, build_options, split_names
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from pantocheck.conformance.cases.limits import Limit
-    from pantocheck.conformance.records.record_sidecar import LineTable
+from pantocheck.conformance.command_line.results_output import EXIT_CODES, print_results
+from pantocheck.conformance.grading.assessed_record import load_assessed_record
+from pantocheck.conformance.grading.baseline import compare_with_baseline
+from pantocheck.conformance.grading.profile_grading import assess_record
+from pantocheck.conformance.input_files.atomic_writing import check_writable
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.validation_messages import build_input_error
+from pantocheck.conformance.records.record_sidecar import LineTable
+from pantocheck.conformance.reports.formats.report_writers import check_formats, write_all
+from pantocheck.conformance.results.results_reading import read_results
 
 
 def assess_command(
@@ -19,7 +28,7 @@ def assess_command(
     profile: Annotated[
         str,
         typer.Option(
-            help="acceptance-ac, acceptance-dc-3kv, acceptance-dc-1500v, line-test, or the path of your own .toml ."
+            help="acceptance-ac, acceptance-dc-3kv, acceptance-dc-1500v, line-test, or the path of your own .toml file."
         ),
     ],
     measured: Annotated[
@@ -27,22 +36,24 @@ def assess_command(
     ] = None,
     out: Annotated[Path, typer.Option(help="Folder for the results.")] = Path("report"),
     formats: Annotated[
-        str, typer.Option(help="What is written: html, pdf, json, junit, md, badge.")
+        str, typer.Option(help="Formats to write, separated by commas: html, pdf, json, junit, md, badge.")
     ] = "html,pdf,json,junit,md",
     trust: Annotated[
         str, typer.Option(help="Lowest trust of rules that count: primary, secondary or provisional.")
     ] = "secondary",
-    limits: Annotated[Path | None, typer.Option(help="TOML file of your own limits, in place of the rules.")] = None,
+    limits: Annotated[
+        Path | None, typer.Option(help="TOML file of your own limits, which replace the rules of the profile.")
+    ] = None,
     wave_speed_m_s: Annotated[
-        float | None, typer.Option(help="Wave speed of the contact wire, if the record does not say it.")
+        float | None, typer.Option(help="Wave propagation speed of the contact wire, if the record does not state it.")
     ] = None,
     uplift_space_mm: Annotated[
-        float | None, typer.Option(help="Space for uplift at the supports, if the record does not say it.")
+        float | None, typer.Option(help="Available uplift at the supports, if the record does not state it.")
     ] = None,
     baseline: BaselineOption = None,
-    drift: Annotated[float, typer.Option(help="How far a value may drift from the baseline, in percent.")] = 1.0,
+    drift: Annotated[float, typer.Option(help="Allowed drift of a value from the baseline [%].")] = 1.0,
 ) -> None:
-    """Assess a record, simulated or measured, by a profile: acceptance of a line, or a line test.
+    """Assess a simulated or measured record by the rules of a profile.
 
     Examples:
 
@@ -50,54 +61,32 @@ def assess_command(
 
     pantocheck assess simulated.toml --profile line-test --measured train.toml --trust provisional
     """
-    from pantocheck.conformance.cases.profile_file import load_profile
-    from pantocheck.conformance.command_line.results_output import EXIT_CODES, print_results
-    from pantocheck.conformance.grading.assessed_record import load_assessed_record
-    from pantocheck.conformance.grading.baseline import compare_with_baseline
-    from pantocheck.conformance.grading.profile_grading import assess_record as assessed
-    from pantocheck.conformance.input_files.atomic_writing import check_writable
-    from pantocheck.conformance.records.record_sidecar import LineTable
-    from pantocheck.conformance.reports.formats.report_writers import check_formats, write_all
-    from pantocheck.conformance.results.results_reading import read_results
-
     options = build_options(out=str(out), formats=split_names(formats), trust=trust, drift_pct=drift)
-    written = check_formats(options.formats)
+    report_formats = check_formats(options.formats)
     rules = load_profile(profile)
-    own = () if limits is None else _limits(limits)
-    line = _line(wave_speed_m_s=wave_speed_m_s, uplift_space_mm=uplift_space_mm)
+    own_limits = () if limits is None else read_limits(limits)
+    line = _build_line_table(wave_speed_m_s=wave_speed_m_s, uplift_space_mm=uplift_space_mm)
     earlier = None if baseline is None else read_results(baseline)
     check_writable(out)
-    subject = load_assessed_record(record, rules, line)
-    other = None if measured is None else load_assessed_record(measured, rules, LineTable())
-    _check_owners(own, len(subject.pantographs))
-    results = assessed(subject, rules, options.trust, other, own)
+    assessed = load_assessed_record(record, rules, line)
+    reference = None if measured is None else load_assessed_record(measured, rules, LineTable())
+    _check_pantographs(own_limits, len(assessed.pantographs))
+    results = assess_record(assessed, rules, options.trust, reference, own_limits)
     if earlier is not None and baseline is not None:
         results = compare_with_baseline(results, earlier, options.drift_pct, baseline.name)
-    print_results(results, write_all(results, out, written))
+    print_results(results, write_all(results, out, report_formats))
     raise typer.Exit(EXIT_CODES[results.verdict])
 
 
-def _line(**given: float | None) -> "LineTable":
-    from pydantic import ValidationError
-
-    from pantocheck.conformance.input_files.validation_messages import build_input_error
-    from pantocheck.conformance.records.record_sidecar import LineTable
-
+def _build_line_table(**values: float | None) -> LineTable:
+    """Facts about the line from the command line, checked like those of a sidecar."""
     try:
-        return LineTable.model_validate({key: value for key, value in given.items() if value is not None})
+        return LineTable.model_validate({key: value for key, value in values.items() if value is not None})
     except ValidationError as error:
         raise build_input_error(error, LineTable, "command line") from None
 
 
-def _limits(path: Path) -> "Sequence[Limit]":
-    from pantocheck.conformance.cases.library import read_limits
-
-    return read_limits(path)
-
-
-def _check_owners(limits: "Sequence[Limit]", pantographs: int) -> None:
-    from pantocheck.conformance.input_files.input_error import InputError
-
+def _check_pantographs(limits: Sequence[Limit], pantographs: int) -> None:
     for i, limit in enumerate(limits, 1):
         if limit.owner > pantographs:
             raise InputError(

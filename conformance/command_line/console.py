@@ -1,10 +1,18 @@
-"""Terminal output: where it goes and how verdicts look."""
+"""Terminal output: width, tables, verdicts and numbers."""
+
+import os
+from collections.abc import Collection
+from typing import Literal
 
 from rich.console import Console
+from rich.table import Table
 from rich.text import Text
 
 from pantocheck.conformance.command_line.guard import strip_control_characters
 from pantocheck.conformance.grading.verdicts import Verdict
+
+FILE_WIDTH = 140
+"""Columns of output that goes to a file, where a table must not be squeezed."""
 
 _STYLES: dict[Verdict, str] = {
     "pass": "bold green",
@@ -16,21 +24,52 @@ _STYLES: dict[Verdict, str] = {
 
 
 def console() -> Console:
-    """Standard output; wide enough for a table of criteria when it is not a terminal."""
+    """Standard output, as wide as the terminal or as the variable COLUMNS says."""
     output = Console(highlight=False, soft_wrap=False)
-    return output if output.is_terminal else Console(highlight=False, width=140)
+    if output.is_terminal or "COLUMNS" in os.environ:
+        return output
+    return Console(highlight=False, width=FILE_WIDTH)
+
+
+def build_table(
+    *headings: str, title: str | None = None, unbroken: Collection[str] = (), right: Collection[str] = ()
+) -> Table:
+    """Table without lines.
+
+    Parameters
+    ----------
+    headings : str
+        One per column.
+    title : str or None
+        Text above the table.
+    unbroken : collection of str
+        Headings of columns that are never wrapped.
+    right : collection of str
+        Headings of columns that are aligned to the right.
+    """
+    table = Table(
+        title=None if title is None else Text(title),
+        title_justify="left",
+        box=None,
+        pad_edge=False,
+        header_style="bold",
+    )
+    for heading in headings:
+        justify: Literal["left", "right"] = "right" if heading in right else "left"
+        table.add_column(Text(heading), no_wrap=heading in unbroken, overflow="fold", justify=justify)
+    return table
 
 
 def style_verdict(verdict: Verdict) -> Text:
-    """A verdict as it is printed."""
+    """Verdict in capitals and in its colour."""
     return Text(verdict.upper(), _STYLES[verdict])
 
 
 def escape_text(text: str) -> Text:
-    """Text of a file, with neither markup nor control characters obeyed."""
+    """Text of a file without markup and control characters."""
     return Text(strip_control_characters(text))
 
 
 def format_number(value: float | None) -> str:
-    """A value as it is printed: four significant digits, a dash for none."""
+    """Number with four significant digits; a dash for None."""
     return "-" if value is None else f"{value:.4g}"

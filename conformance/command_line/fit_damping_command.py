@@ -1,38 +1,42 @@
-"""`pantocheck fit-damping`: a damping model from identified modes."""
+"""`pantocheck fit-damping`: damping model of a line from identified modes."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-if TYPE_CHECKING:
-    from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.command_line.console import console, escape_text
+from pantocheck.conformance.identification.damping.damping_results import build_damping_results, write_damping_toml
+from pantocheck.conformance.identification.identification_files import read_modes, write_json
+from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.toml_file import read_model, read_toml
+from pantocheck.conformance.reports.document import write_html, write_pdf
+from pantocheck.conformance.reports.mass_drop.damping_report import build_damping_document
+from pantocheck.conformance.simulation.catenary_model import build_catenary
 
 
 def fit_damping_command(
-    modes: Annotated[Path, typer.Argument(help="modes.json of `pantocheck identify`")],
-    line: Annotated[str, typer.Option(help="The line measured: id of a case, or path of a case or line file")],
+    modes: Annotated[Path, typer.Argument(help="modes.json of `pantocheck identify`.")],
+    line: Annotated[str, typer.Option(help="Measured line: id of a case, or path of a case or line file.")],
     out: Annotated[
-        Path, typer.Option(help="Folder for damping.toml, damping_with_modal.toml, damping.json, .html and .pdf")
+        Path, typer.Option(help="Folder for damping.toml, damping_with_modal.toml, damping.json, .html and .pdf.")
     ],
-    element: Annotated[float, typer.Option(help="Element length [m]", min=0.05, max=5.0)] = 0.5,
+    element: Annotated[float, typer.Option(help="Element length [m].", min=0.05, max=5.0)] = 0.5,
 ) -> None:
-    """Fit Rayleigh damping per component to measured damping ratios, and say what they can tell.
+    """Fit a damping model of a line to identified modes.
+
+    The model is Rayleigh damping per component, with and without modal damping. The report states which coefficients
+    the modes determine.
 
     Example: pantocheck fit-damping T1/modes.json --line my-line.toml --out T1
     """
-    from pantocheck.conformance.command_line.console import console, escape_text
-    from pantocheck.conformance.identification.damping.damping_results import build_damping_results, write_damping_toml
-    from pantocheck.conformance.identification.identification_files import read_modes, write_json
-    from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
-    from pantocheck.conformance.reports.document import write_html, write_pdf
-    from pantocheck.conformance.reports.mass_drop.damping_report import build_damping_document
-    from pantocheck.conformance.simulation.catenary_model import build_catenary
-
     check_writable(out)
     output = console()
     with output.status("modes of the line"):
-        results = build_damping_results(read_modes(modes), build_catenary(_line(line)), element, modes.name)
+        results = build_damping_results(read_modes(modes), build_catenary(_read_line(line)), element, modes.name)
         block = write_damping_toml(results)
         document = build_damping_document(results, block)
         write_atomically(out / "damping.toml", block.encode("utf-8"))
@@ -43,18 +47,17 @@ def fit_damping_command(
         write_pdf(document, out / "damping.pdf")
     output.print(escape_text(document.headline))
     output.print(escape_text(block))
-    output.print(escape_text(f"{out}: damping.toml, damping_with_modal.toml, damping.json, damping.html, damping.pdf"))
+    output.print(
+        escape_text(f"{out}: damping.toml, damping_with_modal.toml, damping.json, damping.html, damping.pdf"),
+        soft_wrap=True,
+    )
 
 
-def _line(name: str) -> "LineFile":
-    from pantocheck.conformance.cases.library import select_cases
-    from pantocheck.conformance.cases.line_file import LineFile
-    from pantocheck.conformance.input_files.input_error import InputError
-    from pantocheck.conformance.input_files.toml_file import read_model, read_toml
-
+def _read_line(name: str) -> LineFile:
+    """Line of a line file, or of the cases that an id or path selects."""
     if name.endswith(".toml") and "geometry" in read_toml(Path(name), "line"):
         return read_model(Path(name), LineFile, "line")
-    found = select_cases([name])
-    if any(one.line != found[0].line for one in found):
-        raise InputError(f"line '{name}'", f"{len(found)} cases with different lines", "Name one case.")
-    return found[0].line
+    cases = select_cases([name])
+    if any(case.line != cases[0].line for case in cases):
+        raise InputError(f"line '{name}'", f"{len(cases)} cases with different lines", "Give the id of one case.")
+    return cases[0].line

@@ -1,8 +1,10 @@
-"""What every command does with a wrong input, with a line that has no solution, and with Ctrl-C."""
+"""Error handling of all commands: every failure becomes a message and an exit code."""
 
 import functools
+import os
+import traceback
 from collections.abc import Callable
-from typing import ParamSpec, TypeVar
+from typing import NoReturn, ParamSpec, TypeVar
 
 import typer
 
@@ -10,35 +12,61 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.model.failures import SimulationError
 
 BAD_INPUT = 2
+"""Exit code after wrong input, a failure of the model or an internal error."""
+
 INTERRUPTED = 130
+
+TRACEBACK_VARIABLE = "PANTOCHECK_TRACEBACK"
 
 P = ParamSpec("P")
 R = TypeVar("R")
 
 
 def guard_command(command: Callable[P, R]) -> Callable[P, R]:
-    """The command, with an input error printed as its message (exit code 2) and Ctrl-C ending quietly (130).
+    """Wrap a command so that failures end with one message: no traceback reaches the user.
 
-    A line whose equations have no solution is an input error, too.
+    Parameters
+    ----------
+    command : callable
+        Function of a command.
+
+    Returns
+    -------
+    callable
+        The same command. It ends with exit code 2 after an `InputError`, a `SimulationError` or an internal error, and
+        with 130 after Ctrl-C. The traceback of an internal error is printed if `PANTOCHECK_TRACEBACK` is set.
     """
 
     @functools.wraps(command)
     def run(*args: P.args, **kwargs: P.kwargs) -> R:
         try:
             return command(*args, **kwargs)
+        except (typer.Exit, BrokenPipeError):
+            raise
         except InputError as error:
-            typer.echo(strip_control_characters(str(error)), err=True)
-            raise typer.Exit(BAD_INPUT) from None
+            _end(str(error), BAD_INPUT)
         except SimulationError as error:
-            typer.echo(strip_control_characters(f"{error}\n  Check the line's data."), err=True)
-            raise typer.Exit(BAD_INPUT) from None
+            _end(f"{error}\n  Check the data of the line and of the pantographs.", BAD_INPUT)
         except KeyboardInterrupt:
-            typer.echo("Interrupted.", err=True)
-            raise typer.Exit(INTERRUPTED) from None
+            _end("Interrupted.", INTERRUPTED)
+        except Exception as error:
+            if os.environ.get(TRACEBACK_VARIABLE):
+                traceback.print_exc()
+            _end(
+                f"internal error: {type(error).__name__}: {error}\n"
+                "  This is a defect of Pantocheck. Please report it with the command and its input files.\n"
+                f"  Set {TRACEBACK_VARIABLE}=1 to print the traceback.",
+                BAD_INPUT,
+            )
 
     return run
 
 
 def strip_control_characters(text: str) -> str:
-    """Text of a stranger's file without the control characters that a terminal would obey."""
-    return "".join(c if c.isprintable() or c == "\n" else "?" for c in text)
+    """Replace control characters, which a terminal would obey, in text that comes from a file."""
+    return "".join(character if character.isprintable() or character == "\n" else "?" for character in text)
+
+
+def _end(message: str, exit_code: int) -> NoReturn:
+    typer.echo(strip_control_characters(message), err=True)
+    raise typer.Exit(exit_code) from None

@@ -1,71 +1,78 @@
-"""`pantocheck identify`: modes of a line from the records of mass drops."""
+"""`pantocheck identify`: modes of a line from mass-drop records."""
 
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from pantocheck.conformance.command_line.console import console, escape_text, format_number
+from pantocheck.conformance.identification.hand_placed_poles import read_poles
+from pantocheck.conformance.identification.identification_files import (
+    summarise_identification,
+    write_json,
+    write_modes,
+)
+from pantocheck.conformance.identification.identify import identify_modes
+from pantocheck.conformance.input_files.atomic_writing import check_writable
+from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
+from pantocheck.conformance.reports.document import write_html, write_pdf
+from pantocheck.conformance.reports.mass_drop.identification_report import build_identification_document
+
 
 def identify_command(
     records: Annotated[
         list[Path],
         typer.Argument(
-            help="Records: .csv, .uff, .mat, .h5, .tdms or .mf4; a sidecar .toml of the same name is found."
+            help="Records: .csv, .uff, .mat, .h5, .tdms or .mf4; a sidecar .toml of the same name is read, too."
         ),
     ],
-    out: Annotated[Path, typer.Option(help="Folder for modes.json, identification.json, .html and .pdf")],
+    out: Annotated[Path, typer.Option(help="Folder for modes.json, identification.json, .html and .pdf.")],
     poles: Annotated[
         Path | None,
         typer.Option(
-            help="Start poles placed by hand: TOML with [[pole]] frequency_Hz and damping_ratio, or a modes.json"
+            help="Start poles placed by hand: TOML with [[pole]] frequency_Hz and damping_ratio, or a modes.json."
         ),
     ] = None,
-    highest: Annotated[float, typer.Option(help="Modes up to here [Hz]", min=0.5, max=200.0)] = 10.0,
+    highest: Annotated[float, typer.Option(help="Highest frequency of a mode [Hz].", min=0.5, max=200.0)] = 10.0,
 ) -> None:
-    """Identify frequencies, damping ratios and shapes from mass drops.
+    """Identify frequencies, damping ratios and mode shapes from mass-drop records.
 
-    Several records of one line (same spans and tensions) share their poles; repeats of one drop are compared.
+    Records of one line (same spans and tensions) share their poles. Repeats of one drop are compared.
 
-    Examples: pantocheck identify T1.h5 --out T1
-              pantocheck identify T1.h5 T2.csv --out both --highest 6
+    Examples:
+
+    pantocheck identify T1.h5 --out T1
+
+    pantocheck identify T1.h5 T2.csv --out both --highest 6
     """
-    from pantocheck.conformance.command_line.console import console, escape_text, format_number
-    from pantocheck.conformance.identification.hand_placed_poles import read_poles
-    from pantocheck.conformance.identification.identification_files import (
-        summarise_identification,
-        write_json,
-        write_modes,
-    )
-    from pantocheck.conformance.identification.identify import identify_modes as run
-    from pantocheck.conformance.input_files.atomic_writing import check_writable
-    from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
-    from pantocheck.conformance.reports.document import write_html, write_pdf
-    from pantocheck.conformance.reports.mass_drop.identification_report import build_identification_document
-
     check_writable(out)
     output = console()
-    placed = read_poles(poles) if poles is not None else None
-    read = tuple(run for path in records for run in read_drop_records(path))
+    start_poles = None if poles is None else read_poles(poles)
+    drop_records = tuple(record for path in records for record in read_drop_records(path))
     with output.status("reading") as status:
-        found = run(read, highest, placed, progress=lambda text: status.update(escape_text(text)))
+        identifications = identify_modes(
+            drop_records, highest, start_poles, progress=lambda text: status.update(escape_text(text))
+        )
         status.update("writing the report")
-        lines = [summarise_identification(one) for one in found]
-        write_modes(out / "modes.json", found)
+        lines = [summarise_identification(identification) for identification in identifications]
+        write_modes(out / "modes.json", identifications)
         write_json(out / "identification.json", {"schema": "pantocheck.identification/1", "lines": lines})
         document = build_identification_document(lines)
         write_html(document, out / "identification.html")
         write_pdf(document, out / "identification.pdf")
     output.print(escape_text(document.headline))
-    for line in lines:
-        for group in line["groups"]:
-            median = group["median_damping_ratio"]
-            output.print(
-                escape_text(
-                    f"group {group['group']}: {group['certain']} of {group['modes']} modes certain, "
-                    f"{group['from_Hz']:.3f}-{group['to_Hz']:.3f} Hz, "
-                    f"median damping ratio {format_number(None if median is None else 100 * median)} %"
-                )
+    for group in (group for line in lines for group in line["groups"]):
+        median = group["median_damping_ratio"]
+        output.print(
+            escape_text(
+                f"group {group['group']}: {group['certain']} of {group['modes']} modes certain, "
+                f"{group['from_Hz']:.3f}-{group['to_Hz']:.3f} Hz, "
+                f"median damping ratio {format_number(None if median is None else 100 * median)} %"
             )
+        )
     for text in document.warnings:
         output.print(escape_text(f"warning: {text}"))
-    output.print(escape_text(f"{out}: modes.json, identification.json, identification.html, identification.pdf"))
+    output.print(
+        escape_text(f"{out}: modes.json, identification.json, identification.html, identification.pdf"),
+        soft_wrap=True,
+    )

@@ -1,4 +1,4 @@
-"""What `pantocheck run` prints: progress while it runs, then the verdict, the criteria, and where the files are."""
+"""Output of `pantocheck run` and `assess`: progress, verdict, criteria and paths of the files."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -9,18 +9,21 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 from rich.text import Text
 
-from pantocheck.conformance.command_line.console import console, escape_text, format_number, style_verdict
+from pantocheck.conformance.command_line.console import build_table, console, escape_text, format_number, style_verdict
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.results.results_format import CaseResult, Criterion, Results
-from pantocheck.conformance.runner import Progress as Report
+from pantocheck.conformance.runner import Progress as ResultCallback
 
 EXIT_CODES: dict[Verdict, int] = {"pass": 0, "info": 0, "fail": 1, "skip": 1, "error": 2}
-"""A limit that was not graded is a limit that was not met: `skip` must not open a gate."""
+"""Exit code by verdict; `skip` is not 0, because a limit without a grade is not met."""
+
+
+LEGEND = "+-: uncertainty of the value; shift: its change when the analysis section is shifted"
 
 
 @contextmanager
-def report_progress(cases: int) -> Iterator[Report]:
-    """A progress bar on standard error, on a terminal only; gives the callback of the runner."""
+def report_progress(cases: int) -> Iterator[ResultCallback]:
+    """Show a progress bar on standard error if it is a terminal; yields the callback of the runner."""
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     errors = Console(stderr=True)
     with Progress(*columns, console=errors, transient=True, disable=not errors.is_terminal) as bar:
@@ -29,17 +32,15 @@ def report_progress(cases: int) -> Iterator[Report]:
 
 
 def print_results(results: Results, files: Sequence[Path]) -> None:
-    """Verdict first, then a table of criteria for each case, then the files."""
+    """Print the verdict, the criteria of each case, and the paths of the files."""
     output = console()
-    criteria = [criterion for case in results.cases for criterion in case.criteria]
-    counted = [criterion for criterion in criteria if criterion.verdict != "info"]
-    passed = sum(criterion.verdict == "pass" for criterion in counted)
+    counted = [item for case in results.cases for item in case.criteria if item.verdict != "info"]
+    passed = sum(item.verdict == "pass" for item in counted)
     system = f"{results.system.name} {results.system.version}".strip()
+    cases = f"{len(results.cases)} case{'' if len(results.cases) == 1 else 's'}"
     output.print(
         style_verdict(results.verdict),
-        escape_text(
-            f" {passed} of {len(counted)} graded criteria within limits, {len(results.cases)} case(s), system {system}"
-        ),
+        escape_text(f" {passed} of {len(counted)} graded criteria within limits, {cases}, system {system}"),
     )
     output.print(escape_text(f"{results.statement}; limits count from trust '{results.trust}' up"))
     for case in results.cases:
@@ -48,17 +49,24 @@ def print_results(results: Results, files: Sequence[Path]) -> None:
         for line in filter(None, [case.reason, *(f"warning: {warning}" for warning in case.warnings)]):
             output.print(escape_text(f"  {line}"))
         if case.criteria:
-            output.print(_criteria_table(case))
+            output.print(_build_criterion_table(case))
+        for item in case.criteria:
+            if item.reason:
+                output.print(escape_text(f"  {_name(item)}: {item.reason}"))
     output.print()
-    for name in files:
-        output.print(escape_text(str(name)), soft_wrap=True)
+    if counted:
+        output.print(Text(LEGEND, "dim"))
+    for path in files:
+        output.print(escape_text(str(path)), soft_wrap=True)
 
 
-def _criteria_table(case: CaseResult) -> Table:
-    table = Table(box=None, pad_edge=True, header_style="dim")
-    numbers = ("value", "+-", "+- stretch", "lower", "upper", "margin")
-    for heading in ("criterion", *numbers, "verdict", "trust", "reason"):
-        table.add_column(heading, justify="right" if heading in numbers else "left")
+def _build_criterion_table(case: CaseResult) -> Table:
+    """Table of the criteria, which fits into 80 columns."""
+    numbers = ("value", "+-", "shift", "limits", "margin")
+    table = build_table(
+        "criterion", *numbers, "verdict", "trust", unbroken=(*numbers, "verdict", "trust"), right=numbers
+    )
+    table.padding = (0, 1, 0, 0)
     for item in case.criteria:
         error = item.discretisation_error if item.uncertainty is None else item.uncertainty
         table.add_row(
@@ -66,16 +74,20 @@ def _criteria_table(case: CaseResult) -> Table:
             format_number(item.value),
             "-" if error is None else f"{error:.2g}",
             "-" if item.spread is None else f"{item.spread:.2g}",
-            format_number(item.lower),
-            format_number(item.upper),
+            _format_limits(item),
             "-" if item.margin is None else f"{item.margin:+.2f}",
             style_verdict(item.verdict),
             Text(item.trust),
-            escape_text(item.reason or ""),
         )
     return table
 
 
+def _format_limits(item: Criterion) -> str:
+    if item.lower is None:
+        return "-" if item.upper is None else f"<= {format_number(item.upper)}"
+    return f">= {format_number(item.lower)}" if item.upper is None else f"{item.lower:.4g} to {item.upper:.4g}"
+
+
 def _name(item: Criterion) -> str:
-    of = f", pantograph {item.pantograph}" if item.pantograph > 1 else ""
-    return f"{item.quantity}{f'[{item.item}]' if item.item else ''}{of}"
+    pantograph = f", pantograph {item.pantograph}" if item.pantograph > 1 else ""
+    return f"{item.quantity}{f'[{item.item}]' if item.item else ''}{pantograph}"

@@ -1,16 +1,21 @@
-"""`pantocheck run`: cases on a system, graded, with a certificate."""
+"""`pantocheck run`: grading of cases on a system, with a certificate."""
 
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from pantocheck.conformance.command_line.guard import INTERRUPTED
 from pantocheck.conformance.command_line.options import BaselineOption, build_options, split_names
+from pantocheck.conformance.command_line.results_output import EXIT_CODES, print_results, report_progress
+from pantocheck.conformance.plan import prepare_plan
+from pantocheck.conformance.reports.formats.report_writers import write_all
+from pantocheck.conformance.runner import RunInterrupted, run_cases
 
 
 def run_command(
     case: Annotated[
-        list[str] | None, typer.Argument(help="Ids, globs or paths of cases; none: every case that has limits.")
+        list[str] | None, typer.Argument(help="Ids, globs or paths of cases; every case with limits if omitted.")
     ] = None,
     plan: Annotated[
         Path | None, typer.Option(help="TOML file with the options of a run; see `pantocheck schema plan`.")
@@ -21,7 +26,8 @@ def run_command(
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Folder for the results.", show_default="report")] = None,
     formats: Annotated[
-        str | None, typer.Option(help="What is written, e.g. html,json.", show_default="html,pdf,json,junit,md")
+        str | None,
+        typer.Option(help="Formats to write, separated by commas.", show_default="html,pdf,json,junit,md"),
     ] = None,
     trust: Annotated[
         str | None,
@@ -29,18 +35,20 @@ def run_command(
             help="Lowest trust of limits that count: primary, secondary or provisional.", show_default="secondary"
         ),
     ] = None,
-    limits: Annotated[Path | None, typer.Option(help="TOML file of your own limits, laid over the cases.")] = None,
+    limits: Annotated[
+        Path | None, typer.Option(help="TOML file of your own limits, which replace those of the cases.")
+    ] = None,
     baseline: BaselineOption = None,
     drift: Annotated[
-        float | None, typer.Option(help="How far a value may drift from the baseline, in percent.  [default: 1]")
+        float | None, typer.Option(help="Allowed drift of a value from the baseline [%].", show_default="1")
     ] = None,
-    jobs: Annotated[int | None, typer.Option(help="Cases run side by side.", show_default="1")] = None,
+    jobs: Annotated[int | None, typer.Option(help="Number of cases that run in parallel.", show_default="1")] = None,
     damping_study: Annotated[
         bool,
         typer.Option("--damping-study", help="Run every case also with benchmark, initial and updated damping."),
     ] = False,
     timeout: Annotated[
-        float | None, typer.Option(help="Seconds that a program may take for a case.", show_default="600")
+        float | None, typer.Option(help="Time limit of an external program per case [s].", show_default="600")
     ] = None,
 ) -> None:
     """Run cases on a system, grade them, and write the results and the certificate.
@@ -57,16 +65,6 @@ def run_command(
 
     pantocheck run --plan conformance.toml --baseline baseline/results.json --drift 2
     """
-    from pantocheck.conformance.command_line.guard import INTERRUPTED
-    from pantocheck.conformance.command_line.results_output import (
-        EXIT_CODES,
-        print_results,
-        report_progress,
-    )
-    from pantocheck.conformance.plan import prepare_plan
-    from pantocheck.conformance.reports.formats.report_writers import write_all
-    from pantocheck.conformance.runner import RunInterrupted, run_cases
-
     options = build_options(
         plan,
         cases=tuple(case) if case else None,
@@ -87,9 +85,9 @@ def run_command(
     try:
         with report_progress(len(cases)) as progress:
             results = run_cases(cases, system_under_test, options.trust, min(options.jobs, len(cases)), progress)
-    except RunInterrupted as stopped:
-        results, interrupted = stopped.results, True
-        typer.echo("Interrupted: what was finished is kept.", err=True)
+    except RunInterrupted as interruption:
+        results, interrupted = interruption.results, True
+        typer.echo("Interrupted: the results of the finished cases are written.", err=True)
     results = prepared.compare(results)
     print_results(results, write_all(results, prepared.out, prepared.formats))
     raise typer.Exit(INTERRUPTED if interrupted else EXIT_CODES[results.verdict])

@@ -1,35 +1,36 @@
-"""`pantocheck verify`: grade the results embedded in a certificate once more."""
+"""`pantocheck verify`: grading of the results in a certificate once more."""
 
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from pantocheck.conformance.authenticity.verification import verify_certificate
+
 
 def verify_command(
-    certificate: Annotated[Path, typer.Argument(metavar="CERTIFICATE.pdf", help="The certificate to verify.")],
+    certificate: Annotated[Path, typer.Argument(metavar="CERTIFICATE.pdf", help="Certificate to verify.")],
 ) -> None:
-    """Take the results out of a certificate, grade them once more, and compare.
+    """Check that the verdict of a certificate follows from its numbers.
 
-    Says `consistent` and exits with 0 if every verdict and margin follows from the numbers; lists the discrepancies and
-    exits with 1 if not; exits with 2 if the file is no certificate.
+    The results in the PDF are graded again. Exit code 0: every verdict and margin follows from the numbers. Exit code
+    1: discrepancies, which are listed. Exit code 2: the file is not a certificate.
 
-    This shows that a certificate agrees with itself, not who made it, nor that its limits are those of the library.
+    The check does not show who made the certificate, nor that its limits are those of the library.
 
     Example: pantocheck verify report/certificate.pdf
     """
-    # The PDF parser is loaded only when it is needed, so that other commands start fast.
-    from pantocheck.conformance.authenticity.verification import verify_certificate as verified
-
-    found = verified(certificate)
-    size = f"{found.cases} case{'' if found.cases == 1 else 's'}, {found.criteria} criteria"
-    if found.consistent:
-        typer.echo(f"consistent: the verdict '{found.verdict}' follows from the embedded numbers ({size}).")
+    verification = verify_certificate(certificate)
+    size = f"{_count(verification.cases, 'case', 'cases')}, {verification.criteria} criteria"
+    if verification.consistent:
+        typer.echo(f"consistent: the verdict '{verification.verdict}' follows from the embedded numbers ({size}).")
         return
-    count = len(found.discrepancies)
-    typer.echo(
-        f"not consistent: {count} discrepanc{'y' if count == 1 else 'ies'} ({size}; stated verdict '{found.verdict}')."
-    )
-    for text in found.discrepancies:
+    count = _count(len(verification.discrepancies), "discrepancy", "discrepancies")
+    typer.echo(f"not consistent: {count} ({size}; stated verdict '{verification.verdict}').")
+    for text in verification.discrepancies:
         typer.echo(f"  {text}")
     raise typer.Exit(1)
+
+
+def _count(number: int, singular: str, plural: str) -> str:
+    return f"{number} {singular if number == 1 else plural}"

@@ -38,4 +38,4 @@ def test_wrong_option_is_reported_before_anything_runs(
 ) -> None:
     plan = Plan.model_validate({"cases": ("en50318-2002/250",), "out": str(tmp_path / "report")} | options)
     with pytest.raises(InputError, match=message):
-        prepare_plan(plan)
+        prepare_plan(plan).start_system()

@@ -1,32 +1,46 @@
-"""The commands as a user meets them: exit codes, messages, and what is on disk afterwards."""
+"""The commands as a user meets them: exit codes, messages and files."""
 
 import json
 import os
 import re
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import jsonschema
 import pytest
 import typer
-from typer.testing import CliRunner
+from typer.testing import CliRunner, Result
 
+from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import library_folder, select_cases
-from pantocheck.conformance.command_line.app import app
+from pantocheck.conformance.command_line import run_command, self_test_command
+from pantocheck.conformance.command_line.app import COMMANDS, app
 from pantocheck.conformance.command_line.guard import guard_command
 from pantocheck.conformance.records.record_reading import read_record
 from pantocheck.conformance.records.record_writing import write_record
+from pantocheck.conformance.results.outcome import Outcome
 from pantocheck.conformance.schemas import build_schema
-from pantocheck.model.failures import DidNotConverge, ImpossiblePassage, NoEquilibrium, NoInitialState
+from pantocheck.conformance.self_test.bench import SelfTest
+from pantocheck.conformance.simulation.uplift_tuning import TuningFailed
+from pantocheck.conformance.systems.record_folder import RecordFolder
+from pantocheck.model.failures import (
+    DidNotConverge,
+    ImpossiblePassage,
+    NoEquilibrium,
+    NoInitialState,
+    SimulationError,
+)
 
 
-def pantocheck(*arguments: object):
+def pantocheck(*arguments: object) -> Result:
     return CliRunner().invoke(app, [str(argument) for argument in arguments])
 
 
 @pytest.fixture
-def records(wave, tmp_path) -> Path:
+def records(wave: Any, tmp_path: Path) -> Path:
     """Records of both cases: sines, whose extremes fail."""
     for case in select_cases(["en50318-2002/*"]):
         write_record(tmp_path / "records" / f"{case.file.speed_km_h:g}.csv", wave().record(case), case.id)
@@ -34,7 +48,7 @@ def records(wave, tmp_path) -> Path:
 
 
 @pytest.fixture
-def lenient(tmp_path) -> Path:
+def lenient(tmp_path: Path) -> Path:
     """Limits that the sine of 250 km/h meets."""
     path = tmp_path / "lenient.toml"
     entry = '[[limit]]\nquantity = "{}"\nlower = 0.0\nupper = 300.0\ntrust = "primary"\nsource = "own"\n'
@@ -42,7 +56,7 @@ def lenient(tmp_path) -> Path:
     return path
 
 
-def test_run_grades_records_and_writes_results(records, tmp_path):
+def test_run_grades_records_and_writes_results(records: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     done = pantocheck("run", "en50318-2002/*", "--system", f"record:{records}", "--out", out, "--formats", "json")
     assert done.exit_code == 1
@@ -55,7 +69,7 @@ def test_run_grades_records_and_writes_results(records, tmp_path):
     assert [path.name for path in out.iterdir()] == ["results.json"]
 
 
-def test_run_passes_with_exit_code_0(records, lenient, tmp_path):
+def test_run_passes_with_exit_code_0(records: Path, lenient: Path, tmp_path: Path) -> None:
     done = pantocheck(
         "run", "en50318-2002/250", "--system", f"record:{records}", "--out", tmp_path / "out", "--formats", "json",
         "--limits", lenient,
@@ -63,7 +77,7 @@ def test_run_passes_with_exit_code_0(records, lenient, tmp_path):
     assert (done.exit_code, done.output.split()[0]) == (0, "PASS")
 
 
-def test_skipped_case_does_not_open_the_gate(records, lenient, tmp_path):
+def test_skipped_case_does_not_open_the_gate(records: Path, lenient: Path, tmp_path: Path) -> None:
     (records / "300.toml").unlink()
     done = pantocheck(
         "run", "--system", f"record:{records}", "--out", tmp_path / "out", "--formats", "json", "--limits", lenient,
@@ -73,7 +87,9 @@ def test_skipped_case_does_not_open_the_gate(records, lenient, tmp_path):
     assert "there is no record of this case" in done.output
 
 
-def test_plan_holds_the_options_and_the_command_line_goes_before_it(records, lenient, tmp_path):
+def test_plan_holds_the_options_and_the_command_line_goes_before_it(
+    records: Path, lenient: Path, tmp_path: Path
+) -> None:
     plan = tmp_path / "plan.toml"
     plan.write_text(
         'cases = ["en50318-2002/250"]\nsystem = "record:records"\nout = "planned"\n'
@@ -101,11 +117,16 @@ def test_plan_holds_the_options_and_the_command_line_goes_before_it(records, len
         (["run", "none.toml"], "case 'none.toml': cannot be read"),
         (["show", "vovan2015/nothing"], "there is no such case"),
         (["schema", "cases"], "schema 'cases': there is no such format.\n  Did you mean case ?"),
-        (["simulate", "en50318-2002/*", "--out", "a.csv"], "one case is simulated at a time"),
+        (
+            ["simulate", "en50318-2002/*", "--out", "a.csv"],
+            "expected one case with a train, found en50318-2002/250, en50318-2002/300",
+        ),
         (["simulate", "en50318-2002/250", "--out", "a.xls"], "the suffix '.xls' is no format"),
     ],
 )
-def test_bad_input_ends_with_one_message_and_exit_code_2(arguments, message, tmp_path, monkeypatch):
+def test_bad_input_ends_with_one_message_and_exit_code_2(
+    arguments: list[str], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     done = pantocheck(*arguments)
     assert done.exit_code == 2
@@ -114,33 +135,33 @@ def test_bad_input_ends_with_one_message_and_exit_code_2(arguments, message, tmp
     assert list(tmp_path.iterdir()) == []
 
 
-def test_self_test_of_no_run_at_all_is_not_passed():
-    """A static case gives no mutants: 0 of 0 caught says nothing."""
+def test_self_test_without_a_passage_does_not_pass() -> None:
+    """A static case gives no mutants, so that 0 of 0 would be detected."""
     done = pantocheck("self-test", "en50318-2018/ac-simple/static")
     assert done.exit_code == 2
-    assert "none of these is a run" in done.output
+    assert "no case with a train is selected" in done.output
 
 
-def test_self_test_notices_a_folder_that_cannot_be_written_before_it_computes(tmp_path, monkeypatch):
-    from pantocheck.conformance.self_test import bench as self_test
-
-    monkeypatch.setattr(self_test, "run_self_test", lambda *_: pytest.fail("computed"))
+def test_self_test_notices_a_folder_that_cannot_be_written_before_it_computes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(self_test_command, "run_self_test", lambda *_: pytest.fail("computed"))
     (tmp_path / "file").write_text("")
     done = pantocheck("self-test", "--markdown", tmp_path / "file" / "page.md")
     assert done.exit_code == 2
     assert "cannot be written" in done.output
 
 
-def test_self_test_prints_no_control_characters_of_a_path(tmp_path, monkeypatch):
-    from pantocheck.conformance.self_test import bench as self_test
-
-    monkeypatch.setattr(self_test, "run_self_test", lambda *_: self_test.SelfTest({}, (), ()))
+def test_self_test_prints_no_control_characters_of_a_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(self_test_command, "run_self_test", lambda *_: SelfTest({}, (), ()))
     done = pantocheck("self-test", "--markdown", tmp_path / "[red]page\x1b.md")
     assert "[red]page?.md" in done.output
 
 
 @pytest.mark.parametrize("command", [("show", "--at-rest"), ("show", "--drawing"), ("simulate", "--out")])
-def test_line_without_an_equilibrium_ends_with_one_message_and_exit_code_2(command, tmp_path):
+def test_line_without_an_equilibrium_ends_with_one_message_and_exit_code_2(
+    command: tuple[str, str], tmp_path: Path
+) -> None:
     """A contact wire that is to hang 2 m low in every span would have droppers that push."""
     for name in ("line.toml", "250.toml", "pantograph.toml"):
         text = (library_folder() / "en50318-2002" / name).read_text()
@@ -149,46 +170,73 @@ def test_line_without_an_equilibrium_ends_with_one_message_and_exit_code_2(comma
     file = () if option == "--at-rest" else (tmp_path / ("line.svg" if name == "show" else "out.csv"),)
     done = pantocheck(name, tmp_path / "250.toml", option, *file)
     assert done.exit_code == 2
-    assert "Check the line's data." in done.output
+    assert "Check the data of the line" in done.output
 
 
-def test_error_of_the_program_itself_is_not_taken_for_one_of_the_input():
-    def broken():
-        raise ValueError("a mistake of the program")
+def fail_with(error: BaseException) -> Callable[[], None]:
+    """Command that raises an error."""
 
-    with pytest.raises(ValueError, match="a mistake of the program"):
-        guard_command(broken)()
+    def command() -> None:
+        raise error
+
+    return guard_command(command)
+
+
+def test_internal_error_is_a_message_without_traceback(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(typer.Exit) as ended:
+        fail_with(ValueError("a mistake\x1b of the program"))()
+    assert ended.value.exit_code == 2
+    message = capsys.readouterr().err
+    assert message.startswith("internal error: ValueError: a mistake? of the program\n")
+    assert "PANTOCHECK_TRACEBACK=1" in message
+    assert "Traceback" not in message
+
+
+def test_traceback_of_an_internal_error_is_printed_on_request(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PANTOCHECK_TRACEBACK", "1")
+    with pytest.raises(typer.Exit):
+        fail_with(ValueError("a mistake"))()
+    assert "Traceback" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
-    "error",
-    [failure("no state") for failure in (NoInitialState, NoEquilibrium, ImpossiblePassage, DidNotConverge)],
-    ids=lambda error: type(error).__name__,
+    "failure",
+    [NoInitialState, NoEquilibrium, ImpossiblePassage, DidNotConverge, TuningFailed],
 )
-def test_every_failure_of_the_simulation_is_a_message(error, capsys):
-    def fails():
-        raise error
-
+def test_every_failure_of_the_simulation_is_a_message(
+    failure: type[SimulationError], capsys: pytest.CaptureFixture[str]
+) -> None:
     with pytest.raises(typer.Exit) as ended:
-        guard_command(fails)()
+        fail_with(failure("no state"))()
     assert ended.value.exit_code == 2
-    assert capsys.readouterr().err == "no state\n  Check the line's data.\n"
+    assert capsys.readouterr().err == "no state\n  Check the data of the line and of the pantographs.\n"
 
 
-def test_folder_that_cannot_be_written_is_noticed_before_anything_is_computed(records, tmp_path, monkeypatch):
+def test_ctrl_c_ends_with_exit_code_130(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(typer.Exit) as ended:
+        fail_with(KeyboardInterrupt())()
+    assert ended.value.exit_code == 130
+    assert capsys.readouterr().err == "Interrupted.\n"
+
+
+def test_folder_that_cannot_be_written_is_noticed_before_anything_is_computed(
+    records: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     (tmp_path / "file").write_text("in the way")
-    monkeypatch.setattr("pantocheck.conformance.runner.run_cases", None)  # calling it would be a TypeError
+    monkeypatch.setattr(run_command, "run_cases", lambda *_: pytest.fail("computed"))
     done = pantocheck("run", "--system", f"record:{records}", "--out", tmp_path / "file" / "out")
     assert done.exit_code == 2
     assert "cannot be written" in done.stderr
 
 
-def test_interrupted_run_writes_what_was_finished(records, tmp_path, monkeypatch):
-    from pantocheck.conformance.systems.record_folder import RecordFolder
-
+def test_interrupted_run_writes_what_was_finished(
+    records: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     read = RecordFolder.run
 
-    def interrupted(self, case):
+    def interrupted(self: RecordFolder, case: Case) -> Outcome:
         if case.id.endswith("300"):
             raise KeyboardInterrupt
         return read(self, case)
@@ -202,7 +250,7 @@ def test_interrupted_run_writes_what_was_finished(records, tmp_path, monkeypatch
     assert len(results["cases"][0]["criteria"]) == 8
 
 
-def test_simulate_writes_a_record_that_can_be_graded(records, tmp_path):
+def test_simulate_writes_a_record_that_can_be_graded(records: Path, tmp_path: Path) -> None:
     out = tmp_path / "again" / "a.h5"
     done = pantocheck("simulate", "en50318-2002/250", "--system", f"record:{records}", "--out", out)
     assert done.exit_code == 0
@@ -210,7 +258,7 @@ def test_simulate_writes_a_record_that_can_be_graded(records, tmp_path):
     assert (sidecar.case, record.pantographs) == ("en50318-2002/250", 1)
 
 
-def test_cases_and_show_tell_trust_and_source():
+def test_cases_and_show_tell_trust_and_source() -> None:
     listed = pantocheck("cases").output
     assert "en50318-2002/250" in listed
     assert "8 secondary" in listed
@@ -219,19 +267,35 @@ def test_cases_and_show_tell_trust_and_source():
         assert text in shown
 
 
-def test_control_characters_of_a_file_do_not_reach_the_terminal(own_case):
+def test_control_characters_of_a_file_do_not_reach_the_terminal(own_case: Callable[..., Path]) -> None:
     path = own_case("250.toml", 'title = "EN', 'title = "\\u001b[31m[bold]EN')
     shown = pantocheck("show", path).output
     assert "\x1b" not in shown
     assert "[31m[bold]EN" in shown
 
 
-def test_help_loads_nothing_heavy():
+@pytest.mark.parametrize("name", COMMANDS)
+def test_help_of_a_command_fits_80_columns(name: str) -> None:
+    done = CliRunner(env={"COLUMNS": "80", "TERMINAL_WIDTH": "80"}).invoke(app, [name, "--help"])
+    assert done.exit_code == 0
+    assert max(map(len, done.output.splitlines())) <= 80
+    assert COMMANDS[name] in " ".join(done.output.split()), "the summary is the first line of the docstring"
+    assert "Example" in done.output
+
+
+def test_help_imports_no_command_and_nothing_heavy() -> None:
     code = (
         "import sys; from pantocheck.conformance.command_line.app import app\n"
-        "try: app(['run', '--help'])\nexcept SystemExit: pass\n"
-        "print(sorted({'numpy', 'scipy', 'numba', 'matplotlib', 'typst', 'h5py'} & set(sys.modules)))"
+        "try: app(['--help'])\nexcept SystemExit: pass\n"
+        "heavy = {'numpy', 'scipy', 'numba', 'pydantic', 'matplotlib', 'typst', 'h5py'} & set(sys.modules)\n"
+        "print(sorted(heavy), [name for name in sys.modules if name.endswith('_command')])"
     )
     environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment, check=True)
-    assert done.stdout.splitlines()[-1] == "[]"
+    assert done.stdout.splitlines()[-1] == "[] []"
+
+
+def test_unknown_command_suggests_a_known_one() -> None:
+    done = pantocheck("simulat")
+    assert done.exit_code == 2
+    assert "Did you mean 'simulate'?" in done.output

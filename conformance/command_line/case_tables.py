@@ -1,0 +1,92 @@
+"""Inputs, limits and sources of a case as text and tables."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from rich.console import RenderableType
+from rich.padding import Padding
+from rich.table import Table
+from rich.text import Text
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.library import source_text
+from pantocheck.conformance.command_line.console import build_table, escape_text, format_number
+from pantocheck.conformance.input_files.sourced_table import PROVENANCE
+
+OTHER_TABLES = {"id", "title", "line", "model", "requires", "limit", "pantograph", "mass_drop", "study"}
+"""Keys of a case file that are no inputs, or that have a table of their own."""
+
+
+def build_case_tables(case: Case) -> list[RenderableType]:
+    """Header, inputs, limits, notes and sources of a case.
+
+    Parameters
+    ----------
+    case : Case
+        Any case, with or without a speed.
+    """
+    mesh = case.file.discretisation
+    parts: list[RenderableType] = [Text(f"{case.id}  ", "bold") + escape_text(case.file.title)]
+    if not case.is_static:
+        start, end = case.analysis_section
+        parts.append(escape_text(f"{case.file.speed_km_h:g} km/h, analysis section {start:g} m to {end:g} m"))
+    parts.append(escape_text(f"mesh of the reference simulator: {mesh.element_m:g} m, {mesh.time_step_s:g} s"))
+    parts.append(Text(case.digest, overflow="fold"))
+    blocks: list[RenderableType] = [_build_input_table(case)]
+    blocks.append(_build_limit_table(case) if case.limits else escape_text("No limits: informative."))
+    blocks += [escape_text(text) for text in case.notes]
+    return [*parts, *(Padding(block, (1, 0, 0, 0)) for block in blocks), Text(), *_list_sources(case)]
+
+
+def _build_input_table(case: Case) -> Table:
+    """Inputs by table of the files; the row of a table states the source of its keys."""
+    table = build_table("input", "value", "trust", "source", title="Inputs", unbroken=("input", "trust"))
+    for name, sourced in case.sourced_tables.items():
+        source = escape_text(", ".join(_source_keys(sourced.source)))
+        excluded = {*PROVENANCE, *OTHER_TABLES, "discretisation"}
+        # Defaults have no source, so only the keys that the file gives are shown.
+        values = sourced.model_dump(mode="json", exclude=excluded, exclude_unset=True)
+        for path, inputs in _split_tables(name, values):
+            table.add_row(escape_text(path), "", "", source if path == name else "")
+            for key, value in inputs.items():
+                top_key = key if path == name else path.removeprefix(f"{name}.").split(".")[0]
+                trust = "provisional" if top_key in sourced.provisional else sourced.trust
+                text = ", ".join(map(str, value)) if isinstance(value, list) else str(value)
+                table.add_row(escape_text(f"  {key}"), escape_text(text), trust)
+    return table
+
+
+def _split_tables(path: str, values: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Table without the tables inside it, followed by each of those with its dotted path."""
+    yield path, {key: value for key, value in values.items() if not isinstance(value, dict)}
+    for key, value in values.items():
+        if isinstance(value, dict):
+            yield from _split_tables(f"{path}.{key}", value)
+
+
+def _build_limit_table(case: Case) -> Table:
+    numbers = ("lower", "upper")
+    table = build_table(
+        "limit", *numbers, "trust", "source", title="Limits", unbroken=(*numbers, "trust"), right=numbers
+    )
+    for limit in case.limits:
+        item = f"[{limit.item}]" if limit.item else ""
+        table.add_row(
+            escape_text(f"{limit.quantity}{item}{f', pantograph {limit.owner}' if limit.owner else ''}"),
+            format_number(limit.lower),
+            format_number(limit.upper),
+            limit.trust,
+            escape_text(", ".join(_source_keys(limit.source))),
+        )
+    return table
+
+
+def _list_sources(case: Case) -> list[Text]:
+    """Full text of the sources that are cited by key."""
+    cited = [*(table.source for table in case.sourced_tables.values()), *(limit.source for limit in case.limits)]
+    keys = dict.fromkeys(key for source in cited for key in _source_keys(source))
+    return [escape_text(f"{key}: {source_text(key)}") for key in keys if source_text(key) != key]
+
+
+def _source_keys(source: str | list[str]) -> list[str]:
+    return [source] if isinstance(source, str) else source
