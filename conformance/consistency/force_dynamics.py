@@ -1,8 +1,8 @@
-"""Do contact force and contact height belong together? The pantograph of the case, driven by the force, must say so.
+"""Contact height against contact force: the pantograph of the case, driven by the force, must move as recorded.
 
-A chain of masses M z'' + C z' + K z = f - F(t) e_head is linear: its head moves as the response to F from rest, plus
-the free motion of some initial state, plus a constant. The latter two are fitted; the first has nothing left to fit, so
-that its amplitude and its lag tell a wrong gain or unit of the force, or a shift in time, from a right one.
+A chain of masses M z'' + C z' + K z = f - F(t) e_head is linear. The motion of its head is the response to F from rest,
+plus the free motion of an initial state, plus a constant. The last two are fitted. The response has no free parameter:
+its amplitude and its lag reveal a wrong gain or unit of the force, or a shift in time.
 """
 
 from dataclasses import dataclass
@@ -13,40 +13,50 @@ from scipy.signal import lsim
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.pantograph_file import PantographFile
-from pantocheck.conformance.consistency.finding import Finding
+from pantocheck.conformance.consistency.check import Check, Finding
 from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE
-from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.quantities.signals import PantographSignals
+from pantocheck.conformance.records.record_signals import RecordSignals
+from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 
 LARGEST_MISFIT = 0.1
-"""Share of the motion that may stay unexplained. Rounding, a filter on one channel, another integration: below 0.02."""
+"""Largest unexplained share of the motion. Rounding, a filter on one channel or another time integration: below 0.02."""
+
 LARGEST_GAIN_ERROR = 0.03
-"""Relative; the gain is met within 0.005 by records that are right."""
+"""Largest relative error of the gain; correct records stay below 0.005."""
+
 CLEAR = 0.05
-"""Share left unexplained below which the reason of a misfit may be named."""
+"""Unexplained share below which the cause of a misfit is named."""
+
 SMALLEST_MOTION_M = 0.001
-"""rms of the motion that the check needs; heights are often rounded to a millimetre [m]."""
+"""Smallest RMS of the motion that can be compared [m]; heights are often rounded to a millimetre."""
+
 LONGEST_S, LONGEST_LAG_S = 30.0, 0.5
+"""Longest part of a record that is compared, and longest lag that is searched [s]."""
+
 CAUSAL_DELAY_PERIODS = 0.75
-"""Delay of a causal Butterworth filter of order 6, in periods of its cut-off: 0.62 at low frequencies."""
+"""Largest delay of a causal Butterworth filter of order 6, in periods of its cut-off: 0.62 at low frequencies."""
+
 TINY = float(np.finfo(float).tiny)
+
 SAMPLES_PER_PERIOD = 20
-"""At the cut-off: the force is then met by straight lines within a percent."""
+"""Samples per period of the cut-off: straight lines between them follow the force within a percent."""
 
 
 @dataclass(frozen=True)
 class ResponseFit:
-    """How the motion recorded follows from the force.
+    """Fit of the recorded motion by the response to the force.
 
     Parameters
     ----------
     misfit : float
-        Rms of motion minus response, over rms of the response.
+        RMS of motion minus response, over RMS of the response.
     gain : float
-        Of the force that explains the motion best, 1 if all is right.
+        Gain of the force that explains the motion best; 1 for a correct record.
     unexplained : float
         Share of the motion that remains with that gain.
     motion, response : (n,) ndarray
-        What is compared [m].
+        Compared motions, without their free parts [m].
     """
 
     misfit: float
@@ -56,27 +66,23 @@ class ResponseFit:
     response: RealArray
 
 
-def check_force_dynamics(case: Case, record: Record) -> list[Finding]:
-    """The pantograph of the case, driven by the force, moves as the contact height says."""
+def _check_force_dynamics(case: Case, signals: RecordSignals) -> Finding | None:
+    record, low_pass = signals.record, case.file.filter.low_pass
     if record.contact_height is None:
-        return [Finding("dynamics", "unchecked", "force against motion: the record has no contact height")]
-    cutoff = case.file.filter.cutoff_Hz
-    if cutoff > HIGHEST_SHARE_OF_RATE * record.rate:
-        return [Finding("dynamics", "unchecked", f"force against motion: a rate of {record.rate:g} Hz is too low")]
+        return Finding("unchecked", "force against motion: the record has no contact height")
+    if low_pass.cutoff_Hz > HIGHEST_SHARE_OF_RATE * record.rate:
+        return Finding("unchecked", f"force against motion: a rate of {record.rate:g} Hz is too low")
     still = False
-    for number, file in enumerate(case.pantographs, 1):
-        step = max(1, int(record.rate / (SAMPLES_PER_PERIOD * cutoff)))
-        window = _window(record, number)
-        low_pass = case.file.filter.low_pass
-        channels = (record.force, record.contact_height)
-        force, height = (low_pass(channel[number - 1], record.rate)[window][::step] for channel in channels)
+    step = max(1, int(record.rate / (SAMPLES_PER_PERIOD * low_pass.cutoff_Hz)))
+    for number, (file, pantograph) in enumerate(zip(case.pantographs, signals.pantographs.values(), strict=True), 1):
+        window = _compared_samples(pantograph)
+        force = pantograph.force.low_passed[window][::step]
+        height = low_pass(record.contact_height[number - 1], record.rate)[window][::step]
         fit = fit_motion(file, force, height, step / record.rate)
         still = still or fit is None
-        if fit is None:
-            continue
-        if fit.misfit > LARGEST_MISFIT or abs(1 / fit.gain - 1) > LARGEST_GAIN_ERROR:
-            return [_diagnosis(number, fit, step / record.rate, record.filter_applied_Hz)]
-    return [Finding("dynamics", "unchecked", "force against motion: the contact point hardly moves")] if still else []
+        if fit is not None and (fit.misfit > LARGEST_MISFIT or abs(1 / fit.gain - 1) > LARGEST_GAIN_ERROR):
+            return _diagnose(number, fit, step / record.rate, record.filter_applied_Hz)
+    return Finding("unchecked", "force against motion: the contact point hardly moves") if still else None
 
 
 def fit_motion(file: PantographFile, force: RealArray, height: RealArray, step: float) -> ResponseFit | None:
@@ -85,46 +91,44 @@ def fit_motion(file: PantographFile, force: RealArray, height: RealArray, step: 
     Parameters
     ----------
     file : PantographFile
-        The pantograph.
+        Pantograph of the case.
     force, height : (n,) ndarray
         Contact force [N] and height of the contact point [m].
     step : float
-        Between samples [s].
+        Time between samples [s].
 
     Returns
     -------
     ResponseFit or None
-        The fit; None if the head hardly moves, and would hardly move.
+        The fit; None if both the recorded and the computed motion are too small.
     """
     response, free = _responses(file, force, step)
-    response, motion = _without(response, free), _without(height, free)
+    response, motion = _remove_free_motion(response, free), _remove_free_motion(height, free)
     if max(response.std(), motion.std()) < SMALLEST_MOTION_M:
         return None
-    # The contact point is the head itself, or the wire, into which the head has sunk by force over contact stiffness.
+    # The contact point is the head, or the wire, which the head penetrates by force over contact stiffness.
     head = _fit(motion, response)
-    wire = _fit(_without(height + force / file.contact.stiffness_N_m, free), response)
+    wire = _fit(_remove_free_motion(height + force / file.contact.stiffness_N_m, free), response)
     return wire if wire.unexplained < head.unexplained / 2 else head
 
 
 def _fit(motion: RealArray, response: RealArray) -> ResponseFit:
     scale = float(motion @ response / max(float(response @ response), TINY))
-    left = motion - scale * response
+    remainder = motion - scale * response
     return ResponseFit(
         misfit=float((motion - response).std() / max(float(response.std()), TINY)),
         gain=1 / scale if scale else np.inf,
-        unexplained=float(left.std() / max(motion.std(), TINY)),
+        unexplained=float(remainder.std() / max(motion.std(), TINY)),
         motion=motion,
         response=response,
     )
 
 
 def _responses(file: PantographFile, force: RealArray, step: float) -> tuple[RealArray, RealArray]:
-    """Head's response to the force from rest, and the (n, k) motions that are free: a constant and its modes.
+    """Response of the head to the force from rest, and its (n, k) free motions: a constant and the slow modes.
 
-    Modes that decay or swing faster than the samples can follow have no part in filtered motions.
+    Modes faster than the samples do not appear in filtered motions.
     """
-    from pantocheck.conformance.simulation.pantograph_model import build_pantograph
-
     model = build_pantograph(file, 0.0, 0.0)
     m = model.head.size
     inverse = np.linalg.inv(model.mass)
@@ -140,41 +144,51 @@ def _responses(file: PantographFile, force: RealArray, step: float) -> tuple[Rea
     return np.asarray(response), np.column_stack([np.ones(force.size), *drift, modes.real, modes.imag])
 
 
-def _without(signal: RealArray, free: RealArray) -> RealArray:
-    """A signal without what free motions explain of it."""
+def _remove_free_motion(signal: RealArray, free: RealArray) -> RealArray:
+    """Residual of a signal after a least-squares fit of the free motions."""
     scaled = free / np.maximum(np.abs(free).max(axis=0), TINY)
     return np.asarray(signal - scaled @ np.linalg.lstsq(scaled, signal, rcond=1e-9)[0])
 
 
-def _window(record: Record, number: int) -> slice:
-    first, last = np.searchsorted(record.position[number - 1], record.evaluated)
-    return slice(int(first), min(int(last), int(first) + int(LONGEST_S * record.rate)))
+def _compared_samples(pantograph: PantographSignals) -> slice:
+    first, last = np.searchsorted(pantograph.position, pantograph.evaluated)
+    return slice(int(first), min(int(last), int(first) + int(LONGEST_S * pantograph.force.rate)))
 
 
-def _diagnosis(number: int, fit: ResponseFit, step: float, filter_applied_Hz: float | None) -> Finding:
-    said = f"pantograph {number}: contact force and contact height do not belong together"
+def _diagnose(number: int, fit: ResponseFit, step: float, filter_applied_Hz: float | None) -> Finding:
+    mismatch = f"pantograph {number}: contact force and contact height do not belong together"
     if fit.unexplained < CLEAR:
-        text = f"{said}: the height follows from {1 / fit.gain:.3g} times the force; is its gain or unit right?"
-        return Finding("dynamics", "contradiction", text)
-    samples, likeness = _lag(fit, round(LONGEST_LAG_S / step))
-    late = -samples * step
-    if not samples or not likeness >= 1 - CLEAR:  # also of a force without any change, which is like nothing
+        gain = 1 / fit.gain
+        text = f"{mismatch}: the height follows from {gain:.3g} times the force; check its gain and unit"
+        return Finding("contradiction", text)
+    samples, correlation = _lag(fit, round(LONGEST_LAG_S / step))
+    delay = -samples * step
+    if not samples or not correlation >= 1 - CLEAR:  # the correlation with a constant force is nan
         share = 100 * max(0.0, 1 - fit.unexplained)
-        return Finding("dynamics", "contradiction", f"{said}: the force explains {share:.0f} % of the motion")
-    side = "later" if late > 0 else "earlier"
-    text = f"{said}: the force is about {abs(late):.1g} s {side} than the height that follows from it"
-    if filter_applied_Hz is not None and 0 < late < CAUSAL_DELAY_PERIODS / filter_applied_Hz:
-        return Finding("dynamics", "doubt", f"{text}, as after a filter that runs forwards only")
-    return Finding("dynamics", "contradiction", text)
+        return Finding("contradiction", f"{mismatch}: the force explains {share:.0f} % of the motion")
+    side = "later" if delay > 0 else "earlier"
+    text = f"{mismatch}: the force is about {abs(delay):.1g} s {side} than the height that follows from it"
+    if filter_applied_Hz is not None and 0 < delay < CAUSAL_DELAY_PERIODS / filter_applied_Hz:
+        return Finding("doubt", f"{text}, as after a causal filter")
+    return Finding("contradiction", text)
 
 
-def _lag(fit: ResponseFit, most: int) -> tuple[int, float]:
-    """Samples by which the motion comes after the response, and their correlation then."""
+def _lag(fit: ResponseFit, longest: int) -> tuple[int, float]:
+    """Lag of the motion behind the response [samples], and their correlation at this lag."""
     n = fit.motion.size
-    likeness = {}
-    for lag in range(-min(most, n // 3), min(most, n // 3) + 1):
+    correlation = {}
+    for lag in range(-min(longest, n // 3), min(longest, n // 3) + 1):
         motion, response = fit.motion[max(0, lag) : n + min(0, lag)], fit.response[max(0, -lag) : n - max(0, lag)]
         with np.errstate(invalid="ignore"):
-            likeness[lag] = float(np.corrcoef(motion, response)[0, 1])
-    best = max(likeness, key=lambda lag: likeness[lag])
-    return best, likeness[best]
+            correlation[lag] = float(np.corrcoef(motion, response)[0, 1])
+    best = max(correlation, key=lambda lag: correlation[lag])
+    return best, correlation[best]
+
+
+DYNAMICS = Check(
+    name="dynamics",
+    must_hold="the pantograph of the case, driven by the force, moves like the contact height",
+    why="gain, unit, sign and time of the force show in the motion, without any model of the line",
+    needs="contact force and contact height",
+    run=_check_force_dynamics,
+)

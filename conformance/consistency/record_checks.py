@@ -1,18 +1,21 @@
-"""All checks of a record, in the order in which they make sense of it."""
+"""All checks of a record, in the order in which they build on each other."""
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.consistency.finding import Finding
-from pantocheck.conformance.consistency.force_dynamics import check_force_dynamics
-from pantocheck.conformance.consistency.record_positions import check_coverage, check_motion, check_support_passing
-from pantocheck.conformance.consistency.roll_off import check_roll_off
-from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.consistency.check import Check, CheckName, Finding
+from pantocheck.conformance.consistency.force_dynamics import DYNAMICS
+from pantocheck.conformance.consistency.record_positions import COVERAGE, MOTION, SUPPORT_PASSING
+from pantocheck.conformance.consistency.roll_off import ROLL_OFF
+from pantocheck.conformance.records.record_signals import RecordSignals
+
+RECORD_CHECKS: tuple[Check, ...] = (COVERAGE, MOTION, SUPPORT_PASSING, ROLL_OFF, DYNAMICS)
 
 
-def check_record(case: Case, record: Record) -> list[Finding]:
-    """What the checks find in a record of a case: a contradiction ends them, because the rest builds on it."""
-    found: list[Finding] = []
-    for check in (check_coverage, check_motion, check_support_passing, check_roll_off, check_force_dynamics):
-        found += check(case, record)
-        if any(finding.kind == "contradiction" for finding in found):
-            break
-    return found
+def check_record(case: Case, signals: RecordSignals) -> dict[CheckName, Finding]:
+    """Findings by check. The first contradiction ends the checks, because later checks rely on earlier ones."""
+    findings: dict[CheckName, Finding] = {}
+    for check in RECORD_CHECKS:
+        if (finding := check.run(case, signals)) is not None:
+            findings[check.name] = finding
+            if finding.kind == "contradiction":
+                break
+    return findings

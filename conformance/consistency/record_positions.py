@@ -1,67 +1,86 @@
-"""Where the pantographs are, and when: positions against the stretch, the speed and the supports."""
+"""Positions of the pantographs against the analysis section, the speed of the train and the supports."""
 
 import numpy as np
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.consistency.finding import Finding
-from pantocheck.conformance.quantities.unavailable import QuantityUnavailable, StretchNotCovered
-from pantocheck.conformance.records.evaluation import line_signals, pantograph_signals
-from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.consistency.check import Check, Finding
+from pantocheck.conformance.quantities.unavailable import QuantityUnavailable, SectionNotCovered
+from pantocheck.conformance.records.record_signals import RecordSignals
 
 SPEED_TOLERANCE = 0.005
-"""Relative; a tenth of what would move a resonance by its own width."""
+"""Relative tolerance of the speed: a tenth of the width of a resonance."""
+
 PASSING_TOLERANCE_M = 5.0
-"""The lift of a support is highest within some decimetres of a pantograph, in simulation as in measurement [m]."""
-SMALLEST_LIFT_M = 0.005
-"""A lift has a clear maximum from here on [m]."""
+"""Distance between support and pantograph at the largest uplift [m]: some decimetres in simulation and measurement."""
+
+SMALLEST_UPLIFT_M = 0.005
+"""Uplift from which its maximum is clear [m]."""
 
 
-def check_coverage(case: Case, record: Record) -> list[Finding]:
-    """Every pantograph crosses the whole evaluated stretch, or the record is a piece of one."""
-    for number in range(1, record.pantographs + 1):
+def _check_coverage(_: Case, signals: RecordSignals) -> Finding | None:
+    for number, pantograph in signals.pantographs.items():
         try:
-            _ = pantograph_signals(record, number, case.file.filter.low_pass).inside
-        except StretchNotCovered as reason:
-            return [Finding("coverage", "contradiction", f"the record of pantograph {number} is cut short: {reason}")]
-    return []
+            _ = pantograph.inside
+        except SectionNotCovered as reason:
+            return Finding("contradiction", f"the record of pantograph {number} is cut short: {reason}")
+    return None
 
 
-def check_motion(case: Case, record: Record) -> list[Finding]:
-    """Positions advance with the speed of the train."""
+def _check_motion(_: Case, signals: RecordSignals) -> Finding | None:
+    record = signals.record
     elapsed = record.time[-1] - record.time[0]
     for number, position in enumerate(record.position, 1):
         speed = (position[-1] - position[0]) / elapsed
         if abs(speed / record.speed - 1) > SPEED_TOLERANCE:
-            text = (
+            return Finding(
+                "contradiction",
                 f"pantograph {number} advances at {3.6 * speed:.4g} km/h by position and time, "
-                f"the record says {3.6 * record.speed:.4g} km/h"
+                f"the record states {3.6 * record.speed:.4g} km/h",
             )
-            return [Finding("motion", "contradiction", text)]
-    return []
+    return None
 
 
-def check_support_passing(case: Case, record: Record) -> list[Finding]:
-    """A support is lifted most while a pantograph is near it; else positions and uplift are of different times."""
+def _check_support_passing(_: Case, signals: RecordSignals) -> Finding | None:
     try:
-        uplift = line_signals(record).uplift
+        supports, uplift = signals.line.supports, signals.line.uplift
     except QuantityUnavailable as reason:
-        return [Finding("support passing", "unchecked", f"position against uplift: {reason}")]
-    if record.support_position is None:
-        return []
-    start, end = record.evaluated
-    supports = record.support_position
-    supports = supports[(supports >= start - 1e-6) & (supports <= end + 1e-6)]
-    lifted = uplift.max(axis=1) > SMALLEST_LIFT_M
+        return Finding("unchecked", f"position against uplift: {reason}")
+    lifted = uplift.max(axis=1) > SMALLEST_UPLIFT_M
     if not lifted.any():
-        return []
-    ahead = record.position[:, uplift.argmax(axis=1)] - supports
-    nearest = ahead[np.abs(ahead).argmin(axis=0), np.arange(supports.size)]
+        return None
+    distance = signals.record.position[:, uplift.argmax(axis=1)] - supports
+    nearest = distance[np.abs(distance).argmin(axis=0), np.arange(supports.size)]
     typical = float(np.median(nearest[lifted]))
     if abs(typical) <= PASSING_TOLERANCE_M:
-        return []
+        return None
     side = "past" if typical > 0 else "before"
-    text = (
-        f"supports are lifted most when the nearest pantograph is {abs(typical):.3g} m {side} them by its position: "
-        "position and uplift are not of the same time"
+    return Finding(
+        "contradiction",
+        f"the uplift at the supports is largest when the nearest pantograph is {abs(typical):.3g} m {side} them: "
+        "position and uplift are not of the same time",
     )
-    return [Finding("support passing", "contradiction", text)]
+
+
+COVERAGE = Check(
+    name="coverage",
+    must_hold="every pantograph crosses the whole analysis section",
+    why="statistics of half a section look like any others",
+    needs="position",
+    run=_check_coverage,
+)
+
+MOTION = Check(
+    name="motion",
+    must_hold="positions advance with the speed of the train",
+    why="a wrong rate or unit of position moves the analysis section",
+    needs="position, time and speed",
+    run=_check_motion,
+)
+
+SUPPORT_PASSING = Check(
+    name="support passing",
+    must_hold=f"the uplift at a support is largest while a pantograph is within {PASSING_TOLERANCE_M:g} m",
+    why="shifted positions hardly change the statistics",
+    needs="position and uplift at supports",
+    run=_check_support_passing,
+)

@@ -12,7 +12,7 @@ from pantocheck.conformance.cases.profile_file import Profile
 from pantocheck.conformance.input_files.atomic_writing import file_digest
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.quantities.registry import QUANTITIES
-from pantocheck.conformance.records.evaluation import LINE, Evaluation, Value, evaluate_signals
+from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value, evaluate_signals
 from pantocheck.conformance.records.measured.block_bootstrap import FEWEST_BLOCKS, bootstrap_uncertainties
 from pantocheck.conformance.records.measured.record_preparation import PreparedRecord, prepare_record
 from pantocheck.conformance.records.record import RecordInvalid

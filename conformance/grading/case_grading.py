@@ -12,7 +12,8 @@ from pantocheck.conformance.grading.section_spread import section_spread
 from pantocheck.conformance.grading.verdicts import Verdict, judge, margin, worst_verdict
 from pantocheck.conformance.input_files.trust import Trust, limit_counts
 from pantocheck.conformance.quantities.registry import QUANTITIES
-from pantocheck.conformance.records.evaluation import LINE, Evaluation, Value, evaluate_record
+from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value
+from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.results.outcome import Delivered, Errored, Outcome, Skipped
 from pantocheck.conformance.results.results_format import (
     CaseResult,

@@ -1,7 +1,7 @@
 """What must be known of the band from 20 to 50 Hz before its numbers are believed."""
 
 from pantocheck.conformance.quantities.bands import EXTENDED_BAND
-from pantocheck.conformance.records.evaluation import LINE, Evaluation, Value
+from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value
 from pantocheck.conformance.results.outcome import Delivered
 
 LARGEST_CHANGE = 0.05

@@ -21,7 +21,7 @@ from pantocheck.conformance.quantities.bands import amplitude_spectrum
 from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.signals import EXTENDED_CUTOFF_HZ
-from pantocheck.conformance.records.evaluation import LINE
+from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.results.results_building import build_results, utc_now
 from pantocheck.conformance.results.results_format import (
     CaseResult,

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from pantocheck.conformance.quantities.filters import LowPass
-from pantocheck.conformance.records.evaluation import Value, evaluate_record
+from pantocheck.conformance.quantities.evaluation import Value
+from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.records.record import Record
 
 MIN_SECTIONS = 3

@@ -13,28 +13,28 @@ from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandNotObservable
 
 HIGHEST_SHARE_OF_RATE = 0.4
-"""A frequency is observable up to this share of the sampling rate: above it the anti-alias filter rules."""
+"""Highest observable frequency as a share of the sampling rate: above it, anti-alias filters act."""
 
 
 @dataclass(frozen=True)
 class LowPass:
     """Butterworth low-pass, -3 dB at its cut-off.
 
-    `order` is the total order, the slope of the whole filter: a zero-phase filter runs a filter of half the order
-    forwards and backwards, and the two together fall off with `order` and have -3 dB at the cut-off. One run of order
-    m has the gain 1/sqrt(1 + W^2m), two have 1/(1 + W^2m), W = tan(pi f/rate) / tan(pi f0/rate) under the bilinear
-    transform; so the cut-off f0 of the single run is moved up by W(f_c) = (sqrt(2) - 1)^(1/2m).
+    `order` is the total order, the slope of the whole filter. A zero-phase filter runs a filter of half the order
+    forwards and backwards. One run of order m has the gain 1/sqrt(1 + W^2m), two runs have 1/(1 + W^2m), with
+    W = tan(pi f/rate) / tan(pi f0/rate) under the bilinear transform. The cut-off f0 of a single run is therefore
+    raised by W(f_c) = (sqrt(2) - 1)^(1/2m), so that both runs together have -3 dB at the cut-off.
 
     Parameters
     ----------
-    kind : Literal[butterworth]
+    kind : {'butterworth'}
         Family of the filter.
     order : int
         Total order; even for zero phase.
     cutoff_Hz : float
-        Where the whole filter has -3 dB [Hz].
-    phase : Literal[zero, causal]
-        `zero` (forwards and backwards) or `causal` (forwards only, as an instrument does).
+        Frequency at which the whole filter has -3 dB [Hz].
+    phase : {'zero', 'causal'}
+        `zero` (forwards and backwards) or `causal` (forwards only, like an instrument).
     """
 
     kind: Literal["butterworth"] = "butterworth"
@@ -49,7 +49,7 @@ class LowPass:
             )
 
     def sections(self, rate: float) -> RealArray:
-        """Second-order sections of a single run at a sampling rate [Hz].
+        """Second-order sections of a single run, for a sampling rate [Hz].
 
         Raises
         ------
@@ -68,14 +68,14 @@ class LowPass:
         return np.asarray(butter(half, rate / np.pi * np.arctan(warped), fs=rate, output="sos"))
 
     def __call__(self, signal: RealArray, rate: float) -> RealArray:
-        """Filter a signal; transients of its two ends decay within a few periods of the cut-off.
+        """Filter a signal; the transients at its ends decay within a few periods of the cut-off.
 
         Parameters
         ----------
         signal : (n,) ndarray
-            Samples of the whole record, so that the transients lie outside the evaluated stretch.
+            Samples of the whole record, so that the transients lie outside the analysis section.
         rate : float
-            Samples per second [Hz].
+            Sampling rate [Hz].
         """
         sections = self.sections(rate)
         if self.phase == "causal":
@@ -85,28 +85,33 @@ class LowPass:
         return np.asarray(sosfiltfilt(sections, signal, padlen=padding))
 
     def gain(self, frequency: RealArray, rate: float) -> RealArray:
-        """Magnitude of the whole filter at frequencies [Hz], sampled at a rate [Hz]."""
+        """Gain of the whole filter at frequencies [Hz], for a sampling rate [Hz]."""
         _, response = sosfreqz(self.sections(rate), worN=frequency, fs=rate)
         return np.asarray(np.abs(response) ** (2 if self.phase == "zero" else 1))
 
 
-def filter_force(signal: RealArray, rate: float, low_pass: LowPass, filter_applied_Hz: float | None) -> RealArray:
-    """Signal filtered to a cut-off, also when it has been through a filter before.
+def needs_filter(low_pass: LowPass, filter_applied_Hz: float | None) -> bool:
+    """Whether a delivered force must still go through a filter.
 
-    A signal delivered with the same cut-off is left as it is: a second pass would take another 3 dB at the cut-off.
+    A second pass at the same cut-off would take another 3 dB there.
+
+    Parameters
+    ----------
+    low_pass : LowPass
+        Filter of the graded force.
+    filter_applied_Hz : float or None
+        Cut-off of the low-pass filter applied before delivery [Hz]; None: unfiltered.
 
     Raises
     ------
     AlreadyFiltered
-        The signal was filtered below the cut-off.
-    BandNotObservable
-        The rate is too low for the cut-off.
+        The force was filtered below the cut-off.
     """
     if filter_applied_Hz is None or filter_applied_Hz > 1.001 * low_pass.cutoff_Hz:
-        return low_pass(signal, rate)
+        return True
     if filter_applied_Hz < 0.999 * low_pass.cutoff_Hz:
         raise AlreadyFiltered(
             f"the force was delivered filtered at {filter_applied_Hz:g} Hz; "
-            f"nothing is known of it up to {low_pass.cutoff_Hz:g} Hz"
+            f"its content up to {low_pass.cutoff_Hz:g} Hz is unknown"
         )
-    return signal
+    return False

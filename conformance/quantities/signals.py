@@ -1,4 +1,4 @@
-"""Signals that quantities are computed from: one pantograph's, and the line's."""
+"""Signals of a pantograph and of the line, from which quantities are computed."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -8,128 +8,164 @@ import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.bands import EXTENDED_BAND, band_rms
-from pantocheck.conformance.quantities.filters import LowPass, filter_force
-from pantocheck.conformance.quantities.unavailable import BandNotObservable, ChannelMissing, StretchNotCovered
+from pantocheck.conformance.quantities.filters import LowPass, needs_filter
+from pantocheck.conformance.quantities.unavailable import BandNotObservable, ChannelMissing, SectionNotCovered
 
 EXTENDED_CUTOFF_HZ = float(EXTENDED_BAND.high)
 """Upper edge of the extended band [Hz]."""
 
 SHORTEST_PERIODS = 4
-"""Periods of the cut-off frequency that the evaluated stretch must last: less is not a statistic."""
+"""Shortest analysis section, in periods of the cut-off frequency: fewer do not make a statistic."""
+
+SUPPORT_TOLERANCE_M = 1e-6
+"""A support this far outside the analysis section still belongs to it [m]: positions are rounded."""
 
 
 class ForceSignals(Protocol):
-    """What a quantity of a pantograph is computed from; each raises `QuantityUnavailable` if there is no such thing."""
+    """Signals of one pantograph over the analysis section; each property raises `QuantityUnavailable` if missing."""
 
     @property
     def filter_applied_Hz(self) -> float | None:
-        """Cut-off of a low-pass the force has been through [Hz]; None: unfiltered."""
+        """Cut-off of the low-pass filter applied before delivery [Hz]; None: unfiltered."""
 
     @property
     def delivered(self) -> RealArray:
-        """Force as delivered, over what is evaluated [N]."""
+        """Contact force as delivered [N]."""
 
     @property
     def graded(self) -> RealArray:
-        """Force through the case's filter [N]."""
+        """Contact force after the filter of the case [N]."""
 
     @property
     def extended(self) -> RealArray:
-        """Force through the same kind of filter at 50 Hz [N]."""
+        """Contact force after the same kind of filter at 50 Hz [N]."""
 
     @property
     def height(self) -> RealArray:
         """Height of the contact point [m]."""
 
     def band(self, low: float, high: float) -> float:
-        """Rms of the force in the band ]low, high] Hz [N]."""
+        """RMS of the contact force in the band ]low, high] Hz [N]."""
+
+
+@dataclass(frozen=True)
+class ForceChannel:
+    """Contact force of one pantograph over the whole record, with its filtered forms.
+
+    The whole record is filtered, so that the filter transients at its ends stay outside the analysis section.
+
+    Parameters
+    ----------
+    delivered : (n,) ndarray
+        Contact force as delivered [N].
+    rate : float
+        Sampling rate [Hz].
+    low_pass : LowPass
+        Filter of the graded force.
+    filter_applied_Hz : float or None
+        Cut-off of the low-pass filter applied before delivery [Hz]; None: unfiltered.
+    """
+
+    delivered: RealArray
+    rate: float
+    low_pass: LowPass
+    filter_applied_Hz: float | None = None
+
+    @cached_property
+    def low_passed(self) -> RealArray:
+        """Delivered force after the filter of the case, also if it was filtered before [N]."""
+        return self.low_pass(self.delivered, self.rate)
+
+    @cached_property
+    def graded(self) -> RealArray:
+        """Force filtered once by the filter of the case [N]."""
+        return self.low_passed if needs_filter(self.low_pass, self.filter_applied_Hz) else self.delivered
+
+    @cached_property
+    def extended(self) -> RealArray:
+        """Force filtered once by the same kind of filter at 50 Hz [N]."""
+        low_pass = replace(self.low_pass, cutoff_Hz=EXTENDED_CUTOFF_HZ)
+        return low_pass(self.delivered, self.rate) if needs_filter(low_pass, self.filter_applied_Hz) else self.delivered
 
 
 @dataclass(frozen=True)
 class PantographSignals:
-    """What one pantograph delivers over the whole record, and the part of it that is evaluated.
-
-    The force is filtered over the whole record and cut to the evaluated stretch afterwards, so that the transients of
-    the filter at the ends of the record stay outside the stretch.
+    """Signals of one pantograph: channels of the whole record, cut to the analysis section.
 
     Parameters
     ----------
-    rate : float
-        Samples per second [Hz].
     position : (n,) ndarray
         Contact point along the track [m].
-    force : (n,) ndarray
-        Contact force as delivered [N].
-    evaluated : tuple[float, float]
-        Start and end of the evaluated stretch [m]; the end itself is outside.
-    low_pass : LowPass
-        Filter of the graded force.
-    filter_applied_Hz : float or None
-        Cut-off of a low-pass the force has been through [Hz]; None: unfiltered.
+    force : ForceChannel
+        Contact force of the whole record.
+    evaluated : tuple of float
+        Start and end of the analysis section [m]; the end itself is outside.
     contact_height : (n,) ndarray or None
         Height of the contact point [m], or None.
     """
 
-    rate: float
     position: RealArray
-    force: RealArray
+    force: ForceChannel
     evaluated: tuple[float, float]
-    low_pass: LowPass
-    filter_applied_Hz: float | None = None
     contact_height: RealArray | None = None
+
+    @property
+    def filter_applied_Hz(self) -> float | None:
+        """Cut-off of the low-pass filter applied before delivery [Hz]; None: unfiltered."""
+        return self.force.filter_applied_Hz
 
     @cached_property
     def inside(self) -> slice:
-        """Samples inside the evaluated stretch.
+        """Samples inside the analysis section.
 
         Raises
         ------
-        StretchNotCovered
-            The record starts after the beginning, or stops before the end of the stretch.
+        SectionNotCovered
+            The record starts after the start, or stops before the end of the section.
         """
         start, end = self.evaluated
-        # One sample of tolerance: a stretch that ends with the record ends between two samples.
+        # One sample of tolerance: a section that ends with the record ends between two samples.
         step = float(np.max(np.diff(self.position)))
         if self.position[0] > start + step or self.position[-1] < end - step:
-            raise StretchNotCovered(
+            raise SectionNotCovered(
                 f"the record covers {self.position[0]:.6g} m to {self.position[-1]:.6g} m; "
-                f"the evaluated stretch is {start:g} m to {end:g} m"
+                f"the analysis section is {start:g} m to {end:g} m"
             )
         first, last = np.searchsorted(self.position, [start - 1e-9, end - 1e-9])
         return slice(int(first), int(last))
 
     @property
     def delivered(self) -> RealArray:
-        """Force as delivered, over the evaluated stretch [N]."""
-        return self.force[self.inside]
+        """Contact force as delivered, over the analysis section [N]."""
+        return self.force.delivered[self.inside]
 
-    @cached_property
+    @property
     def graded(self) -> RealArray:
-        """Force through the case's filter (0-20 Hz), over the evaluated stretch [N]."""
-        return self._through(self.low_pass)
+        """Contact force after the filter of the case (0-20 Hz), over the analysis section [N]."""
+        self._check_duration(self.force.low_pass.cutoff_Hz)
+        return self.force.graded[self.inside]
 
-    @cached_property
+    @property
     def extended(self) -> RealArray:
-        """Force through the same kind of filter at 50 Hz, over the evaluated stretch [N]."""
-        return self._through(replace(self.low_pass, cutoff_Hz=EXTENDED_CUTOFF_HZ))
+        """Contact force after the same kind of filter at 50 Hz, over the analysis section [N]."""
+        self._check_duration(EXTENDED_CUTOFF_HZ)
+        return self.force.extended[self.inside]
 
     def band(self, low: float, high: float) -> float:
-        """Rms of the force in the band ]low, high] Hz, over the evaluated stretch [N]."""
-        return band_rms(self.delivered, self.rate, low, high, self.filter_applied_Hz)
+        """RMS of the contact force in the band ]low, high] Hz, over the analysis section [N]."""
+        return band_rms(self.delivered, self.force.rate, low, high, self.filter_applied_Hz)
 
-    def _through(self, low_pass: LowPass) -> RealArray:
-        duration = self.delivered.size / self.rate
-        shortest = SHORTEST_PERIODS / low_pass.cutoff_Hz
+    def _check_duration(self, cutoff_Hz: float) -> None:
+        duration, shortest = self.delivered.size / self.force.rate, SHORTEST_PERIODS / cutoff_Hz
         if duration < shortest:
             raise BandNotObservable(
-                f"statistics up to {low_pass.cutoff_Hz:g} Hz need at least {shortest:g} s; "
-                f"the evaluated stretch lasts {duration:.3g} s"
+                f"statistics up to {cutoff_Hz:g} Hz need at least {shortest:g} s; "
+                f"the analysis section lasts {duration:.3g} s"
             )
-        return filter_force(self.force, self.rate, low_pass, self.filter_applied_Hz)[self.inside]
 
     @property
     def height(self) -> RealArray:
-        """Height of the contact point over the evaluated stretch [m].
+        """Height of the contact point over the analysis section [m].
 
         Raises
         ------
@@ -147,12 +183,12 @@ class LineSignals:
 
     Parameters
     ----------
-    evaluated : tuple[float, float]
-        Start and end of the evaluated stretch [m].
+    evaluated : tuple of float
+        Start and end of the analysis section [m].
     support_position : (s,) ndarray or None
-        [m], or None.
+        Positions of the supports along the track [m], or None.
     support_uplift : (s, n) ndarray or None
-        [m], or None.
+        Uplift at each support [m], or None.
     """
 
     evaluated: tuple[float, float]
@@ -160,18 +196,27 @@ class LineSignals:
     support_uplift: RealArray | None = None
 
     @property
+    def supports(self) -> RealArray:
+        """Positions of the k supports of the analysis section, both ends included (k,) [m]; see `uplift`."""
+        return self._select()[0]
+
+    @property
     def uplift(self) -> RealArray:
-        """(k, n) uplift [m] at the k supports of the evaluated spans, the two at its ends included.
+        """Uplift at the k supports of the analysis section, both ends included (k, n) [m].
 
         Raises
         ------
         ChannelMissing
-            The record has no uplift, or none inside the evaluated stretch.
+            The record has no uplift, or none inside the analysis section.
         """
+        return self._select()[1]
+
+    def _select(self) -> tuple[RealArray, RealArray]:
         if self.support_position is None or self.support_uplift is None:
             raise ChannelMissing("the record has no uplift at supports")
         start, end = self.evaluated
-        inside = (self.support_position >= start - 1e-6) & (self.support_position <= end + 1e-6)
+        tolerance = SUPPORT_TOLERANCE_M
+        inside = (self.support_position >= start - tolerance) & (self.support_position <= end + tolerance)
         if not inside.any():
             raise ChannelMissing(f"the record has no support between {start:g} m and {end:g} m")
-        return self.support_uplift[inside]
+        return self.support_position[inside], self.support_uplift[inside]

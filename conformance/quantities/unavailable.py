@@ -13,7 +13,7 @@ class AlreadyFiltered(QuantityUnavailable):
     """The force was filtered before delivery: content above the cut-off was removed and cannot be graded as zero."""
 
 
-class StretchNotCovered(QuantityUnavailable):
+class SectionNotCovered(QuantityUnavailable):
     """Partial coverage of the analysis section would yield the statistics of a different section."""
 
 

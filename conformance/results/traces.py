@@ -9,7 +9,7 @@ from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE, Low
 from pantocheck.conformance.quantities.signals import EXTENDED_CUTOFF_HZ, ForceSignals
 from pantocheck.conformance.quantities.statistics import force_histogram
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
-from pantocheck.conformance.records.evaluation import line_signals, pantograph_signals
+from pantocheck.conformance.records.record_signals import line_signals, pantograph_signals
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.results.results_format import Histogram, Spectrum, Traces, UpliftTrace
 

@@ -5,7 +5,7 @@ import numpy as np
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.records.evaluation import Value
+from pantocheck.conformance.quantities.evaluation import Value
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 from pantocheck.model import Catenary, DiscretisedLine, Kind, discretise

@@ -10,7 +10,7 @@ from pantocheck.conformance.cases.study_tables import DampingChange
 from pantocheck.conformance.quantities.filters import filter_force
 from pantocheck.conformance.quantities.signals import EXTENDED_CUTOFF_HZ
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
-from pantocheck.conformance.records.evaluation import LINE, Value
+from pantocheck.conformance.quantities.evaluation import LINE, Value
 from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.results.results_format import Chart, Series
 from pantocheck.conformance.results.traces import thin_series

@@ -7,10 +7,10 @@ import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.signals import PantographSignals
-from pantocheck.conformance.quantities.unavailable import StretchNotCovered
+from pantocheck.conformance.quantities.unavailable import SectionNotCovered
 
 
-class NothingLeft(StretchNotCovered):
+class NothingLeft(SectionNotCovered):
     """No stretch of the record can be evaluated: there is no number that would describe it."""
 
 

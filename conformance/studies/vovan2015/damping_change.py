@@ -6,7 +6,8 @@ from dataclasses import replace
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import DampingChange
 from pantocheck.conformance.quantities.bands import BAND_QUANTITIES
-from pantocheck.conformance.records.evaluation import LINE, Value, evaluate_record
+from pantocheck.conformance.quantities.evaluation import LINE, Value
+from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.results.outcome import (
     Delivered,
     Errored,

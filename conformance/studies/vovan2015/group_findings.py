@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from pantocheck.conformance.identification.mode import Mode
-from pantocheck.conformance.records.evaluation import Value
+from pantocheck.conformance.quantities.evaluation import Value
 
 HIGHEST_HZ = 6.0
 """Up to here the study sees no variation of damping after the third group."""

@@ -8,7 +8,7 @@ import numpy as np
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import SteadyArmDamper
 from pantocheck.conformance.identification.identify import Identification, identify_modes
-from pantocheck.conformance.records.evaluation import LINE, Value
+from pantocheck.conformance.quantities.evaluation import LINE, Value
 from pantocheck.conformance.records.record_sidecar import RunTable
 from pantocheck.conformance.results.outcome import Delivered, StudyResult
 from pantocheck.conformance.results.results_format import Chart, Mark, Series, TextTable

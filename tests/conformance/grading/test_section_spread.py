@@ -8,7 +8,7 @@ import pytest
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.grading.section_spread import section_spread
-from pantocheck.conformance.records.evaluation import evaluate_record
+from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.reports.certificate.criteria_rows import shifted
 from pantocheck.conformance.results.outcome import Delivered
 

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from pantocheck.conformance.cases.library import library_folder, load_case
-from pantocheck.conformance.records.evaluation import evaluate_record
+from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.results.outcome import Delivered, Skipped
 from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
 from pantocheck.conformance.systems.system_choice import choose_system

@@ -6,7 +6,7 @@ import pytest
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.records.evaluation import evaluate_record
+from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
 
 

@@ -6,7 +6,8 @@ from numpy.testing import assert_allclose
 
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.quantities.signals import LineSignals
-from pantocheck.conformance.records.evaluation import evaluate_record, evaluate_signals
+from pantocheck.conformance.quantities.evaluation import evaluate_signals
+from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.records.measured.outliers import find_outliers
 from pantocheck.conformance.records.measured.record_preparation import prepare_record
 from pantocheck.conformance.records.record import RecordInvalid

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from helpers.computed_modes import verdicts
 from helpers.lines import simple_line
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.records.evaluation import LINE
+from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.studies.vovan2015.dropper_damping import find_transition, run_dropper_damping
 from pantocheck.model import Kind, Passage, Rayleigh, chain, discretise, simulate_passage
 from pantocheck.model.discretised_line import with_damping

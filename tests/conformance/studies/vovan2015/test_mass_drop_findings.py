@@ -6,7 +6,7 @@ import pytest
 
 from helpers.computed_modes import computed_modes, verdicts
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.records.evaluation import LINE
+from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.studies.vovan2015.group_findings import compute_group_findings
 from pantocheck.model import Kind, Rayleigh

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from helpers.computed_modes import ELEMENT, verdicts
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.records.evaluation import LINE
+from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.studies.vovan2015.steady_arm_damper import damping_gains
 from pantocheck.model import Kind, Rayleigh, discretise

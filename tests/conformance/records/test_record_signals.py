@@ -11,7 +11,8 @@ from pantocheck.conformance.quantities.force_quantities import PANTOGRAPH_QUANTI
 from pantocheck.conformance.quantities.registry import (
     QUANTITIES,
 )
-from pantocheck.conformance.records.evaluation import LINE, evaluate_record
+from pantocheck.conformance.quantities.evaluation import LINE
+from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.records.record import Record
 
 RATE, SPEED = 1000.0, 50.0

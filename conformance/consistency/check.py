@@ -1,0 +1,51 @@
+"""Check of a record, and the finding it can return."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.records.record_signals import RecordSignals
+
+CheckName = Literal["coverage", "motion", "support passing", "roll-off", "dynamics"]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Finding of a check.
+
+    Parameters
+    ----------
+    kind : {'contradiction', 'doubt', 'unchecked'}
+        `contradiction` (the record cannot be graded), `doubt` (a warning), `unchecked` (the record lacks a channel).
+    text : str
+        One line for the reader of the report.
+    """
+
+    kind: Literal["contradiction", "doubt", "unchecked"]
+    text: str
+
+
+@dataclass(frozen=True)
+class Check:
+    """Consistency check of a record.
+
+    Parameters
+    ----------
+    name : CheckName
+        Name in messages and documents.
+    must_hold : str
+        Condition on the record.
+    why : str
+        Fault that would otherwise go unnoticed.
+    needs : str
+        Channels without which the check is not made.
+    run : callable
+        Function of the case and the signals of the record; returns a finding, or None if the condition holds.
+    """
+
+    name: CheckName
+    must_hold: str
+    why: str
+    needs: str
+    run: Callable[[Case, RecordSignals], Finding | None]

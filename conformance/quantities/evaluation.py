@@ -1,0 +1,58 @@
+"""Evaluation of signals: the quantities that can be computed, and the reasons why others are not available."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from pantocheck.conformance.quantities.force_quantities import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES
+from pantocheck.conformance.quantities.sampling import WHOLE_RECORD
+from pantocheck.conformance.quantities.signals import ForceSignals, LineSignals
+from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
+
+Value = float | tuple[float, ...]
+"""A number, or one number per dropper or mode."""
+
+LINE = 0
+"""Key of the line itself, in place of the number of a pantograph."""
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Quantities of a run, by pantograph (from 1 in running order; 0: the line) and name.
+
+    Parameters
+    ----------
+    values : dict of int to dict of str to Value
+        Available quantities.
+    skipped : dict of int to dict of str to str
+        Reasons why the other quantities are not available.
+    """
+
+    values: dict[int, dict[str, Value]]
+    skipped: dict[int, dict[str, str]]
+
+
+def evaluate_signals(pantographs: Mapping[int, ForceSignals], line: LineSignals) -> Evaluation:
+    """Evaluate every quantity of a record; a quantity that the signals do not support is skipped with its reason.
+
+    Parameters
+    ----------
+    pantographs : mapping of int to ForceSignals
+        Signals of the pantographs by number from 1.
+    line : LineSignals
+        Uplift at the supports.
+    """
+    values: dict[int, dict[str, Value]] = {LINE: {}}
+    skipped: dict[int, dict[str, str]] = {LINE: {}}
+    for pantograph, signals in pantographs.items():
+        values[pantograph], skipped[pantograph] = {}, {}
+        for quantity in PANTOGRAPH_QUANTITIES:
+            try:
+                values[pantograph][quantity.name] = float(quantity.compute(signals, WHOLE_RECORD))
+            except QuantityUnavailable as reason:
+                skipped[pantograph][quantity.name] = str(reason)
+    for line_quantity in LINE_QUANTITIES:
+        try:
+            values[LINE][line_quantity.name] = line_quantity.compute(line)
+        except QuantityUnavailable as reason:
+            skipped[LINE][line_quantity.name] = str(reason)
+    return Evaluation(values, skipped)

@@ -1,0 +1,59 @@
+"""Signals of a record, filtered once and shared by quantities, traces, section spread and consistency checks."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from pantocheck.conformance.quantities.evaluation import Evaluation, evaluate_signals
+from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.signals import ForceChannel, LineSignals, PantographSignals
+from pantocheck.conformance.records.record import Record
+
+
+@dataclass(frozen=True)
+class RecordSignals:
+    """Signals of a record over its analysis section.
+
+    Parameters
+    ----------
+    record : Record
+        Record of a run or a measurement.
+    low_pass : LowPass
+        Filter of the graded force.
+    """
+
+    record: Record
+    low_pass: LowPass
+
+    @cached_property
+    def pantographs(self) -> dict[int, PantographSignals]:
+        """Signals of the pantographs, by number from 1."""
+        record = self.record
+        return {
+            row + 1: PantographSignals(
+                position=record.position[row],
+                force=ForceChannel(record.force[row], record.rate, self.low_pass, record.filter_applied_Hz),
+                evaluated=record.evaluated,
+                contact_height=None if record.contact_height is None else record.contact_height[row],
+            )
+            for row in range(record.pantographs)
+        }
+
+    @cached_property
+    def line(self) -> LineSignals:
+        """Uplift at the supports."""
+        return LineSignals(self.record.evaluated, self.record.support_position, self.record.support_uplift)
+
+    @cached_property
+    def evaluation(self) -> Evaluation:
+        """Quantities over the analysis section of the record."""
+        return evaluate_signals(self.pantographs, self.line)
+
+    def evaluate_section(self, section: tuple[float, float]) -> Evaluation:
+        """Quantities over another analysis section [m, m]; the force is not filtered again."""
+        pantographs = {number: replace(signals, evaluated=section) for number, signals in self.pantographs.items()}
+        return evaluate_signals(pantographs, replace(self.line, evaluated=section))
+
+
+def evaluate_record(record: Record, low_pass: LowPass) -> Evaluation:
+    """Evaluate every quantity of a record over its analysis section."""
+    return RecordSignals(record, low_pass).evaluation
