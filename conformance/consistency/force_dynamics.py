@@ -20,7 +20,7 @@ from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 
 LARGEST_MISFIT = 0.1
-"""Largest unexplained share of the motion. Rounding, a filter on one channel or another time integration: below 0.02."""
+"""Largest unexplained share of the motion. Rounding, a filter on one channel or another integration: below 0.02."""
 
 LARGEST_GAIN_ERROR = 0.03
 """Largest relative error of the gain; correct records stay below 0.005."""
@@ -151,7 +151,7 @@ def _remove_free_motion(signal: RealArray, free: RealArray) -> RealArray:
 
 
 def _compared_samples(pantograph: PantographSignals) -> slice:
-    first, last = np.searchsorted(pantograph.position, pantograph.evaluated)
+    first, last = np.searchsorted(pantograph.position, pantograph.section)
     return slice(int(first), min(int(last), int(first) + int(LONGEST_S * pantograph.force.rate)))
 
 

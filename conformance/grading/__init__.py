@@ -1,1 +1,1 @@
-"""Assessing a record by a profile: acceptance of a line, or a simulation against a line test."""
+"""Grading: cases by their limits, records by profiles, results by a baseline."""

@@ -1,115 +1,109 @@
-"""Baselines: earlier results that values may not drift from, whatever the limits say."""
+"""Baseline: earlier results, from which values may not drift, whatever the limits are."""
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from typing import NamedTuple
 
-from pantocheck.conformance.grading.verdicts import judge, margin, worst_verdict
+from pantocheck.conformance.grading.criterion_grading import Requirement, build_criterion
+from pantocheck.conformance.grading.verdicts import worst_verdict
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results.results_format import CaseResult, Criterion, Results
 
-LEAST = 1.0
-"""Drift is relative to at least one unit (N, mm, %, Hz, m/s): of a value near zero, any change would be 100 %."""
+SMALLEST_SCALE = 1.0
+"""Drift is relative to at least one unit (N, mm, %, Hz, m/s): any change of a value near zero would be 100 %."""
 
-LEAST_RATIO = 0.01
-"""The same for quantities without a unit."""
+SMALLEST_RATIO_SCALE = 0.01
+"""Smallest scale of quantities without a unit."""
 
 
-@dataclass(frozen=True)
-class _Value:
-    """One number of a case: whose, which quantity, and which of several."""
+class _Key(NamedTuple):
+    """Owner, quantity and item of one number of a case."""
 
-    of: str
+    owner: str
     quantity: str
     item: int | None
-    value: float
 
 
 def compare_with_baseline(results: Results, baseline: Results, drift_pct: float, name: str) -> Results:
-    """Results with a failed criterion for each value that has drifted from its baseline.
+    """Add a failed criterion for each value that has drifted from its baseline.
 
-    A value of the baseline that is no longer there is a skipped criterion, so that it does not vanish unnoticed.
+    A value of the baseline that is no longer delivered becomes a skipped criterion, so that its loss is noticed.
 
     Parameters
     ----------
     results : Results
-        Of this run.
+        Results of this run.
     baseline : Results
-        Of the run to compare with.
+        Results of the earlier run.
     drift_pct : float
-        How far a value may be from that of the baseline [%].
+        Largest accepted drift [%].
     name : str
-        What the baseline is called in reports.
+        Name of the baseline in reports.
     """
     earlier = {case.id: case for case in baseline.cases}
-    cases = [_compared(case, earlier.get(case.id), drift_pct, name) for case in results.cases]
+    cases = [_compare_case(case, earlier.get(case.id), drift_pct, name) for case in results.cases]
     return results.model_copy(update={"cases": cases, "verdict": worst_verdict(case.verdict for case in cases)})
 
 
-def _compared(case: CaseResult, earlier: CaseResult | None, drift_pct: float, name: str) -> CaseResult:
+def _compare_case(case: CaseResult, earlier: CaseResult | None, drift_pct: float, name: str) -> CaseResult:
     if not case.quantities:
         return case  # skipped or in error as a whole: that is its verdict already
     if earlier is None:
         return case.model_copy(update={"warnings": [*case.warnings, f"baseline {name} has no case {case.id}"]})
-    now = {(v.of, v.quantity, v.item): v.value for v in _values(case)}
-    then = list(_values(earlier))
-    rows = [_row(case, v, now.get((v.of, v.quantity, v.item)), drift_pct, name) for v in then]
-    findings = [row for row in rows if row.verdict != "pass"]
+    values, earlier_values = dict(_numbers(case)), dict(_numbers(earlier))
+    source = f"baseline {name}, from which a value may drift by {drift_pct:g} %"
+    criteria = [
+        _grade_drift(case, key, (value, values.get(key)), drift_pct, source) for key, value in earlier_values.items()
+    ]
+    drifted = [criterion for criterion in criteria if criterion.verdict != "pass"]
     warnings = list(case.warnings)
     if case.input_digest != earlier.input_digest:
         warnings.append(f"the inputs of the case have changed since baseline {name}: their digests differ")
-    if not then:
-        warnings.append(f"baseline {name} has no values of this case: it ended in {earlier.verdict}")
-    said = f"Compared with baseline {name}: {len(rows)} values, of which {len(findings)} drifted by more than "
+    if not earlier_values:
+        warnings.append(f"baseline {name} has no values of this case: its verdict was {earlier.verdict}")
+    note = (
+        f"Compared with baseline {name}: {len(criteria)} values, of which {len(drifted)} drifted by more than "
+        f"{drift_pct:g} % or are missing."
+    )
     return case.model_copy(
         update={
-            "criteria": [*case.criteria, *findings],
-            "notes": [*case.notes, f"{said}{drift_pct:g} % or are missing."],
+            "criteria": [*case.criteria, *drifted],
+            "notes": [*case.notes, note],
             "warnings": warnings,
-            "verdict": worst_verdict([case.verdict, *(row.verdict for row in findings)]),
+            "verdict": worst_verdict([case.verdict, *(criterion.verdict for criterion in drifted)]),
         }
     )
 
 
-def _values(case: CaseResult) -> Iterator[_Value]:
-    for of, quantities in case.quantities.items():
+def _numbers(case: CaseResult) -> Iterator[tuple[_Key, float]]:
+    for owner, quantities in case.quantities.items():
         for quantity, value in quantities.items():
             if isinstance(value, list):
-                yield from (_Value(of, quantity, i, one) for i, one in enumerate(value, 1))
+                yield from ((_Key(owner, quantity, item), number) for item, number in enumerate(value, 1))
             else:
-                yield _Value(of, quantity, None, value)
+                yield _Key(owner, quantity, None), value
 
 
-def _rounded(limit: float, allowed: float) -> float:
-    """A limit to a hundredth of the allowed drift or finer, so that no page prints twelve digits of it."""
+def _round_limit(limit: float, allowed: float) -> float:
+    """Limit to a hundredth of the allowed drift or finer, so that no page prints twelve digits."""
     return round(limit, 3 - math.floor(math.log10(allowed))) if allowed > 0 else limit
 
 
-def _row(case: CaseResult, then: _Value, now: float | None, drift_pct: float, name: str) -> Criterion:
-    unit = QUANTITIES[then.quantity].unit if then.quantity in QUANTITIES else ""
-    scale = max(abs(then.value), LEAST if unit else LEAST_RATIO)
+def _grade_drift(
+    case: CaseResult, key: _Key, values: tuple[float, float | None], drift_pct: float, source: str
+) -> Criterion:
+    """Grade a value (earlier, now) by the drift from its earlier value."""
+    earlier, now = values
+    unit = QUANTITIES[key.quantity].unit if key.quantity in QUANTITIES else ""
+    scale = max(abs(earlier), SMALLEST_SCALE if unit else SMALLEST_RATIO_SCALE)
     allowed = drift_pct / 100 * scale
-    lower, upper = (_rounded(then.value + side * allowed, allowed) for side in (-1, 1))
-    verdict = "skip" if now is None else judge(now, lower, upper)
-    why_none = case.skipped.get(then.of, {}).get(then.quantity, "the system no longer delivers it")
+    lower, upper = (_round_limit(earlier + side * allowed, allowed) for side in (-1, 1))
+    requirement = Requirement(key.quantity, int(key.owner), key.item, lower, upper, "primary", source)
     if now is None:
-        reason = f"the baseline has {then.value:.6g} {unit}".rstrip() + f"; now: {why_none}"
+        missing = case.skipped.get(key.owner, {}).get(key.quantity, "the system no longer delivers it")
+        reason = f"the baseline has {earlier:.6g} {unit}".rstrip() + f"; now: {missing}"
     else:
-        drift = 100 * (now - then.value) / scale
-        reason = f"drifted by {drift:+.3g} % from the baseline of {then.value:.6g} {unit}".rstrip()
-    return Criterion(
-        quantity=then.quantity,
-        pantograph=int(then.of),
-        item=then.item,
-        value=now,
-        unit=unit,
-        lower=lower,
-        upper=upper,
-        verdict=verdict,
-        trust="primary",
-        source=f"baseline {name}, from which a value may drift by {drift_pct:g} %",
-        margin=None if now is None else margin(now, lower, upper),
-        discretisation_error=None,
-        reason=reason,
-        baseline=then.value,
-    )
+        drift = 100 * (now - earlier) / scale
+        reason = f"drifted by {drift:+.3g} % from the baseline of {earlier:.6g} {unit}".rstrip()
+    criterion = build_criterion(requirement, now, reason, "primary")
+    return criterion.model_copy(update={"reason": reason, "baseline": earlier})

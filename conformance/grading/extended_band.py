@@ -1,62 +1,59 @@
-"""What must be known of the band from 20 to 50 Hz before its numbers are believed."""
+"""Caveats for the 20-50 Hz band."""
 
 from pantocheck.conformance.quantities.bands import EXTENDED_BAND
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value
-from pantocheck.conformance.results.outcome import Delivered
 
 LARGEST_CHANGE = 0.05
-"""Change of the band's RMS by halving element and time step above which the mesh does not resolve it."""
+"""Relative change of the RMS, with element length and time step halved, above which the mesh is too coarse."""
 
 WARNING_PREFIX = "20-50 Hz: "
-"""Begin of every such warning."""
+"""Prefix of these warnings."""
+
 NOT_VALIDATED = (
     f"{WARNING_PREFIX}lumped models of pantographs and measuring chains are validated up to 20 Hz only; "
-    "what lies above compares models with each other, not with a line"
+    "above 20 Hz, models are compared with each other and not with a line"
 )
 
 
 def find_unvalidated(evaluation: Evaluation) -> list[str]:
-    """What holds for every record that has numbers between 20 and 50 Hz, measured ones included."""
-    return [NOT_VALIDATED] if _bands(evaluation) else []
+    """Caveat for every record with values in the band, measured records included."""
+    return [NOT_VALIDATED] if _band_values(evaluation) else []
 
 
-def extended_band_warnings(outcome: Delivered, evaluation: Evaluation, refined: Evaluation | None) -> list[str]:
-    """Warnings that belong to the numbers between 20 and 50 Hz; none where there are no such numbers.
+def extended_band_warnings(evaluation: Evaluation, refined: Evaluation | None, dt_s: float | None) -> list[str]:
+    """Warnings on the values between 20 and 50 Hz; none if there are no such values.
 
-    Rate and filter of the record are checked where the numbers are made: what they do not allow is skipped.
+    Rate and filter of the record are checked where the values are computed: unsupported values are skipped.
 
     Parameters
     ----------
-    outcome : Delivered
-        What the system delivered.
     evaluation : Evaluation
-        Its quantities.
+        Quantities of the run.
     refined : Evaluation or None
-        Those of the same case with element and time step halved; None if that was not run.
+        Quantities of the same case with element length and time step halved; None if that was not run.
+    dt_s : float or None
+        Time step of the run [s], if known.
     """
-    bands, warnings = _bands(evaluation), find_unvalidated(evaluation)
-    if not bands:
+    band_values, warnings = _band_values(evaluation), find_unvalidated(evaluation)
+    if not band_values:
         return []
     if refined is None:
-        step = "" if outcome.run.dt_s is None else f" (time step {outcome.run.dt_s:g} s)"
+        step = "" if dt_s is None else f" (time step {dt_s:g} s)"
         return [
             *warnings,
             f"{WARNING_PREFIX}no run with a finer mesh and time step{step} shows whether the band is resolved",
         ]
-    for of, value in bands.items():
-        fine = refined.values.get(of, {}).get(EXTENDED_BAND.quantity)
+    for pantograph, value in band_values.items():
+        fine = refined.values.get(pantograph, {}).get(EXTENDED_BAND.quantity)
         if isinstance(value, float) and isinstance(fine, float) and abs(value - fine) > LARGEST_CHANGE * fine:
             warnings.append(
-                f"{WARNING_PREFIX}halving element and time step changes the RMS of pantograph {of} from "
+                f"{WARNING_PREFIX}halving element and time step changes the RMS of pantograph {pantograph} from "
                 f"{value:.3g} N to {fine:.3g} N, by more than {100 * LARGEST_CHANGE:g} %: the band is not resolved"
             )
     return warnings
 
 
-def _bands(evaluation: Evaluation) -> dict[int, Value]:
+def _band_values(evaluation: Evaluation) -> dict[int, Value]:
     """RMS of the band, by pantograph."""
-    return {
-        of: values[EXTENDED_BAND.quantity]
-        for of, values in evaluation.values.items()
-        if of != LINE and EXTENDED_BAND.quantity in values
-    }
+    name = EXTENDED_BAND.quantity
+    return {owner: values[name] for owner, values in evaluation.values.items() if owner != LINE and name in values}

@@ -1,48 +1,38 @@
-"""How much the figures of a run depend on where the evaluated stretch lies."""
+"""Section spread: change of the quantities of a run when the analysis section is shifted."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 
-from pantocheck.conformance.quantities.filters import LowPass
-from pantocheck.conformance.quantities.evaluation import Value
-from pantocheck.conformance.records.record_signals import evaluate_record
-from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.records.record_signals import RecordSignals
 
 MIN_SECTIONS = 3
+"""Smallest number of sections that give a spread."""
 
 
-def section_spread(
-    record: Record, stretches: Sequence[tuple[float, float]], low_pass: LowPass, values: dict[int, dict[str, Value]]
-) -> dict[int, dict[str, float]]:
-    """Largest departure of each quantity from its value when the evaluated stretch is shifted.
+def section_spread(signals: RecordSignals, sections: Sequence[tuple[float, float]]) -> dict[int, dict[str, float]]:
+    """Largest difference of each quantity from its value when the analysis section is shifted.
 
-    A train of constant speed on a line of equal spans has figures that settle; until they have, and at high shares of
-    the wave speed that takes tens of spans, they depend on where they are taken. This is an uncertainty of its own,
-    which no refinement of the mesh makes smaller.
+    At constant speed on equal spans, the quantities settle. At speeds near the wave speed this takes tens of spans;
+    until then they depend on the analysis section. Mesh refinement does not reduce this uncertainty.
 
     Parameters
     ----------
-    record : Record
-        Of the run.
-    stretches : Sequence[tuple[float, float]]
-        Start and end of every stretch of the same length [m, m].
-    low_pass : LowPass
-        Filter of the graded force.
-    values : dict[int, dict[str, Value]]
-        On the evaluated stretch, by pantograph and name.
+    signals : RecordSignals
+        Signals of the run.
+    sections : sequence of tuple of float
+        Start and end of every section of the same length [m, m].
 
     Returns
     -------
-    dict[int, dict[str, float]]
-        In the units of the quantities, by pantograph and name; without what fewer than three stretches give.
+    dict of int to dict of str to float
+        Spread in the units of the quantities, by pantograph and name; quantities available in fewer than
+        `MIN_SECTIONS` sections are left out.
     """
-    shifted = [evaluate_record(replace(record, evaluated=stretch), low_pass).values for stretch in stretches]
-    found: dict[int, dict[str, float]] = {}
-    for of, quantities in values.items():
-        found[of] = {}
+    shifted = [signals.evaluate_section(section).values for section in sections]
+    spread: dict[int, dict[str, float]] = {}
+    for owner, quantities in signals.evaluation.values.items():
         for name, value in quantities.items():
-            others = [one.get(of, {}).get(name) for one in shifted]
+            others = [values.get(owner, {}).get(name) for values in shifted]
             numbers = [other for other in others if isinstance(other, float | int)]
             if isinstance(value, float | int) and len(numbers) >= MIN_SECTIONS:
-                found[of][name] = float(max(abs(other - value) for other in numbers))
-    return {of: quantities for of, quantities in found.items() if quantities}
+                spread.setdefault(owner, {})[name] = float(max(abs(other - value) for other in numbers))
+    return spread

@@ -8,7 +8,8 @@ from numpy.typing import ArrayLike
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.grading.case_grading import criterion_name, grade_case
+from pantocheck.conformance.grading.case_grading import grade_case
+from pantocheck.conformance.grading.criterion_grading import criterion_name
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.trust import Trust

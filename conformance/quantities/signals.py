@@ -98,7 +98,7 @@ class PantographSignals:
         Contact point along the track [m].
     force : ForceChannel
         Contact force of the whole record.
-    evaluated : tuple of float
+    section : tuple of float
         Start and end of the analysis section [m]; the end itself is outside.
     contact_height : (n,) ndarray or None
         Height of the contact point [m], or None.
@@ -106,7 +106,7 @@ class PantographSignals:
 
     position: RealArray
     force: ForceChannel
-    evaluated: tuple[float, float]
+    section: tuple[float, float]
     contact_height: RealArray | None = None
 
     @property
@@ -123,7 +123,7 @@ class PantographSignals:
         SectionNotCovered
             The record starts after the start, or stops before the end of the section.
         """
-        start, end = self.evaluated
+        start, end = self.section
         # One sample of tolerance: a section that ends with the record ends between two samples.
         step = float(np.max(np.diff(self.position)))
         if self.position[0] > start + step or self.position[-1] < end - step:
@@ -183,7 +183,7 @@ class LineSignals:
 
     Parameters
     ----------
-    evaluated : tuple of float
+    section : tuple of float
         Start and end of the analysis section [m].
     support_position : (s,) ndarray or None
         Positions of the supports along the track [m], or None.
@@ -191,7 +191,7 @@ class LineSignals:
         Uplift at each support [m], or None.
     """
 
-    evaluated: tuple[float, float]
+    section: tuple[float, float]
     support_position: RealArray | None = None
     support_uplift: RealArray | None = None
 
@@ -214,7 +214,7 @@ class LineSignals:
     def _select(self) -> tuple[RealArray, RealArray]:
         if self.support_position is None or self.support_uplift is None:
             raise ChannelMissing("the record has no uplift at supports")
-        start, end = self.evaluated
+        start, end = self.section
         tolerance = SUPPORT_TOLERANCE_M
         inside = (self.support_position >= start - tolerance) & (self.support_position <= end + tolerance)
         if not inside.any():

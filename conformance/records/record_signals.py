@@ -32,7 +32,7 @@ class RecordSignals:
             row + 1: PantographSignals(
                 position=record.position[row],
                 force=ForceChannel(record.force[row], record.rate, self.low_pass, record.filter_applied_Hz),
-                evaluated=record.evaluated,
+                section=record.evaluated,
                 contact_height=None if record.contact_height is None else record.contact_height[row],
             )
             for row in range(record.pantographs)
@@ -50,8 +50,8 @@ class RecordSignals:
 
     def evaluate_section(self, section: tuple[float, float]) -> Evaluation:
         """Quantities over another analysis section [m, m]; the force is not filtered again."""
-        pantographs = {number: replace(signals, evaluated=section) for number, signals in self.pantographs.items()}
-        return evaluate_signals(pantographs, replace(self.line, evaluated=section))
+        pantographs = {number: replace(signals, section=section) for number, signals in self.pantographs.items()}
+        return evaluate_signals(pantographs, replace(self.line, section=section))
 
 
 def evaluate_record(record: Record, low_pass: LowPass) -> Evaluation:

@@ -8,10 +8,10 @@ from pydantic import Field, model_validator
 from pantocheck.conformance.input_files.sourced_table import NumberList, SourcedTable, validation_problem
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.toml_file import read_model
+from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value
 from pantocheck.conformance.quantities.force_quantities import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, statistical_extremes
-from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value
 from pantocheck.conformance.records.record_sidecar import LineTable, RunTable, Speed, SystemTable
 
 SUMMARY_SCHEMA = "pantocheck.summary/1"

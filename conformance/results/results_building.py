@@ -1,34 +1,56 @@
-"""From the results of cases to results.json: the verdict of the whole, and what it was computed with."""
+"""Building of results.json: overall verdict, versions and platform."""
 
+import math
 import platform as host
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from importlib.metadata import version
+from typing import TypeVar
 
 from pantocheck.conformance.grading.verdicts import worst_verdict
 from pantocheck.conformance.input_files.trust import Trust
-from pantocheck.conformance.results.results_format import CaseResult, Platform, Results, Suite, SystemIdentity
+from pantocheck.conformance.quantities.evaluation import Value
+from pantocheck.conformance.results.results_format import CaseResult, Number, Platform, Results, Suite, SystemIdentity
 from pantocheck.conformance.results.suite_identity import find_suite_commit
+
+Content = TypeVar("Content")
 
 
 def utc_now() -> str:
-    """The time as results state it."""
+    """Current time in the format of results.json."""
     return datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
 
 
+def key_by_owner(parts: Mapping[int, Mapping[str, Content]]) -> dict[str, dict[str, Content]]:
+    """Parts of a result by the number of the pantograph as text; owners without content are left out."""
+    return {str(owner): dict(content) for owner, content in parts.items() if content}
+
+
+def select_finite(values: Mapping[int, Mapping[str, Value]]) -> dict[int, dict[str, Number]]:
+    """Finite values in the types of results.json; a quantity with a non-finite number is left out."""
+    return {
+        owner: {
+            name: list(value) if isinstance(value, tuple) else value
+            for name, value in quantities.items()
+            if all(map(math.isfinite, value if isinstance(value, tuple) else (value,)))
+        }
+        for owner, quantities in values.items()
+    }
+
+
 def build_results(cases: Sequence[CaseResult], system: SystemIdentity, trust: Trust, started: str) -> Results:
-    """Results of cases.
+    """Combine the results of cases.
 
     Parameters
     ----------
-    cases : Sequence[CaseResult]
-        In the order they are reported.
+    cases : sequence of CaseResult
+        Results of the cases, in the order of reports.
     system : SystemIdentity
-        What was graded.
+        Graded system.
     trust : Trust
-        Lowest trust of the limits that carry a verdict.
+        Lowest trust of the limits that count.
     started : str
-        When, from `now`.
+        Start of the run, from `utc_now`.
     """
     return Results(
         suite=Suite(version=version("pantocheck"), commit=find_suite_commit()),

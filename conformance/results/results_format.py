@@ -1,6 +1,6 @@
-"""results.json: every number of a run in one file, from which all pages are made.
+"""Format of results.json: every number of a run in one file, from which all pages are made.
 
-The models are the format: what is written is checked by them, and their JSON Schema is exported.
+The models check the file when it is written and read. Their JSON Schema is exported.
 """
 
 import json
@@ -20,20 +20,20 @@ Owner = Annotated[str, Field(pattern="^[0-9]{1,2}$", description="number of a pa
 
 
 class ResultsPart(BaseModel):
-    """A part of results.json; numbers are finite, unknown keys refused."""
+    """Part of results.json: numbers are finite, unknown keys are rejected."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
 
 class Suite(ResultsPart):
-    """The suite that graded."""
+    """Suite that graded the system."""
 
     version: str
     commit: str | None
 
 
 class SystemIdentity(ResultsPart):
-    """The system that was graded."""
+    """Graded system."""
 
     name: str
     version: str
@@ -41,7 +41,7 @@ class SystemIdentity(ResultsPart):
 
 
 class Platform(ResultsPart):
-    """What the run was computed on."""
+    """Platform on which the run was computed."""
 
     python: str
     numpy: str
@@ -52,7 +52,7 @@ class Platform(ResultsPart):
 
 
 class InputGroup(ResultsPart):
-    """Where a group of inputs comes from."""
+    """Source of a group of inputs."""
 
     group: str
     trust: Trust
@@ -62,9 +62,10 @@ class InputGroup(ResultsPart):
 class Criterion(ResultsPart):
     """A value against its limits. `pantograph` is 0 for the line; `item` counts droppers or modes from 1.
 
-    `spread` is the largest departure from the value when the evaluated stretch is shifted along the line.
-    `uncertainty` is the half-width of the value's 95 % interval from the length of the record; `baseline` is the value
-    of earlier results, if the limits are how far the value may have drifted from it.
+    `discretisation_error` is the change when element length and time step are halved. `spread` is the largest change
+    when the analysis section is shifted along the line. `uncertainty` is the half-width of the 95 % interval from the
+    length of the record. `close` has a remark on each of these errors that exceeds the distance from the nearer limit.
+    `baseline` is the value of earlier results, if the limits bound the drift from it.
     """
 
     quantity: str
@@ -82,6 +83,7 @@ class Criterion(ResultsPart):
     spread: float | None = None
     reason: str | None
     uncertainty: float | None = None
+    close: list[str] = []
     baseline: float | None = None
 
 
@@ -95,7 +97,7 @@ class FilterFacts(ResultsPart):
 
 
 class RunFacts(ResultsPart):
-    """How a case was computed; what a system does not say is null."""
+    """Computation of a case; unknown facts are null."""
 
     simulated_s: float | None
     wall_s: float | None
@@ -108,7 +110,7 @@ class RunFacts(ResultsPart):
 
 
 class Spectrum(ResultsPart):
-    """Single-sided amplitude spectrum of the delivered force about its mean, over the evaluated stretch."""
+    """Single-sided amplitude spectrum of the delivered force about its mean, over the analysis section."""
 
     frequency_Hz: list[float]
     amplitude_N: list[float]
@@ -122,7 +124,7 @@ class Histogram(ResultsPart):
 
 
 class Traces(ResultsPart):
-    """What is drawn of one pantograph."""
+    """Curves of one pantograph over the analysis section."""
 
     position_m: list[float]
     force_N: list[float]
@@ -143,18 +145,18 @@ class UpliftTrace(ResultsPart):
 
 
 class Series(ResultsPart):
-    """Data of a chart. `boxes` draws a box of the values of each x; `bars` stand side by side at the ticks."""
+    """Data of a chart. `boxes` draws a box plot of the values at each x; `bars` stand side by side at the ticks."""
 
     label: str
     style: Literal["line", "points", "boxes", "bars"]
     x: list[float]
     y: list[float]
     error: list[float] | None = None
-    """Half the length of each point's error bar."""
+    """Half the length of the error bar of each point."""
 
 
 class Mark(ResultsPart):
-    """A value that a publication prints, or a limit: a line across a chart, or a band where `high` is given."""
+    """A published value or a limit: a line across a chart, or a band if `high` is given."""
 
     label: str
     axis: Literal["x", "y"]
@@ -163,7 +165,7 @@ class Mark(ResultsPart):
 
 
 class Chart(ResultsPart):
-    """A figure of a study."""
+    """Figure of a study."""
 
     caption: str
     alternative: str
@@ -179,7 +181,7 @@ class Chart(ResultsPart):
 
 
 class TextTable(ResultsPart):
-    """A table of a study, ready to be printed."""
+    """Table of a study as text."""
 
     caption: str
     columns: list[str]
@@ -187,7 +189,7 @@ class TextTable(ResultsPart):
 
 
 class CaseResult(ResultsPart):
-    """All of one case. In `quantities`, `skipped` and `traces`, the key is the pantograph, `0` the line."""
+    """Result of one case. Keys of `quantities`, `skipped` and `traces` are the pantographs; `0` is the line."""
 
     id: str
     title: str
@@ -202,7 +204,9 @@ class CaseResult(ResultsPart):
     skipped: dict[Owner, dict[str, str]]
     spread: Annotated[
         dict[Owner, dict[str, float]],
-        Field(default_factory=dict, description="departure when the stretch is shifted, as in `quantities`"),
+        Field(
+            default_factory=dict, description="largest change when the analysis section is shifted, as in `quantities`"
+        ),
     ]
     uncertainty: Annotated[
         dict[Owner, dict[str, float]],
@@ -216,7 +220,7 @@ class CaseResult(ResultsPart):
 
 
 class Results(ResultsPart):
-    """All of a run of the suite."""
+    """Results of a run of the suite."""
 
     schema_: Annotated[Literal["pantocheck.results/1"], Field(alias="schema")] = "pantocheck.results/1"
     suite: Suite
@@ -229,9 +233,9 @@ class Results(ResultsPart):
     cases: list[CaseResult]
 
     def to_dict(self) -> dict[str, Any]:
-        """The results as pages take them: plain lists, dictionaries, text and numbers, in the order of the format."""
+        """Results as plain lists, dictionaries, text and numbers, in the order of the format."""
         return self.model_dump(mode="json", by_alias=True)
 
     def to_json(self) -> bytes:
-        """Content of results.json: the same results give the same bytes."""
+        """Content of results.json; the same results give the same bytes."""
         return (json.dumps(self.to_dict(), indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()

@@ -1,132 +1,145 @@
-"""What is drawn of a run: short, rounded series, so that a page stays small and the bytes stay the same."""
+"""Curves for the figures of a run: short, rounded series, so that pages stay small and their bytes reproducible."""
+
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.bands import amplitude_spectrum
-from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE, LowPass
-from pantocheck.conformance.quantities.signals import EXTENDED_CUTOFF_HZ, ForceSignals
+from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE
+from pantocheck.conformance.quantities.signals import (
+    EXTENDED_CUTOFF_HZ,
+    SUPPORT_TOLERANCE_M,
+    ForceSignals,
+    PantographSignals,
+)
 from pantocheck.conformance.quantities.statistics import force_histogram
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
-from pantocheck.conformance.records.record_signals import line_signals, pantograph_signals
-from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.records.measured.pooled_signals import PooledSignals
+from pantocheck.conformance.records.measured.record_preparation import PreparedRecord
+from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.results.results_format import Histogram, Spectrum, Traces, UpliftTrace
 
-MOST_POINTS = 1500
+MAX_POINTS = 1500
+"""Approximate number of points in a curve."""
 
 LONG_STEP = 10
-"""Up to this many samples to one that is drawn, every k-th shows the force well enough."""
+"""Up to this ratio of samples to points, every k-th sample shows the force well enough."""
 
 
-def build_pantograph_traces(record: Record, low_pass: LowPass, supports: list[float]) -> dict[str, Traces]:
-    """Force, spectrum and histogram of every pantograph over the evaluated stretch; none where it is not covered.
+def build_pantograph_traces(signals: RecordSignals, supports: Sequence[float]) -> dict[str, Traces]:
+    """Force, spectrum and histogram of every pantograph that covers the analysis section.
 
     Parameters
     ----------
-    record : Record
-        Of a run or a measurement.
-    low_pass : LowPass
-        Filter of the graded force.
-    supports : list[float]
+    signals : RecordSignals
+        Signals of a run or a measurement.
+    supports : sequence of float
         Positions of the supports of the line [m].
     """
     traces = {}
-    start, end = record.evaluated
-    for pantograph in range(1, record.pantographs + 1):
-        signals = pantograph_signals(record, pantograph, low_pass)
+    for number, pantograph in signals.pantographs.items():
         try:
-            inside = signals.inside
+            position = pantograph.position[pantograph.inside]
         except QuantityUnavailable:
             continue
-        within = [x for x in supports if start - 1e-6 <= x <= end + 1e-6]
-        highest = min(EXTENDED_CUTOFF_HZ, HIGHEST_SHARE_OF_RATE * record.rate, record.filter_applied_Hz or np.inf)
-        traces[str(pantograph)] = build_signal_traces(
-            signals, signals.position[inside], within, amplitude_spectrum(signals.delivered, record.rate, highest)
-        )
+        within = select_supports(supports, pantograph.section)
+        traces[str(number)] = _build_traces(pantograph, position, within, _spectrum(pantograph))
     return traces
 
 
-def build_signal_traces(
+def build_measured_traces(prepared: PreparedRecord, supports: Sequence[float]) -> dict[str, Traces]:
+    """Force, spectrum and histogram of every pantograph of a measured record; see `build_pantograph_traces`."""
+    within = select_supports(supports, prepared.section)
+    return {
+        str(number): _build_traces(pooled, pooled.position, within, _pooled_spectrum(pooled))
+        for number, pooled in prepared.pantographs.items()
+        if pooled.parts
+    }
+
+
+def build_uplift_traces(signals: RecordSignals) -> list[UpliftTrace]:
+    """Uplift at every support of the analysis section, over the whole record."""
+    try:
+        supports, uplift = signals.line.supports, signals.line.uplift
+    except QuantityUnavailable:
+        return []
+    return [
+        UpliftTrace(support_m=float(x), time_s=thin_series(signals.record.time), uplift_mm=thin_series(1e3 * trace))
+        for x, trace in zip(supports, uplift, strict=True)
+    ]
+
+
+def select_supports(supports: Sequence[float], section: tuple[float, float]) -> list[float]:
+    """Positions of the supports inside a section, both ends included [m]."""
+    start, end = section
+    return [x for x in supports if start - SUPPORT_TOLERANCE_M <= x <= end + SUPPORT_TOLERANCE_M]
+
+
+def thin_series(series: RealArray) -> list[float]:
+    """Every k-th value, at most `MAX_POINTS`, rounded to six significant digits."""
+    step = max(1, -(-series.size // MAX_POINTS))
+    return [float(f"{value:.6g}") for value in series[::step]]
+
+
+def _build_traces(
     signals: ForceSignals, position: RealArray, supports: list[float], spectrum: tuple[RealArray, RealArray]
 ) -> Traces:
-    """What is drawn of one pantograph.
-
-    Parameters
-    ----------
-    signals : ForceSignals
-        That are evaluated.
-    position : ndarray
-        Of their samples along the track [m].
-    supports : list[float]
-        Positions of the supports there [m].
-    spectrum : tuple[ndarray, ndarray]
-        Frequencies [Hz] and amplitudes [N]; empty if there is none.
-    """
     try:
         graded = signals.graded
     except QuantityUnavailable:
         graded = None
-    frequency, amplitude = _peaks(*spectrum)
-    at = _drawn(signals.delivered)
+    frequency, amplitude = _keep_peaks(*spectrum)
+    drawn = _select_samples(signals.delivered)
     return Traces(
-        position_m=thin_series(position[at]),
-        force_N=thin_series(signals.delivered[at]),
-        force_20_N=None if graded is None else thin_series(graded[at]),
+        position_m=thin_series(position[drawn]),
+        force_N=thin_series(signals.delivered[drawn]),
+        force_20_N=None if graded is None else thin_series(graded[drawn]),
         mean_N=float(signals.delivered.mean()),
         std_N=None if graded is None else float(graded.std()),
         supports_m=supports,
         spectrum=Spectrum(frequency_Hz=thin_series(frequency), amplitude_N=thin_series(amplitude)),
-        histogram=None if graded is None else _histogram(graded),
+        histogram=None if graded is None else _build_histogram(graded),
     )
 
 
-def build_uplift_traces(record: Record) -> list[UpliftTrace]:
-    """Uplift at every support of the evaluated spans, over the whole record."""
-    if record.support_position is None:
-        return []
-    start, end = record.evaluated
-    positions = [float(x) for x in record.support_position if start - 1e-6 <= x <= end + 1e-6]
-    try:
-        uplift = line_signals(record).uplift
-    except QuantityUnavailable:
-        return []
-    return [
-        UpliftTrace(support_m=x, time_s=thin_series(record.time), uplift_mm=thin_series(1e3 * trace))
-        for x, trace in zip(positions, uplift, strict=True)
-    ]
+def _spectrum(signals: PantographSignals) -> tuple[RealArray, RealArray]:
+    """Frequencies [Hz] and amplitudes [N] up to 50 Hz, or up to the highest frequency that is known."""
+    rate = signals.force.rate
+    highest = min(EXTENDED_CUTOFF_HZ, HIGHEST_SHARE_OF_RATE * rate, signals.filter_applied_Hz or np.inf)
+    return amplitude_spectrum(signals.delivered, rate, highest)
 
 
-def thin_series(series: RealArray) -> list[float]:
-    """Every k-th value, at most about 1500, rounded to six significant digits."""
-    step = max(1, -(-series.size // MOST_POINTS))
-    return [float(f"{value:.6g}") for value in series[::step]]
+def _pooled_spectrum(pooled: PooledSignals) -> tuple[RealArray, RealArray]:
+    """Spectrum of a record in one part; empty for several parts, whose spectral lines differ."""
+    return _spectrum(pooled.parts[0]) if len(pooled.parts) == 1 else (np.empty(0), np.empty(0))
 
 
-def _drawn(force: RealArray) -> NDArray[np.intp]:
-    """Samples of a long record that are drawn, at most 1500: the lowest and the highest of every few neighbours.
+def _select_samples(force: RealArray) -> NDArray[np.intp]:
+    """Indices of the drawn samples; of a long record, the lowest and the highest of every few neighbours.
 
-    A record of minutes thinned evenly would not show the one peak that its extremes are about.
+    Every k-th sample of a record of minutes would not show the one peak that decides its extremes.
     """
-    if force.size <= LONG_STEP * MOST_POINTS:
+    if force.size <= LONG_STEP * MAX_POINTS:
         return np.arange(force.size)
-    step = -(-force.size // (MOST_POINTS // 2))
-    found = {
+    step = -(-force.size // (MAX_POINTS // 2))
+    extremes = {
         first + int(extreme(force[first : first + step]))
         for first in range(0, force.size, step)
         for extreme in (np.argmin, np.argmax)
     }
-    return np.array(sorted(found), dtype=np.intp)
+    return np.array(sorted(extremes), dtype=np.intp)
 
 
-def _peaks(frequency: RealArray, amplitude: RealArray) -> tuple[RealArray, RealArray]:
-    """The highest line of every k neighbours: thinning a spectrum must not lose a peak."""
-    step = max(1, -(-frequency.size // MOST_POINTS))
+def _keep_peaks(frequency: RealArray, amplitude: RealArray) -> tuple[RealArray, RealArray]:
+    """The highest line of every k neighbours, so that a thinned spectrum keeps its peaks."""
+    step = max(1, -(-frequency.size // MAX_POINTS))
     firsts = range(0, frequency.size, step)
-    at = np.array([first + int(np.argmax(amplitude[first : first + step])) for first in firsts], dtype=int)
-    return frequency[at], amplitude[at]
+    peaks = np.array([first + int(np.argmax(amplitude[first : first + step])) for first in firsts], dtype=int)
+    return frequency[peaks], amplitude[peaks]
 
 
-def _histogram(force: RealArray) -> Histogram:
+def _build_histogram(force: RealArray) -> Histogram:
     edges, share = force_histogram(force)
     return Histogram(edges_N=thin_series(edges), share_pct=thin_series(share))

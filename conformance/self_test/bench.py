@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import Final
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.consistency.record_checks import check_record
-from pantocheck.conformance.grading.case_grading import grade_case, grade_criteria
+from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
+from pantocheck.conformance.grading.case_grading import grade_case, grade_evaluation
 from pantocheck.conformance.grading.extended_band import WARNING_PREFIX
 from pantocheck.conformance.grading.verdicts import Verdict, worst_verdict
 from pantocheck.conformance.input_files.input_error import InputError
@@ -121,18 +121,17 @@ def _row(mutant: Mutant, case: Case, right: Record) -> Row:
     except InputError as error:  # what the suite refuses to read: the same as a case that ends in error
         caught = mutant.caught_by == "record file"
         return Row(mutant, case.id, "error", "skip", (), ("record file",), caught, f"{error.where}: {error.found}")
-    result = grade_case(case, outcome, TRUST)
-    criteria = grade_criteria(case, outcome, TRUST) if isinstance(outcome, Delivered) else []
-    outside = tuple(item.quantity for item in criteria if item.verdict == "fail")
-    record = outcome.record if isinstance(outcome, Delivered) else None
-    found = [] if record is None else check_record(case, record)
-    checks = tuple(finding.check for finding in found if finding.kind != "unchecked")
+    evaluation = CaseEvaluation(case, outcome if isinstance(outcome, Delivered) else Delivered())
+    result = grade_evaluation(evaluation, TRUST) if isinstance(outcome, Delivered) else grade_case(case, outcome, TRUST)
+    criteria = evaluation.grade_limits(TRUST)
+    outside = tuple(criterion.quantity for criterion in criteria if criterion.verdict == "fail")
+    checks = tuple(name for name, finding in evaluation.findings.items() if finding.kind != "unchecked")
     reasons: tuple[str, ...] = checks if result.verdict == "error" else (*checks, *(["limits"] if outside else []))
     return Row(
         mutant,
         case.id,
         result.verdict,
-        worst_verdict(item.verdict for item in criteria),
+        worst_verdict(criterion.verdict for criterion in criteria),
         outside,
         checks,
         mutant.caught_by is None or (result.verdict in {"fail", "error"} and mutant.caught_by in reasons),

@@ -9,8 +9,8 @@ from pantocheck.conformance.cases.library import library_folder
 from pantocheck.conformance.cases.study_tables import DampingSensitivity
 from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.quantities.bands import BAND_QUANTITIES
-from pantocheck.conformance.quantities.registry import table_quantities
 from pantocheck.conformance.quantities.evaluation import LINE, Value
+from pantocheck.conformance.quantities.registry import table_quantities
 from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.results.outcome import Delivered, Outcome, StudyResult, missing_record_reason
 from pantocheck.conformance.results.results_format import TextTable

@@ -7,10 +7,9 @@ import numpy as np
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import DampingChange
-from pantocheck.conformance.quantities.filters import filter_force
-from pantocheck.conformance.quantities.signals import EXTENDED_CUTOFF_HZ
-from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.quantities.evaluation import LINE, Value
+from pantocheck.conformance.quantities.signals import EXTENDED_CUTOFF_HZ, ForceChannel
+from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.results.results_format import Chart, Series
 from pantocheck.conformance.results.traces import thin_series
@@ -76,7 +75,7 @@ def trailing_force(case: Case, study: DampingChange, runs: Mapping[str, Delivere
                 continue
             try:
                 low_pass = replace(case.file.filter.low_pass, cutoff_Hz=cutoff)
-                force = filter_force(record.force[-1], record.rate, low_pass, record.filter_applied_Hz)
+                force = ForceChannel(record.force[-1], record.rate, low_pass, record.filter_applied_Hz).graded
             except QuantityUnavailable:
                 continue
             inside = np.flatnonzero((record.position[-1] >= start) & (record.position[-1] <= end))

@@ -151,7 +151,7 @@ def test_truncated_record_never_passes(case_250, wave):
     assert not result.criteria
     assert result.reason == (
         "the record of pantograph 1 is cut short: the record covers 60 m to 309.931 m; "
-        "the evaluated stretch is 240 m to 360 m"
+        "the analysis section is 240 m to 360 m"
     )
 
 

@@ -1,5 +1,5 @@
-"""Measured records: sampled by distance, with gaps and changes of speed, filtered when recorded, of some length.
+"""Measured records: sampled by time or distance, with gaps and changes of speed, filtered by the measuring chain.
 
-What the line sees is cut out of what was recorded, each cut is said, and the length of what is left decides how far
-its statistics can be trusted. A simulated record goes through the same and comes out as it went in.
+The usable parts of a record are selected and every cut is reported. Their length decides the uncertainty of the
+statistics. A simulated record passes through unchanged.
 """

@@ -98,7 +98,7 @@ def bootstrap_uncertainties(signals: PooledSignals, block_s: float, digest: str)
     """
     parts = signals.parts
     replicates = (
-        _draw_blocks([part.delivered.size for part in parts], block_s * parts[0].rate, digest) if parts else None
+        _draw_blocks([part.delivered.size for part in parts], block_s * parts[0].force.rate, digest) if parts else None
     )
     if replicates is None:
         return {}

@@ -1,4 +1,4 @@
-"""Recognising a force that the measuring chain has low-passed at 20 Hz."""
+"""Detection of a force that the measuring chain has low-passed at 20 Hz."""
 
 from dataclasses import replace
 
@@ -9,46 +9,55 @@ from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE
 from pantocheck.conformance.records.measured.pooled_signals import PooledSignals
 
 FILTERED_RATIO = 0.08
-"""Rms at 30-50 Hz over rms at 5-20 Hz below which a force has been low-passed, whatever its sidecar says.
+"""RMS at 30-50 Hz over RMS at 5-20 Hz below which a force counts as low-passed, whatever its sidecar states.
 
-The force of the reference simulator has 0.26 to 0.40 there (EN 50318:2002 at 250 and 300 km/h, AC simple at
-320 km/h), and 0.02 to 0.08 after a filter of order 4 or 6 at 20 Hz. If a sidecar says "none" and is right, nothing but
-the numbers above 20 Hz is lost."""
+The force of the reference simulator has 0.26 to 0.40 (EN 50318:2002 at 250 and 300 km/h, AC simple at 320 km/h), and
+0.02 to 0.08 after a filter of order 4 or 6 at 20 Hz. If a sidecar correctly states "none", only the numbers above 20 Hz
+are lost."""
 
 
-def detect_filtered(pooled: PooledSignals, who: str, warnings: list[str]) -> PooledSignals:
-    """Signals with the filter they have really been through: a sidecar may not know of the measuring chain's.
+def detect_filtered(pooled: PooledSignals, name: str) -> tuple[PooledSignals, list[str]]:
+    """Detect a filter of the measuring chain that the sidecar does not state.
 
     Parameters
     ----------
     pooled : PooledSignals
         Signals of one pantograph.
-    who : str
-        It is, for messages.
-    warnings : list[str]
-        Is told if the force had been filtered.
+    name : str
+        Name of the pantograph in messages.
+
+    Returns
+    -------
+    pooled : PooledSignals
+        Signals with the filter that was applied.
+    warnings : list of str
+        A warning if an unstated filter was detected.
     """
-    if not pooled.parts or pooled.filter_applied_Hz is not None or pooled.parts[0].rate * HIGHEST_SHARE_OF_RATE < 50:
-        return pooled
-    upper, inner = (_leakless_rms(pooled, low, high) for low, high in ((30, 50), (5, 20)))
-    # Without content at 5-20 Hz there is nothing to compare with.
+    if not pooled.parts or pooled.filter_applied_Hz is not None:
+        return pooled, []
+    channel = pooled.parts[0].force
+    if channel.rate * HIGHEST_SHARE_OF_RATE < 50:
+        return pooled, []
+    upper, inner = (_leakage_free_rms(pooled, low, high) for low, high in ((30, 50), (5, 20)))
+    # Without content at 5-20 Hz there is no reference.
     if inner <= 1e-3 * float(pooled.delivered.std()) or upper > FILTERED_RATIO * inner:
-        return pooled
-    cutoff = pooled.parts[0].low_pass.cutoff_Hz
-    warnings.append(
-        f"the force of {who} has nothing at 30-50 Hz ({upper:.2g} N, {inner:.3g} N at 5-20 Hz): it is taken as "
-        f"filtered at {cutoff:g} Hz by the measuring chain, so that nothing is said of what lies above"
+        return pooled, []
+    cutoff = channel.low_pass.cutoff_Hz
+    warning = (
+        f"the force of {name} has no content at 30-50 Hz ({upper:.2g} N, {inner:.3g} N at 5-20 Hz): it is taken as "
+        f"filtered at {cutoff:g} Hz by the measuring chain; values above that are skipped"
     )
-    return replace(pooled, parts=tuple(replace(part, filter_applied_Hz=cutoff) for part in pooled.parts))
+    parts = tuple(replace(part, force=replace(part.force, filter_applied_Hz=cutoff)) for part in pooled.parts)
+    return replace(pooled, parts=parts), [warning]
 
 
-def _leakless_rms(pooled: PooledSignals, low: float, high: float) -> float:
-    """Rms in a band [N] through a Hann window: where a stretch begins and ends must not look like content."""
-    power, weight = 0.0, 0
+def _leakage_free_rms(pooled: PooledSignals, low: float, high: float) -> float:
+    """RMS in a band [N] through a Hann window, so that the ends of a section do not appear as content."""
+    power, samples = 0.0, 0
     for part in pooled.parts:
-        segment = min(part.delivered.size, round(2 * part.rate))
-        frequency, density = welch(part.delivered, part.rate, nperseg=segment)
+        rate, force = part.force.rate, part.delivered
+        frequency, density = welch(force, rate, nperseg=min(force.size, round(2 * rate)))
         inside = (frequency >= low) & (frequency <= high)
-        power += part.delivered.size * float(density[inside].sum() * frequency[1])
-        weight += part.delivered.size
-    return float(np.sqrt(power / weight))
+        power += force.size * float(density[inside].sum() * frequency[1])
+        samples += force.size
+    return float(np.sqrt(power / samples))

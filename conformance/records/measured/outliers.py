@@ -1,4 +1,4 @@
-"""Outliers: samples that stand far out of their neighbours. They are marked, never removed: a peak may be real."""
+"""Outliers: samples far from their neighbours. They are reported but never removed, because a peak may be real."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,17 +7,17 @@ from scipy.signal import medfilt
 from pantocheck.conformance.array_types import RealArray
 
 NEIGHBOURS = 7
-"""Samples in the running median that a value is compared with."""
+"""Number of samples in the running median."""
 
 DEVIATIONS = 12.0
-"""Robust standard deviations from the running median: a normal force has none in a lifetime of samples."""
+"""Robust standard deviations from the running median beyond which a sample is an outlier."""
 
-LEAST_N = 50.0
-"""Distance below which nothing is called an outlier [N]."""
+SMALLEST_DISTANCE_N = 50.0
+"""Smallest distance of an outlier from the running median [N]."""
 
 
 def find_outliers(force: RealArray) -> NDArray[np.intp]:
-    """Indices of the samples that stand out of their neighbours.
+    """Indices of the outliers.
 
     Parameters
     ----------
@@ -26,8 +26,8 @@ def find_outliers(force: RealArray) -> NDArray[np.intp]:
     """
     if force.size < NEIGHBOURS:
         return np.empty(0, dtype=np.intp)
-    away = np.abs(force - medfilt(force, NEIGHBOURS))
-    # 1.4826: the median of |x| of a normal variable to its standard deviation.
-    spread = 1.4826 * float(np.median(away))
-    inner = away[NEIGHBOURS // 2 : -(NEIGHBOURS // 2)]  # medfilt pads its ends with zeros
-    return np.flatnonzero(inner > max(DEVIATIONS * spread, LEAST_N)) + NEIGHBOURS // 2
+    distance = np.abs(force - medfilt(force, NEIGHBOURS))
+    # 1.4826: standard deviation of a normal variable over the median of its absolute value.
+    deviation = 1.4826 * float(np.median(distance))
+    inner = distance[NEIGHBOURS // 2 : -(NEIGHBOURS // 2)]  # medfilt pads its ends with zeros
+    return np.flatnonzero(inner > max(DEVIATIONS * deviation, SMALLEST_DISTANCE_N)) + NEIGHBOURS // 2

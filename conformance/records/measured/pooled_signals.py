@@ -1,4 +1,4 @@
-"""Several stretches of a record evaluated as one."""
+"""Signals of several usable sections of a record, evaluated as one."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,19 +11,19 @@ from pantocheck.conformance.quantities.unavailable import SectionNotCovered
 
 
 class NothingLeft(SectionNotCovered):
-    """No stretch of the record can be evaluated: there is no number that would describe it."""
+    """No section of the record can be evaluated, so that it has no statistics."""
 
 
 @dataclass(frozen=True)
 class PooledSignals:
-    """Signals of one pantograph over several stretches, each filtered on its own and cut to what is evaluated.
+    """Signals of one pantograph over several sections, each filtered on its own.
 
     Parameters
     ----------
-    parts : tuple[PantographSignals, ...]
-        The stretches, in running order.
+    parts : tuple of PantographSignals
+        Signals of the sections in running order.
     why_none : str
-        What a reader is told if there are none.
+        Reason shown to the reader if there are no sections.
     """
 
     parts: tuple[PantographSignals, ...]
@@ -31,22 +31,22 @@ class PooledSignals:
 
     @property
     def filter_applied_Hz(self) -> float | None:
-        """Cut-off of a low-pass the force has been through [Hz]; None: unfiltered."""
+        """Cut-off of the low-pass filter applied before delivery [Hz]; None: unfiltered."""
         return self._present()[0].filter_applied_Hz
 
     @property
     def delivered(self) -> RealArray:
-        """Force as delivered, stretch after stretch [N]."""
+        """Contact force as delivered, section after section [N]."""
         return np.concatenate([part.delivered for part in self._present()])
 
     @cached_property
     def graded(self) -> RealArray:
-        """Force through the filter (0-20 Hz) [N]."""
+        """Contact force after the filter (0-20 Hz) [N]."""
         return np.concatenate([part.graded for part in self._present()])
 
     @cached_property
     def extended(self) -> RealArray:
-        """Force through the same kind of filter at 50 Hz [N]."""
+        """Contact force after the same kind of filter at 50 Hz [N]."""
         return np.concatenate([part.extended for part in self._present()])
 
     @property
@@ -60,7 +60,7 @@ class PooledSignals:
         return np.concatenate([part.height for part in self._present()])
 
     def band(self, low: float, high: float) -> float:
-        """Rms of the force in a band [N]; the differences of the stretches' means belong to the lowest band."""
+        """RMS of the force in a band [N]; differences between the means of the sections belong to the lowest band."""
         sizes = np.array([part.delivered.size for part in self._present()], dtype=np.float64)
         powers = np.array([part.band(low, high) ** 2 for part in self.parts])
         power = float(np.average(powers, weights=sizes))
@@ -71,8 +71,8 @@ class PooledSignals:
 
     @property
     def seconds(self) -> float:
-        """How long all stretches last together [s]."""
-        return sum(part.delivered.size / part.rate for part in self.parts)
+        """Total duration of the sections [s]."""
+        return sum(part.delivered.size / part.force.rate for part in self.parts)
 
     def _present(self) -> tuple[PantographSignals, ...]:
         if not self.parts:

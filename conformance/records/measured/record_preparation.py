@@ -1,230 +1,232 @@
-"""From the samples of a record to signals that can be evaluated, and what had to be cut or marked."""
+"""Preparation of a measured record: from its samples to signals, with notes on every cut."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.filters import LowPass
-from pantocheck.conformance.quantities.signals import LineSignals, PantographSignals
+from pantocheck.conformance.quantities.signals import ForceChannel, LineSignals, PantographSignals
 from pantocheck.conformance.records.measured.filtered_force import detect_filtered
 from pantocheck.conformance.records.measured.outliers import find_outliers
 from pantocheck.conformance.records.measured.pooled_signals import PooledSignals
-from pantocheck.conformance.records.measured.sample_positions import missing_share, place_samples
+from pantocheck.conformance.records.measured.sample_positions import PlacedSamples, missing_share, place_samples
 from pantocheck.conformance.records.measured.usable_sections import (
     SHORTEST_S,
     UsableSection,
-    cut_section,
     find_usable_sections,
     local_speed,
+    resample_section,
 )
 from pantocheck.conformance.records.record import MAX_SAMPLES, RecordInvalid
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.samples import RecordSamples
 
 SETTLING_PERIODS = 2.0
-"""Periods of the cut-off after which the transient at the end of a filtered stretch has died out."""
+"""Periods of the cut-off after which the filter transient at the end of a section has decayed."""
 
 LEAST_COVERED = 0.5
-"""Share of the asked stretch that must be evaluated: statistics of less are those of another line."""
+"""Smallest share of the analysis section that must be evaluated."""
 
 FULLY_COVERED = 0.97
-"""Below this share it is said how much was evaluated; the transients at the ends of a record take less."""
+"""Coverage below this share is reported; the transients at the ends of a record take less."""
 
 
 @dataclass(frozen=True)
 class PreparedRecord:
-    """What can be evaluated of a record.
+    """Signals of a measured record.
 
     Parameters
     ----------
-    pantographs : dict[int, PooledSignals]
+    pantographs : dict of int to PooledSignals
         Signals by number from 1.
     line : LineSignals
         Uplift at the supports.
     rate : float
-        Samples per second after resampling [Hz].
+        Sampling rate after resampling [Hz].
     speed : float
-        Mean over what is evaluated, or the nominal one [m/s].
-    evaluated : tuple[float, float]
-        Start and end of the track that is evaluated, cuts included [m].
+        Mean speed of the steady part, or the nominal speed [m/s].
+    section : tuple of float
+        Start and end of the analysis section, cuts included [m].
     seconds : float
-        What is evaluated of the first pantograph lasts [s].
-    notes : tuple[str, ...]
-        What was done.
-    warnings : tuple[str, ...]
-        What should make a reader careful.
+        Evaluated duration of the first pantograph [s].
+    notes : tuple of str
+        Remarks on the preparation.
+    warnings : tuple of str
+        Caveats for the reader of the report.
     """
 
     pantographs: dict[int, PooledSignals]
     line: LineSignals
     rate: float
     speed: float
-    evaluated: tuple[float, float]
+    section: tuple[float, float]
     seconds: float
     notes: tuple[str, ...]
     warnings: tuple[str, ...]
 
 
+@dataclass(frozen=True)
+class _Settings:
+    """Rate [Hz], analysis section [m], filters and steady samples, common to all pantographs."""
+
+    rate: float
+    section: tuple[float, float]
+    low_pass: LowPass
+    filter_applied_Hz: float | None
+    steady: NDArray[np.bool_]
+
+
 def prepare_record(
     samples: RecordSamples, sidecar: RecordSidecar, low_pass: LowPass, speed_tolerance_pct: float
 ) -> PreparedRecord:
-    """Cut a record into stretches that can be evaluated, evenly sampled in time.
+    """Cut a record into usable sections, evenly sampled in time.
 
     Parameters
     ----------
     samples : RecordSamples
-        As read.
+        Samples as read.
     sidecar : RecordSidecar
-        What they are.
+        Sidecar of the record.
     low_pass : LowPass
         Filter of the graded force.
     speed_tolerance_pct : float
-        How far the speed may be off the nominal one where the record is evaluated [%].
+        Largest difference from the nominal speed in an evaluated section [%].
 
     Raises
     ------
     RecordInvalid
-        Time or position runs backwards, or no sample has both.
+        Time or position decreases, or no sample has both.
     """
-    notes: list[str] = []
-    warnings: list[str] = []
-    samples, time, position = place_samples(samples, sidecar, warnings)
-    rate = _round(1 / float(np.median(np.diff(time))))
+    placed = place_samples(samples, sidecar)
+    samples, time, position = placed.samples, placed.time, placed.position
+    rate = float(f"{1 / float(np.median(np.diff(time))):.6g}")
     if (time[-1] - time[0]) * rate > MAX_SAMPLES:
         raise RecordInvalid("time", f"{time[-1] - time[0]:.4g} s at {rate:.4g} Hz are more than {MAX_SAMPLES} samples")
     nominal = sidecar.speed_km_h / 3.6
     speed = samples.speed if samples.speed is not None else local_speed(time, position[0])
     steady = np.abs(speed / nominal - 1) <= speed_tolerance_pct / 100
-    if samples.time is None:
-        notes.append(
-            f"The record was sampled by distance; by its speed it was resampled to {rate:g} samples per second."
-        )
-    elif np.abs(np.diff(time) * rate - 1).max() > 0.02:
-        notes.append(f"The record was not evenly sampled; it was resampled to {rate:g} samples per second.")
+    warnings = [*placed.warnings]
     if not steady.all():
         warnings.append(
-            f"{missing_share(~steady)} of the record was cut: the speed is more than {speed_tolerance_pct:g} % off "
-            f"{sidecar.speed_km_h:g} km/h, first at {position[0][np.argmin(steady)]:.1f} m"
+            f"{missing_share(~steady)} of the record was cut: the speed differs by more than {speed_tolerance_pct:g} % "
+            f"from {sidecar.speed_km_h:g} km/h, first at {position[0][np.argmin(steady)]:.1f} m"
         )
-    start, end = _stretch_asked(sidecar, position)
-    asked = PantographSignals(
-        rate=rate, position=position[0], force=samples.force[0], evaluated=(start, end), low_pass=low_pass,
-        filter_applied_Hz=sidecar.low_passed_Hz,
-    )  # fmt: skip
-    pantographs = {
-        i + 1: _pantograph(samples, i, time, position[i], steady, asked, warnings)
-        for i in range(samples.force.shape[0])
-    }
+    section = _analysis_section(sidecar, position)
+    settings = _Settings(rate, section, low_pass, sidecar.low_passed_Hz, steady)
+    pantographs = {}
+    for row in range(samples.force.shape[0]):
+        pantographs[row + 1], remarks = _prepare_pantograph(placed, row, settings)
+        warnings += remarks
+    line, remarks = _prepare_line(samples, section)
     first = pantographs[1]
     return PreparedRecord(
         pantographs=pantographs,
-        line=_line(samples, (start, end), warnings),
+        line=line,
         rate=rate,
         speed=float(speed[steady].mean()) if steady.any() else nominal,
-        evaluated=(start, end),
+        section=section,
         seconds=first.seconds,
-        notes=(*notes, *_length_note(first, nominal)),
-        warnings=tuple(warnings),
+        notes=(*_resampling_notes(placed, rate), *_length_note(first, nominal)),
+        warnings=(*warnings, *remarks),
     )
 
 
-def _stretch_asked(sidecar: RecordSidecar, position: RealArray) -> tuple[float, float]:
+def _analysis_section(sidecar: RecordSidecar, position: RealArray) -> tuple[float, float]:
+    """Section of the sidecar, or the track that all pantographs cross [m, m]."""
     if sidecar.evaluated_m is not None:
         return sidecar.evaluated_m[0], sidecar.evaluated_m[1]
     return float(position[:, 0].max()), float(position[:, -1].min())
 
 
-def _pantograph(
-    samples: RecordSamples,
-    at: int,
-    time: RealArray,
-    position: RealArray,
-    steady: NDArray[np.bool_],
-    asked: PantographSignals,
-    warnings: list[str],
-) -> PooledSignals:
-    """Signals of one pantograph over the stretches of its record."""
-    who, force = f"pantograph {at + 1}", samples.force[at]
-    height = None if samples.contact_height is None else samples.contact_height[at]
+def _prepare_pantograph(placed: PlacedSamples, row: int, settings: _Settings) -> tuple[PooledSignals, list[str]]:
+    """Signals of one pantograph over the usable sections of its record, and warnings."""
+    name, force, position = f"pantograph {row + 1}", placed.samples.force[row], placed.position[row]
+    heights = placed.samples.contact_height
     present = np.isfinite(force)
+    warnings = []
     if not present.all():
         warnings.append(
-            f"{missing_share(~present)} of the force of {who} is missing, first at {position[~present][0]:.1f} m"
+            f"{missing_share(~present)} of the force of {name} is missing, first at {position[~present][0]:.1f} m"
         )
-    _mark_outliers(force[present], position[present], who, warnings)
-    runs = find_usable_sections(time, present & steady)
-    stretches = [cut_section(run, time, position, force, height, asked.rate) for run in runs]
-    parts = [part for stretch in stretches for part in _evaluated_part(stretch, asked)]
-    if len(runs) > 1:
-        warnings.append(f"{who} is evaluated over {len(parts)} stretches between gaps, each filtered on its own")
-    covered = sum(part.evaluated[1] - part.evaluated[0] for part in parts) / (asked.evaluated[1] - asked.evaluated[0])
+    warnings += _outlier_warnings(force[present], position[present], name)
+    sections = find_usable_sections(placed.time, present & settings.steady)
+    parts = []
+    for indices in sections:
+        channels = UsableSection(position[indices], force[indices], None if heights is None else heights[row][indices])
+        parts += _cut_transients(resample_section(placed.time[indices], channels, settings.rate), settings)
+    if len(sections) > 1:
+        warnings.append(f"{name} is evaluated over {len(parts)} sections between gaps, each filtered on its own")
+    start, end = settings.section
+    covered = sum(part.section[1] - part.section[0] for part in parts) / (end - start)
     if parts and covered < LEAST_COVERED:
-        why = (
-            f"only {100 * covered:.2g} % of {asked.evaluated[0]:.6g} m to {asked.evaluated[1]:.6g} m can be evaluated: "
-            "name a stretch with evaluated_m that the record covers"
+        reason = (
+            f"only {100 * covered:.2g} % of {start:.6g} m to {end:.6g} m can be evaluated: "
+            "set evaluated_m to a section that the record covers"
         )
-        return PooledSignals((), why)
+        return PooledSignals((), reason), warnings
     if parts and covered < FULLY_COVERED:
-        warnings.append(f"{who} is evaluated over {100 * covered:.3g} % of the stretch that was asked for")
-    pooled = PooledSignals(
-        tuple(parts),
-        f"no stretch of {SHORTEST_S:g} s inside {asked.evaluated[0]:.6g} m to {asked.evaluated[1]:.6g} m is without "
-        "gaps and at the nominal speed",
+        warnings.append(f"{name} is evaluated over {100 * covered:.3g} % of the analysis section")
+    reason = (
+        f"no section of {SHORTEST_S:g} s inside {start:.6g} m to {end:.6g} m is without gaps and at the nominal speed"
     )
-    return detect_filtered(pooled, who, warnings)
+    pooled, remarks = detect_filtered(PooledSignals(tuple(parts), reason), name)
+    return pooled, [*warnings, *remarks]
 
 
-def _evaluated_part(stretch: UsableSection, asked: PantographSignals) -> list[PantographSignals]:
-    """The part of a stretch that is evaluated: away from its ends, where the filter's transients are."""
-    settling = round(SETTLING_PERIODS / asked.low_pass.cutoff_Hz * asked.rate)
-    if stretch.position.size <= 2 * settling + 2:
+def _cut_transients(usable: UsableSection, settings: _Settings) -> list[PantographSignals]:
+    """Signals of a usable section, evaluated away from the filter transients at its ends; empty if too short."""
+    settling = round(SETTLING_PERIODS / settings.low_pass.cutoff_Hz * settings.rate)
+    position = usable.position
+    if position.size <= 2 * settling + 2:
         return []
-    start = max(asked.evaluated[0], float(stretch.position[settling]))
-    end = min(asked.evaluated[1], float(stretch.position[-1 - settling]))
-    inside = (stretch.position >= start - 1e-9) & (stretch.position < end - 1e-9)
-    if inside.sum() < SHORTEST_S * asked.rate:
+    start = max(settings.section[0], float(position[settling]))
+    end = min(settings.section[1], float(position[-1 - settling]))
+    inside = (position >= start - 1e-9) & (position < end - 1e-9)
+    if inside.sum() < SHORTEST_S * settings.rate:
         return []
+    force = ForceChannel(usable.force, settings.rate, settings.low_pass, settings.filter_applied_Hz)
+    return [PantographSignals(position, force, (start, end), usable.height)]
+
+
+def _outlier_warnings(force: RealArray, position: RealArray, name: str) -> list[str]:
+    outliers = find_outliers(force)
+    if not outliers.size:
+        return []
+    places = ", ".join(f"{force[i]:.4g} N at {position[i]:.1f} m" for i in outliers[:5])
     return [
-        replace(
-            asked, position=stretch.position, force=stretch.force, contact_height=stretch.height,
-            evaluated=(start, end),
-        )
-    ]  # fmt: skip
+        f"the force of {name} has {outliers.size} outlier{'s' if outliers.size > 1 else ''}, which are graded: {places}"
+        f"{', ...' if outliers.size > 5 else ''}; write nan for a sample that is not a force"
+    ]
 
 
-def _mark_outliers(force: RealArray, position: RealArray, who: str, warnings: list[str]) -> None:
-    found = find_outliers(force)
-    if found.size:
-        places = ", ".join(f"{force[i]:.4g} N at {position[i]:.1f} m" for i in found[:5])
-        warnings.append(
-            f"the force of {who} has {found.size} outlier{'s' if found.size > 1 else ''}, graded all the same: {places}"
-            f"{', ...' if found.size > 5 else ''}; write nan for a sample that is not a force"
-        )
-
-
-def _line(samples: RecordSamples, evaluated: tuple[float, float], warnings: list[str]) -> LineSignals:
-    """Uplift where it was measured; a missing value is taken as low, and said: it could have been the largest."""
+def _prepare_line(samples: RecordSamples, section: tuple[float, float]) -> tuple[LineSignals, list[str]]:
+    """Uplift of the measured supports, and warnings; missing values are replaced by the lowest one."""
     uplift = samples.uplift
     if uplift is None or samples.support_position is None:
-        return LineSignals(evaluated)
+        return LineSignals(section), []
     missing = ~np.isfinite(uplift)
+    warnings = []
     if missing.any():
         warnings.append(
             f"{missing_share(missing)} of the uplift is missing: the largest uplift may not have been recorded"
         )
     measured = ~missing.all(axis=1)
     lowest = np.where(missing[measured], np.inf, uplift[measured]).min(axis=1, keepdims=True)
-    filled = np.where(missing[measured], lowest, uplift[measured])
-    return LineSignals(evaluated, samples.support_position[measured], filled)
+    complete = np.where(missing[measured], lowest, uplift[measured])
+    return LineSignals(section, samples.support_position[measured], complete), warnings
+
+
+def _resampling_notes(placed: PlacedSamples, rate: float) -> list[str]:
+    if placed.samples.time is None:
+        return [f"The record was sampled by distance; by its speed it was resampled to {rate:g} samples per second."]
+    if np.abs(np.diff(placed.time) * rate - 1).max() > 0.02:
+        return [f"The record was not evenly sampled; it was resampled to {rate:g} samples per second."]
+    return []
 
 
 def _length_note(signals: PooledSignals, speed: float) -> list[str]:
     if not signals.parts:
         return []
     return [f"Evaluated: {signals.seconds:.4g} s, about {signals.seconds * speed / 1000:.3g} km of line."]
-
-
-def _round(rate: float) -> float:
-    return float(f"{rate:.6g}")

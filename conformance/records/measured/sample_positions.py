@@ -1,4 +1,6 @@
-"""When and where each sample of a measured record was taken."""
+"""Time and position of each sample of a measured record."""
+
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,57 +11,79 @@ from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.samples import RecordSamples, complete_samples
 
 
-def place_samples(
-    samples: RecordSamples, sidecar: RecordSidecar, warnings: list[str]
-) -> tuple[RecordSamples, RealArray, RealArray]:
-    """Samples that say when and where they are, their times [s] (n,) and positions [m] (p, n), both growing.
+@dataclass(frozen=True)
+class PlacedSamples:
+    """Samples with their time and position, both increasing.
 
     Parameters
     ----------
-    samples, sidecar : RecordSamples or RecordSidecar
-        Of a record.
-    warnings : list[str]
-        Is told what was left out.
+    samples : RecordSamples
+        Remaining samples.
+    time : (n,) ndarray
+        Time of each sample [s].
+    position : (p, n) ndarray
+        Position of each pantograph along the track [m].
+    warnings : tuple of str
+        Notes on discarded samples.
+    """
+
+    samples: RecordSamples
+    time: RealArray
+    position: RealArray
+    warnings: tuple[str, ...]
+
+
+def place_samples(samples: RecordSamples, sidecar: RecordSidecar) -> PlacedSamples:
+    """Determine time and position of the samples; samples without them are discarded.
+
+    Parameters
+    ----------
+    samples : RecordSamples
+        Samples of a record.
+    sidecar : RecordSidecar
+        Sidecar of the record.
 
     Raises
     ------
     RecordInvalid
-        Time or position runs backwards, or no two samples have both.
+        Time or position decreases, or fewer than two samples have both.
     """
-    axes = [a for a in (samples.time, samples.speed, samples.position) if a is not None]
+    warnings = []
+    axes = [axis for axis in (samples.time, samples.speed, samples.position) if axis is not None]
     known = np.all([np.isfinite(np.atleast_2d(axis)).all(axis=0) for axis in axes], axis=0)
     if known.sum() < 2:
-        raise RecordInvalid("time", "fewer than two samples say when or where they are")
+        raise RecordInvalid("time", "fewer than two samples have a time or position")
     if not known.all():
-        warnings.append(f"{missing_share(~known)} of the samples do not say when or where they are, and were left out")
+        warnings.append(f"{missing_share(~known)} of the samples have no time or position and were discarded")
         samples = samples.at(known)
     if samples.time is None and samples.speed is not None and not (samples.speed > 0).all():
-        warnings.append(f"{missing_share(samples.speed <= 0)} of the samples were left out: the train stands there")
+        warnings.append(f"{missing_share(samples.speed <= 0)} of the samples were discarded: the train stands still")
         samples = samples.at(samples.speed > 0)
     if samples.force.shape[1] < 2:
-        raise RecordInvalid("speed", "the train stands at nearly every sample")
+        raise RecordInvalid("speed", "the train stands still at nearly every sample")
     time, position = complete_samples(samples, sidecar)
     if samples.time is not None:
-        samples, time, position = _without_steps(samples, time, position)
+        samples, time, position = _smooth_steps(samples, time, position)
     for name, axis in (("time", time[None]), ("position", position)):
         backwards = np.argwhere(np.diff(axis, axis=1).T <= 0)
         if backwards.size:
-            raise RecordInvalid(name, f"does not grow from sample {backwards[0][0] + 1} to the next")
-    return samples, time, position
+            raise RecordInvalid(name, f"does not increase from sample {backwards[0][0] + 1} to the next")
+    return PlacedSamples(samples, time, position, tuple(warnings))
 
 
-def _without_steps(
+def _smooth_steps(
     samples: RecordSamples, time: RealArray, position: RealArray
 ) -> tuple[RecordSamples, RealArray, RealArray]:
-    """Positions that grow: a counter of wheel turns stands still for some samples and then steps forwards."""
-    grown = np.diff(position[0], prepend=-np.inf) > 0
-    if grown.all() or (np.diff(position, axis=1) < 0).any() or grown.sum() < 2:
+    """Interpolate positions of a wheel-pulse counter, which stay constant for some samples and then step forwards."""
+    stepped = np.diff(position[0], prepend=-np.inf) > 0
+    if stepped.all() or (np.diff(position, axis=1) < 0).any() or stepped.sum() < 2:
         return samples, time, position
-    # Nothing is known of the place after the last step.
-    within = np.arange(time.size) <= np.flatnonzero(grown)[-1]
-    smooth = np.vstack([np.interp(time[within], time[grown], row[grown]) for row in position])
+    # The position after the last step is unknown.
+    within = np.arange(time.size) <= np.flatnonzero(stepped)[-1]
+    smooth = np.vstack([np.interp(time[within], time[stepped], row[stepped]) for row in position])
     return samples.at(within), time[within], smooth
 
 
-def missing_share(chosen: NDArray[np.bool_]) -> str:
-    return f"{100 * chosen.mean():.2g} %"
+def missing_share(mask: NDArray[np.bool_]) -> str:
+    """Share of the samples in a mask as text."""
+    return f"{100 * mask.mean():.2g} %"

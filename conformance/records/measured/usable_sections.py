@@ -1,4 +1,4 @@
-"""Stretches of a measured record that can be evaluated: without gaps, at the speed of the case, evenly sampled."""
+"""Usable sections of a measured record: without gaps, at the speed of the case, evenly sampled."""
 
 from dataclasses import dataclass
 
@@ -10,28 +10,28 @@ from scipy.ndimage import uniform_filter1d
 from pantocheck.conformance.array_types import RealArray
 
 SHORT_GAP_S = 0.01
-"""A gap up to this long [s] is bridged: a fifth of a period at 20 Hz cannot hide anything below that."""
+"""Longest gap that is bridged [s]: a fifth of a period at 20 Hz cannot hide content below 20 Hz."""
 
 GAP_STEPS = 1.5
-"""Samples farther apart than this many median steps have a gap between them."""
+"""Distance of two samples, in median steps, from which there is a gap between them."""
 
 SHORTEST_S = 1.0
-"""A stretch must last this long [s]: its lowest band, 0-5 Hz, then holds a few spectral lines."""
+"""Shortest usable section [s]: its lowest band, 0-5 Hz, then has a few spectral lines."""
 
 SPEED_AVERAGED_S = 1.0
-"""Speed is averaged over this long [s], so that the jitter of a position sensor is not taken for a change of speed."""
+"""Averaging time of the speed [s], so that the jitter of a position sensor is not taken for a change of speed."""
 
 
 @dataclass(frozen=True)
 class UsableSection:
-    """A part of one pantograph's record, evenly sampled.
+    """Evenly sampled section of the record of one pantograph.
 
     Parameters
     ----------
     position : (n,) ndarray
         Contact point along the track [m].
     force : (n,) ndarray
-        [N].
+        Contact force [N].
     height : (n,) ndarray or None
         Height of the contact point [m], or None.
     """
@@ -49,49 +49,57 @@ def local_speed(time: RealArray, position: RealArray) -> RealArray:
 
 
 def find_usable_sections(time: RealArray, usable: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
-    """Indices of the usable samples between each two gaps; a gap of up to `SHORT_GAP_S` is no gap.
+    """Indices of the usable samples between gaps; gaps of up to `SHORT_GAP_S` are ignored.
 
     Parameters
     ----------
     time : (n,) ndarray
-        Increasing [s].
+        Increasing time [s].
     usable : (n,) ndarray
-        Whether a sample may be evaluated.
+        Whether each sample may be evaluated.
+
+    Returns
+    -------
+    list of ndarray
+        Indices of the samples of each section that lasts at least `SHORTEST_S`.
     """
-    chosen = np.flatnonzero(usable)
-    if chosen.size == 0:
+    indices = np.flatnonzero(usable)
+    if indices.size == 0:
         return []
     step = float(np.median(np.diff(time)))
     longest = max(GAP_STEPS * step, SHORT_GAP_S + step)
-    breaks = np.flatnonzero(np.diff(time[chosen]) > longest)
-    return [run for run in np.split(chosen, breaks + 1) if time[run[-1]] - time[run[0]] >= SHORTEST_S]
+    breaks = np.flatnonzero(np.diff(time[indices]) > longest)
+    sections = np.split(indices, breaks + 1)
+    return [section for section in sections if time[section[-1]] - time[section[0]] >= SHORTEST_S]
 
 
-def cut_section(
-    run: NDArray[np.intp], time: RealArray, position: RealArray, force: RealArray, height: RealArray | None, rate: float
-) -> UsableSection:
-    """The samples of a run on a uniform time axis.
+def resample_section(time: RealArray, section: UsableSection, rate: float) -> UsableSection:
+    """Section on a uniform time axis.
 
-    Samples that are evenly spaced are taken as they are. Others are interpolated by monotone cubics, which do not
-    overshoot: a loss of contact stays one, and no extreme is made that was not recorded.
+    Evenly spaced samples are kept as they are. Others are interpolated by monotone cubics, which do not overshoot: a
+    contact loss remains one, and no extreme is created.
 
     Parameters
     ----------
-    run : ndarray
-        Indices of the samples.
-    time, position, force, height : (n,) ndarray or ndarray or None
-        Of one pantograph [s, m, N, m].
+    time : (n,) ndarray
+        Time of the samples [s].
+    section : UsableSection
+        Channels as recorded; a height with missing values is dropped.
     rate : float
-        Samples per second of the result [Hz].
+        Sampling rate of the result [Hz].
     """
-    at, height = time[run], None if height is None or not np.isfinite(height[run]).all() else height[run]
-    uniform = np.linspace(at[0], at[-1], at.size)
-    if np.abs(at - uniform).max() <= 0.01 / rate and abs((at.size - 1) / (at[-1] - at[0]) / rate - 1) < 1e-3:
-        return UsableSection(position[run], force[run], height)
-    even = at[0] + np.arange(int(np.floor((at[-1] - at[0]) * rate * (1 + 1e-12))) + 1) / rate
-    even[-1] = min(even[-1], at[-1])
+    height = section.height
+    if height is not None and not np.isfinite(height).all():
+        height = None
+    uniform = np.linspace(time[0], time[-1], time.size)
+    if np.abs(time - uniform).max() <= 0.01 / rate and abs((time.size - 1) / (time[-1] - time[0]) / rate - 1) < 1e-3:
+        return UsableSection(section.position, section.force, height)
+    even = time[0] + np.arange(int(np.floor((time[-1] - time[0]) * rate * (1 + 1e-12))) + 1) / rate
+    even[-1] = min(even[-1], time[-1])
 
-    def resampled(values: RealArray) -> RealArray:
-        return np.asarray(PchipInterpolator(at, values)(even))
+    def interpolate(values: RealArray) -> RealArray:
+        return np.asarray(PchipInterpolator(time, values)(even))
 
-    return UsableSection(resampled(position[run]), resampled(force[run]), None if height is None else resampled(height))
+    return UsableSection(
+        interpolate(section.position), interpolate(section.force), None if height is None else interpolate(height)
+    )

@@ -3,10 +3,10 @@
 from collections.abc import Mapping, Sequence
 
 from pantocheck.conformance.cases.limits import Limit
-from pantocheck.conformance.grading.case_grading import find_value
+from pantocheck.conformance.grading.criterion_grading import find_value
 from pantocheck.conformance.grading.verdicts import judge
-from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.evaluation import Value
+from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results.results_format import TextTable
 
 Values = Mapping[int, Mapping[str, Value]]

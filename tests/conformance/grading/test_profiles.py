@@ -153,7 +153,7 @@ def test_verdict_within_the_uncertainty_is_warned_of(train):
     for upper, warned in ((value.value + 0.5 * reach, True), (value.value + 2 * reach, False)):
         limit = Limit(quantity="cov_20", pantograph=1, upper=upper, trust="primary", source="own")
         results = graded(train(), limits=[limit])
-        assert any("a longer record could turn the verdict" in text for text in results.cases[0].warnings) == warned
+        assert any("a longer record could reverse the verdict" in text for text in results.cases[0].warnings) == warned
         assert by_quantity(results)["cov_20"].source == "own"
 
 
@@ -194,7 +194,7 @@ def test_bounds_in_the_wrong_order_are_no_bounds():
 def test_line_test_needs_a_fitting_pair(train):
     profile = load_profile("line-test")
     simulated = load_assessed_record(train(), profile, LineTable())
-    with pytest.raises(InputError, match="compares with a measured record, and none is given"):
+    with pytest.raises(InputError, match="compares with a measured record, but none is given"):
         assess_record(simulated, profile)
     faster = load_assessed_record(PASSING / "300.toml", profile, LineTable())
     with pytest.raises(InputError, match="it is of 300 km/h, train of 250 km/h"):

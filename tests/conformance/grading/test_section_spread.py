@@ -8,7 +8,7 @@ import pytest
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.grading.section_spread import section_spread
-from pantocheck.conformance.records.record_signals import evaluate_record
+from pantocheck.conformance.records.record_signals import RecordSignals, evaluate_record
 from pantocheck.conformance.reports.certificate.criteria_rows import shifted
 from pantocheck.conformance.results.outcome import Delivered
 
@@ -32,8 +32,7 @@ def test_stretches_are_shifted_span_by_span(growing):
 def test_spread_is_the_largest_departure(growing):
     """Spans 3-4 to 7-8 about 5-6: two spans, 2 N, either way; a sample of 0.07 m more or less gives 1e-3 N."""
     case, record = growing
-    values = evaluate_record(record, case.file.filter.low_pass).values
-    found = section_spread(record, case.shifted_sections, case.file.filter.low_pass, values)
+    found = section_spread(RecordSignals(record, case.file.filter.low_pass), case.shifted_sections)
     assert found[1]["mean_force_N"] == pytest.approx(2.0, abs=5e-3)
     assert found[1]["contact_loss_pct"] == 0.0
 
@@ -50,8 +49,7 @@ def test_record_that_covers_too_few_stretches_has_no_spread(growing):
         support_position=None,
         support_uplift=None,
     )
-    values = evaluate_record(short, case.file.filter.low_pass).values
-    assert section_spread(short, case.shifted_sections, case.file.filter.low_pass, values) == {}
+    assert section_spread(RecordSignals(short, case.file.filter.low_pass), case.shifted_sections) == {}
 
 
 def test_verdict_that_another_stretch_could_turn_is_named(growing):
@@ -62,7 +60,7 @@ def test_verdict_that_another_stretch_could_turn_is_named(growing):
     result = grade_case(replace(case, limits=(limit,)), Delivered(record), "secondary")
     (row,) = result.criteria
     assert row.spread == result.spread["1"]["mean_force_N"]
-    assert any("less than its spread over stretches of 2 N" in text for text in result.warnings)
+    assert any("less than its spread over analysis sections of 2 N" in text for text in result.warnings)
     remark = shifted(row.model_dump())
     assert remark is not None
     assert remark.startswith("moves by up to 2.0 N when the evaluated stretch")

@@ -5,7 +5,8 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.signal import butter, freqz
 
-from pantocheck.conformance.quantities.filters import LowPass, filter_force
+from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.signals import ForceChannel
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandNotObservable
 
 RATE = 1000.0
@@ -89,9 +90,9 @@ def test_rate_too_low_is_refused():
         LowPass()(np.ones(100), 40.0)
 
 
-def test_force_filtered_at_the_same_cutoff_is_not_filtered_twice():
+def test_force_filtered_at_the_same_cutoff_is_not_filtered_twice() -> None:
     force = np.random.default_rng(1).normal(size=2000)
-    assert filter_force(force, RATE, LowPass(), 20.0) is force
+    assert ForceChannel(force, RATE, LowPass(), 20.0).graded is force
     with pytest.raises(AlreadyFiltered, match="filtered at 10 Hz"):
-        filter_force(force, RATE, LowPass(), 10.0)
-    assert_allclose(filter_force(force, RATE, LowPass(), 200.0), LowPass()(force, RATE))
+        _ = ForceChannel(force, RATE, LowPass(), 10.0).graded
+    assert_allclose(ForceChannel(force, RATE, LowPass(), 200.0).graded, LowPass()(force, RATE))

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.quantities.force_quantities import PANTOGRAPH_QUANTITIES
 from pantocheck.conformance.quantities.registry import (
     QUANTITIES,
 )
-from pantocheck.conformance.quantities.evaluation import LINE
-from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.records.record_signals import evaluate_record
 
 RATE, SPEED = 1000.0, 50.0
 
@@ -121,7 +121,7 @@ def test_low_rate_yields_nothing_up_to_50_hz():
 def test_truncated_record_yields_no_number_at_all(length):
     evaluation = evaluate_record(record(length=length), LowPass())
     assert evaluation.values[1] == {}
-    assert "the evaluated stretch is 200 m to 400 m" in evaluation.skipped[1]["mean_force_N"]
+    assert "the analysis section is 200 m to 400 m" in evaluation.skipped[1]["mean_force_N"]
 
 
 def test_short_stretch_yields_no_slow_band():

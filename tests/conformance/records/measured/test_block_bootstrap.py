@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.filters import LowPass
-from pantocheck.conformance.quantities.signals import PantographSignals
+from pantocheck.conformance.quantities.signals import ForceChannel, PantographSignals
 from pantocheck.conformance.records.measured.block_bootstrap import bootstrap_uncertainties
 from pantocheck.conformance.records.measured.pooled_signals import PooledSignals
 
@@ -12,9 +13,10 @@ RATE, SPEED, SPAN = 100.0, 60.0, 60.0  # a span a second
 DIGEST = "9f" * 32
 
 
-def pooled(force, **keys):
+def pooled(force: RealArray, filter_applied_Hz: float | None = None) -> PooledSignals:
     position = np.arange(force.size) * SPEED / RATE
-    part = PantographSignals(RATE, position, force, (position[0], position[-1]), LowPass(), **keys)
+    channel = ForceChannel(force, RATE, LowPass(), filter_applied_Hz)
+    part = PantographSignals(position, channel, (position[0], position[-1]))
     return PooledSignals((part,), "")
 
 

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from pantocheck.conformance.quantities.evaluation import evaluate_signals
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.quantities.signals import LineSignals
-from pantocheck.conformance.quantities.evaluation import evaluate_signals
-from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.records.measured.outliers import find_outliers
 from pantocheck.conformance.records.measured.record_preparation import prepare_record
 from pantocheck.conformance.records.record import RecordInvalid
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
+from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.records.samples import RecordSamples, build_record
 
 SPEED, SPAN, MEAN, SIGMA = 250 / 3.6, 60.0, 120.0, 24.0
@@ -39,7 +39,7 @@ def by_time(seconds=30.0, rate=500.0):
 
 
 def values(found):
-    return evaluate_signals(found.pantographs, LineSignals(found.evaluated)).values[1]
+    return evaluate_signals(found.pantographs, LineSignals(found.section)).values[1]
 
 
 def test_simulated_record_goes_through_unchanged():
@@ -53,7 +53,7 @@ def test_simulated_record_goes_through_unchanged():
 def test_whole_record_is_evaluated_away_from_its_ends():
     """Two periods of the cut-off, 0.1 s or 6.94 m, are left out at each end."""
     part = ready(by_time()).pantographs[1].parts[0]
-    assert part.evaluated == pytest.approx((6.94, SPEED * 30 - 6.94), abs=0.2)
+    assert part.section == pytest.approx((6.94, SPEED * 30 - 6.94), abs=0.2)
 
 
 @pytest.mark.parametrize("step", [0.1, 0.25])
@@ -77,7 +77,7 @@ def test_speed_channel_makes_time_from_distance():
     force = MEAN + 10 * np.sin(2 * np.pi * 12 * time)
     part = ready(RecordSamples(force=force[None], position=position[None], speed=speed)).pantographs[1].parts[0]
     spectrum = np.abs(np.fft.rfft(part.delivered - part.delivered.mean()))
-    assert np.fft.rfftfreq(part.delivered.size, 1 / part.rate)[spectrum.argmax()] == pytest.approx(12, abs=0.03)
+    assert np.fft.rfftfreq(part.delivered.size, 1 / part.force.rate)[spectrum.argmax()] == pytest.approx(12, abs=0.03)
 
 
 def test_gap_in_time_is_cut_and_both_sides_are_pooled():
@@ -87,7 +87,7 @@ def test_gap_in_time_is_cut_and_both_sides_are_pooled():
     assert len(found.pantographs[1].parts) == 2
     assert_allclose(values(found)["std_force_N"], values(ready(samples))["std_force_N"], rtol=0.02)
     assert found.seconds == pytest.approx(29 - 4 * 0.1, abs=0.02)
-    assert any("2 stretches between gaps" in text for text in found.warnings)
+    assert any("2 sections between gaps" in text for text in found.warnings)
 
 
 def test_missing_values_are_a_gap_and_two_of_them_are_bridged():
@@ -110,10 +110,10 @@ def test_change_of_speed_is_cut():
     samples = RecordSamples(force=force_at(position)[None], time=time, position=position[None])
     found = ready(samples)
     assert found.seconds == pytest.approx(29.8, abs=0.3)
-    assert any("50 % of the record was cut" in text and "off 250 km/h" in text for text in found.warnings)
+    assert any("50 % of the record was cut" in text and "from 250 km/h" in text for text in found.warnings)
     nothing = ready(samples, speed_km_h=300.0)
     assert nothing.pantographs[1].parts == ()
-    skipped = evaluate_signals(nothing.pantographs, LineSignals(nothing.evaluated)).skipped[1]
+    skipped = evaluate_signals(nothing.pantographs, LineSignals(nothing.section)).skipped[1]
     assert "at the nominal speed" in skipped["std_force_N"]
 
 
@@ -122,7 +122,7 @@ def test_chain_filtered_at_20_Hz_gives_nothing_above(stated):
     samples = by_time()
     filtered = RecordSamples(LowPass(order=8)(samples.force[0], 500.0)[None], samples.time, position=samples.position)
     found = ready(filtered, filter_applied_Hz=20.0) if stated else ready(filtered)
-    got = evaluate_signals(found.pantographs, LineSignals(found.evaluated))
+    got = evaluate_signals(found.pantographs, LineSignals(found.section))
     for name in ("rms_20_50_N", "std_force_50_N", "cov_50", "contact_loss_pct"):
         assert name not in got.values[1]
         assert "filtered at 20 Hz" in got.skipped[1][name]
@@ -135,7 +135,7 @@ def test_outliers_are_marked_and_graded():
     force = samples.force.copy()
     force[0, 6000] = 900.0
     found = ready(RecordSamples(force=force, time=samples.time, position=samples.position))
-    assert any("1 outlier, graded all the same: 900 N at 833.3 m" in text for text in found.warnings)
+    assert any("1 outlier, which are graded: 900 N at 833.3 m" in text for text in found.warnings)
     assert values(found)["max_force_N"] > values(ready(samples))["max_force_N"] + 10
     assert find_outliers(samples.force[0]).size == 0
     assert list(find_outliers(force[0])) == [6000]
@@ -152,19 +152,22 @@ def test_rear_pantograph_is_placed_by_its_spacing():
     )
     found = ready(two, pantographs=2, spacing_m=[200.0])
     assert found.pantographs[2].parts[0].position[0] == pytest.approx(-200.0)
-    assert found.evaluated == pytest.approx((0.0, SPEED * 29.998 - 200), abs=0.1)
+    assert found.section == pytest.approx((0.0, SPEED * 29.998 - 200), abs=0.1)
 
 
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda s: RecordSamples(s.force, s.time[::-1], position=s.position), "time: does not grow from sample 1"),
+        (lambda s: RecordSamples(s.force, s.time[::-1], position=s.position), "time: does not increase from sample 1"),
         (
             lambda s: RecordSamples(s.force, s.time, position=s.position[:, ::-1]),
-            "position: does not grow from sample 1",
+            "position: does not increase from sample 1",
         ),
         (lambda s: RecordSamples(s.force, np.full(s.time.size, np.nan)), "fewer than two samples"),
-        (lambda s: RecordSamples(s.force, speed=np.zeros(s.time.size), position=s.position), "stands at nearly every"),
+        (
+            lambda s: RecordSamples(s.force, speed=np.zeros(s.time.size), position=s.position),
+            "stands still at nearly every",
+        ),
         (lambda s: RecordSamples(s.force, np.r_[s.time[:-1], 1e8], position=s.position), "are more than"),
     ],
 )

@@ -1,0 +1,119 @@
+"""Evaluation of a delivery: signals, quantities, errors and consistency findings, each computed once."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.consistency.check import CheckName, Finding
+from pantocheck.conformance.consistency.record_checks import check_record
+from pantocheck.conformance.grading.criterion_grading import GradedValues, grade_limit
+from pantocheck.conformance.grading.section_spread import section_spread
+from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.quantities.evaluation import LINE, Evaluation
+from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.records.record_signals import RecordSignals, evaluate_record
+from pantocheck.conformance.results.outcome import Delivered
+from pantocheck.conformance.results.results_format import Criterion
+
+SPEED_TOLERANCE = 0.005
+"""Relative difference between the speeds of a record and its case."""
+
+SECTION_TOLERANCE_M = 0.01
+"""Difference between the analysis sections of a record and its case [m]."""
+
+
+@dataclass(frozen=True)
+class CaseEvaluation:
+    """A delivery of a system, evaluated for its case.
+
+    Parameters
+    ----------
+    case : Case
+        Case with its limits.
+    delivered : Delivered
+        Data that the system delivered.
+    """
+
+    case: Case
+    delivered: Delivered
+
+    @cached_property
+    def mismatch(self) -> str | None:
+        """Reason why the delivery does not belong to the case; None if it does."""
+        case, record = self.case, self.delivered.record
+        for name in sorted(self.delivered.static):
+            if name not in QUANTITIES:
+                return f"the system delivered an unknown quantity {name!r}"
+            if QUANTITIES[name].scope != "static":
+                return (
+                    f"the system delivered {name!r} as a quantity of the line at rest, but it follows from the record"
+                )
+        if case.is_static:
+            return None
+        if record is None:
+            return None if self.delivered.summary is not None else "the system delivered no record"
+        if record.pantographs != len(case.pantographs):
+            return f"the record has {record.pantographs} pantographs, the case has {len(case.pantographs)}"
+        if abs(record.speed / case.speed - 1) > SPEED_TOLERANCE:
+            return f"the record was made at {3.6 * record.speed:.4g} km/h, the case runs at {3.6 * case.speed:.4g} km/h"
+        (start, end), (first, last) = record.evaluated, case.analysis_section
+        if abs(start - first) > SECTION_TOLERANCE_M or abs(end - last) > SECTION_TOLERANCE_M:
+            return f"the record evaluates {start:g} m to {end:g} m, the case {first:g} m to {last:g} m"
+        return None
+
+    @cached_property
+    def signals(self) -> RecordSignals | None:
+        """Signals of the record; None if the system delivered no record."""
+        record = self.delivered.record
+        return None if record is None else RecordSignals(record, self.case.file.filter.low_pass)
+
+    @cached_property
+    def values(self) -> GradedValues:
+        """Quantities with discretisation error and section spread."""
+        refined = self.delivered.refined
+        return GradedValues(
+            evaluation=self._complete(self.delivered, self.signals.evaluation if self.signals is not None else None),
+            refined=None if refined is None else self._complete(refined, self._evaluate(refined)),
+            spread={} if self.signals is None else section_spread(self.signals, self.case.shifted_sections),
+        )
+
+    @cached_property
+    def findings(self) -> dict[CheckName, Finding]:
+        """Findings of the consistency checks."""
+        return {} if self.signals is None else check_record(self.case, self.signals)
+
+    @cached_property
+    def contradiction(self) -> str | None:
+        """Text of the contradiction that the checks found; None if there is none."""
+        return next((finding.text for finding in self.findings.values() if finding.kind == "contradiction"), None)
+
+    def grade_limits(self, lowest_trust: Trust) -> list[Criterion]:
+        """Grade the delivery by every limit of the case."""
+        return [grade_limit(limit, self.values, lowest_trust) for limit in self.case.limits]
+
+    def edge_warnings(self) -> list[str]:
+        """Warnings on pantographs whose record is too short for the filter to settle outside the analysis section."""
+        record = self.delivered.record
+        if record is None:
+            return []
+        settling = 2 / self.case.file.filter.cutoff_Hz * record.speed
+        start, end = record.evaluated
+        return [
+            f"the record of pantograph {number} has less than {settling:.1f} m of run-in or run-out around the "
+            "analysis section: filter transients reach into it"
+            for number, position in enumerate(record.position, 1)
+            if position[0] > start - settling or position[-1] < end + settling
+        ]
+
+    def _evaluate(self, delivered: Delivered) -> Evaluation | None:
+        record = delivered.record
+        return None if record is None else evaluate_record(record, self.case.file.filter.low_pass)
+
+    @staticmethod
+    def _complete(delivered: Delivered, evaluation: Evaluation | None) -> Evaluation:
+        """Quantities of the record or summary, with those of the line at rest and of a study."""
+        evaluation = evaluation or delivered.summary or Evaluation({LINE: {}}, {LINE: {}})
+        values = dict(evaluation.values)
+        for owner, extra in ((LINE, delivered.static), *delivered.study.findings.items()):
+            values[owner] = {**values.get(owner, {}), **{name: extra[name] for name in QUANTITIES if name in extra}}
+        return Evaluation(values, evaluation.skipped)

@@ -1,0 +1,185 @@
+"""Grading of one criterion: a value against its limits."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from pantocheck.conformance.cases.library import source_text
+from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.grading.near_limit import ValueErrors, near_limit_remarks
+from pantocheck.conformance.grading.verdicts import Verdict, judge, margin
+from pantocheck.conformance.input_files.trust import Trust, limit_counts
+from pantocheck.conformance.quantities.evaluation import Evaluation, Value
+from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.results.results_format import Criterion
+
+ErrorsByQuantity = Mapping[int, Mapping[str, float]]
+"""Errors of quantities, by pantograph (0: the line) and name."""
+
+
+@dataclass(frozen=True)
+class Requirement:
+    """Limits of one number.
+
+    Parameters
+    ----------
+    quantity : str
+        Name of the quantity.
+    owner : int
+        Number of the pantograph, 0 for the line.
+    item : int or None
+        Number among several values (dropper, mode), from 1.
+    lower, upper : float or None
+        Limits in the unit of the quantity; both None if they are not known.
+    trust : Trust
+        Trust of the limits.
+    source : str
+        Source of the limits.
+    """
+
+    quantity: str
+    owner: int
+    item: int | None
+    lower: float | None
+    upper: float | None
+    trust: Trust
+    source: str
+
+
+@dataclass(frozen=True)
+class GradedValues:
+    """Quantities of a run, with their errors.
+
+    Parameters
+    ----------
+    evaluation : Evaluation
+        Quantities, and the reasons why others are not available.
+    refined : Evaluation or None
+        Quantities of the same case with element length and time step halved.
+    spread : mapping
+        Largest change when the analysis section is shifted.
+    uncertainty : mapping
+        Half-widths of the 95 % intervals from the length of the record.
+    """
+
+    evaluation: Evaluation
+    refined: Evaluation | None = None
+    spread: ErrorsByQuantity = field(default_factory=dict)
+    uncertainty: ErrorsByQuantity = field(default_factory=dict)
+
+
+def grade_limit(limit: Limit, values: GradedValues, lowest_trust: Trust, limit_uncertainty: float = 0.0) -> Criterion:
+    """Grade a quantity by a limit.
+
+    Parameters
+    ----------
+    limit : Limit
+        Limit of one quantity.
+    values : GradedValues
+        Quantities of the run.
+    lowest_trust : Trust
+        Lowest trust of the limits that count.
+    limit_uncertainty : float
+        Uncertainty of the limit itself, if it comes from a measured record.
+    """
+    owner, name = limit.owner, limit.quantity
+    value = find_value(limit, values.evaluation.values)
+    refined = find_value(limit, values.refined.values) if values.refined is not None else None
+    errors = ValueErrors(
+        discretisation=None if value is None or refined is None else abs(value - refined),
+        spread=values.spread.get(owner, {}).get(name),
+        uncertainty=values.uncertainty.get(owner, {}).get(name),
+        limit_uncertainty=limit_uncertainty,
+    )
+    missing = values.evaluation.skipped.get(owner, {}).get(name, "the system delivers no such quantity")
+    source = source_text(limit.source)
+    requirement = Requirement(name, owner, limit.item, limit.lower, limit.upper, limit.trust, source)
+    return build_criterion(requirement, value, missing, lowest_trust, errors)
+
+
+def build_criterion(
+    requirement: Requirement,
+    value: float | None,
+    missing: str,
+    lowest_trust: Trust,
+    errors: ValueErrors | None = None,
+) -> Criterion:
+    """Grade a value by its limits.
+
+    Parameters
+    ----------
+    requirement : Requirement
+        Limits of the value.
+    value : float or None
+        Value; None if it is not available.
+    missing : str
+        Reason why there is no value or no limit.
+    lowest_trust : Trust
+        Lowest trust of the limits that count.
+    errors : ValueErrors or None
+        Errors of the value.
+    """
+    name, lower, upper = requirement.quantity, requirement.lower, requirement.upper
+    unit = QUANTITIES[name].unit if name in QUANTITIES else ""  # a baseline can have quantities of an older registry
+    errors = errors if errors is not None and value is not None else ValueErrors()
+    verdict: Verdict = "skip"
+    reason: str | None = missing
+    if value is not None and (lower is not None or upper is not None):
+        verdict = judge(value, lower, upper)
+        reason = _distance_outside(value, requirement, unit) if verdict == "fail" else None
+    has_margin = verdict != "skip"
+    if not limit_counts(requirement.trust, lowest_trust):
+        hypothetical = {"pass": "would pass", "fail": f"would fail: {reason}", "skip": f"not graded: {reason}"}[verdict]
+        verdict, reason = "info", f"{hypothetical}; the limit is {requirement.trust} and does not count"
+    return Criterion(
+        quantity=name,
+        pantograph=requirement.owner,
+        item=requirement.item,
+        value=value,
+        unit=unit,
+        lower=lower,
+        upper=upper,
+        verdict=verdict,
+        trust=requirement.trust,
+        source=requirement.source,
+        margin=margin(value, lower, upper) if has_margin and value is not None else None,
+        discretisation_error=errors.discretisation,
+        spread=errors.spread,
+        reason=reason,
+        uncertainty=errors.uncertainty,
+        close=near_limit_remarks(value, (lower, upper), unit, errors),
+    )
+
+
+def criterion_name(criterion: Criterion) -> str:
+    """Name of a criterion: quantity, item and owner."""
+    name = f"{criterion.quantity}[{criterion.item}]" if criterion.item else criterion.quantity
+    return f"{name} of pantograph {criterion.pantograph}" if criterion.pantograph else f"{name} of the line"
+
+
+def near_limit_warnings(criteria: Sequence[Criterion]) -> list[str]:
+    """Near-limit remarks of criteria as warnings of their case."""
+    return [f"{criterion_name(criterion)} {remark}" for criterion in criteria for remark in criterion.close]
+
+
+def find_value(limit: Limit, values: Mapping[int, Mapping[str, Value]]) -> float | None:
+    """Value that a limit applies to; None if there is none, or no finite one.
+
+    Parameters
+    ----------
+    limit : Limit
+        Limit of one quantity, or of one item of it.
+    values : mapping of int to mapping of str to Value
+        Quantities by pantograph (0: the line) and name.
+    """
+    value = values.get(limit.owner, {}).get(limit.quantity)
+    if isinstance(value, tuple):
+        index = (limit.item or 1) - 1
+        value = value[index] if index < len(value) else None
+    return value if value is not None and math.isfinite(value) else None
+
+
+def _distance_outside(value: float, requirement: Requirement, unit: str) -> str:
+    if requirement.lower is not None and value < requirement.lower:
+        return f"{requirement.lower - value:.3g} {unit} below the lower limit".replace("  ", " ")
+    return f"{value - (requirement.upper or 0.0):.3g} {unit} above the upper limit".replace("  ", " ")

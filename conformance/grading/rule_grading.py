@@ -1,0 +1,112 @@
+"""Grading of a record by the rules of a profile: each rule gives a criterion for every pantograph it applies to."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from pantocheck.conformance.cases.library import source_text
+from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.cases.profile_file import BoundMissing, Profile, Rule, resolve_bounds
+from pantocheck.conformance.grading.assessed_record import AssessedRecord
+from pantocheck.conformance.grading.criterion_grading import GradedValues, Requirement, build_criterion, grade_limit
+from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.quantities.evaluation import LINE
+from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.results.results_format import Criterion
+
+
+@dataclass(frozen=True)
+class GradedRules:
+    """Result of the rules of a profile.
+
+    Parameters
+    ----------
+    criteria : tuple of Criterion
+        Criteria of the rules and of the user's own limits.
+    omitted : tuple of str
+        Remarks on optional rules that could not be applied.
+    """
+
+    criteria: tuple[Criterion, ...]
+    omitted: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class RuleGrading:
+    """Grading of a record by rules.
+
+    Parameters
+    ----------
+    subject : AssessedRecord
+        Graded record.
+    measured : AssessedRecord or None
+        Measured record for rules that compare.
+    trust : Trust
+        Lowest trust of the rules that count.
+    """
+
+    subject: AssessedRecord
+    measured: AssessedRecord | None
+    trust: Trust
+
+    def grade_profile(self, profile: Profile, limits: Sequence[Limit]) -> GradedRules:
+        """Grade by the rules of a profile; a user's own limit replaces the rule of the same quantity."""
+        criteria: list[Criterion] = []
+        omitted: list[str] = []
+        replaced = {limit.target for limit in limits}
+        for rule in profile.rule:
+            owners = self.subject.pantographs if QUANTITIES[rule.quantity].scope == "pantograph" else (LINE,)
+            for owner in owners:
+                if (rule.quantity, owner, None) in replaced:
+                    continue
+                try:
+                    criteria.append(self._grade_rule(rule, owner))
+                except BoundMissing as reason:
+                    if rule.need == "if_known":
+                        omitted.append(f"{rule.quantity} is not graded: {reason}")
+                    else:
+                        criteria.append(self._skip_rule(rule, owner, str(reason)))
+        criteria += [grade_limit(limit, self._values, self.trust, self._limit_uncertainty(limit)) for limit in limits]
+        return GradedRules(tuple(criteria), tuple(omitted))
+
+    @property
+    def _values(self) -> GradedValues:
+        return GradedValues(self.subject.values, uncertainty=self.subject.uncertainty)
+
+    def _grade_rule(self, rule: Rule, owner: int) -> Criterion:
+        compared = None if self.measured is None else _finite_value(self.measured, owner, rule.quantity)
+        lower, upper = resolve_bounds(rule, self.subject.header.speed_km_h, self.subject.line.model_dump(), compared)
+        is_static = QUANTITIES[rule.quantity].scope == "static"
+        if is_static and rule.need == "if_known" and rule.quantity not in self.subject.values.values[LINE]:
+            raise BoundMissing("the record does not give it")
+        limit = Limit(
+            quantity=rule.quantity,
+            pantograph=owner or None,
+            lower=lower,
+            upper=upper,
+            trust=rule.trust,
+            source=self._source(rule, compared),
+            note=rule.note,
+        )
+        return grade_limit(limit, self._values, self.trust, self._limit_uncertainty(limit))
+
+    def _skip_rule(self, rule: Rule, owner: int, reason: str) -> Criterion:
+        requirement = Requirement(rule.quantity, owner, None, None, None, rule.trust, source_text(rule.source))
+        return build_criterion(requirement, _finite_value(self.subject, owner, rule.quantity), reason, self.trust)
+
+    def _limit_uncertainty(self, limit: Limit) -> float:
+        uncertainty = {} if self.measured is None else self.measured.uncertainty.get(limit.owner, {})
+        return uncertainty.get(limit.quantity, 0.0)
+
+    def _source(self, rule: Rule, compared: float | None) -> str:
+        source = source_text(rule.source)
+        if not rule.compares or compared is None or self.measured is None:
+            return source
+        unit = QUANTITIES[rule.quantity].unit
+        allowed = f"{rule.tolerance:g} {unit}" if rule.tolerance else f"{rule.tolerance_pct:g} %"
+        return f"{source}; {allowed} about the measured {compared:.4g} of {self.measured.name}"
+
+
+def _finite_value(record: AssessedRecord, owner: int, quantity: str) -> float | None:
+    value = record.values.values.get(owner, {}).get(quantity)
+    return value if isinstance(value, float) and math.isfinite(value) else None
