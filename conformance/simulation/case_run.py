@@ -8,9 +8,9 @@ import numpy as np
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import Discretisation
-from pantocheck.conformance.records.evaluation import pantograph_signals
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_sidecar import RunTable
+from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 from pantocheck.conformance.simulation.static_quantities import sample_span
 from pantocheck.conformance.simulation.uplift_tuning import tune_uplift
@@ -87,8 +87,8 @@ def _run_once(case: Case, line: DiscretisedLine, steps: Discretisation, uplift_f
 
 def _mean_forces(case: Case, record: Record) -> RealArray:
     """Mean contact force of every pantograph over the analysis section [N]."""
-    low_pass, numbers = case.file.filter.low_pass, range(1, record.pantographs + 1)
-    return np.array([pantograph_signals(record, number, low_pass).delivered.mean() for number in numbers])
+    signals = RecordSignals(record, case.file.filter.low_pass)
+    return np.array([pantograph.delivered.mean() for pantograph in signals.pantographs.values()])
 
 
 def build_passage(
