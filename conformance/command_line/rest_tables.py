@@ -10,8 +10,8 @@ from rich.table import Table
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.command_line.console import build_table, escape_text, format_number
-from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.evaluation import Value
+from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 from pantocheck.conformance.simulation.static_quantities import compute_static_quantities, first_modes, sample_span
