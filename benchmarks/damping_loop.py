@@ -6,15 +6,12 @@ Prints each coefficient put in, what came out, and its 95 % interval. Droppers s
 """
 
 from dataclasses import replace
-from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 from scipy.signal import resample_poly
 
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.identification.damping.damping_results import build_damping_results
-from pantocheck.conformance.identification.identification_files import read_modes, write_modes
 from pantocheck.conformance.identification.identify import identify_modes
 from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
 from pantocheck.conformance.simulation.catenary_model import build_catenary
@@ -51,14 +48,12 @@ def main() -> None:
         drop=DropDescription(MASS, "CW", PLACE, HANGING),
         line=DropLine(six_spans.span_lengths),
     )
-    with TemporaryDirectory() as folder:
-        path = Path(folder, "modes.json")
-        write_modes(path, identify_modes((record,)))
-        results = build_damping_results(read_modes(path), line, ELEMENT, path.name)
-    for one in results["coefficients"]:
-        true = getattr(PUT_IN[Kind(one["kind"])], f"{one['matrix']}_coefficient")
-        interval = f"[{one['low_95']:.4g}, {one['high_95']:.4g}]"
-        print(f"{one['kind']:<16}{one['matrix']:<10} in {true:<8.4g} out {one['value']:<10.4g} {interval}")
+    (identification,) = identify_modes((record,))
+    results = build_damping_results(identification.modes, line, ELEMENT, "the loop")
+    for c in results.coefficients:
+        expected = getattr(PUT_IN[Kind(c.kind)], f"{c.matrix}_coefficient")
+        interval = f"[{c.low_95:.4g}, {c.high_95:.4g}]"
+        print(f"{c.kind:<16}{c.matrix:<10} in {expected:<8.4g} out {c.value:<10.4g} {interval}")
 
 
 if __name__ == "__main__":

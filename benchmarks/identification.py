@@ -92,7 +92,7 @@ def score(name: str, records: tuple[DropRecord, ...], truth: Real, bound: Real, 
     """Print the lines of one record; truth (m, 3): frequency [Hz], damping ratio, group."""
     begin = time.perf_counter()
     (found,) = identify_modes(records)
-    ours = np.array([(mode.frequency, mode.damping_ratio) for mode in found.modes])
+    ours = np.array([(mode.frequency_Hz, mode.damping_ratio) for mode in found.modes])
     line(name, "pantocheck", ours, truth, bound, time.perf_counter() - begin)
     if peers:
         begin = time.perf_counter()

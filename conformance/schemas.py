@@ -18,6 +18,9 @@ from pantocheck.conformance.cases.limits import LimitsFile
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.cases.profile_file import Profile
+from pantocheck.conformance.identification.damping.damping_format import DampingResults
+from pantocheck.conformance.identification.identification_format import IdentificationFile
+from pantocheck.conformance.identification.modes_file import ModesFile
 from pantocheck.conformance.mass_drops.drop_sidecar import DropSidecar as MassDropSidecar
 from pantocheck.conformance.plan import Plan
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
@@ -39,7 +42,12 @@ READ_FORMATS: dict[str, type[BaseModel]] = {
 }
 """TOML files that users write."""
 
-WRITTEN_FORMATS: dict[str, type[BaseModel]] = {"results": Results}
+WRITTEN_FORMATS: dict[str, type[BaseModel]] = {
+    "results": Results,
+    "modes": ModesFile,
+    "identification": IdentificationFile,
+    "damping-fit": DampingResults,
+}
 """JSON files that the suite writes."""
 
 FORMAT_NAMES = (*READ_FORMATS, *WRITTEN_FORMATS, "command-request", "command-answer")

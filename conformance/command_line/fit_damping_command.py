@@ -9,7 +9,8 @@ from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.command_line.console import console, escape_text
 from pantocheck.conformance.identification.damping.damping_results import build_damping_results, write_damping_toml
-from pantocheck.conformance.identification.identification_files import read_modes, write_json
+from pantocheck.conformance.identification.modes_file import read_modes
+from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_model, read_toml
@@ -38,11 +39,11 @@ def fit_damping_command(
     with output.status("modes of the line"):
         results = build_damping_results(read_modes(modes), build_catenary(_read_line(line)), element, modes.name)
         block = write_damping_toml(results)
-        document = build_damping_document(results, block)
+        document = build_damping_document(results.model_dump(mode="json", by_alias=True), block)
         write_atomically(out / "damping.toml", block.encode("utf-8"))
-        with_modal = write_damping_toml(results, results["modal"])
+        with_modal = write_damping_toml(results, results.modal)
         write_atomically(out / "damping_with_modal.toml", with_modal.encode("utf-8"))
-        write_json(out / "damping.json", {"schema": "pantocheck.damping/1", **results})
+        write_model(out / "damping.json", results)
         write_html(document, out / "damping.html")
         write_pdf(document, out / "damping.pdf")
     output.print(escape_text(document.headline))

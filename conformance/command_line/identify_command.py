@@ -7,12 +7,11 @@ import typer
 
 from pantocheck.conformance.command_line.console import console, escape_text, format_number
 from pantocheck.conformance.identification.hand_placed_poles import read_poles
-from pantocheck.conformance.identification.identification_files import (
-    summarise_identification,
-    write_json,
-    write_modes,
-)
+from pantocheck.conformance.identification.identification_analysis import analyse_identification
+from pantocheck.conformance.identification.identification_format import IdentificationFile
 from pantocheck.conformance.identification.identify import identify_modes
+from pantocheck.conformance.identification.modes_file import ModesFile
+from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
 from pantocheck.conformance.reports.document import write_html, write_pdf
@@ -54,20 +53,19 @@ def identify_command(
             drop_records, highest, start_poles, progress=lambda text: status.update(escape_text(text))
         )
         status.update("writing the report")
-        lines = [summarise_identification(identification) for identification in identifications]
-        write_modes(out / "modes.json", identifications)
-        write_json(out / "identification.json", {"schema": "pantocheck.identification/1", "lines": lines})
-        document = build_identification_document(lines)
+        lines = tuple(analyse_identification(identification) for identification in identifications)
+        write_model(out / "modes.json", ModesFile(tuple(mode for line in lines for mode in line.modes)))
+        write_model(out / "identification.json", IdentificationFile(lines=lines))
+        document = build_identification_document([line.model_dump(mode="json", by_alias=True) for line in lines])
         write_html(document, out / "identification.html")
         write_pdf(document, out / "identification.pdf")
     output.print(escape_text(document.headline))
-    for group in (group for line in lines for group in line["groups"]):
-        median = group["median_damping_ratio"]
+    for group in (group for line in lines for group in line.groups):
+        median = None if group.median_damping_ratio is None else 100 * group.median_damping_ratio
         output.print(
             escape_text(
-                f"group {group['group']}: {group['certain']} of {group['modes']} modes certain, "
-                f"{group['from_Hz']:.3f}-{group['to_Hz']:.3f} Hz, "
-                f"median damping ratio {format_number(None if median is None else 100 * median)} %"
+                f"group {group.group}: {group.certain} of {group.modes} modes certain, "
+                f"{group.from_Hz:.3f}-{group.to_Hz:.3f} Hz, median damping ratio {format_number(median)} %"
             )
         )
     for text in document.warnings:

@@ -43,6 +43,11 @@ class PreparedDecay:
     warnings: tuple[str, ...]
 
     @property
+    def channel_names(self) -> tuple[str, ...]:
+        """Names of the channels that are used."""
+        return tuple(self.record.channels[c].name for c in self.columns)
+
+    @property
     def test(self) -> tuple[object, ...]:
         """What repeats of one drop have in common."""
         r = self.record

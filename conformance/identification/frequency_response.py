@@ -80,9 +80,12 @@ def compute_frequency_response(found: Identification, r: int) -> FrequencyRespon
     poles, duration = found.poles[inside], n / record.rate
     response = _transform(poles, omega, duration) @ residues
     response += _transform(poles.conj(), omega, duration) @ residues.conj()
-    names = tuple(record.channels[c].name for c in one.columns)
     return FrequencyResponse(
-        record.name, names, frequency[used], measured * to_accelerance[:, None], response * to_accelerance[:, None]
+        record.name,
+        one.channel_names,
+        frequency[used],
+        measured * to_accelerance[:, None],
+        response * to_accelerance[:, None],
     )
 
 

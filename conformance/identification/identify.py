@@ -9,8 +9,14 @@ from pantocheck.conformance.array_types import ComplexArray, RealArray
 from pantocheck.conformance.identification.decay_filters import filter_gain
 from pantocheck.conformance.identification.decay_preparation import PreparedDecay, prepare_decay
 from pantocheck.conformance.identification.linear_decay import FrequencyBand
-from pantocheck.conformance.identification.mode import Mode, mode_remarks, normalise_shape, phase_collinearity
+from pantocheck.conformance.identification.mode import Mode, SensorShape
 from pantocheck.conformance.identification.mode_groups import find_group_outliers, number_groups
+from pantocheck.conformance.identification.mode_quality import (
+    is_certain,
+    is_lateral,
+    list_mode_warnings,
+    phase_collinearity,
+)
 from pantocheck.conformance.identification.model_order import estimate_noise, find_hidden_poles, select_poles, whiten
 from pantocheck.conformance.identification.pole_refinement import refine_poles
 from pantocheck.conformance.identification.projection import (
@@ -253,22 +259,38 @@ def _mode(
     share = float(max(shares)) if shares else None
     since = one.stretch.first - one.release.time
     gain = filter_gain(one.stretch.taps, np.array([pole]), one.stretch.rate)[0]
+    shape, shape_std = (residues / scale, spread / np.abs(scale)) if np.abs(scale) > 0 else (residues, spread)
     return Mode(
-        frequency=frequency,
-        frequency_std=float(omega_std / (2 * np.pi)),
+        frequency_Hz=frequency,
+        frequency_std_Hz=_finite(omega_std / (2 * np.pi)),
         damping_ratio=damping,
-        damping_ratio_std=damping_std,
-        channels=tuple(one.record.channels[c] for c in one.columns),
-        shape=normalise_shape(residues),
-        shape_std=np.asarray(spread / np.abs(scale)),
-        amplitude=float(2 * np.abs(scale / gain * np.exp(-pole * since))),
-        collinearity=phase_collinearity(residues),
+        damping_ratio_std=_finite(damping_std),
+        sensor_shape=tuple(
+            SensorShape(
+                sensor=channel.sensor,
+                wire=channel.wire,
+                position_m=channel.position,
+                re=float(value.real),
+                im=float(value.imag),
+                std=_finite(std),
+            )
+            for channel, value, std in zip((one.record.channels[c] for c in one.columns), shape, shape_std, strict=True)
+        ),
         error=_error(whole, pole),
         record=one.record.name,
-        lateral_share=share,
+        warnings=list_mode_warnings(frequency, damping, damping_std, one.stretch.duration, nearest, share),
+        certain=is_certain(damping, damping_std),
+        lateral=is_lateral(share),
+        amplitude_at_release=_finite(2 * np.abs(scale / gain * np.exp(-pole * since))),
+        phase_collinearity=phase_collinearity(residues),
+        lateral_over_vertical=share,
         half_power_points=2 * damping * frequency * one.stretch.duration,
-        warnings=mode_remarks(frequency, damping, damping_std, one.stretch.duration, nearest, share),
     )
+
+
+def _finite(value: float) -> float:
+    """A value, or 0 (which no measured value is) where the data do not determine it."""
+    return float(value) if np.isfinite(value) else 0.0
 
 
 def _signal_to_noise(whole: Identification, r: int, j: int) -> float:
@@ -314,14 +336,14 @@ def _lateral_share(whole: Identification, r: int) -> RealArray | None:
 
 def _grouped(modes: list[Mode], record: DropRecord) -> tuple[Mode, ...]:
     upward = [mode for mode in modes if not mode.lateral]
-    certain = np.array([mode.frequency for mode in upward if mode.certain])
+    certain = np.array([mode.frequency_Hz for mode in upward if mode.certain])
     spans = len(record.line.spans) or None
-    numbers = number_groups(certain, np.array([mode.frequency for mode in upward]), spans)
-    of = {id(mode): int(number) or None for mode, number in zip(upward, numbers, strict=True)}
-    grouped = [replace(mode, group=of.get(id(mode))) for mode in modes]
+    numbers = number_groups(certain, np.array([mode.frequency_Hz for mode in upward]), spans)
+    group = {id(mode): int(number) or None for mode, number in zip(upward, numbers, strict=True)}
+    grouped = [mode.model_copy(update={"group": group.get(id(mode))}) for mode in modes]
     far = set[int]()
     for number in {mode.group for mode in grouped} - {None}:
         members = [i for i, mode in enumerate(grouped) if mode.group == number and mode.certain]
         flags = find_group_outliers(np.array([grouped[i].damping_ratio for i in members]))
         far |= {i for i, flag in zip(members, flags, strict=True) if flag}
-    return tuple(replace(mode, outlier=i in far) for i, mode in enumerate(grouped))
+    return tuple(mode.model_copy(update={"outlier": i in far}) for i, mode in enumerate(grouped))

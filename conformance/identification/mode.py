@@ -1,153 +1,51 @@
-"""A mode as it is reported, and what there is to say about it."""
+"""Identified mode: a row of modes.json, and the type that identification, damping fit and reports share."""
 
-from dataclasses import dataclass
+from typing import Annotated
 
-import numpy as np
+from pydantic import ConfigDict, Field
 
-from pantocheck.conformance.array_types import ComplexArray, RealArray
-from pantocheck.conformance.mass_drops.drop_record import DropChannel
-
-POINTS_IN_HALF_POWER_BAND = 5  # the study's rule
-UNCERTAIN = 0.05  # relative standard deviation of a damping ratio above which it says little
-LATERAL = 20.0  # lateral over vertical amplitude beyond which a few degrees of mounting explain the vertical one
-COINCIDENT = 2.0  # modes nearer than this many half-power bandwidths are told apart by the model alone
+from pantocheck.conformance.identification.rounded_model import Rounded, RoundedModel
 
 
-@dataclass(frozen=True)
-class Mode:
-    """One identified mode.
+class SensorShape(RoundedModel):
+    """Component of a mode shape at one sensor."""
 
-    Parameters
-    ----------
-    frequency : float
-        |lambda| / 2 pi [Hz].
-    frequency_std : float
-        Its standard deviation [Hz].
-    damping_ratio : float
-        Share of critical damping.
-    damping_ratio_std : float
-        Its standard deviation.
-    channels : tuple[DropChannel, ...]
-        (s,) of the record that shows the mode best.
-    shape : (s,) complex ndarray
-        ComplexArray shape at them, the largest 1.
-    shape_std : (s,) ndarray
-        Standard deviation of its real and of its imaginary part.
-    amplitude : float
-        Largest amplitude of any sensor at the release [unit of the record].
-    collinearity : float or None
-        Modal phase collinearity, 1 for a normal mode; None with a single sensor.
-    error : float
-        What the fit leaves in the mode's band, over what is measured there.
-    record : str
-        Name of the record that shows the mode best.
-    group : int or None
-        Number of its group of span modes, None if it fits none.
-    outlier : bool
-        Its damping ratio is far from its group's.
-    lateral_share : float or None
-        Largest lateral over largest vertical amplitude; None without lateral channels.
-    half_power_points : float
-        Spectral lines inside the half-power band.
-    warnings : tuple[str, ...]
-        Why it should not be believed without more.
-    """
+    model_config = ConfigDict(allow_inf_nan=False)
 
-    frequency: float
-    frequency_std: float
-    damping_ratio: float
-    damping_ratio_std: float
-    channels: tuple[DropChannel, ...]
-    shape: ComplexArray
-    shape_std: RealArray
-    amplitude: float
-    collinearity: float | None
-    error: float
-    record: str
-    group: int | None = None
-    outlier: bool = False
-    lateral_share: float | None = None
-    half_power_points: float = 0.0
-    warnings: tuple[str, ...] = ()
-
-    @property
-    def certain(self) -> bool:
-        """Whether its damping ratio is known to better than `UNCERTAIN`."""
-        return self.damping_ratio_std < UNCERTAIN * self.damping_ratio
-
-    @property
-    def lateral(self) -> bool:
-        """Whether it moves the sensors sideways and reaches the vertical channels by their mounting alone."""
-        return self.lateral_share is not None and self.lateral_share > LATERAL
+    sensor: Annotated[int, Field(description="number of the sensor")]
+    wire: Annotated[str, Field(description="CW contact wire, MW messenger wire; empty: unknown")] = ""
+    position_m: Annotated[float | None, Field(description="position from the first support [m]; null: unknown")] = None
+    re: Annotated[Rounded, Field(description="real part; the largest component of a shape is 1")]
+    im: Annotated[Rounded, Field(description="imaginary part")]
+    std: Annotated[Rounded | None, Field(description="standard deviation of each part")] = None
 
 
-def phase_collinearity(shape: ComplexArray) -> float | None:
-    """Modal phase collinearity: 1 if all components move in phase or against it, towards 0 for a travelling wave.
+class Mode(RoundedModel):
+    """Identified mode of a line."""
 
-    Parameters
-    ----------
-    shape : (s,) complex ndarray
-        ComplexArray shape.
+    model_config = ConfigDict(allow_inf_nan=False)
 
-    References
-    ----------
-    .. [1] J. N. Juang, R. S. Pappa, An eigensystem realization algorithm for modal parameter identification and model
-       reduction, J. Guidance 8 (1985) 620-627.
-    """
-    if shape.size < 2:
-        return None
-    # Turned about the origin, not about the mean: a shape with all sensors alike is a normal mode.
-    xx, yy, xy = (float(np.sum(a * b)) for a, b in ((shape.real,) * 2, (shape.imag,) * 2, (shape.real, shape.imag)))
-    total = (xx + yy) ** 2
-    return ((xx - yy) ** 2 + 4 * xy**2) / total if total > 0 else None
-
-
-def normalise_shape(residues: ComplexArray) -> ComplexArray:
-    """Shape of residues with its largest component 1."""
-    largest = residues[np.argmax(np.abs(residues))]
-    return np.asarray(residues / largest) if np.abs(largest) > 0 else residues
-
-
-def mode_remarks(
-    frequency: float,
-    damping_ratio: float,
-    damping_ratio_std: float,
-    duration: float,
-    nearest: float,
-    lateral_share: float | None,
-) -> tuple[str, ...]:
-    """Warnings of one mode.
-
-    Parameters
-    ----------
-    frequency : float
-        [Hz].
-    damping_ratio, damping_ratio_std : float
-        And its standard deviation.
-    duration : float
-        Of the stretch used [s].
-    nearest : float
-        Distance to the nearest other mode [Hz].
-    lateral_share : float or None
-        Largest lateral over largest vertical amplitude.
-    """
-    found = []
-    bandwidth = 2 * damping_ratio * frequency
-    if bandwidth * duration < POINTS_IN_HALF_POWER_BAND:
-        needed = POINTS_IN_HALF_POWER_BAND / bandwidth
-        found.append(
-            f"half-power band: {bandwidth * duration:.1f} spectral lines in {duration:.0f} s; "
-            f"{POINTS_IN_HALF_POWER_BAND} would need a record of {needed:.0f} s"
-        )
-    relative = damping_ratio_std / damping_ratio
-    if relative > UNCERTAIN:
-        found.append(
-            f"weakly excited: the damping ratio is uncertain by {100 * relative:.0f} % (one standard deviation)"
-        )
-    if nearest < COINCIDENT * bandwidth or nearest * duration < 1.5:
-        found.append(f"near-coincident: another mode is only {1000 * nearest:.1f} mHz away")
-    if lateral_share is not None and lateral_share > LATERAL:
-        found.append(
-            "lateral: moves the sensors sideways; what the vertical channels show of it, their mounting explains"
-        )
-    return tuple(found)
+    frequency_Hz: Annotated[Rounded, Field(gt=0, description="undamped natural frequency [Hz]")]
+    frequency_std_Hz: Annotated[Rounded | None, Field(description="its standard deviation [Hz]")] = None
+    damping_ratio: Annotated[Rounded, Field(gt=0, lt=1, description="share of critical damping [-]")]
+    damping_ratio_std: Annotated[Rounded, Field(ge=0, description="its standard deviation [-]")]
+    group: Annotated[int | None, Field(description="number of the group of span modes, from 1; null: none")] = None
+    sensor_shape: Annotated[tuple[SensorShape, ...], Field(description="mode shape at the sensors of `record`")]
+    error: Annotated[Rounded | None, Field(description="residual over measured signal in the mode's band [-]")] = None
+    record: Annotated[str, Field(description="name of the record that shows the mode best")] = ""
+    warnings: Annotated[tuple[str, ...], Field(description="reasons to doubt the mode")] = ()
+    certain: Annotated[bool, Field(description="damping ratio known to 5 % (one standard deviation)")] = True
+    outlier: Annotated[bool, Field(description="damping ratio far from that of its group")] = False
+    lateral: Annotated[bool, Field(description="lateral mode, seen by vertical channels through their mounting")] = (
+        False
+    )
+    amplitude_at_release: Annotated[
+        Rounded | None, Field(description="largest amplitude of a sensor at the release [unit of the record]")
+    ] = None
+    phase_collinearity: Annotated[
+        Rounded | None, Field(description="modal phase collinearity, 1 for a normal mode; null: a single sensor")
+    ] = None
+    lateral_over_vertical: Annotated[
+        Rounded | None, Field(description="largest lateral over largest vertical amplitude; null: no lateral channel")
+    ] = None
+    half_power_points: Annotated[Rounded | None, Field(description="spectral lines in the half-power band")] = None

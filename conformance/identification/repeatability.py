@@ -1,6 +1,5 @@
-"""Whether a drop repeats: records laid over each other at the start and a minute later."""
+"""Repeatability of a mass drop: its records are compared at the start and a minute later."""
 
-from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -8,168 +7,170 @@ import numpy as np
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.identification.decay_filters import complete_overlap, low_pass_decay
 from pantocheck.conformance.identification.decay_preparation import PreparedDecay
+from pantocheck.conformance.identification.identification_format import (
+    Comparison,
+    Curve,
+    CurveWindow,
+    Overlay,
+    OverlayRun,
+    Repeatability,
+)
 
-WINDOW = 10.0  # compared at a time [s]
-LATER = 60.0  # after the release [s]
-LEAST_AT_START, LEAST_LATER = 0.98, 0.95  # correlations of a repeatable drop, noise allowed for
-HIGHEST = 6.0  # compared below this [Hz]
+WINDOW = 10.0
+"""Length of a compared window [s]."""
+
+EARLY = 1.5
+"""Start of the first compared window after the release [s]; before it slack droppers make the repeats differ."""
+
+LATER = 60.0
+"""Start of the second compared window after the release [s]."""
+
+MIN_CORRELATION_AT_START, MIN_CORRELATION_LATER = 0.98, 0.95
+"""Correlations that a repeatable drop reaches, as shares of the correlation that noise permits [-]."""
+
+HIGHEST_COMPARED = 6.0
+"""Upper frequency of the comparison [Hz]."""
+
+CURVE_STEP = 0.025
+"""Time step of the drawn curves [s]."""
 
 
-@dataclass(frozen=True)
-class Comparison:
-    """Two records of one drop at one sensor.
+def compare_records(repeats: tuple[PreparedDecay, ...]) -> Repeatability:
+    """Compare every further record of a drop with the first one, at each sensor.
 
     Parameters
     ----------
-    first, second : str
-        Names of the records.
-    channel : str
-        Name of the channel.
-    correlation : tuple[float, float or None]
-        At the start and a minute later; None if the records are too short for it.
-    possible : tuple[float, float or None]
-        The correlation that noise alone would leave, at the same times.
-    residual : tuple[float, float or None]
-        Root mean square of the difference over that of the first record, at the same times.
-    shift : float
-        By which the second was moved to lie over the first [s].
+    repeats : tuple of PreparedDecay
+        At least two records of one drop.
     """
-
-    first: str
-    second: str
-    channel: str
-    correlation: tuple[float, float | None]
-    possible: tuple[float, float | None]
-    residual: tuple[float, float | None]
-    shift: float
-
-
-@dataclass(frozen=True)
-class Repeatability:
-    """All comparisons of one test's repeats, and the verdict."""
-
-    comparisons: tuple[Comparison, ...]
+    comparisons = [comparison for other in repeats[1:] for comparison in _compare_pair(repeats[0], other)]
     verdict: Literal["repeatable", "not repeatable"]
-    reason: str
+    failed = next((c for c in comparisons if not _is_repeatable(c)), None)
+    if failed is not None:
+        later = "" if failed.correlation_later is None else f", {failed.correlation_later:.3f} a minute later"
+        start = f"correlation {failed.correlation_at_start:.3f} at the start"
+        verdict, reason = "not repeatable", f"{failed.second}, channel {failed.channel}: {start}{later}"
+    else:
+        worst = min(comparisons, key=lambda c: c.correlation_at_start / c.possible_at_start)
+        reason = f"lowest correlation at the start {worst.correlation_at_start:.4f} ({worst.channel})"
+        verdict = "repeatable"
+    return Repeatability(verdict=verdict, reason=reason, comparisons=tuple(comparisons))
 
 
-def compare_records(repeats: tuple[PreparedDecay, ...]) -> Repeatability | None:
-    """Compare every repeat with the first one.
+def overlay_records(repeats: tuple[PreparedDecay, ...]) -> Overlay:
+    """Curves of the repeats of a drop at the sensor that moves most; parameters as in `compare_records`."""
+    lowest_rate = min(decay.record.rate for decay in repeats)
+    curves = [align_records(decay, lowest_rate) for decay in repeats]
+    channel = int(np.argmax(curves[0][1].std(axis=0)))
+    runs = []
+    for decay, (time, samples) in zip(repeats, curves, strict=True):
+        windows = []
+        for begin in (0.0, LATER):
+            grid = np.arange(begin, begin + WINDOW, CURVE_STEP)
+            if grid[-1] <= time[-1]:
+                signal = np.interp(grid, time, samples[:, channel])
+                windows.append(CurveWindow(time_s=round_curve(grid), signal=round_curve(signal - signal.mean())))
+        runs.append(OverlayRun(name=decay.record.name, windows=tuple(windows)))
+    return Overlay(channel=repeats[0].channel_names[channel], runs=tuple(runs))
+
+
+def round_curve(values: RealArray) -> Curve:
+    """Values with six significant digits, enough to draw."""
+    return [float(f"{value:.6g}") for value in values]
+
+
+def _is_repeatable(c: Comparison) -> bool:
+    if c.correlation_at_start < MIN_CORRELATION_AT_START * c.possible_at_start:
+        return False
+    if c.correlation_later is None or c.possible_later is None:
+        return True
+    return c.correlation_later >= MIN_CORRELATION_LATER * c.possible_later
+
+
+def align_records(decay: PreparedDecay, lowest_rate: float) -> tuple[RealArray, RealArray]:
+    """Time from the release [s], (n,), and the vertical channels below `HIGHEST_COMPARED`, (n, c).
 
     Parameters
     ----------
-    repeats : tuple[PreparedDecay, ...]
-        Records of one drop; None comes back for fewer than two.
-
-    Returns
-    -------
-    Repeatability or None
-        Comparisons of each further record with the first, for each sensor.
-    """
-    if len(repeats) < 2:
-        return None
-    found = [one for other in repeats[1:] for one in _compared(repeats[0], other)]
-    worst = min(found, key=lambda c: c.correlation[0] / c.possible[0])
-    failed = [c for c in found if not _repeats(c)]
-    if failed:
-        bad = failed[0]
-        later = f", {bad.correlation[1]:.3f} a minute later" if bad.correlation[1] is not None else ""
-        reason = f"{bad.second}, channel {bad.channel}: correlation {bad.correlation[0]:.3f} at the start{later}"
-        return Repeatability(tuple(found), "not repeatable", reason)
-    return Repeatability(
-        tuple(found), "repeatable", f"lowest correlation at the start {worst.correlation[0]:.4f} ({worst.channel})"
-    )
-
-
-def _repeats(c: Comparison) -> bool:
-    early = c.correlation[0] >= LEAST_AT_START * c.possible[0]
-    late = c.correlation[1] is None or c.possible[1] is None or c.correlation[1] >= LEAST_LATER * c.possible[1]
-    return early and late
-
-
-def align_records(one: PreparedDecay, lowest_rate: float) -> tuple[RealArray, RealArray]:
-    """Time from the release [s], (n,), and the vertical channels below `HIGHEST`, (n, c).
-
-    Parameters
-    ----------
-    one : PreparedDecay
-        a record.
+    decay : PreparedDecay
+        Record.
     lowest_rate : float
-        Samples per second of the slowest record it is compared with [Hz]; it may not reach `HIGHEST`.
+        Lowest sampling rate of the compared records [Hz]; at a low rate the band ends below `HIGHEST_COMPARED`.
     """
-    rate, passes = one.record.rate, min(HIGHEST, 0.28 * lowest_rate)
+    rate, passes = decay.record.rate, min(HIGHEST_COMPARED, 0.28 * lowest_rate)
     taps = low_pass_decay(rate, passes, 1.5 * passes, 50.0)
-    samples = complete_overlap(one.record.signals[:, list(one.columns)], taps)
-    time = (np.arange(samples.shape[0]) + (taps.size - 1) / 2) / rate - one.release.time
+    samples = complete_overlap(decay.record.signals[:, list(decay.columns)], taps)
+    time = (np.arange(samples.shape[0]) + (taps.size - 1) / 2) / rate - decay.release.time
     return np.asarray(time, dtype=np.float64), samples
 
 
-def _compared(first: PreparedDecay, second: PreparedDecay) -> list[Comparison]:
+def _compare_pair(first: PreparedDecay, second: PreparedDecay) -> list[Comparison]:
     lowest_rate = min(first.record.rate, second.record.rate)
     t1, x1 = align_records(first, lowest_rate)
     t2, x2 = align_records(second, lowest_rate)
     rate = first.record.rate
-    start = 1.5  # the first second differs by how the droppers slacken
-    shift = _shift(t1, x1, t2, x2, start, rate)
-    noise = [_noise(t, x) for t, x in ((t1, x1), (t2, x2))]
-    found = []
-    for c, column in enumerate(first.columns):
+    shift = _delay(t1, x1, t2, x2, rate)
+    noise = [_noise_at_rest(t, x) for t, x in ((t1, x1), (t2, x2))]
+    comparisons = []
+    for c, name in enumerate(first.channel_names):
         values: list[tuple[float, float, float] | None] = []
-        for begin in (start, LATER):
+        for begin in (EARLY, LATER):
             grid = begin + np.arange(int(WINDOW * rate)) / rate
             if grid[-1] > min(t1[-1], t2[-1] - shift):
                 values.append(None)
                 continue
             a = np.interp(grid, t1, x1[:, c])
             b = np.interp(grid + shift, t2, x2[:, c])
-            a, b = a - a.mean(), b - b.mean()
-            signal = [max(float(np.mean(v**2)) - s[c] ** 2, 0.0) for v, s in ((a, noise[0]), (b, noise[1]))]
-            share = [p / (p + s[c] ** 2) if p > 0 else 0.0 for p, s in zip(signal, noise, strict=True)]
-            correlation = float(a @ b / np.sqrt((a @ a) * (b @ b)))
-            values.append(
-                (
-                    correlation,
-                    float(np.sqrt(share[0] * share[1])),
-                    float(np.sqrt(np.mean((a - b) ** 2) / np.mean(a**2))),
-                )
-            )
+            values.append(_compare_signals(a - a.mean(), b - b.mean(), float(noise[0][c]), float(noise[1][c])))
         early, late = values
         if early is None:
             continue
-        late_or_none = late if late is not None else (None, None, None)
-        found.append(
+        later = (None, None, None) if late is None else late
+        comparisons.append(
             Comparison(
-                first.record.name,
-                second.record.name,
-                first.record.channels[column].name,
-                (early[0], late_or_none[0]),
-                (max(early[1], 1e-6), late_or_none[1]),
-                (early[2], late_or_none[2]),
-                shift,
+                first=first.record.name,
+                second=second.record.name,
+                channel=name,
+                shift_s=shift,
+                correlation_at_start=early[0],
+                correlation_later=later[0],
+                possible_at_start=max(early[1], 1e-6),
+                possible_later=later[1],
+                residual_at_start=early[2],
+                residual_later=later[2],
             )
         )
-    return found
+    return comparisons
 
 
-def _noise(time: RealArray, samples: RealArray) -> RealArray:
-    """Root mean square at rest, (c,); 0 if the record has no rest."""
+def _compare_signals(a: RealArray, b: RealArray, noise_a: float, noise_b: float) -> tuple[float, float, float]:
+    """Correlation, the correlation that the noise permits, and the relative residual of two signals."""
+    signal = [max(float(np.mean(v**2)) - s**2, 0.0) for v, s in ((a, noise_a), (b, noise_b))]
+    share = [p / (p + s**2) if p > 0 else 0.0 for p, s in zip(signal, (noise_a, noise_b), strict=True)]
+    correlation = float(a @ b / np.sqrt((a @ a) * (b @ b)))
+    residual = float(np.sqrt(np.mean((a - b) ** 2) / np.mean(a**2)))
+    return correlation, float(np.sqrt(share[0] * share[1])), residual
+
+
+def _noise_at_rest(time: RealArray, samples: RealArray) -> RealArray:
+    """RMS before the release, (c,); 0 if the record has no rest."""
     rest = samples[time < -1.0]
     return np.asarray(rest.std(axis=0)) if rest.shape[0] > 20 else np.zeros(samples.shape[1])
 
 
-def _shift(t1: RealArray, x1: RealArray, t2: RealArray, x2: RealArray, start: float, rate: float) -> float:
-    """Time by which the second record lags, from all channels together, to a fraction of a sample [s]."""
-    grid = start + np.arange(int(WINDOW * rate)) / rate
+def _delay(t1: RealArray, x1: RealArray, t2: RealArray, x2: RealArray, rate: float) -> float:
+    """Delay of the second record [s], from all channels together, to a fraction of a sample."""
+    grid = EARLY + np.arange(int(WINDOW * rate)) / rate
     a = np.column_stack([np.interp(grid, t1, column) for column in x1.T])
     a = a - a.mean(axis=0)
 
-    def likeness(shift: float) -> float:
+    def correlation(shift: float) -> float:
         b = np.column_stack([np.interp(grid + shift, t2, column) for column in x2.T])
         b = b - b.mean(axis=0)
         return float(np.sum(a * b) / np.sqrt(np.sum(a**2) * np.sum(b**2)))
 
     shifts = np.arange(-0.3, 0.3, 0.5 / rate)
-    values = [likeness(s) for s in shifts]
+    values = [correlation(shift) for shift in shifts]
     k = int(np.clip(np.argmax(values), 1, shifts.size - 2))
     below, middle, above = values[k - 1 : k + 2]
     curvature = below - 2 * middle + above

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pantocheck.model.arrays import Array
+from pantocheck.model.catenary import ModalBand
 from pantocheck.model.discretised_line import DiscretisedLine
 from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order
 from pantocheck.model.modal.modes import Modes, compute_modes
@@ -84,3 +85,21 @@ def modes_below(line: DiscretisedLine, frequency: float) -> Modes:
             inside = found.frequency < frequency
             return Modes(found.frequency[inside], found.shape[inside])
         count *= 2
+
+
+def apply_modal_bands(ratios: Array, frequency: Array, bands: tuple[ModalBand, ...]) -> Array:
+    """Damping ratios of Rayleigh plus modal damping: the ratio of the band inside a band, the Rayleigh ratio elsewhere.
+
+    Parameters
+    ----------
+    ratios : (n,) ndarray
+        Damping ratios of Rayleigh damping [-].
+    frequency : (n,) ndarray
+        Natural frequencies of the modes [Hz].
+    bands : tuple of ModalBand
+        Bands of the modal damping.
+    """
+    combined = ratios.copy()
+    for band in bands:
+        combined[(frequency >= band.from_frequency) & (frequency < band.to_frequency)] = band.damping_ratio
+    return combined

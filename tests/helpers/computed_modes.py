@@ -2,12 +2,9 @@
 
 from dataclasses import replace
 
-import numpy as np
-
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.grading.case_grading import grade_case
-from pantocheck.conformance.identification.mode import Mode
-from pantocheck.conformance.mass_drops.drop_record import DropChannel
+from pantocheck.conformance.identification.mode import Mode, SensorShape
 from pantocheck.conformance.results.outcome import Delivered, StudyResult
 from pantocheck.conformance.results.results_format import Criterion
 from pantocheck.conformance.studies.vovan2015.damping_models import computed_damping_ratios
@@ -23,15 +20,11 @@ def computed_modes(line: Catenary, spans: int, highest: float) -> list[Mode]:
     shapes = modes_below(mesh, highest)
     return [
         Mode(
-            frequency=float(f),
-            frequency_std=1e-5,
+            frequency_Hz=float(f),
+            frequency_std_Hz=1e-5,
             damping_ratio=float(z),
             damping_ratio_std=1e-6,
-            channels=(DropChannel("S1_z", 1, "z"),),
-            shape=np.ones(1, dtype=complex),
-            shape_std=np.zeros(1),
-            amplitude=1.0,
-            collinearity=None,
+            sensor_shape=(SensorShape(sensor=1, re=1.0, im=0.0, std=0.0),),
             error=0.0,
             record="computed",
             group=1 + i // spans,

@@ -1,10 +1,7 @@
-"""Damping models fitted to measured damping ratios.
+"""Fit of piecewise Rayleigh damping to measured damping ratios.
 
-With C = sum over component kinds e of a_e K_e + b_e M_e, a mass-normalised mode phi_j has
-
-    zeta_j = sum_e (a_e k_ej + b_e m_ej) / (2 w_j),    k_ej = phi_j' K_e phi_j,   m_ej = phi_j' M_e phi_j
-
-which is linear in the coefficients; none of them is negative, so they follow from non-negative least squares.
+The damping ratios are linear in the coefficients (see `damping_terms`), and no coefficient is negative: they follow
+from non-negative least squares.
 
 References
 ----------
@@ -19,54 +16,34 @@ import scipy.optimize
 from numpy.typing import NDArray
 
 from pantocheck.conformance.array_types import IntegerArray, RealArray
+from pantocheck.conformance.identification.damping.damping_format import Coefficient
+from pantocheck.conformance.identification.damping.damping_terms import DampingBasis, Term
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.model import Kind
+from pantocheck.model.catenary import ModalBand
 
-MODEL_ERROR = 0.01  # relative error of a computed damping ratio by the line model alone
+MODEL_ERROR = 0.01
+"""Relative error of a computed damping ratio that is due to the line model [-]."""
+
 FIT_REPLICATES = 400
-WIRES = ("contact_wire", "messenger_wire")
-MATRICES = ("stiffness", "mass")
+"""Replicates of the confidence intervals."""
+
+WIRES: tuple[str, ...] = (Kind.CONTACT_WIRE, Kind.MESSENGER_WIRE)
+"""Kinds of component that are fitted."""
 
 
 @dataclass(frozen=True)
-class ModalEnergies:
-    """Energies of mass-normalised computed modes by kind of component.
+class MeasuredModes:
+    """Measured modes that have a computed counterpart.
 
     Parameters
     ----------
     frequency : (m,) ndarray
-        [Hz].
-    kinds : tuple[str, ...]
-        (e,) component kinds.
-    stiffness : (m, e) ndarray
-        k_ej [1/s2].
-    mass : (m, e) ndarray
-        m_ej [-].
-    """
-
-    frequency: RealArray
-    kinds: tuple[str, ...]
-    stiffness: RealArray
-    mass: RealArray
-
-    def columns(self) -> tuple[tuple[tuple[str, str], ...], RealArray]:
-        """Names (kind, matrix) and what a unit of each coefficient adds to every damping ratio, (m, 2 e)."""
-        names = tuple((kind, matrix) for kind in self.kinds for matrix in MATRICES)
-        both = np.stack([self.stiffness, self.mass], axis=2).reshape(self.frequency.size, -1)
-        return names, np.asarray(both / (4 * np.pi * self.frequency[:, None]))
-
-
-@dataclass(frozen=True)
-class MeasuredMode:
-    """Measured modes that have a computed counterpart, in the order of the energies.
-
-    Parameters
-    ----------
-    frequency : (m,) ndarray
-        [Hz].
+        Natural frequencies [Hz].
     damping_ratio, std : (m,) ndarray
-        And its standard deviation.
+        Shares of critical damping and their standard deviations [-].
     group : (m,) ndarray
-        Number of the group of span modes, 0 for none.
+        Numbers of their groups of span modes; 0 for none.
     """
 
     frequency: RealArray
@@ -76,42 +53,19 @@ class MeasuredMode:
 
 
 @dataclass(frozen=True)
-class Coefficient:
-    """One coefficient of the fit.
-
-    Parameters
-    ----------
-    kind : str
-        Component.
-    matrix : str
-        `stiffness` [s] or `mass` [1/s], which it multiplies.
-    value : float
-        Fitted.
-    low, high : float
-        95 % confidence interval.
-    """
-
-    kind: str
-    matrix: str
-    value: float
-    low: float
-    high: float
-
-
-@dataclass(frozen=True)
 class DampingFit:
     """Piecewise Rayleigh damping.
 
     Parameters
     ----------
-    coefficients : tuple[Coefficient, ...]
-        Of the kinds fitted.
+    coefficients : tuple of Coefficient
+        Coefficients of the fitted kinds.
     predicted : (m,) ndarray
-        Damping ratios of the fit at the measured modes.
+        Damping ratios of the fit at the measured modes [-].
     used : (m,) ndarray
-        Modes that entered; outliers of their group did not.
+        Modes that enter the fit; outliers of their group do not.
     residual : float
-        Root mean square of (measured - predicted) / measured over the modes used.
+        Root mean square of (measured - predicted) / measured over the modes used [-].
     """
 
     coefficients: tuple[Coefficient, ...]
@@ -119,94 +73,87 @@ class DampingFit:
     used: NDArray[np.bool_]
     residual: float
 
-    def value(self, kind: str, matrix: str) -> float:
-        """A coefficient; 0 if it was not fitted."""
-        return next((c.value for c in self.coefficients if (c.kind, c.matrix) == (kind, matrix)), 0.0)
+    @property
+    def values(self) -> dict[Term, float]:
+        """Fitted coefficients by term."""
+        return {(c.kind, c.matrix): c.value for c in self.coefficients}
 
 
-def fit_damping_model(
-    energies: ModalEnergies,
-    measured: MeasuredMode,
-    kinds: tuple[str, ...] = WIRES,
-) -> DampingFit:
-    """Coefficients of the chosen kinds by non-negative least squares.
+def fit_damping_model(basis: DampingBasis, measured: MeasuredModes, kinds: tuple[str, ...] = WIRES) -> DampingFit:
+    """Fit the coefficients of some kinds of component by non-negative least squares.
 
-    Every group of span modes weighs the same, whatever the number of its modes; a mode whose residual is far from the
-    median of its group is left out. Within a group modes weigh by their uncertainty and that of the model.
+    All groups of span modes have the same weight, whatever their number of modes. Within a group a mode is weighted by
+    its uncertainty and that of the line model. A mode whose residual is far from the median of its group is left out.
 
     Parameters
     ----------
-    energies : ModalEnergies
-        Of the computed counterparts of the measured modes.
-    measured : MeasuredMode
+    basis : DampingBasis
+        Damping ratios of the computed counterparts of the measured modes per unit of each coefficient.
+    measured : MeasuredModes
         The measured modes.
-    kinds : tuple[str, ...]
-        Component kinds to fit.
+    kinds : tuple of str
+        Kinds of component to fit.
 
     Raises
     ------
     InputError
-        Fewer modes than coefficients.
+        There are not more modes than coefficients.
     """
-    names, columns = energies.columns()
-    chosen = [i for i, (kind, _) in enumerate(names) if kind in kinds]
-    if measured.frequency.size <= len(chosen):
+    terms = [term for term in basis.terms if term[0] in kinds]
+    if measured.frequency.size <= len(terms):
         raise InputError(
             "modes",
-            f"{measured.frequency.size} modes for {len(chosen)} coefficients",
-            "Identify more modes, or check that the line of the case is the one measured.",
+            f"{measured.frequency.size} modes for {len(terms)} coefficients",
+            "Identify more modes, or check that the case has the line that was measured.",
         )
+    columns = basis.ratios[:, [basis.terms.index(term) for term in terms]]
     target, std = measured.damping_ratio, fit_deviation(measured)
     used = np.ones(target.size, dtype=np.bool_)
     for _ in range(3):
-        values = solve_weighted(columns[:, chosen], target, fit_weights(std, measured.group, used))
-        used = _near_their_group(target - columns[:, chosen] @ values, std, measured.group)
-    # The values are those of the modes said to be used.
-    values = solve_weighted(columns[:, chosen], target, fit_weights(std, measured.group, used))
-    predicted = columns[:, chosen] @ values
-    low, high = _interval(columns[:, chosen], target, std, measured.std, measured.group, used)
+        values = solve_weighted(columns, target, fit_weights(std, measured.group, used))
+        used = _near_their_group(target - columns @ values, std, measured.group)
+    # Once more, so that the values belong to the final set of modes.
+    values = solve_weighted(columns, target, fit_weights(std, measured.group, used))
+    predicted = columns @ values
+    low, high = _confidence_intervals(columns, measured, std, used)
     relative = (target - predicted) / target
-    return DampingFit(
-        tuple(
-            Coefficient(*names[i], value=float(values[n]), low=float(low[n]), high=float(high[n]))
-            for n, i in enumerate(chosen)
-        ),
-        predicted,
-        used,
-        float(np.sqrt(np.mean(relative[used] ** 2))),
+    coefficients = tuple(
+        Coefficient(kind=kind, matrix=matrix, value=float(value), low_95=float(lower), high_95=float(upper))
+        for (kind, matrix), value, lower, upper in zip(terms, values, low, high, strict=True)
     )
+    return DampingFit(coefficients, predicted, used, float(np.sqrt(np.mean(relative[used] ** 2))))
 
 
-def fit_deviation(measured: MeasuredMode) -> RealArray:
-    """Standard deviation of measured less computed damping ratios, (m,): that of the measurement and of the model."""
+def fit_deviation(measured: MeasuredModes) -> RealArray:
+    """Standard deviation of measured minus computed damping ratios, (m,), from the measurement and the line model."""
     return np.hypot(measured.std, MODEL_ERROR * measured.damping_ratio)
 
 
 def fit_weights(std: RealArray, group: IntegerArray, used: NDArray[np.bool_]) -> RealArray:
-    """Square roots of the weights: 1 / std, over the root of the number of modes used in the mode's group.
+    """Square roots of the weights: 1 / std, over the square root of the number of modes used in the group.
 
     Parameters
     ----------
     std : (m,) ndarray
-        Standard deviation of each mode.
+        Standard deviations of the modes.
     group : (m,) ndarray
-        Its group.
+        Numbers of their groups.
     used : (m,) ndarray
-        Whether it enters; others have no weight.
+        Modes that enter; the others have no weight.
     """
     count = np.array([max(int(np.sum(used & (group == number))), 1) for number in group])
     return np.where(used, 1 / (std * np.sqrt(count)), 0.0)
 
 
 def solve_weighted(columns: RealArray, target: RealArray, weight: RealArray) -> RealArray:
-    """Non-negative coefficients of weighted least squares, (e,).
+    """Non-negative coefficients of weighted least squares, (t,).
 
     Parameters
     ----------
-    columns : (m, e) ndarray
-        What a unit of each coefficient adds to the target.
-    target : ndarray
-        (m,).
+    columns : (m, t) ndarray
+        Contribution of a unit of each coefficient to the target.
+    target : (m,) ndarray
+        Right-hand side.
     weight : (m,) ndarray
         Square roots of the weights.
     """
@@ -215,55 +162,42 @@ def solve_weighted(columns: RealArray, target: RealArray, weight: RealArray) -> 
     return np.asarray(solution / scale)
 
 
-def _near_their_group(left: RealArray, std: RealArray, group: IntegerArray) -> NDArray[np.bool_]:
-    keep = np.ones(left.size, dtype=np.bool_)
+def _near_their_group(residual: RealArray, std: RealArray, group: IntegerArray) -> NDArray[np.bool_]:
+    near = np.ones(residual.size, dtype=np.bool_)
     for number in np.unique(group):
         members = np.flatnonzero(group == number)
-        off = left[members] - np.median(left[members])
-        spread = 1.4826 * np.median(np.abs(off))
-        keep[members] = np.abs(off) <= 4 * np.hypot(std[members], spread)
-    return keep
+        distance = residual[members] - np.median(residual[members])
+        spread = 1.4826 * np.median(np.abs(distance))
+        near[members] = np.abs(distance) <= 4 * np.hypot(std[members], spread)
+    return near
 
 
-def _interval(
-    columns: RealArray,
-    target: RealArray,
-    std: RealArray,
-    noise: RealArray,
-    group: IntegerArray,
-    used: NDArray[np.bool_],
+def _confidence_intervals(
+    columns: RealArray, measured: MeasuredModes, std: RealArray, used: NDArray[np.bool_]
 ) -> tuple[RealArray, RealArray]:
-    """2.5 and 97.5 percentiles over replicates: every group's modes drawn anew, and disturbed by their noise."""
+    """Percentiles 2.5 and 97.5 over replicates: modes of each group redrawn, and disturbed by their noise."""
     random = np.random.default_rng(20150817)
+    target, noise, group = measured.damping_ratio, measured.std, measured.group
     numbers = [np.flatnonzero((group == number) & used) for number in np.unique(group)]
     numbers = [members for members in numbers if members.size]
-    drawn = np.empty((FIT_REPLICATES, columns.shape[1]))
+    replicates = np.empty((FIT_REPLICATES, columns.shape[1]))
     for r in range(FIT_REPLICATES):
         rows = np.concatenate([random.choice(members, members.size) for members in numbers])
         noisy = target[rows] + noise[rows] * random.standard_normal(rows.size)
-        everything = np.ones(rows.size, dtype=np.bool_)
-        drawn[r] = solve_weighted(columns[rows], noisy, fit_weights(std[rows], group[rows], everything))
-    return np.percentile(drawn, 2.5, axis=0), np.percentile(drawn, 97.5, axis=0)
+        all_used = np.ones(rows.size, dtype=np.bool_)
+        replicates[r] = solve_weighted(columns[rows], noisy, fit_weights(std[rows], group[rows], all_used))
+    return np.percentile(replicates, 2.5, axis=0), np.percentile(replicates, 97.5, axis=0)
 
 
-@dataclass(frozen=True)
-class FittedModalBand:
-    """Damping ratio of one group: measured median over a band around it [Hz]."""
-
-    low: float
-    high: float
-    damping_ratio: float
-
-
-def fit_modal_bands(measured: MeasuredMode, last_group: int = 3) -> tuple[FittedModalBand, ...]:
+def fit_modal_bands(measured: MeasuredModes, last_group: int = 3) -> tuple[ModalBand, ...]:
     """Measured medians of the first groups, each over a band that ends half-way to the next group.
 
     Parameters
     ----------
-    measured : MeasuredMode
+    measured : MeasuredModes
         The measured modes.
     last_group : int
-        Groups 1..last_group.
+        Number of the last group that gets a band.
     """
     present = [number for number in range(1, last_group + 2) if np.any(measured.group == number)]
     edges = {
@@ -277,13 +211,5 @@ def fit_modal_bands(measured: MeasuredMode, last_group: int = 3) -> tuple[Fitted
         below = (edges[number - 1][1] + low) / 2 if number - 1 in edges else low - width / 2
         above = (high + edges[number + 1][0]) / 2 if number + 1 in edges else high + width / 2
         median = float(np.median(measured.damping_ratio[measured.group == number]))
-        bands.append(FittedModalBand(float(below), float(above), median))
+        bands.append(ModalBand(float(below), float(above), median))
     return tuple(bands)
-
-
-def add_modal_damping(frequency: RealArray, rayleigh: RealArray, bands: tuple[FittedModalBand, ...]) -> RealArray:
-    """Damping ratios of Rayleigh + modal: the bands' own ratio inside them, Rayleigh elsewhere, (m,)."""
-    ratio = rayleigh.copy()
-    for band in bands:
-        ratio[(frequency >= band.low) & (frequency < band.high)] = band.damping_ratio
-    return ratio

@@ -5,6 +5,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.model import Catenary, DiscretisedLine
 from pantocheck.model.discretised_line import with_damping
+from pantocheck.model.modal.modal_damping import apply_modal_bands
 from pantocheck.model.modal.modes import Modes, damping_ratios
 
 
@@ -14,7 +15,7 @@ def build_lines(case: Case) -> dict[str, Catenary]:
 
 
 def computed_damping_ratios(mesh: DiscretisedLine, shapes: Modes, line: Catenary) -> RealArray:
-    """Damping ratio that a line's damping gives to the modes of the undamped line, modal bands in place of the rest.
+    """Damping ratios of the modes of the undamped line under the Rayleigh and modal damping of a line [-], (n,).
 
     Parameters
     ----------
@@ -25,8 +26,5 @@ def computed_damping_ratios(mesh: DiscretisedLine, shapes: Modes, line: Catenary
     line : Catenary
         The same line with the damping in question.
     """
-    ratio = damping_ratios(with_damping(mesh, line.damping), shapes)
-    for band in line.modal_damping:
-        inside = (shapes.frequency >= band.from_frequency) & (shapes.frequency < band.to_frequency)
-        ratio[inside] = band.damping_ratio
-    return ratio
+    rayleigh = damping_ratios(with_damping(mesh, line.damping), shapes)
+    return apply_modal_bands(rayleigh, shapes.frequency, line.modal_damping)

@@ -1,11 +1,9 @@
 """What a damping model fitted to identified modes says beside the one that was put into the simulation."""
 
-from typing import Any
-
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.identification.damping.damping_format import DampingResults
 from pantocheck.conformance.identification.damping.damping_results import build_damping_results
-from pantocheck.conformance.identification.damping.observability import RATIO_NEEDED, SHARE_NEEDED
-from pantocheck.conformance.identification.identification_files import ModeRow, build_mode_row
+from pantocheck.conformance.identification.damping.damping_terms import MATRICES
 from pantocheck.conformance.identification.identify import Identification
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.results.results_format import Chart, Mark, Series, TextTable
@@ -34,7 +32,7 @@ def build_fit_report(case: Case, found: Identification) -> tuple[tuple[TextTable
     return (_coefficients(results, line),), (_observability(results),)
 
 
-def fit_identified_damping(case: Case, found: Identification) -> dict[str, Any]:
+def fit_identified_damping(case: Case, found: Identification) -> DampingResults:
     """Damping model fitted to the modes identified from a case's drops, as `pantocheck fit-damping` has it.
 
     Raises
@@ -42,21 +40,18 @@ def fit_identified_damping(case: Case, found: Identification) -> dict[str, Any]:
     InputError
         Too few modes.
     """
-    rows = tuple(ModeRow.model_validate(build_mode_row(mode)) for mode in found.modes)
     element = case.file.discretisation.element_m
-    return build_damping_results(rows, build_catenary(case.line), element, f"the modes of {case.id}")
+    return build_damping_results(found.modes, build_catenary(case.line), element, f"the modes of {case.id}")
 
 
-def _coefficients(results: dict[str, Any], line: Catenary) -> TextTable:
-    unit = {"stiffness": "s", "mass": "1/s"}
+def _coefficients(results: DampingResults, line: Catenary) -> TextTable:
     rows = []
-    for one in results["coefficients"]:
-        rayleigh = line.damping.get(Kind(one["kind"]))
-        put_in = 0.0 if rayleigh is None else getattr(rayleigh, f"{one['matrix']}_coefficient")
-        off = f"{100 * (one['value'] / put_in - 1):+.1f} %" if put_in else "-"
-        interval = f"{one['low_95']:.3g} to {one['high_95']:.3g}"
-        name = f"{one['kind'].replace('_', ' ')}, {one['matrix']} [{unit[one['matrix']]}]"
-        rows.append([name, f"{put_in:.4g}", f"{one['value']:.4g}", interval, off])
+    for c in results.coefficients:
+        rayleigh = line.damping.get(Kind(c.kind))
+        put_in = 0.0 if rayleigh is None else getattr(rayleigh, f"{c.matrix}_coefficient")
+        difference = f"{100 * (c.value / put_in - 1):+.1f} %" if put_in else "-"
+        name = f"{c.kind.replace('_', ' ')}, {c.matrix} [{MATRICES[c.matrix].unit}]"
+        rows.append([name, f"{put_in:.4g}", f"{c.value:.4g}", f"{c.low_95:.3g} to {c.high_95:.3g}", difference])
     modal = (
         " Modal bands of the case are not Rayleigh damping: the fit takes them for it." if line.modal_damping else ""
     )
@@ -67,28 +62,28 @@ def _coefficients(results: dict[str, Any], line: Catenary) -> TextTable:
     )
 
 
-def _observability(results: dict[str, Any]) -> Chart:
-    rows = results["observability"]
+def _observability(results: DampingResults) -> Chart:
+    rows = results.observability
     return Chart(
         caption="Observability of every coefficient: its plausible value over the standard deviation with which the "
         f"modes determine it. To be observable a coefficient must reach the dashed line, and make up at least "
-        f"{100 * SHARE_NEEDED:g} % of some mode's damping; what is below {LEAST_DRAWN:g} is drawn there.",
+        f"{100 * results.thresholds.largest_share:g} % of some mode's damping; what is below {LEAST_DRAWN:g} is drawn there.",
         alternative="; ".join(
-            f"{row['kind']} {row['matrix']}: {row['plausible_over_std']:.3g}, "
-            f"{'observable' if row['observable'] else 'not observable'}"
+            f"{row.kind} {row.matrix}: {row.plausible_over_std:.3g}, "
+            f"{'observable' if row.observable else 'not observable'}"
             for row in rows
         ),
         x_label="coefficient",
         y_label="plausible value / std [-]",
         y_scale="log",
-        ticks=[f"{row['kind'].replace('_', ' ')} {row['matrix']}" for row in rows],
+        ticks=[f"{row.kind.replace('_', ' ')} {row.matrix}" for row in rows],
         series=[
             Series(
                 label="all modes together",
                 style="bars",
                 x=[float(i) for i in range(len(rows))],
-                y=[max(row["plausible_over_std"], LEAST_DRAWN) for row in rows],
+                y=[max(row.plausible_over_std, LEAST_DRAWN) for row in rows],
             )
         ],
-        marks=[Mark(label="needed", axis="y", low=RATIO_NEEDED)],
+        marks=[Mark(label="needed", axis="y", low=results.thresholds.plausible_over_std)],
     )

@@ -30,7 +30,7 @@ def compute_group_findings(modes: Sequence[Mode]) -> dict[str, Value]:
     number = 1
     while members := [mode for mode in certain if mode.group == number]:
         counts.append(float(sum(mode.group == number for mode in upward)))
-        frequency.append(float(np.median([mode.frequency for mode in members])))
+        frequency.append(float(np.median([mode.frequency_Hz for mode in members])))
         damping.append(float(np.median([mode.damping_ratio for mode in members])))
         number += 1
     found: dict[str, Value] = {

@@ -76,7 +76,7 @@ def _against_frequency(case: Case, found: Identification, bound: float | None) -
             Series(
                 label="identified",
                 style="points",
-                x=thin_series(np.array([mode.frequency for mode in certain])),
+                x=thin_series(np.array([mode.frequency_Hz for mode in certain])),
                 y=thin_series(np.array([100 * mode.damping_ratio for mode in certain])),
                 error=thin_series(np.array([196 * mode.damping_ratio_std for mode in certain])),
             ),

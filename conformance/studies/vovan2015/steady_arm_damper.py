@@ -81,7 +81,7 @@ def damping_gains(without: list[float], damped: list[float]) -> dict[str, Value]
 def _medians(found: Identification, bands: Bands) -> list[float]:
     medians = []
     for low, high in bands:
-        inside = [m.damping_ratio for m in found.modes if m.certain and not m.lateral and low <= m.frequency < high]
+        inside = [m.damping_ratio for m in found.modes if m.certain and not m.lateral and low <= m.frequency_Hz < high]
         medians.append(float(np.median(inside)) if inside else float("nan"))
     return medians
 
@@ -106,7 +106,7 @@ def _chart(found: dict[str, Identification], last: float) -> Chart:
             Series(
                 label=name,
                 style="points",
-                x=thin_series(np.array([mode.frequency for mode in certain])),
+                x=thin_series(np.array([mode.frequency_Hz for mode in certain])),
                 y=thin_series(np.array([100 * mode.damping_ratio for mode in certain])),
                 error=thin_series(np.array([196 * mode.damping_ratio_std for mode in certain])),
             )

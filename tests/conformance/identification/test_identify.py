@@ -8,7 +8,7 @@ from scipy.optimize import linear_sum_assignment
 
 from helpers.synthetic_drops import drop, span_modes
 from pantocheck.conformance.identification.hand_placed_poles import read_poles
-from pantocheck.conformance.identification.identification_files import summarise_identification
+from pantocheck.conformance.identification.identification_analysis import analyse_identification
 from pantocheck.conformance.identification.identify import identify_modes
 from pantocheck.conformance.identification.linear_decay import FrequencyBand, find_linear_decay
 from pantocheck.conformance.identification.mode_groups import find_group_outliers, number_groups
@@ -36,7 +36,7 @@ def record_of(made, name="made up", lateral=None):
 
 
 def complex_poles(modes):
-    frequency, ratio = np.array([(m.frequency, m.damping_ratio) for m in modes]).T
+    frequency, ratio = np.array([(m.frequency_Hz, m.damping_ratio) for m in modes]).T
     return 2 * np.pi * frequency * (-ratio + 1j * np.sqrt(1 - ratio**2))
 
 
@@ -56,7 +56,7 @@ def test_blind_identification_reaches_the_bound(seed):
     for i, j in zip(rows, columns, strict=True):
         if bound[i] > 0.005:
             continue
-        assert abs(found.modes[j].frequency - abs(true[i]) / (2 * np.pi)) < 0.002
+        assert abs(found.modes[j].frequency_Hz - abs(true[i]) / (2 * np.pi)) < 0.002
         relative = found.modes[j].damping_ratio / (-true[i].real / abs(true[i])) - 1
         assert abs(relative) < 0.05
         ratios.append(abs(relative) / bound[i])
@@ -75,7 +75,7 @@ def test_weak_mode_comes_out_as_uncertain_or_not_at_all():
     made.samples[t > 0] += 0.012 * np.exp(weak * t[t > 0]).real[:, None]
     (found,) = identify_modes((record_of(made),), highest=4.0)
     for mode in found.modes:
-        if abs(mode.frequency - 1.9) < 0.1:
+        if abs(mode.frequency_Hz - 1.9) < 0.1:
             assert not mode.certain
             assert any("weakly excited" in text for text in mode.warnings)
             assert abs(mode.damping_ratio - 0.003) < 4 * mode.damping_ratio_std
@@ -103,7 +103,7 @@ def test_lateral_modes_are_told_by_the_lateral_channel():
     made.samples[:, 0] += 0.008 * sideways
     lateral = sideways + 0.002 * random.standard_normal(t.size)
     (found,) = identify_modes((record_of(made, lateral=lateral),), highest=4.0)
-    (mode,) = [m for m in found.modes if abs(m.frequency - 1.45) < 0.02]
+    (mode,) = [m for m in found.modes if abs(m.frequency_Hz - 1.45) < 0.02]
     assert mode.lateral
     assert mode.group is None
 
@@ -129,10 +129,10 @@ def test_drops_of_one_name_keep_their_own_sensors(sensors):
     quiet = record_of(drop(random, true, duration=60.0, rate=50.0, noise=0.003, weak=0.0), "one name")
     away = replace(quiet, channels=tuple(replace(c, position=c.position + 200.0) for c in quiet.channels))
     (found,) = identify_modes((record_of(noisy, "one name"), away), highest=4.0)
-    rows = summarise_identification(found)["modes"]
+    rows = found.modes
     assert len(rows) >= 6
     for row in rows:
-        assert [part["position_m"] for part in row["sensor_shape"]] == [220.0, 240.0, 260.0, 280.0]
+        assert [part.position_m for part in row.sensor_shape] == [220.0, 240.0, 260.0, 280.0]
 
 
 def test_amplitude_at_release_is_that_of_one_record_where_stretches_begin_apart():
@@ -152,12 +152,12 @@ def test_amplitude_at_release_is_that_of_one_record_where_stretches_begin_apart(
     (alone,) = identify_modes((noisy,), highest=4.0)
     (both,) = identify_modes((noisy, gusty), highest=4.0)
     assert both.prepared[1].stretch.start > both.prepared[0].stretch.start + 3.0
-    expected = {mode.frequency: mode.amplitude for mode in alone.modes if mode.certain}
+    expected = {mode.frequency_Hz: mode.amplitude_at_release for mode in alone.modes if mode.certain}
     strong = [mode for mode in both.modes if mode.certain and mode.record == "gusty"]
     assert len(strong) >= 3
     for mode in strong:
-        nearest = min(expected, key=lambda f: abs(f - mode.frequency))
-        assert mode.amplitude == pytest.approx(expected[nearest], rel=0.01)
+        nearest = min(expected, key=lambda f: abs(f - mode.frequency_Hz))
+        assert mode.amplitude_at_release == pytest.approx(expected[nearest], rel=0.01)
 
 
 def test_files_of_one_name_that_do_not_tell_their_line_are_of_two(tmp_path):
@@ -203,7 +203,7 @@ def test_low_wanted_frequency_is_no_fault_of_the_rate():
     random = np.random.default_rng(65)
     made = drop(random, 2 * np.pi * np.array([0.4 * (-0.004 + 1j), 0.8 * (-0.004 + 1j)]), rate=50.0, weak=0.0)
     (found,) = identify_modes((record_of(made),), highest=0.5)
-    assert [mode.frequency for mode in found.modes] == pytest.approx([0.4], abs=0.002)
+    assert [mode.frequency_Hz for mode in found.modes] == pytest.approx([0.4], abs=0.002)
 
 
 def test_repeats_at_a_low_rate_are_compared():
@@ -211,8 +211,8 @@ def test_repeats_at_a_low_rate_are_compared():
     random = np.random.default_rng(66)
     made = drop(random, span_modes(random, 6), duration=60.0, rate=12.0, weak=0.0)
     (found,) = identify_modes((record_of(made, "first"), record_of(made, "second")), highest=2.0)
-    (repeats,) = summarise_identification(found)["repeatability"]
-    assert repeats["verdict"] == "repeatable"
+    (repeats,) = analyse_identification(found).repeatability
+    assert repeats.verdict == "repeatable"
 
 
 def test_channel_lost_at_the_release_is_named():
@@ -276,7 +276,7 @@ def test_single_sensor_is_marked():
     made = drop(random, span_modes(random, 6), duration=60.0, rate=50.0, sensors=1, weak=0.0)
     (found,) = identify_modes((record_of(made),), highest=4.0)
     assert any("single sensor" in text for text in found.warnings)
-    assert all(mode.collinearity is None for mode in found.modes)
+    assert all(mode.phase_collinearity is None for mode in found.modes)
 
 
 def test_groups_hold_one_mode_per_span_even_where_they_touch():

@@ -6,23 +6,35 @@ import pytest
 
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.identification.damping import observability
+from pantocheck.conformance.identification.damping.damping_format import DampingResults, Observability
 from pantocheck.conformance.reports.figures import mass_drop_figures as massdrop_figures
 from pantocheck.conformance.reports.mass_drop.damping_report import OBSERVABILITY
 from pantocheck.conformance.studies.vovan2015 import fit_comparison as fitted
 
-ROWS = [
-    {"kind": kind, "matrix": "mass", "largest_share": share, "plausible_over_std": ratio, "observable": seen}
+OBSERVED = tuple(
+    Observability(
+        kind=kind,
+        matrix="mass",
+        largest_share=share,
+        variance_inflation=1.0,
+        std=0.1,
+        plausible=0.1,
+        plausible_over_std=ratio,
+        residual_without=1.0,
+        observable=seen,
+    )
     for kind, share, ratio, seen in (
         ("contact_wire", 0.8, 40.0, True),
         ("dropper", 0.01, 10.0, False),  # well determined, but it makes 1 % of any mode's damping
         ("steady_arm", 0.0, 0.0, False),
     )
-]
+)
+RESULTS = DampingResults.model_construct(coefficients=(), observability=OBSERVED, thresholds=observability.THRESHOLDS)
 
 
 @pytest.fixture
 def chart(monkeypatch):
-    monkeypatch.setattr(fitted, "fit_identified_damping", lambda *_: {"coefficients": [], "observability": ROWS})
+    monkeypatch.setattr(fitted, "fit_identified_damping", lambda *_: RESULTS)
     (case,) = select_cases(["vovan2015/mass-drop/updated"])
     ((chart,),) = fitted.build_fit_report(case, None)[1:]
     return chart
@@ -39,7 +51,7 @@ def test_what_is_well_determined_is_not_called_observable_for_that_alone(chart):
 
 def test_drawn_threshold_is_that_of_the_fit(chart):
     assert chart.marks[0].low == observability.RATIO_NEEDED
-    left, right = massdrop_figures.draw_observability.__wrapped__(ROWS).axes
+    left, right = massdrop_figures.draw_observability.__wrapped__([row.model_dump() for row in OBSERVED]).axes
     assert set(left.lines[0].get_xdata()) == {100 * observability.SHARE_NEEDED}
     assert set(right.lines[0].get_xdata()) == {observability.RATIO_NEEDED}
     assert f"at least {100 * observability.SHARE_NEEDED:g} % of some mode's damping" in OBSERVABILITY

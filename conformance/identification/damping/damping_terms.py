@@ -1,0 +1,91 @@
+"""Terms of piecewise Rayleigh damping: one coefficient per kind of component and matrix.
+
+With C = sum over kinds e of a_e K_e + b_e M_e, a mass-normalised mode phi_j has the damping ratio
+
+    zeta_j = sum_e (a_e k_ej + b_e m_ej) / (2 w_j),    k_ej = phi_j' K_e phi_j,   m_ej = phi_j' M_e phi_j
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pantocheck.conformance.array_types import IntegerArray, RealArray
+from pantocheck.model import Kind
+from pantocheck.model.modal.modes import ComponentEnergies
+
+Term = tuple[str, str]
+"""Kind of component, and the name of the matrix that the coefficient multiplies."""
+
+
+@dataclass(frozen=True)
+class DampingMatrix:
+    """Matrix that a Rayleigh coefficient multiplies.
+
+    Parameters
+    ----------
+    name : str
+        `stiffness` or `mass`.
+    key : str
+        Key of the coefficient in a line file.
+    unit : str
+        Unit of the coefficient.
+    plausible : float
+        Largest coefficient of a wire in Vo Van, Balmes, Lorang 2015, in that unit.
+    """
+
+    name: str
+    key: str
+    unit: str
+    plausible: float
+
+
+MATRICES = {
+    "stiffness": DampingMatrix("stiffness", "stiffness_coefficient_s", "s", 1e-4),
+    "mass": DampingMatrix("mass", "mass_coefficient_1_s", "1/s", 0.1),
+}
+"""Matrices by name, in the order of the terms."""
+
+TABLE_OF_KIND = {
+    Kind.CONTACT_WIRE: "contact_wire",
+    Kind.MESSENGER_WIRE: "messenger_wire",
+    Kind.STITCH_WIRE: "stitch_wire",
+    Kind.DROPPER: "droppers",
+    Kind.STEADY_ARM: "steady_arms",
+    Kind.MESSENGER_SUPPORT: "messenger_supports",
+}
+"""Table of a kind of component in the damping of a line file."""
+
+
+@dataclass(frozen=True)
+class DampingBasis:
+    """Damping ratios of the modes per unit of each coefficient.
+
+    Parameters
+    ----------
+    terms : tuple of Term
+        (t,) kind and matrix of each coefficient.
+    ratios : (m, t) ndarray
+        Damping ratio per unit of the coefficient [1/s] for stiffness, [s] for mass.
+    """
+
+    terms: tuple[Term, ...]
+    ratios: RealArray
+
+    def select_modes(self, modes: IntegerArray) -> "DampingBasis":
+        """Basis of some of the modes, by index."""
+        return DampingBasis(self.terms, self.ratios[modes])
+
+
+def build_damping_basis(frequency: RealArray, energies: ComponentEnergies) -> DampingBasis:
+    """Damping ratios per unit of each coefficient of every kind of component.
+
+    Parameters
+    ----------
+    frequency : (m,) ndarray
+        Natural frequencies of the modes [Hz].
+    energies : ComponentEnergies
+        Energies of the mass-normalised modes.
+    """
+    terms = tuple((str(kind), matrix) for kind in energies.kinds for matrix in MATRICES)
+    both = np.stack([energies.stiffness, energies.mass], axis=2).reshape(frequency.size, -1)
+    return DampingBasis(terms, np.asarray(both / (4 * np.pi * frequency[:, None])))

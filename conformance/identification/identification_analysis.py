@@ -1,0 +1,115 @@
+"""Analysis of an identification: groups, repeatability, spectra and frequency responses of a line."""
+
+import numpy as np
+
+from pantocheck.conformance.array_types import ComplexArray
+from pantocheck.conformance.identification.frequency_response import compute_frequency_response
+from pantocheck.conformance.identification.identification_format import (
+    Curve,
+    IdentifiedLine,
+    IdentifiedRecord,
+    ModeGroup,
+    RecordResponses,
+    RecordSpectra,
+    ResponseCurve,
+)
+from pantocheck.conformance.identification.identify import Identification
+from pantocheck.conformance.identification.mode import Mode
+from pantocheck.conformance.identification.repeatability import compare_records, overlay_records, round_curve
+
+
+def analyse_identification(identification: Identification) -> IdentifiedLine:
+    """Analyse the identification of one line."""
+    records = range(len(identification.prepared))
+    tests = dict.fromkeys(decay.test for decay in identification.prepared)
+    drops = [tuple(decay for decay in identification.prepared if decay.test == test) for test in tests]
+    repeated = [repeats for repeats in drops if len(repeats) > 1]
+    responses = (_responses(identification, r) for r in records)
+    return IdentifiedLine(
+        quantity=identification.prepared[0].record.quantity,
+        band_Hz=(identification.band.low, identification.band.high),
+        misfit=identification.misfit,
+        warnings=identification.warnings,
+        records=tuple(_record(identification, r) for r in records),
+        groups=_groups(identification.modes),
+        modes=identification.modes,
+        repeatability=tuple(compare_records(repeats) for repeats in repeated),
+        overlays=tuple(overlay_records(repeats) for repeats in repeated),
+        spectra=tuple(_spectra(identification, r) for r in records),
+        frequency_responses=tuple(response for response in responses if response is not None),
+    )
+
+
+def _record(identification: Identification, r: int) -> IdentifiedRecord:
+    decay = identification.prepared[r]
+    record, drop = decay.record, decay.record.drop
+    return IdentifiedRecord(
+        name=record.name,
+        source=record.source,
+        sampling_rate_Hz=record.rate,
+        length_s=record.duration,
+        mass_kg=drop.mass,
+        drop_wire=drop.wire,
+        drop_position_m=drop.position,
+        release_s=decay.release.time,
+        used_from_s=decay.stretch.start,
+        used_to_s=decay.stretch.end,
+        channels=decay.channel_names,
+    )
+
+
+def _groups(modes: tuple[Mode, ...]) -> tuple[ModeGroup, ...]:
+    groups = []
+    for number in sorted({mode.group for mode in modes if mode.group is not None}):
+        members = [mode for mode in modes if mode.group == number]
+        ratios = [mode.damping_ratio for mode in members if mode.certain]
+        groups.append(
+            ModeGroup(
+                group=number,
+                modes=len(members),
+                certain=len(ratios),
+                from_Hz=members[0].frequency_Hz,
+                to_Hz=members[-1].frequency_Hz,
+                median_damping_ratio=float(np.median(ratios)) if ratios else None,
+                lowest=min(ratios, default=None),
+                highest=max(ratios, default=None),
+            )
+        )
+    return tuple(groups)
+
+
+def _spectra(identification: Identification, r: int) -> RecordSpectra:
+    decay, block = identification.prepared[r], identification.block_of[r]
+    data, fit, columns = identification.blocks[block], identification.fits[block], identification.columns[r]
+    shown = data.omega <= 2 * np.pi * identification.band.high
+    measured, residual = (values[shown][:, columns] * data.dt for values in (data.spectrum, fit.residual))
+    return RecordSpectra(
+        record=decay.record.name,
+        channels=decay.channel_names,
+        frequency_Hz=round_curve(data.omega[shown] / (2 * np.pi)),
+        measured=_magnitudes(measured),
+        fitted=_magnitudes(measured - residual),
+        residual=_magnitudes(residual),
+        poles_Hz=tuple(mode.frequency_Hz for mode in identification.modes),
+    )
+
+
+def _magnitudes(spectra: ComplexArray) -> tuple[Curve, ...]:
+    return tuple(round_curve(np.abs(column)) for column in spectra.T)
+
+
+def _responses(identification: Identification, r: int) -> RecordResponses | None:
+    response = compute_frequency_response(identification, r)
+    if response is None:
+        return None
+    measured, identified = (
+        tuple(ResponseCurve(magnitude=round_curve(np.abs(h)), phase_rad=round_curve(np.angle(h))) for h in columns.T)
+        for columns in (response.measured, response.identified)
+    )
+    return RecordResponses(
+        record=response.record,
+        channels=response.channels,
+        frequency_Hz=round_curve(response.frequency),
+        measured=measured,
+        identified=identified,
+    )

@@ -1,0 +1,144 @@
+"""Format of identification.json: all numbers of an identification, per line."""
+
+from typing import Annotated, Literal
+
+from pydantic import ConfigDict, Field
+
+from pantocheck.conformance.identification.mode import Mode
+from pantocheck.conformance.identification.rounded_model import Rounded, RoundedModel
+from pantocheck.conformance.mass_drops.drop_record import MotionQuantity
+
+Curve = list[float]
+"""Ordinates or abscissae of a curve, with six significant digits."""
+
+
+class IdentifiedRecord(RoundedModel):
+    """Record of a mass drop and the part of it that was used."""
+
+    name: str
+    source: Annotated[str, Field(description="name of the file")]
+    sampling_rate_Hz: float
+    length_s: Rounded
+    mass_kg: float | None
+    drop_wire: str
+    drop_position_m: float | None
+    release_s: Annotated[Rounded, Field(description="first movement, in the time of the record [s]")]
+    used_from_s: Annotated[Rounded, Field(description="start of the linear decay, in the time of the record [s]")]
+    used_to_s: Annotated[Rounded, Field(description="end of the linear decay, in the time of the record [s]")]
+    channels: Annotated[tuple[str, ...], Field(description="names of the vertical channels")]
+
+
+class ModeGroup(RoundedModel):
+    """Group of span modes: one mode per span, around a multiple of the frequency of the first group."""
+
+    group: Annotated[int, Field(description="number of the group, from 1")]
+    modes: Annotated[int, Field(description="number of modes")]
+    certain: Annotated[int, Field(description="number of modes whose damping ratio is certain")]
+    from_Hz: Rounded
+    to_Hz: Rounded
+    median_damping_ratio: Annotated[Rounded | None, Field(description="median of the certain modes [-]")]
+    lowest: Annotated[Rounded | None, Field(description="lowest damping ratio of the certain modes [-]")]
+    highest: Annotated[Rounded | None, Field(description="highest damping ratio of the certain modes [-]")]
+
+
+class Comparison(RoundedModel):
+    """Two records of one drop compared at one sensor, in windows at the start and a minute later.
+
+    Keys that end in `later` are null if the records are too short.
+    """
+
+    first: str
+    second: str
+    channel: str
+    shift_s: Annotated[Rounded, Field(description="delay of the second record [s]")]
+    correlation_at_start: Rounded
+    correlation_later: Rounded | None
+    possible_at_start: Annotated[Rounded, Field(description="correlation of equal signals with this noise [-]")]
+    possible_later: Rounded | None
+    residual_at_start: Annotated[Rounded, Field(description="RMS of the difference over RMS of the first record [-]")]
+    residual_later: Rounded | None
+
+
+class Repeatability(RoundedModel):
+    """Comparisons of all repeats of a drop with the first one, and the verdict."""
+
+    verdict: Literal["repeatable", "not repeatable"]
+    reason: str
+    comparisons: tuple[Comparison, ...]
+
+
+class CurveWindow(RoundedModel):
+    """Signal of one sensor over a window after the release."""
+
+    time_s: Curve
+    signal: Curve
+
+
+class OverlayRun(RoundedModel):
+    """Windows of one record."""
+
+    name: str
+    windows: tuple[CurveWindow, ...]
+
+
+class Overlay(RoundedModel):
+    """Repeats of a drop at the sensor that moves most."""
+
+    channel: str
+    runs: tuple[OverlayRun, ...]
+
+
+class RecordSpectra(RoundedModel):
+    """Transforms of the channels of a record, measured and fitted [unit of the record times s]."""
+
+    record: str
+    channels: tuple[str, ...]
+    frequency_Hz: Curve
+    measured: tuple[Curve, ...]
+    fitted: tuple[Curve, ...]
+    residual: tuple[Curve, ...]
+    poles_Hz: Annotated[tuple[Rounded, ...], Field(description="frequencies of the identified modes [Hz]")]
+
+
+class ResponseCurve(RoundedModel):
+    """Accelerance of one sensor."""
+
+    model_config = ConfigDict(populate_by_name=True)
+
+    magnitude: Annotated[Curve, Field(alias="abs", description="magnitude [m/s2/N]")]
+    phase_rad: Curve
+
+
+class RecordResponses(RoundedModel):
+    """Frequency responses of the channels of a record to the release, measured and identified."""
+
+    record: str
+    channels: tuple[str, ...]
+    frequency_Hz: Curve
+    measured: tuple[ResponseCurve, ...]
+    identified: tuple[ResponseCurve, ...]
+
+
+class IdentifiedLine(RoundedModel):
+    """Identification of one line from all its records."""
+
+    quantity: Annotated[MotionQuantity, Field(description="quantity that the sensors measure")]
+    band_Hz: Annotated[tuple[float, float], Field(description="band of the reported modes [Hz]")]
+    misfit: Annotated[Rounded, Field(description="squared residual over that of noise alone; 1: complete model")]
+    warnings: tuple[str, ...]
+    records: tuple[IdentifiedRecord, ...]
+    groups: tuple[ModeGroup, ...]
+    modes: tuple[Mode, ...]
+    repeatability: Annotated[tuple[Repeatability, ...], Field(description="one per drop with repeats")]
+    overlays: Annotated[tuple[Overlay, ...], Field(description="one per drop with repeats")]
+    spectra: Annotated[tuple[RecordSpectra, ...], Field(description="one per record")]
+    frequency_responses: Annotated[tuple[RecordResponses, ...], Field(description="records with a known mass")]
+
+
+class IdentificationFile(RoundedModel):
+    """File identification.json."""
+
+    model_config = ConfigDict(populate_by_name=True)
+
+    schema_: Annotated[Literal["pantocheck.identification/1"], Field(alias="schema")] = "pantocheck.identification/1"
+    lines: tuple[IdentifiedLine, ...]
