@@ -66,8 +66,9 @@ def _observability(results: DampingResults) -> Chart:
     rows = results.observability
     return Chart(
         caption="Observability of every coefficient: its plausible value over the standard deviation with which the "
-        f"modes determine it. To be observable a coefficient must reach the dashed line, and make up at least "
-        f"{100 * results.thresholds.largest_share:g} % of some mode's damping; what is below {LEAST_DRAWN:g} is drawn there.",
+        "modes determine it. An observable coefficient reaches the dashed line and makes up at least "
+        f"{100 * results.thresholds.largest_share:g} % of the damping of some mode. Values below {LEAST_DRAWN:g} are "
+        f"drawn at {LEAST_DRAWN:g}.",
         alternative="; ".join(
             f"{row.kind} {row.matrix}: {row.plausible_over_std:.3g}, "
             f"{'observable' if row.observable else 'not observable'}"

@@ -162,7 +162,7 @@ def test_modal_bands_give_the_first_groups_their_medians(line):
     measured = measured_of(line, 0.0, np.random.default_rng(4))
     bands = fit_modal_bands(measured)
     assert len(bands) == 3
-    assert all(a.high <= b.low for a, b in pairwise(bands))
+    assert all(a.to_frequency <= b.from_frequency for a, b in pairwise(bands))
     changed = apply_modal_bands(measured.damping_ratio, measured.frequency, bands)
     assert changed[:6] == pytest.approx(np.median(measured.damping_ratio[:6]))
     assert np.array_equal(changed[18:], measured.damping_ratio[18:])

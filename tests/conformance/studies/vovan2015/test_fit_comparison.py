@@ -43,14 +43,14 @@ def chart(monkeypatch):
 def test_what_is_well_determined_is_not_called_observable_for_that_alone(chart):
     """A coefficient needs its share in some mode's damping, too."""
     assert "above the dashed line it is observable" not in chart.caption
-    assert f"{100 * observability.SHARE_NEEDED:g} %" in chart.caption
+    assert f"{100 * observability.THRESHOLDS.largest_share:g} %" in chart.caption
     assert chart.marks[0].label == "needed"
     told = re.findall(r"(\w+) mass: [\d.e+-]+, (observable|not observable)", chart.alternative)
     assert dict(told) == {"contact_wire": "observable", "dropper": "not observable", "steady_arm": "not observable"}
 
 
 def test_drawn_threshold_is_that_of_the_fit(chart):
-    assert chart.marks[0].low == observability.RATIO_NEEDED
+    assert chart.marks[0].low == observability.THRESHOLDS.plausible_over_std
     left, right = massdrop_figures.draw_observability.__wrapped__([row.model_dump() for row in OBSERVED]).axes
     assert set(left.lines[0].get_xdata()) == {100 * observability.SHARE_NEEDED}
     assert set(right.lines[0].get_xdata()) == {observability.RATIO_NEEDED}
@@ -61,4 +61,4 @@ def test_drawn_threshold_is_that_of_the_fit(chart):
 def test_floor_of_the_logarithmic_scale_is_said(chart):
     (bars,) = chart.series
     assert bars.y == [40.0, 10.0, fitted.LEAST_DRAWN]
-    assert f"what is below {fitted.LEAST_DRAWN:g} is drawn there" in chart.caption
+    assert f"Values below {fitted.LEAST_DRAWN:g} are drawn at {fitted.LEAST_DRAWN:g}" in chart.caption
