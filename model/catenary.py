@@ -1,4 +1,4 @@
-"""What a line is made of: wires and the parts that connect them, as frozen values in SI units.
+"""Description of a line: wires and the parts that connect them, as frozen values in SI units.
 
 z ^      o support                                  o support
   |       \\____ messenger wire ___________________/
@@ -16,7 +16,7 @@ GRAVITY = 9.81
 
 
 class Kind(StrEnum):
-    """Kinds of component; each has its own share of the damping."""
+    """Kinds of component; each kind has its own damping."""
 
     CONTACT_WIRE = "contact_wire"
     MESSENGER_WIRE = "messenger_wire"
@@ -28,14 +28,14 @@ class Kind(StrEnum):
 
 @dataclass(frozen=True)
 class Rayleigh:
-    """Damping of one kind of component: C = mass_coefficient M + stiffness_coefficient K.
+    """Rayleigh damping of one kind of component: C = alpha M + beta K.
 
     Parameters
     ----------
     mass_coefficient : float
-        Multiplies the mass [1/s].
+        Coefficient alpha of the mass [1/s].
     stiffness_coefficient : float
-        Multiplies the stiffness [s].
+        Coefficient beta of the stiffness [s].
     """
 
     mass_coefficient: float = 0.0
@@ -44,12 +44,12 @@ class Rayleigh:
 
 @dataclass(frozen=True)
 class TensionChange:
-    """A stretch of a wire whose tension differs, as the messenger's between the clamps of a stitch wire.
+    """Stretch of a wire with a different tension, such as the messenger wire between the clamps of a stitch wire.
 
     Parameters
     ----------
     start, end : float
-        The stretch [m].
+        Ends of the stretch [m].
     change : float
         Added to the tension of the wire [N].
     """
@@ -61,7 +61,7 @@ class TensionChange:
 
 @dataclass(frozen=True)
 class Wire:
-    """A tensioned wire from anchor to anchor.
+    """Tensioned wire from anchor to anchor.
 
     Parameters
     ----------
@@ -70,17 +70,17 @@ class Wire:
     kind : Kind
         Contact, messenger or stitch wire.
     start, end : float
-        Anchors, where the wire does not move [m].
+        Positions of the fixed anchors [m].
     tension : float
-        [N].
+        Tension T [N].
     mass_per_length : float
-        [kg/m].
+        Mass per length [kg/m].
     bending_stiffness : float
-        EI [N m2].
-    tension_changes : tuple[TensionChange, ...]
-        Stretches of other tension.
-    stagger : tuple[tuple[float, float], ...] or None
-        Prescribed lateral places (x, y) at supports and steady arms [m, m]; None leaves the lateral field out.
+        Bending stiffness EI [N m2].
+    tension_changes : tuple of TensionChange
+        Stretches with a different tension.
+    stagger : tuple of (float, float) or None
+        Prescribed lateral positions (x, y) at supports and steady arms [m, m]; None: no lateral field.
     """
 
     name: str
@@ -96,25 +96,24 @@ class Wire:
 
 @dataclass(frozen=True)
 class Dropper:
-    """A tension-only bar between two wires at one place along the track.
+    """Tension-only bar between two wires.
 
     Parameters
     ----------
     position : float
-        [m].
+        Position along the track [m].
     upper, lower : str
         Names of the wires.
     stiffness : float or None
-        Axial, while taut [N/m]; or None, and then axial_stiffness is given.
+        Axial stiffness of the taut dropper [N/m]; None: it follows from `axial_stiffness`.
     axial_stiffness : float or None
-        EA [N]; the stiffness is EA over the length that statics give.
+        EA; the stiffness is EA over the length in the initial state [N].
     mass : float
-        Its own, halved to its ends [kg].
+        Mass, half of it at each end [kg].
     upper_clamp_mass, lower_clamp_mass : float
-        [kg].
+        Masses of the clamps [kg].
     contact_wire_height : float or None
-        Prescribed height of the lower wire here, over the height at the supports [m]; None where the lower wire finds
-        its own.
+        Prescribed height of the lower wire at the dropper, above its height at the supports [m]; None: not prescribed.
     """
 
     position: float
@@ -130,26 +129,26 @@ class Dropper:
 
 @dataclass(frozen=True)
 class SteadyArm:
-    """A hinged bar that holds the contact wire at its stagger; seen by the vertical plane as a soft spring.
+    """Hinged bar that holds the contact wire at its stagger; in the vertical plane it acts as a soft spring.
 
     Parameters
     ----------
     position : float
-        [m].
+        Position along the track [m].
     wire : str
         Name of the contact wire.
     vertical_stiffness : float or None
-        Given [N/m]; None: with a lateral field the axial force over the length of the arm, else none.
+        Vertical stiffness [N/m]; None: with a lateral field axial force over length, otherwise zero.
     length : float or None
-        Of the bar, hinge to claw [m].
+        Length from the hinge to the contact-wire clamp [m].
     mass : float
-        What the bar and its claw add to the wire at the claw [kg].
+        Mass of bar and clamp that moves with the wire [kg].
     vertical_damper : float
-        a damper between claw and ground [N s/m].
+        Damper between the clamp and the ground [N s/m].
     carries_share : bool
-        Does the arm carry its share of the contact wire, so that the wire is level at the support?
-    acts : Literal[pull, push]
-        "pull" or "push": which way it holds the wire; an arm that pushes is a negative spring.
+        Whether the arm carries its share of the contact wire, so that the wire is level at the support.
+    acts : {"pull", "push"}
+        Direction of the arm force on the wire; a pushing arm is a negative spring.
     """
 
     position: float
@@ -169,15 +168,15 @@ class MessengerSupport:
     Parameters
     ----------
     position : float
-        [m].
+        Position along the track [m].
     wire : str
         Name of the messenger wire.
     height : float
-        Of the messenger over the contact wire at the support, the encumbrance [m].
+        Encumbrance: height of the messenger wire above the contact wire at the support [m].
     stiffness : float
-        Vertical [N/m].
+        Vertical stiffness [N/m].
     damping : float
-        Vertical [N s/m].
+        Vertical damping [N s/m].
     """
 
     position: float
@@ -189,16 +188,16 @@ class MessengerSupport:
 
 @dataclass(frozen=True)
 class Clamp:
-    """A rigid joint of two wires at one place, as where a stitch wire is clamped to the messenger.
+    """Rigid joint of two wires, such as a stitch wire and the messenger wire.
 
     Parameters
     ----------
     position : float
-        [m].
+        Position along the track [m].
     upper, lower : str
         Names of the wires.
     mass : float
-        [kg].
+        Mass of the clamp [kg].
     """
 
     position: float
@@ -209,14 +208,14 @@ class Clamp:
 
 @dataclass(frozen=True)
 class ModalBand:
-    """A damping ratio for all modes of a frequency band, in place of what Rayleigh damping gives them.
+    """Damping ratio of all modes in a frequency band, in place of their Rayleigh damping.
 
     Parameters
     ----------
     from_frequency, to_frequency : float
-        The band, its upper edge left out [Hz].
+        Edges of the band; the upper edge is excluded [Hz].
     damping_ratio : float
-        [-].
+        Damping ratio [-].
     """
 
     from_frequency: float
@@ -226,16 +225,16 @@ class ModalBand:
 
 @dataclass(frozen=True)
 class Catenary:
-    """A line: its wires, what connects them, and the damping of each kind of component.
+    """Line: wires, connecting parts, and the damping of each kind of component.
 
     Parameters
     ----------
     wires, droppers, steady_arms, messenger_supports, clamps : tuple of Wire, tuple of Dropper, ...
-        The parts.
-    damping : dict[Kind, Rayleigh]
-        By kind of component; a kind left out is undamped.
-    modal_damping : tuple[ModalBand, ...]
-        Bands whose modes have a damping ratio of their own.
+        Parts of the line.
+    damping : dict of Kind to Rayleigh
+        Damping of each kind of component; a missing kind is undamped.
+    modal_damping : tuple of ModalBand
+        Frequency bands with modal damping.
     """
 
     wires: tuple[Wire, ...]
@@ -248,20 +247,14 @@ class Catenary:
 
     @property
     def contact_wires(self) -> tuple[Wire, ...]:
-        """The wires a pantograph touches."""
+        """Wires that a pantograph touches."""
         return tuple(wire for wire in self.wires if wire.kind is Kind.CONTACT_WIRE)
 
     @property
     def has_lateral_field(self) -> bool:
-        """Whether any wire prescribes a stagger, so that the lateral field is computed."""
+        """Whether a wire has a stagger, so that the lateral field is computed."""
         return any(wire.stagger is not None for wire in self.wires)
 
     def wire(self, name: str) -> Wire:
-        """The wire of that name.
-
-        Raises
-        ------
-        KeyError
-            There is none.
-        """
+        """Wire with a name; KeyError if there is none."""
         return {wire.name: wire for wire in self.wires}[name]

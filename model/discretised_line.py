@@ -1,4 +1,4 @@
-"""From the description of a line to finite elements at rest."""
+"""Discretised line: finite elements of a line in its initial state."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -7,27 +7,27 @@ import numpy as np
 
 from pantocheck.model.catenary import Catenary, Kind, Rayleigh
 from pantocheck.model.fem.beams import Beams, build_beams
-from pantocheck.model.fem.connectors import Connectors, add_lumped, build_connectors
+from pantocheck.model.fem.connectors import Connectors, build_connectors
 from pantocheck.model.fem.mesh import Mesh, build_mesh
 from pantocheck.model.statics.initial_state import InitialState, compute_initial_state
 
 
 @dataclass(frozen=True)
 class DiscretisedLine:
-    """A line in finite elements, at rest.
+    """Finite elements of a line in its initial state.
 
     Parameters
     ----------
     catenary : Catenary
-        What it was made from.
+        Description of the line.
     mesh : Mesh
         Stations and rows.
     beams : Beams
-        Rows of beams with everything lumped onto them.
+        Rows of beams with lumped parts.
     connectors : Connectors
         Droppers and clamps.
     state : InitialState
-        Initial state.
+        Line at rest.
     """
 
     catenary: Catenary
@@ -38,26 +38,26 @@ class DiscretisedLine:
 
     @property
     def contact_rows(self) -> list[int]:
-        """Rows of the contact wires' vertical field."""
+        """Rows of the vertical deflection of the contact wires."""
         return [self.mesh.row_of[wire.name, "z"] for wire in self.catenary.contact_wires]
 
 
 def discretise(catenary: Catenary, element_length: float, places: tuple[float, ...] = ()) -> DiscretisedLine:
-    """Finite elements and initial state of a line.
+    """Divide a line into finite elements and compute its initial state.
 
     Parameters
     ----------
     catenary : Catenary
-        The line.
+        Description of the line.
     element_length : float
-        Longest element [m].
-    places : tuple[float, ...]
-        Where stations are wanted besides those the line itself needs, as for loads and sensors [m].
+        Largest length of an element [m].
+    places : tuple of float
+        Positions of additional stations, for example for loads and sensors [m].
 
     Returns
     -------
     DiscretisedLine
-        The discretised line.
+        Line at rest.
 
     Raises
     ------
@@ -67,19 +67,18 @@ def discretise(catenary: Catenary, element_length: float, places: tuple[float, .
     mesh = build_mesh(catenary, element_length, places)
     beams = build_beams(catenary, mesh)
     state = compute_initial_state(catenary, mesh, beams)
-    add_lumped(catenary, mesh, beams)
     return DiscretisedLine(catenary, mesh, beams, build_connectors(catenary, mesh, state), state)
 
 
 def with_damping(line: DiscretisedLine, damping: Mapping[Kind, Rayleigh]) -> DiscretisedLine:
-    """The same line with other damping; its initial state does not depend on it.
+    """Replace the damping of a line; its initial state does not depend on it.
 
     Parameters
     ----------
     line : DiscretisedLine
-        The discretised line.
-    damping : Mapping[Kind, Rayleigh]
-        By kind of component.
+        Discretised line.
+    damping : mapping of Kind to Rayleigh
+        Damping of each kind of component.
 
     Returns
     -------
@@ -87,12 +86,11 @@ def with_damping(line: DiscretisedLine, damping: Mapping[Kind, Rayleigh]) -> Dis
         The line with that damping.
     """
     catenary = replace(line.catenary, damping=dict(damping))
-    beams = build_beams(catenary, line.mesh)
-    add_lumped(catenary, line.mesh, beams)
-    return replace(line, catenary=catenary, beams=beams, connectors=build_connectors(catenary, line.mesh, line.state))
+    connectors = build_connectors(catenary, line.mesh, line.state)
+    return replace(line, catenary=catenary, beams=build_beams(catenary, line.mesh), connectors=connectors)
 
 
 def never_slack(line: DiscretisedLine) -> DiscretisedLine:
-    """The same line with droppers that push as well as they pull: wrong, and a measure of what slackening does."""
+    """Let the droppers push as well as pull: unphysical, but it shows the influence of slackening."""
     connectors = line.connectors._replace(unilateral=np.zeros_like(line.connectors.unilateral))
     return replace(line, connectors=connectors)

@@ -1,4 +1,4 @@
-"""Pantographs: chains of lumped masses, or any linear model given by its matrices or modes.
+"""Pantographs: chains of lumped masses, or any linear model defined by its matrices or modes.
 
  wire
 ======
@@ -20,22 +20,22 @@ from pantocheck.model.arrays import Array
 
 @dataclass(frozen=True)
 class Pantograph:
-    """A linear pantograph model: M z'' + C z' + K z = force - contact force on the head.
+    """Linear pantograph model: M z'' + C z' + K z = force - contact force on the head.
 
-    Displacements z are counted upwards from the contact wire's height at the supports.
+    Displacements z are positive upwards from the height of the contact wire at the supports.
 
     Parameters
     ----------
     mass, damping, stiffness : (n, n) ndarray
         Symmetric matrices [kg, N s/m, N/m].
     head : (n,) ndarray
-        Picks the head's displacement out of the unknowns [-].
+        Selects the displacement of the head from the unknowns [-].
     force : (n,) ndarray
-        Constant force on the unknowns: uplift, and preload of the springs [N].
+        Constant forces on the unknowns: uplift force and preload of the springs [N].
     static_force : float
         Contact force at rest [N].
     contact_stiffness : float
-        Of the penalty between head and wire [N/m].
+        Stiffness of the penalty contact between head and wire [N/m].
     """
 
     mass: Array
@@ -56,27 +56,27 @@ def chain(
     contact_stiffness: float,
     unstretched_height: float = 0.0,
 ) -> Pantograph:
-    """A chain of lumped masses from base to head.
+    """Build a chain of lumped masses from base to head.
 
     Parameters
     ----------
     masses : (n,) ndarray
-        From the base upwards [kg].
+        Masses from the base upwards [kg].
     stiffness, damping : (n,) ndarray
-        Of the element below each mass [N/m, N s/m].
+        Stiffness and damping of the element below each mass [N/m, N s/m].
     uplift_force : float
-        Constant [N].
+        Constant uplift force [N].
     uplift_on : int
-        Index of the mass it acts on.
+        Index of the mass on which it acts.
     contact_stiffness : float
-        [N/m].
+        Stiffness of the penalty contact [N/m].
     unstretched_height : float
-        Of all masses, over the contact wire at the supports, at which no spring is stretched [m].
+        Height of all masses above the contact wire at the supports at which the springs are unstretched [m].
 
     Returns
     -------
     Pantograph
-        The pantograph.
+        Linear model.
     """
     n = len(masses)
     force, head = np.zeros(n), np.zeros(n)
@@ -104,30 +104,30 @@ def from_matrices(
     contact_stiffness: float,
     working_height: float = 0.0,
 ) -> Pantograph:
-    """A linear pantograph given by its matrices, at rest when it presses with its static force at a working height.
+    """Build a pantograph from its matrices; it is at rest with its static force at a working height.
 
-    Where its constant uplift force acts makes no difference to a linear model: it only sets this state of rest.
+    In a linear model the constant uplift force only determines this state of rest, wherever it acts.
 
     Parameters
     ----------
     mass, damping, stiffness : (n, n) ndarray
-        Symmetric matrices [kg, N s/m, N/m]; for modal unknowns, per their normalisation.
+        Symmetric matrices [kg, N s/m, N/m]; for modal unknowns in the units of their normalisation.
     head : (n,) ndarray
-        Picks the head's displacement out of the unknowns.
+        Selects the displacement of the head from the unknowns.
     static_force : float
         Contact force at rest [N].
     contact_stiffness : float
-        [N/m].
+        Stiffness of the penalty contact [N/m].
     working_height : float
-        Of the head at rest, over the contact wire at the supports [m].
+        Height of the head at rest above the contact wire at the supports [m].
 
     Returns
     -------
     Pantograph
-        The pantograph.
+        Linear model.
     """
     head, stiff = np.asarray(head, dtype=float), np.asarray(stiffness, dtype=float)
-    # Any unknowns that put the head at its height will do: what they stretch is preload.
+    # Any unknowns with the head at this height are suitable: the spring forces there become preload.
     at_rest = head * working_height / (head @ head)
     return Pantograph(
         np.asarray(mass, dtype=float),
@@ -148,14 +148,14 @@ def from_modes(
     static_force: float,
     contact_stiffness: float,
 ) -> Pantograph:
-    """A pantograph given by its modes, mass-normalised.
+    """Build a pantograph from its mass-normalised modes.
 
     Parameters
     ----------
     frequency : (n,) ndarray
-        [Hz]; zero for a rigid-body mode.
+        Natural frequencies; zero for a rigid-body mode [Hz].
     damping_ratio : (n,) ndarray
-        [-].
+        Damping ratios [-].
     head_shape : (n,) ndarray
         Displacement of the head in each mode [kg^-1/2].
     modal_force : (n,) ndarray
@@ -163,12 +163,12 @@ def from_modes(
     static_force : float
         Contact force at rest [N].
     contact_stiffness : float
-        [N/m].
+        Stiffness of the penalty contact [N/m].
 
     Returns
     -------
     Pantograph
-        The pantograph.
+        Linear model.
     """
     omega = 2 * np.pi * np.asarray(frequency, dtype=float)
     return Pantograph(
@@ -189,19 +189,19 @@ def frequencies(pantograph: Pantograph) -> Array:
 
 
 def apparent_mass(pantograph: Pantograph, frequency: Array) -> Array:
-    """Frequency response at the head: force over acceleration, as a test rig measures it.
+    """Frequency response at the head: force over acceleration, as measured on a test rig.
 
     Parameters
     ----------
     pantograph : Pantograph
-        The model.
+        Linear model.
     frequency : (m,) ndarray
-        Above zero [Hz].
+        Frequencies above zero [Hz].
 
     Returns
     -------
     (m,) ndarray
-        Complex [kg].
+        Complex apparent mass [kg].
     """
     omega = 2 * np.pi * np.asarray(frequency, dtype=float)
     receptance = np.empty(omega.size, dtype=complex)
@@ -212,6 +212,7 @@ def apparent_mass(pantograph: Pantograph, frequency: Array) -> Array:
 
 
 def _chain_matrix(element: Array) -> Array:
+    """Matrix of a chain of elements, each between a mass and its lower neighbour or the base."""
     n = len(element)
     matrix = np.zeros((n, n))
     for i, value in enumerate(element):

@@ -1,4 +1,4 @@
-"""Global sparse matrices of a line: what statics, modes and independent checks solve with.
+"""Global sparse matrices of a line, for statics, modes and independent checks.
 
 Unknowns are ordered station by station with the rows interleaved, (w, r) each, so that the matrices are banded.
 """
@@ -12,7 +12,7 @@ from pantocheck.model.arrays import Array, Indices
 from pantocheck.model.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.mass_correction import mass_correction
 from pantocheck.model.fem import beam
-from pantocheck.model.fem.beams import by_station, wire_matrices
+from pantocheck.model.fem.beams import assemble_row, wire_mass, wire_stiffness
 from pantocheck.model.fem.mesh import find_element
 from pantocheck.model.fem.residual_flexibility import condensed_bubbles, local_flexibility
 
@@ -23,10 +23,10 @@ class GlobalMatrices:
 
     Parameters
     ----------
-    mass, damping, stiffness : sp.csc_array
-        (n, n).
+    mass, damping, stiffness : (n, n) sparse array
+        Matrices of the free unknowns [kg, N s/m, N/m; slopes accordingly].
     free : (n,) ndarray
-        Index of each kept unknown among all of them.
+        Indices of the free unknowns among all.
     """
 
     mass: sp.csc_array
@@ -36,18 +36,18 @@ class GlobalMatrices:
 
 
 def unknown(line: DiscretisedLine, row: int, station: int, slope: int = 0) -> int:
-    """Index of an unknown among all of them."""
+    """Index of an unknown in global order."""
     return 2 * (station * line.mesh.rows + row) + slope
 
 
 def bandwidth_order(line: DiscretisedLine) -> Indices:
-    """For every unknown in global order, its place in a (rows, stations, 2) array laid flat."""
+    """Index of every unknown, in global order, in a flattened (rows, stations, 2) array."""
     rows, stations = line.mesh.rows, line.mesh.position.size
     return np.arange(rows * stations * 2).reshape(rows, stations, 2).transpose(1, 0, 2).ravel()
 
 
 def free_unknowns(line: DiscretisedLine) -> Indices:
-    """Indices of the unknowns that can move and that some wire carries."""
+    """Indices of the unknowns that can move and belong to a wire."""
     carried = np.zeros_like(line.beams.free)
     present = line.beams.mass_per_length > 0
     carried[:, :-1] |= present[:, :, None]
@@ -56,12 +56,12 @@ def free_unknowns(line: DiscretisedLine) -> Indices:
 
 
 def assemble_matrices(line: DiscretisedLine) -> GlobalMatrices:
-    """Mass, damping and stiffness of the line with every dropper taut.
+    """Assemble mass, damping and stiffness of the line with every dropper taut.
 
     Parameters
     ----------
     line : DiscretisedLine
-        The discretised line.
+        Discretised line.
 
     Returns
     -------
@@ -69,78 +69,74 @@ def assemble_matrices(line: DiscretisedLine) -> GlobalMatrices:
         Matrices of the free unknowns.
     """
     beams, free = line.beams, free_unknowns(line)
-    wires = [wire_matrices(beams, row) for row in range(line.mesh.rows)]
-    place = bandwidth_order(line)
-    stiffness = sp.block_diag([k for k, _ in wires], format="csr")
-    mass = sp.block_diag([m for _, m in wires], format="csr")
-    damping = sp.block_diag(
-        [
-            a * k + b * m
-            for (k, m), a, b in zip(wires, beams.stiffness_coefficient, beams.mass_coefficient, strict=True)
-        ],
-        format="csr",
-    )
-    joint = connector_directions(line)
+    rows, order, directions = range(line.mesh.rows), bandwidth_order(line), connector_directions(line)
+    stiffness, mass = [wire_stiffness(beams, row) for row in rows], [wire_mass(beams, row) for row in rows]
+    damping = [
+        beams.stiffness_coefficient[row] * stiffness[row] + beams.mass_coefficient[row] * mass[row] for row in rows
+    ]
 
-    def keep(wire: sp.csr_array, lumped: Array, connector: Array) -> sp.csc_array:
-        on_deflections = np.stack([lumped, np.zeros_like(lumped)], axis=-1).ravel()
-        whole = (wire + sp.diags_array(on_deflections))[place][:, place] + joint @ sp.diags_array(connector) @ joint.T
+    def assemble(wires: list[sp.csr_array], lumped: Array, connector: Array) -> sp.csc_array:
+        deflections = np.stack([lumped, np.zeros_like(lumped)], axis=-1).ravel()
+        single_rows = (sp.block_diag(wires, format="csr") + sp.diags_array(deflections))[order][:, order]
+        whole = single_rows + directions @ sp.diags_array(connector) @ directions.T
         return sp.csc_array(whole[free][:, free])
 
     return GlobalMatrices(
-        mass=keep(mass, beams.lumped_mass, np.zeros_like(line.connectors.stiffness)),
-        damping=keep(damping, beams.lumped_damping, line.connectors.damping),
-        stiffness=keep(stiffness, beams.lumped_stiffness, line.connectors.stiffness),
+        mass=assemble(mass, beams.lumped_mass, np.zeros_like(line.connectors.stiffness)),
+        damping=assemble(damping, beams.lumped_damping, line.connectors.damping),
+        stiffness=assemble(stiffness, beams.lumped_stiffness, line.connectors.stiffness),
         free=free,
     )
 
 
 def stepping_mass(line: DiscretisedLine, time_step: float) -> sp.csc_array:
-    """Mass of the line that a time step works with, see `dispersion`; for steps that are written out plainly.
+    """Corrected mass of the line in a time step (`mass_correction`), for independent solvers.
 
     Parameters
     ----------
     line : DiscretisedLine
-        The discretised line.
+        Discretised line.
     time_step : float
-        [s].
+        Time step [s].
 
     Returns
     -------
-    sp.csc_array
-        (n, n) for the free unknowns [kg].
+    (n, n) sparse array
+        Mass of the free unknowns [kg].
     """
     rows = range(line.mesh.rows)
-    taken = sp.block_diag([by_station(mass_correction(line.beams, row, time_step)) for row in rows], format="csr")
-    matrices, place = assemble_matrices(line), bandwidth_order(line)
-    return sp.csc_array(matrices.mass - taken[place][:, place][matrices.free][:, matrices.free])
+    correction = sp.block_diag([assemble_row(mass_correction(line.beams, r, time_step)) for r in rows], format="csr")
+    matrices, order = assemble_matrices(line), bandwidth_order(line)
+    return sp.csc_array(matrices.mass - correction[order][:, order][matrices.free][:, matrices.free])
 
 
 def connector_directions(line: DiscretisedLine) -> sp.csr_array:
-    """Elongation of each connector per unknown, over all unknowns: (unknowns, connectors)."""
+    """Elongation of each connector per unknown, (unknowns, connectors)."""
     connectors = line.connectors
     number, row = np.nonzero(connectors.coefficient)
-    at = [unknown(line, int(r), int(connectors.station[n])) for n, r in zip(number, row, strict=True)]
+    unknowns = [unknown(line, int(r), int(connectors.station[n])) for n, r in zip(number, row, strict=True)]
     size = line.beams.free.size
-    return sp.csr_array((connectors.coefficient[number, row], (at, number)), shape=(size, len(connectors.station)))
+    return sp.csr_array(
+        (connectors.coefficient[number, row], (unknowns, number)), shape=(size, len(connectors.station))
+    )
 
 
 def point_load(line: DiscretisedLine, row: int, position: float) -> Array:
-    """Unknowns' shares in the deflection of one row at any place; as a load: a unit force there.
+    """Shape functions of one row at a position: deflection per unknown, or the nodal forces of a unit force.
 
     Parameters
     ----------
     line : DiscretisedLine
-        The discretised line.
+        Discretised line.
     row : int
-        Which row.
+        Index of the row.
     position : float
-        [m].
+        Position along the track [m].
 
     Returns
     -------
     (unknowns,) ndarray
-        [-, m].
+        Shares of deflections and slopes [-, m].
     """
     element, length, s = find_element(line.mesh.position, position)
     share = np.zeros(line.beams.free.size)
@@ -152,23 +148,23 @@ def point_load(line: DiscretisedLine, row: int, position: float) -> Array:
 
 
 def contact_stiffness(line: DiscretisedLine, row: int, position: float, penalty: float) -> float:
-    """Penalty and local flexibility of the element under a place, in series: what a step written out plainly needs.
+    """Stiffness of the penalty and of the residual flexibility in series, for independent solvers.
 
     Parameters
     ----------
     line : DiscretisedLine
-        The discretised line.
+        Discretised line.
     row : int
-        Of a contact wire.
+        Row of a contact wire.
     position : float
-        [m].
+        Position of the contact [m].
     penalty : float
-        Stiffness of the contact [N/m].
+        Stiffness of the penalty contact [N/m].
 
     Returns
     -------
     float
-        [N/m].
+        Stiffness [N/m].
     """
     beams = line.beams
     element, length, s = find_element(line.mesh.position, position)

@@ -18,11 +18,11 @@ def stiffness(h: float | Array, tension: float | Array, bending_stiffness: float
     Parameters
     ----------
     h : float or ndarray
-        (...) length of each element [m].
+        Length of each element, (...) [m].
     tension : float or ndarray
-        (...) axial tension T [N].
+        Tension T, (...) [N].
     bending_stiffness : float or ndarray
-        (...) EI [N m2].
+        Bending stiffness EI, (...) [N m2].
 
     Returns
     -------
@@ -56,9 +56,9 @@ def mass(h: float | Array, mass_per_length: float | Array) -> Array:
     Parameters
     ----------
     h : float or ndarray
-        (...) length of each element [m].
+        Length of each element, (...) [m].
     mass_per_length : float or ndarray
-        (...) [kg/m].
+        Mass per length, (...) [kg/m].
 
     Returns
     -------
@@ -79,24 +79,24 @@ def mass(h: float | Array, mass_per_length: float | Array) -> Array:
 
 
 def springs(stiffness: Array) -> Array:
-    """Elements that only pull their ends together, as strings with linear shape functions do; slopes are free.
+    """Stiffness of springs between the ends of the elements, as of strings with linear shape functions.
 
     Parameters
     ----------
     stiffness : (n,) ndarray
-        Of each element, T / h for a string [N/m].
+        Stiffness of each spring, T / h for a string [N/m].
 
     Returns
     -------
     (n, 4, 4) ndarray
-        Symmetric matrices [N/m].
+        Symmetric matrices, zero for the slopes [N/m].
     """
-    apart = np.array([1.0, 0.0, -1.0, 0.0])
-    return np.asarray(stiffness[:, None, None] * np.outer(apart, apart))
+    elongation = np.array([1.0, 0.0, -1.0, 0.0])
+    return np.asarray(stiffness[:, None, None] * np.outer(elongation, elongation))
 
 
 def _by_element(matrices: Array) -> Array:
-    """The indices of the matrix last."""
+    """Move the indices of the matrix to the end."""
     return np.moveaxis(matrices, (0, 1), (-2, -1))
 
 
@@ -108,12 +108,12 @@ def uniform_load(h: float, load_per_length: float) -> Array:
     h : float
         Length of the element [m].
     load_per_length : float
-        [N/m].
+        Load per length [N/m].
 
     Returns
     -------
     (4,) ndarray
-        [N, N m].
+        Forces and moments [N, N m].
     """
     return load_per_length * h / 12 * np.array([6, h, 6, -h])
 
@@ -124,14 +124,14 @@ def shape(s: float, h: float) -> Array:
     Parameters
     ----------
     s : float
-        Place within the element as a share of its length, 0 to 1 [-].
+        Position within the element as a share of its length, 0 to 1 [-].
     h : float
         Length of the element [m].
 
     Returns
     -------
     (4,) ndarray
-        [-, m, -, m].
+        Values of the four functions [-, m, -, m].
     """
     return np.array([(1 + 2 * s) * (1 - s) ** 2, h * s * (1 - s) ** 2, s**2 * (3 - 2 * s), h * s**2 * (s - 1)])
 
@@ -146,36 +146,36 @@ def pinned_frequencies(
     n : int
         Number of modes.
     length : float
-        [m].
+        Length of the beam [m].
     tension : float
-        T [N].
+        Tension T [N].
     bending_stiffness : float
-        EI [N m2].
+        Bending stiffness EI [N m2].
     mass_per_length : float
-        [kg/m].
+        Mass per length m [kg/m].
 
     Returns
     -------
     (n,) ndarray
-        [Hz].
+        Frequencies [Hz].
     """
     k = np.arange(1, n + 1) * np.pi / length
     return np.asarray(np.sqrt((tension * k**2 + bending_stiffness * k**4) / mass_per_length) / (2 * np.pi))
 
 
 def wave_speed(tension: float, mass_per_length: float) -> float:
-    """Speed of transverse waves on the wire, bending left out: sqrt(T / m).
+    """Speed of transverse waves on a wire without bending stiffness: sqrt(T / m).
 
     Parameters
     ----------
     tension : float
-        T [N].
+        Tension T [N].
     mass_per_length : float
-        [kg/m].
+        Mass per length m [kg/m].
 
     Returns
     -------
     float
-        [m/s].
+        Wave speed [m/s].
     """
     return float(np.sqrt(tension / mass_per_length))

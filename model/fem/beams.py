@@ -1,7 +1,7 @@
-"""Rows of tensioned beams as plain arrays, the form in which statics and the time integration share them.
+"""Rows of tensioned beams as plain arrays, shared by statics and time integration.
 
-Everything that acts on a single row at a single station (clamps, steady arms, messenger supports) is lumped onto the
-deflection there; everything that couples rows is a connector (`connectors`).
+Parts that act on a single row at a single station are lumped onto the deflection there (`lumped_parts`); parts that
+couple rows are connectors (`connectors`).
 """
 
 from typing import NamedTuple
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from pantocheck.model.arrays import Array
 from pantocheck.model.catenary import Catenary, Kind, Rayleigh
 from pantocheck.model.fem import beam
+from pantocheck.model.fem.lumped_parts import sum_lumped_parts
 from pantocheck.model.fem.mesh import Mesh
 
 
@@ -22,11 +23,11 @@ class Beams(NamedTuple):
     Parameters
     ----------
     length : (S-1,) ndarray
-        Of the elements [m].
+        Lengths of the elements [m].
     tension, bending_stiffness, mass_per_length : (B, S-1) ndarray
-        Per element, zero where the row has no wire [N, N m2, kg/m].
+        Properties of each element, zero where the row has no wire [N, N m2, kg/m].
     lumped_mass, lumped_stiffness, lumped_damping : (B, S) ndarray
-        On the deflection [kg, N/m, N s/m].
+        Lumped parts on the deflections [kg, N/m, N s/m].
     mass_coefficient, stiffness_coefficient : (B,) ndarray
         Rayleigh damping of the wires [1/s, s].
     free : (B, S, 2) ndarray
@@ -46,19 +47,19 @@ class Beams(NamedTuple):
 
 
 def build_beams(catenary: Catenary, mesh: Mesh) -> Beams:
-    """The wires of a line as rows of beams.
+    """Build the wires and lumped parts of a line as rows of beams.
 
     Parameters
     ----------
     catenary : Catenary
-        The line.
+        Line.
     mesh : Mesh
-        Its stations and rows.
+        Stations and rows.
 
     Returns
     -------
     Beams
-        The rows; what acts on a single row at a single station is lumped onto them by `connectors.lump`.
+        Rows of beams.
     """
     stations = mesh.position.size
     length = np.diff(mesh.position)
@@ -84,40 +85,11 @@ def build_beams(catenary: Catenary, mesh: Mesh) -> Beams:
         tension,
         bending_stiffness,
         mass_per_length,
-        lumped_mass=np.zeros((mesh.rows, stations)),
-        lumped_stiffness=np.zeros((mesh.rows, stations)),
-        lumped_damping=np.zeros((mesh.rows, stations)),
+        *sum_lumped_parts(catenary, mesh),
         mass_coefficient=np.array([r.mass_coefficient for r in rayleigh]),
         stiffness_coefficient=np.array([r.stiffness_coefficient for r in rayleigh]),
         free=free,
     )
-
-
-def wire_matrices(beams: Beams, row: int) -> tuple[sp.csr_array, sp.csr_array]:
-    """Stiffness and consistent mass of the wires of one row, unknowns (w, r) by station, nothing lumped or held.
-
-    Parameters
-    ----------
-    beams : Beams
-        The rows.
-    row : int
-        Which one.
-
-    Returns
-    -------
-    stiffness, mass : (2 S, 2 S) ndarray
-    """
-    mass = beam.mass(beams.length, beams.mass_per_length[row])
-    return by_station(element_stiffness(beams, row)), by_station(mass)
-
-
-def by_station(elements: Array) -> sp.csr_array:
-    """Matrices of a row's elements, (S-1, 4, 4), added up to one of its unknowns (w, r) by station, (2 S, 2 S)."""
-    at = 2 * np.arange(len(elements))[:, None] + np.arange(4)
-    place = (np.repeat(at, 4, axis=1).ravel(), np.tile(at, (1, 4)).ravel())
-    matrix = sp.csr_array((elements.ravel(), place), shape=(2 * len(elements) + 2,) * 2)
-    matrix.eliminate_zeros()  # an element without a wire has neither stiffness nor mass
-    return matrix
 
 
 def element_stiffness(beams: Beams, row: int) -> Array:
@@ -126,26 +98,40 @@ def element_stiffness(beams: Beams, row: int) -> Array:
 
 
 def wire_stiffness(beams: Beams, row: int) -> sp.csr_array:
-    """Stiffness of the wires of one row; as in `wire_matrices`."""
-    return wire_matrices(beams, row)[0]
+    """Stiffness of the wires of one row, (2 S, 2 S), unknowns (w, r) by station; without lumped parts and supports."""
+    return assemble_row(element_stiffness(beams, row))
+
+
+def wire_mass(beams: Beams, row: int) -> sp.csr_array:
+    """Consistent mass of the wires of one row; unknowns as in `wire_stiffness`."""
+    return assemble_row(beam.mass(beams.length, beams.mass_per_length[row]))
+
+
+def assemble_row(elements: Array) -> sp.csr_array:
+    """Assemble the element matrices of a row, (S-1, 4, 4), to a matrix of its unknowns (w, r) by station."""
+    unknowns = 2 * np.arange(len(elements))[:, None] + np.arange(4)
+    indices = (np.repeat(unknowns, 4, axis=1).ravel(), np.tile(unknowns, (1, 4)).ravel())
+    matrix = sp.csr_array((elements.ravel(), indices), shape=(2 * len(elements) + 2,) * 2)
+    matrix.eliminate_zeros()  # an element without a wire has neither stiffness nor mass
+    return matrix
 
 
 def weight(beams: Beams, row: int, gravity: float) -> Array:
-    """Weight of the wires of one row as nodal forces, downwards negative.
+    """Weight of the wires of one row as nodal forces, negative downwards.
 
     Parameters
     ----------
     beams : Beams
-        The rows.
+        Rows of beams.
     row : int
-        Which one.
+        Index of the row.
     gravity : float
-        [m/s2].
+        Acceleration of gravity [m/s2].
 
     Returns
     -------
     (2 S,) ndarray
-        [N, N m].
+        Forces and moments by station [N, N m].
     """
     force = np.zeros(2 * beams.free.shape[1])
     for e in np.flatnonzero(beams.mass_per_length[row]):

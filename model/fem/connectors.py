@@ -1,9 +1,9 @@
-"""Connectors: what couples the rows of beams, each a bar with one elongation at one station.
+"""Connectors: bars that couple the rows of beams, each with one elongation at one station.
 
 A dropper is unilateral: its tension is max(0, N0 + k d + c d'), with the elongation d counted from the initial state.
-All others act both ways: clamps, steady arms along their length, and the sideways stiffness, force over length, of any
-loaded bar. The tension pulls every row by its coefficient: d = sum over rows of coefficient times deflection, and the
-row feels minus the coefficient times the tension.
+All others act in both directions: clamps, steady arms along their length, and the transverse stiffness of loaded bars,
+force over length. With the coefficients c of the rows, d is the sum of c times the deflections, and each row is loaded
+by -c times the tension.
 """
 
 from dataclasses import dataclass
@@ -14,18 +14,19 @@ from numpy.typing import NDArray
 
 from pantocheck.model.arrays import Array, Indices
 from pantocheck.model.catenary import Catenary, Kind, Rayleigh, SteadyArm
-from pantocheck.model.fem.beams import Beams
 from pantocheck.model.fem.mesh import Mesh
 from pantocheck.model.statics.initial_state import InitialState
 
-# Stiff against the wires (about 1e5 N/m at a point) and yet far from the limits of double precision.
 RIGID = 1e8
-"""Stiffness of a clamp between two wires, and of a steady arm along its length [N/m]."""
+"""Stiffness of a clamp between two wires, and of a steady arm along its length [N/m].
+
+Large against the wires (about 1e5 N/m at a point) and small enough for double precision.
+"""
 
 
 @dataclass(frozen=True)
 class Bar:
-    """One connector: see `Connectors`."""
+    """One connector; fields as in `Connectors`, coefficients by row."""
 
     station: int
     coefficient: dict[int, float]
@@ -41,11 +42,11 @@ class Connectors(NamedTuple):
     Parameters
     ----------
     station : (N,) ndarray
-        Index.
+        Index of the station.
     coefficient : (N, B) ndarray
-        Of each row's deflection in the elongation [-].
+        Coefficient of each row's deflection in the elongation [-].
     stiffness, damping : (N,) ndarray
-        [N/m, N s/m].
+        Coefficients of the elongation and its rate [N/m, N s/m].
     preload : (N,) ndarray
         Tension in the initial state [N].
     unilateral : (N,) ndarray
@@ -61,25 +62,25 @@ class Connectors(NamedTuple):
 
 
 def build_connectors(catenary: Catenary, mesh: Mesh, state: InitialState) -> Connectors:
-    """Droppers, clamps and, with a lateral field, steady arms of a line.
+    """Build droppers, clamps and, with a lateral field, steady arms of a line.
 
     Parameters
     ----------
     catenary : Catenary
-        The line.
+        Line.
     mesh : Mesh
-        Its stations and rows.
+        Stations and rows.
     state : InitialState
-        Its initial state, which gives forces, lengths and directions.
+        Gives forces, lengths and directions.
 
     Returns
     -------
     Connectors
-        The connectors.
+        Droppers first.
     """
     bars = _droppers(catenary, mesh, state) + _clamps(catenary, mesh, state)
     if catenary.has_lateral_field:
-        bars += _leaning_droppers(catenary, mesh, state) + _steady_arms(catenary, mesh, state)
+        bars += _transverse_droppers(catenary, mesh, state) + _steady_arms(catenary, mesh, state)
     coefficient = np.zeros((len(bars), mesh.rows))
     for n, bar in enumerate(bars):
         coefficient[n, list(bar.coefficient)] = list(bar.coefficient.values())
@@ -93,8 +94,8 @@ def build_connectors(catenary: Catenary, mesh: Mesh, state: InitialState) -> Con
     )
 
 
-def _between(mesh: Mesh, upper: str, lower: str, direction: tuple[float, float]) -> dict[int, float]:
-    """Elongation, along a direction (y, z), of what joins a lower to an upper wire."""
+def _coefficients(mesh: Mesh, upper: str, lower: str, direction: tuple[float, float]) -> dict[int, float]:
+    """Coefficients, by row, of the elongation of a bar between two wires along a direction (y, z)."""
     y, z = direction
     ends = {mesh.row_of[upper, "z"]: z, mesh.row_of[lower, "z"]: -z}
     if (upper, "y") in mesh.row_of:
@@ -113,7 +114,7 @@ def _droppers(catenary: Catenary, mesh: Mesh, state: InitialState) -> list[Bar]:
         bars.append(
             Bar(
                 mesh.station(dropper.position),
-                _between(mesh, dropper.upper, dropper.lower, (y, z)),
+                _coefficients(mesh, dropper.upper, dropper.lower, (y, z)),
                 stiffness,
                 rayleigh.stiffness_coefficient * stiffness,
                 float(state.dropper_tension[n]),
@@ -128,7 +129,7 @@ def _clamps(catenary: Catenary, mesh: Mesh, state: InitialState) -> list[Bar]:
     return [
         Bar(
             mesh.station(clamp.position),
-            _between(mesh, clamp.upper, clamp.lower, (y, z)),
+            _coefficients(mesh, clamp.upper, clamp.lower, (y, z)),
             RIGID,
             preload=float(state.clamp_force[n] @ (y, z)),
         )
@@ -137,17 +138,19 @@ def _clamps(catenary: Catenary, mesh: Mesh, state: InitialState) -> list[Bar]:
     ]
 
 
-def _leaning_droppers(catenary: Catenary, mesh: Mesh, state: InitialState) -> list[Bar]:
-    """Sideways stiffness of the droppers at their static tension."""
-    across = zip(catenary.droppers, state.dropper_direction, state.dropper_tension / state.dropper_length, strict=True)
+def _transverse_droppers(catenary: Catenary, mesh: Mesh, state: InitialState) -> list[Bar]:
+    """Transverse stiffness of the droppers: static tension over length."""
+    droppers = zip(
+        catenary.droppers, state.dropper_direction, state.dropper_tension / state.dropper_length, strict=True
+    )
     return [
-        Bar(mesh.station(d.position), _between(mesh, d.upper, d.lower, (float(z), -float(y))), float(stiffness))
-        for d, (y, z), stiffness in across
+        Bar(mesh.station(d.position), _coefficients(mesh, d.upper, d.lower, (float(z), -float(y))), float(stiffness))
+        for d, (y, z), stiffness in droppers
     ]
 
 
 def _steady_arms(catenary: Catenary, mesh: Mesh, state: InitialState) -> list[Bar]:
-    """Hinged bars: rigid along their length, and sideways as stiff as their axial force over their length."""
+    """Hinged bars, rigid along their length; their transverse stiffness is axial force over length."""
     rayleigh = catenary.damping.get(Kind.STEADY_ARM, Rayleigh())
     bars = []
     for arm, force in zip(catenary.steady_arms, state.arm_force, strict=True):
@@ -163,66 +166,26 @@ def _steady_arms(catenary: Catenary, mesh: Mesh, state: InitialState) -> list[Ba
 
 
 def arm_direction(arm: SteadyArm, force: Array) -> tuple[float, float, float]:
-    """Direction of a steady arm from claw to hinge, and its axial tension.
+    """Direction of a steady arm from the contact-wire clamp to the hinge, and its axial tension.
 
-    A hinged bar lies along the force it carries; its own weight is left to its hinge. An arm that pulls has its hinge
-    on the side to which it pulls, one that pushes on the other.
+    A hinged bar lies along the force it carries; its hinge carries its weight. The hinge of a pulling arm lies on the
+    side to which the arm pulls, that of a pushing arm on the other side.
 
     Parameters
     ----------
     arm : SteadyArm
-        The steady arm.
+        Steady arm.
     force : (2,) ndarray
-        Its static force on the contact wire, y and z [N].
+        Static force of the arm on the contact wire, y and z [N].
 
     Returns
     -------
-    tuple[float, float, float]
-        Direction y, z [-], and tension, negative for an arm that pushes [N].
+    tuple of (float, float, float)
+        Direction y, z [-], and tension, negative for a pushing arm [N].
     """
     size = float(np.hypot(*force))
     if force[0] == 0.0:
-        # Nothing pulls sideways: the bar lies level and carries nothing, whatever holds up the wire.
+        # Without a lateral force the bar is horizontal and carries no force.
         return 1.0, 0.0, 0.0
     sign = 1.0 if arm.acts == "pull" else -1.0
     return sign * float(force[0]) / size, sign * float(force[1]) / size, sign * size
-
-
-def add_lumped(catenary: Catenary, mesh: Mesh, beams: Beams) -> None:
-    """Add masses, springs and dampers that act on one row at one station to the rows, in place.
-
-    Parameters
-    ----------
-    catenary : Catenary
-        The line.
-    mesh : Mesh
-        Its stations and rows.
-    beams : Beams
-        Its rows of beams, lumped arrays changed in place.
-    """
-    undamped = Rayleigh()
-
-    def add(kind: Kind, row: int, position: float, mass: float, stiffness: float = 0.0, damping: float = 0.0) -> None:
-        at, rayleigh = mesh.station(position), catenary.damping.get(kind, undamped)
-        beams.lumped_mass[row, at] += mass
-        beams.lumped_stiffness[row, at] += stiffness
-        beams.lumped_damping[row, at] += (
-            damping + rayleigh.mass_coefficient * mass + rayleigh.stiffness_coefficient * stiffness
-        )
-
-    for field in dict.fromkeys(mesh.row_field):
-        for dropper in catenary.droppers:
-            half = dropper.mass / 2
-            upper, lower = mesh.row_of[dropper.upper, field], mesh.row_of[dropper.lower, field]
-            add(Kind.DROPPER, upper, dropper.position, half + dropper.upper_clamp_mass)
-            add(Kind.DROPPER, lower, dropper.position, half + dropper.lower_clamp_mass)
-        for clamp in catenary.clamps:
-            add(Kind.DROPPER, mesh.row_of[clamp.upper, field], clamp.position, clamp.mass)
-        for arm in catenary.steady_arms:
-            add(Kind.STEADY_ARM, mesh.row_of[arm.wire, field], arm.position, arm.mass)
-        for support in catenary.messenger_supports:
-            row = mesh.row_of[support.wire, field]
-            add(Kind.MESSENGER_SUPPORT, row, support.position, 0.0, support.stiffness, support.damping)
-    for arm in catenary.steady_arms:
-        row = mesh.row_of[arm.wire, "z"]
-        add(Kind.STEADY_ARM, row, arm.position, 0.0, arm.vertical_stiffness or 0.0, arm.vertical_damper)

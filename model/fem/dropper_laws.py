@@ -1,4 +1,4 @@
-"""Other laws of a slackening dropper than the one it has by itself."""
+"""Alternative force laws of slack droppers."""
 
 from dataclasses import replace
 
@@ -8,31 +8,31 @@ from pantocheck.model.discretised_line import DiscretisedLine
 
 
 def with_viscous_part_kept(line: DiscretisedLine) -> DiscretisedLine:
-    """The line with its droppers' dashpots acting both ways, slack or not; only the elastic force slackens.
+    """Let the dashpots of the droppers act in both directions, whether slack or not; only the elastic force unilateral.
 
-    By itself a slack dropper carries nothing at all. Where a code keeps the damping matrix constant and compensates the
-    elastic force alone, the dashpot of a slack dropper goes on pulling and pushing.
+    By default a slack dropper carries no force. In a code that keeps the damping matrix constant and compensates only
+    the elastic force, the dashpot of a slack dropper still acts.
 
     Parameters
     ----------
     line : DiscretisedLine
-        The discretised line.
+        Discretised line.
 
     Returns
     -------
     DiscretisedLine
-        The line, each dropper joined by a dashpot of its own.
+        Line with a separate dashpot beside each dropper.
     """
-    own = line.connectors
-    slackens = own.unilateral
-    count = int(slackens.sum())
-    nothing = np.zeros(count)
-    connectors = own._replace(
-        station=np.append(own.station, own.station[slackens]),
-        coefficient=np.concatenate([own.coefficient, own.coefficient[slackens]]),
-        stiffness=np.append(own.stiffness, nothing),
-        damping=np.append(np.where(slackens, 0.0, own.damping), own.damping[slackens]),
-        preload=np.append(own.preload, nothing),
-        unilateral=np.append(slackens, np.zeros(count, dtype=np.bool_)),
+    connectors = line.connectors
+    unilateral = connectors.unilateral
+    count = int(unilateral.sum())
+    zeros = np.zeros(count)
+    separated = connectors._replace(
+        station=np.append(connectors.station, connectors.station[unilateral]),
+        coefficient=np.concatenate([connectors.coefficient, connectors.coefficient[unilateral]]),
+        stiffness=np.append(connectors.stiffness, zeros),
+        damping=np.append(np.where(unilateral, 0.0, connectors.damping), connectors.damping[unilateral]),
+        preload=np.append(connectors.preload, zeros),
+        unilateral=np.append(unilateral, np.zeros(count, dtype=np.bool_)),
     )
-    return replace(line, connectors=connectors)
+    return replace(line, connectors=separated)

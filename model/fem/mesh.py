@@ -1,8 +1,8 @@
-"""Stations along the line, and the rows of unknowns that hang on them.
+"""Mesh: stations along the line, and rows of unknowns.
 
-A row is one field (vertical z or lateral y) of the wires of one kind whose stretches do not overlap: all stitch wires
-share a row, two contact wires take two. Within a row every station has a deflection w and a slope r. Rows are coupled
-by connectors only, so each row is a tensioned beam of its own.
+A row is one field (vertical z or lateral y) of wires of one kind that do not overlap: all stitch wires share a row, two
+contact wires need two. In a row every station has a deflection w and a slope r. Only connectors couple the rows, so
+that each row is a separate tensioned beam.
 """
 
 from dataclasses import dataclass
@@ -21,12 +21,12 @@ class Mesh:
     Parameters
     ----------
     position : (stations,) ndarray
-        Along the track [m].
-    row_kind : tuple[Kind, ...]
-        (rows,) kind of the wires of each row.
-    row_field : tuple[str, ...]
-        (rows,) "z" or "y".
-    row_of : dict[tuple[str, str], int]
+        Position along the track [m].
+    row_kind : tuple of Kind
+        Kind of the wires of each row.
+    row_field : tuple of str
+        Field of each row, "z" or "y".
+    row_of : dict of (str, str) to int
         Row by wire name and field.
     """
 
@@ -41,10 +41,10 @@ class Mesh:
         return len(self.row_kind)
 
     def station(self, position: float) -> int:
-        """Index of the station at a place where one was asked for [m]."""
+        """Index of the station at the position of a connector or another requested station [m]."""
         nearest = int(np.argmin(np.abs(self.position - position)))
         if abs(self.position[nearest] - position) > 1e-6:
-            raise KeyError(f"no station at {position} m")
+            raise KeyError(f"the mesh has no station at {position} m; the nearest is at {self.position[nearest]} m")
         return nearest
 
 
@@ -69,21 +69,21 @@ def find_element(stations: Array, position: float) -> tuple[int, float, float]:
 
 
 def build_mesh(catenary: Catenary, element_length: float, places: tuple[float, ...] = ()) -> Mesh:
-    """Stations at every connector, with elements no longer than asked for in between.
+    """Place stations at every connector and requested position, and divide the stretches between them into elements.
 
     Parameters
     ----------
     catenary : Catenary
-        The line.
+        Line.
     element_length : float
-        Longest element [m].
-    places : tuple[float, ...]
-        Further places that are to be stations [m].
+        Largest length of an element [m].
+    places : tuple of float
+        Positions of additional stations [m].
 
     Returns
     -------
     Mesh
-        The mesh.
+        Stations and rows.
     """
     fields = ("z", "y") if catenary.has_lateral_field else ("z",)
     rows: list[list[Wire]] = []
@@ -108,22 +108,24 @@ def build_mesh(catenary: Catenary, element_length: float, places: tuple[float, .
     )
 
 
-def _breakpoints(catenary: Catenary, wanted: tuple[float, ...]) -> Array:
-    places = [*wanted, *(place for wire in catenary.wires for place in (wire.start, wire.end))]
+def _breakpoints(catenary: Catenary, requested: tuple[float, ...]) -> Array:
+    """Positions of connectors, anchors, changes of tension and requested stations, each once."""
+    places = [*requested, *(place for wire in catenary.wires for place in (wire.start, wire.end))]
     changes = [change for wire in catenary.wires for change in wire.tension_changes]
     places += [place for change in changes for place in (change.start, change.end)]
     places += [dropper.position for dropper in catenary.droppers] + [arm.position for arm in catenary.steady_arms]
     places += [support.position for support in catenary.messenger_supports]
     places += [clamp.position for clamp in catenary.clamps]
     ordered = np.unique(np.array(places))
-    # Places computed along different sums differ in the last bits; a sliver of an element would ruin the conditioning.
+    # Equal positions from different sums differ in the last bits; an element of that length spoils the conditioning.
     kept: Array = ordered[np.append(True, np.diff(ordered) > 1e-6)]
     return kept
 
 
 def _stations(breakpoints: Array, element_length: float) -> Array:
-    pieces = [
+    """Equidistant stations between neighbouring breakpoints, and the breakpoints."""
+    stations = [
         np.linspace(start, end, max(1, int(np.ceil((end - start) / element_length - 1e-9))), endpoint=False)
         for start, end in pairwise(breakpoints)
     ]
-    return np.concatenate([*pieces, breakpoints[-1:]])
+    return np.concatenate([*stations, breakpoints[-1:]])

@@ -1,10 +1,11 @@
-"""What a point force bends an element between its stations: the flexibility that cubic shape functions leave out.
+"""Residual flexibility of an element under a point force, which cubic shape functions cannot represent.
 
-A wire bends sharply under a pantograph, a cubic polynomial per element cannot. The difference is static at all
-frequencies of interest, so it is put in series with the contact: the deflection under a unit force of the element held
-at both ends, by Ritz with three functions s^2 (1 - s)^2 (2 s - 1)^i. Without it the contact is too stiff, most of all
-in mid-element, and the force between 20 and 50 Hz converges slowly with the element length. The coupling of these
-functions with the cubic ones through the tension is left out: it vanishes with the square of the element length.
+A wire bends sharply under a pantograph; a cubic polynomial per element does not. The difference is static at all
+frequencies of interest and acts in series with the contact stiffness. It is the deflection of an element with both ends
+clamped under a unit force, by Ritz's method with three bubble functions s^2 (1 - s)^2 (2 s - 1)^i, i = 0, 1, 2, which
+are condensed statically. Without it the contact is too stiff, mostly at mid-element, and the force between 20 and 50 Hz
+converges slowly with the element length. The coupling of bubble and cubic functions through the tension is neglected:
+it vanishes with the square of the element length.
 """
 
 import numpy as np
@@ -18,24 +19,24 @@ FUNCTIONS = 3
 
 
 def condensed_bubbles(h: float, tension: float, bending_stiffness: float) -> Array:
-    """Flexibility of the Ritz functions of one element.
+    """Flexibility matrix of the bubble functions of one element.
 
     Parameters
     ----------
     h : float
         Length of the element [m].
     tension : float
-        T [N].
+        Tension T [N].
     bending_stiffness : float
-        EI [N m2].
+        Bending stiffness EI [N m2].
 
     Returns
     -------
     (6,) ndarray
-        Entries 00, 01, 02, 11, 12, 22 of the inverse of their stiffness [m/N].
+        Entries (i, j) = 00, 01, 02, 11, 12, 22 of the inverse of their stiffness [m/N].
     """
     if bending_stiffness == 0.0:
-        return np.zeros(6)  # a string has a kink under a force, which no smooth function follows
+        return np.zeros(6)  # a string has a kink under a force, which no smooth function represents
     s = Polynomial([0, 1])
     functions = [s**2 * (1 - s) ** 2 * (2 * s - 1) ** i for i in range(FUNCTIONS)]
     stiffness = np.array(
@@ -65,28 +66,29 @@ def element_bubbles(beams: Beams, row: int) -> Array:
 
 
 def _integral(polynomial: Polynomial) -> float:
-    whole = polynomial.integ()
-    return float(whole(1.0) - whole(0.0))
+    """Integral of a polynomial from 0 to 1."""
+    antiderivative = polynomial.integ()
+    return float(antiderivative(1.0) - antiderivative(0.0))
 
 
 @njit(cache=True)
 def local_flexibility(bubble: Array, s: float) -> float:
-    """Deflection per force at a place within an element whose ends are held.
+    """Deflection per force at a point of an element with clamped ends.
 
     Parameters
     ----------
     bubble : (6,) ndarray
-        Of the element, from `bubble_flexibility`.
+        Flexibility matrix of the element, from `condensed_bubbles`.
     s : float
-        Place as a share of the length [-].
+        Position of the point as a share of the length [-].
 
     Returns
     -------
     float
-        [m/N].
+        Flexibility [m/N].
     """
     f = s * s * (1 - s) * (1 - s)
     t = 2 * s - 1
     g, h = f * t, f * t * t
-    own = bubble[0] * f * f + bubble[3] * g * g + bubble[5] * h * h
-    return float(own + 2 * (bubble[1] * f * g + bubble[2] * f * h + bubble[4] * g * h))
+    squares = bubble[0] * f * f + bubble[3] * g * g + bubble[5] * h * h
+    return float(squares + 2 * (bubble[1] * f * g + bubble[2] * f * h + bubble[4] * g * h))

@@ -1,7 +1,7 @@
-"""Modal damping on chosen modes, the Rayleigh part compensated there.
+"""Modal damping of selected modes, in place of their Rayleigh damping.
 
-C = C_R + M Phi diag(2 zeta_j w_j - phi_j' C_R phi_j) Phi' M   (Bianchi et al. 2010). The second term gives the chosen
-modes exactly their ratios and leaves all others alone. As a matrix it is full, but low in rank: it is never formed.
+C = C_R + M Phi diag(2 zeta_j w_j - phi_j' C_R phi_j) Phi' M   (Bianchi et al. 2010). The second term gives the selected
+modes exactly their damping ratios and does not change any other mode. It is a full matrix of low rank and never formed.
 """
 
 from dataclasses import dataclass
@@ -12,17 +12,17 @@ from pantocheck.model.arrays import Array
 from pantocheck.model.catenary import ModalBand
 from pantocheck.model.discretised_line import DiscretisedLine
 from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order
-from pantocheck.model.modal.modes import Modes, compute_modes
+from pantocheck.model.modal.modes import compute_modes_below, free_vectors
 
 
 @dataclass(frozen=True)
 class ModalTerms:
-    """The low-rank part of the damping: sum over modes of damping times weight weight'.
+    """Low-rank part of the damping matrix: sum over the modes of damping times weight weight'.
 
     Parameters
     ----------
     damping : (n,) ndarray
-        2 zeta w less what the Rayleigh part gives the mode [1/s].
+        2 zeta w minus the Rayleigh damping of the mode [1/s].
     weight : (n, rows, stations, 2) ndarray
         M phi [kg^1/2].
     """
@@ -32,59 +32,34 @@ class ModalTerms:
 
 
 def build_modal_terms(line: DiscretisedLine) -> ModalTerms:
-    """The low-rank part of a line's damping; of rank zero when the line asks for none.
+    """Compute the low-rank part of the damping of a line; without modal damping its rank is zero.
 
     Parameters
     ----------
     line : DiscretisedLine
-        The discretised line.
+        Discretised line.
 
     Returns
     -------
     ModalTerms
-        The terms.
+        Terms of the selected modes.
     """
     bands = line.catenary.modal_damping
     if not bands:
         return ModalTerms(np.zeros(0), np.zeros((0, *line.beams.free.shape)))
     matrices = assemble_matrices(line)
-    shapes = modes_below(line, max(band.to_frequency for band in bands))
-    place = bandwidth_order(line)[matrices.free]
-    vectors = shapes.shape.reshape(len(shapes.frequency), -1)[:, place]
+    modes = compute_modes_below(line, max(band.to_frequency for band in bands))
+    order = bandwidth_order(line)[matrices.free]
     damping, weight = [], []
-    for frequency, vector in zip(shapes.frequency, vectors, strict=True):
+    for frequency, vector in zip(modes.frequency, free_vectors(line, modes), strict=True):
         for band in bands:
             if band.from_frequency <= frequency < band.to_frequency:
                 rayleigh = vector @ (matrices.damping @ vector)
                 damping.append(4 * np.pi * band.damping_ratio * frequency - rayleigh)
                 whole = np.zeros(line.beams.free.size)
-                whole[place] = matrices.mass @ vector
+                whole[order] = matrices.mass @ vector
                 weight.append(whole.reshape(line.beams.free.shape))
     return ModalTerms(np.array(damping), np.array(weight).reshape(-1, *line.beams.free.shape))
-
-
-def modes_below(line: DiscretisedLine, frequency: float) -> Modes:
-    """All modes of a line below a frequency.
-
-    Parameters
-    ----------
-    line : DiscretisedLine
-        The discretised line.
-    frequency : float
-        [Hz].
-
-    Returns
-    -------
-    Modes
-        The modes.
-    """
-    count, most = 16, assemble_matrices(line).free.size - 2
-    while True:
-        found = compute_modes(line, min(count, most))
-        if found.frequency[-1] >= frequency or count >= most:
-            inside = found.frequency < frequency
-            return Modes(found.frequency[inside], found.shape[inside])
-        count *= 2
 
 
 def apply_modal_bands(ratios: Array, frequency: Array, bands: tuple[ModalBand, ...]) -> Array:

@@ -8,7 +8,7 @@ from scipy.sparse.linalg import eigsh
 from pantocheck.model.arrays import Array
 from pantocheck.model.catenary import Kind, Rayleigh
 from pantocheck.model.discretised_line import DiscretisedLine, with_damping
-from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order
+from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, free_unknowns
 
 
 @dataclass(frozen=True)
@@ -18,9 +18,9 @@ class Modes:
     Parameters
     ----------
     frequency : (n,) ndarray
-        Ascending [Hz].
+        Natural frequencies, ascending [Hz].
     shape : (n, rows, stations, 2) ndarray
-        Deflection and slope [kg^-1/2, kg^-1/2 m^-1].
+        Deflection and slope of each mode [kg^-1/2, kg^-1/2 m^-1].
     """
 
     frequency: Array
@@ -29,16 +29,16 @@ class Modes:
 
 @dataclass(frozen=True)
 class ComponentEnergies:
-    """How the energy of each mode is shared out over the kinds of component.
+    """Shares of the kinds of component in the energies of each mode.
 
     Parameters
     ----------
-    kinds : tuple[Kind, ...]
-        The kinds, in the order of the columns.
+    kinds : tuple of Kind
+        Kinds in the order of the columns.
     stiffness : (n, kinds) ndarray
-        Phi' K_e phi, adding up to (2 pi f)^2 [1/s2].
+        phi' K_e phi; the sum over the kinds is (2 pi f)^2 [1/s2].
     mass : (n, kinds) ndarray
-        Phi' M_e phi, adding up to 1 [-].
+        phi' M_e phi; the sum over the kinds is 1 [-].
     """
 
     kinds: tuple[Kind, ...]
@@ -47,105 +47,118 @@ class ComponentEnergies:
 
 
 def compute_modes(line: DiscretisedLine, count: int) -> Modes:
-    """The lowest modes of a line.
+    """Compute the lowest modes of a line.
 
     Parameters
     ----------
     line : DiscretisedLine
-        The discretised line.
+        Discretised line.
     count : int
-        How many.
+        Number of modes.
 
     Returns
     -------
     Modes
-        The modes.
+        Lowest modes.
     """
     matrices = assemble_matrices(line)
-    # A fixed start vector makes the iteration, and with it the last digits, the same every time.
-    begin = np.ones(matrices.free.size)
-    w2, vectors = eigsh(matrices.stiffness, count, matrices.mass, sigma=0.0, v0=begin)
+    # A fixed start vector makes the result reproducible to the last digit.
+    start = np.ones(matrices.free.size)
+    w2, vectors = eigsh(matrices.stiffness, count, matrices.mass, sigma=0.0, v0=start)
     ascending = np.argsort(w2)
     shape = np.zeros((count, line.beams.free.size))
-    shape[:, bandwidth_order(line)[matrices.free]] = _signed(vectors[:, ascending].T)
+    shape[:, bandwidth_order(line)[matrices.free]] = _normalise_sign(vectors[:, ascending].T)
     return Modes(np.sqrt(w2[ascending]) / (2 * np.pi), shape.reshape(count, *line.beams.free.shape))
 
 
-def _signed(vectors: Array) -> Array:
-    """Each shape turned so that its largest entry is positive."""
+def compute_modes_below(line: DiscretisedLine, frequency: float) -> Modes:
+    """Compute all modes of a line below a frequency [Hz]."""
+    count, largest = 16, free_unknowns(line).size - 2
+    while True:
+        modes = compute_modes(line, min(count, largest))
+        if modes.frequency[-1] >= frequency or count >= largest:
+            inside = modes.frequency < frequency
+            return Modes(modes.frequency[inside], modes.shape[inside])
+        count *= 2
+
+
+def free_vectors(line: DiscretisedLine, shapes: Modes) -> Array:
+    """Mode shapes as vectors of the free unknowns in global order, (n, unknowns)."""
+    return shapes.shape.reshape(len(shapes.frequency), -1)[:, bandwidth_order(line)[free_unknowns(line)]]
+
+
+def _normalise_sign(vectors: Array) -> Array:
+    """Shapes with a positive largest entry."""
     largest = np.take_along_axis(vectors, np.abs(vectors).argmax(axis=1)[:, None], axis=1)
-    signed: Array = vectors * np.sign(largest)
-    return signed
+    return np.asarray(vectors * np.sign(largest))
 
 
 def deflection_at(line: DiscretisedLine, shapes: Modes, row: int, position: float) -> Array:
-    """Deflection of every mode at one place of one row.
+    """Deflection of every mode at a station of one row.
 
     Parameters
     ----------
     line : DiscretisedLine
-        The discretised line.
+        Discretised line.
     shapes : Modes
-        Its modes.
+        Modes of the line.
     row : int
-        Which row.
+        Index of the row.
     position : float
-        At a station [m].
+        Position of the station [m].
 
     Returns
     -------
     (n,) ndarray
-        [kg^-1/2].
+        Deflections [kg^-1/2].
     """
     return np.asarray(shapes.shape[:, row, line.mesh.station(position), 0])
 
 
 def component_energies(line: DiscretisedLine, shapes: Modes) -> ComponentEnergies:
-    """Share of every kind of component in the energies of the modes.
+    """Compute the share of every kind of component in the energies of the modes.
 
     Parameters
     ----------
     line : DiscretisedLine
-        The discretised line.
+        Discretised line.
     shapes : Modes
-        Its modes.
+        Modes of the line.
 
     Returns
     -------
     ComponentEnergies
-        The energies; a damping model a_e K_e + b_e M_e gives mode j the ratio sum (a_e k_ej + b_e m_ej) / (2 omega_j).
+        Energies. The damping C = sum of a_e K_e + b_e M_e gives mode j the ratio sum (a_e k_ej + b_e m_ej) / (2 w_j).
     """
-    free = assemble_matrices(line).free
-    vectors = shapes.shape.reshape(len(shapes.frequency), -1)[:, bandwidth_order(line)[free]]
+    vectors = free_vectors(line, shapes)
     kinds = tuple(Kind)
     stiffness, mass = (np.zeros((len(vectors), len(kinds))) for _ in range(2))
-    dampers = _energy(with_damping(line, {}), vectors)
+    constant = _energy(with_damping(line, {}), vectors)
     for k, kind in enumerate(kinds):
-        # The damping matrix with one coefficient set to one is that component's stiffness or mass.
-        stiffness[:, k] = _energy(with_damping(line, {kind: Rayleigh(stiffness_coefficient=1.0)}), vectors) - dampers
-        mass[:, k] = _energy(with_damping(line, {kind: Rayleigh(mass_coefficient=1.0)}), vectors) - dampers
+        # With one coefficient set to one, the damping matrix is the stiffness or the mass of that component.
+        stiffness[:, k] = _energy(with_damping(line, {kind: Rayleigh(stiffness_coefficient=1.0)}), vectors) - constant
+        mass[:, k] = _energy(with_damping(line, {kind: Rayleigh(mass_coefficient=1.0)}), vectors) - constant
     return ComponentEnergies(kinds, stiffness, mass)
 
 
 def _energy(line: DiscretisedLine, vectors: Array) -> Array:
+    """Product phi' C phi of every vector with the damping of the line."""
     return np.asarray(np.einsum("ji,ij->j", vectors, assemble_matrices(line).damping @ vectors.T))
 
 
 def damping_ratios(line: DiscretisedLine, shapes: Modes) -> Array:
-    """Damping ratio of every mode, its coupling with others through the damping left out: phi' C phi / (2 omega).
+    """Damping ratio of every mode, phi' C phi / (2 w), without the coupling of modes through the damping.
 
     Parameters
     ----------
     line : DiscretisedLine
-        The discretised line, with its damping.
+        Discretised line with its damping.
     shapes : Modes
-        Its modes.
+        Modes of the line.
 
     Returns
     -------
     (n,) ndarray
-        [-].
+        Damping ratios [-].
     """
-    free = assemble_matrices(line).free
-    vectors = shapes.shape.reshape(len(shapes.frequency), -1)[:, bandwidth_order(line)[free]]
-    return _energy(line, vectors) / (4 * np.pi * shapes.frequency)
+    return _energy(line, free_vectors(line, shapes)) / (4 * np.pi * shapes.frequency)

@@ -1,4 +1,4 @@
-"""Static checks of a line: elasticity, working height, wave propagation."""
+"""Elasticity of a line: static uplift of the contact wire under a force."""
 
 import numpy as np
 
@@ -9,30 +9,30 @@ from pantocheck.model.statics.static_solver import StaticSolver
 
 
 def static_uplift(line: DiscretisedLine, position: Array, force: float) -> Array:
-    """Uplift of the contact wire under a static force at each place in turn, droppers slackening as they do.
+    """Compute the uplift of the contact wire under a static force at each position in turn; droppers may slacken.
 
     Parameters
     ----------
     line : DiscretisedLine
-        The discretised line.
+        Discretised line.
     position : (n,) ndarray
-        [m].
+        Positions of the force [m].
     force : float
-        Upwards, shared by the contact wires [N].
+        Force upwards, shared by the contact wires [N].
 
     Returns
     -------
     (n,) ndarray
-        Uplift where the force acts, the mean over the contact wires [m].
+        Uplift at the force, mean over the contact wires [m].
     """
     statics = StaticSolver(line)
     rows = line.contact_rows
     uplift = np.empty(len(position))
     for i, x in enumerate(position):
-        at = [point_load(line, row, float(x)) for row in rows]
-        displacement = statics.deflection(force / len(rows) * np.sum(at, axis=0)).displacement
+        loads = [point_load(line, row, float(x)) for row in rows]
+        displacement = statics.deflection(force / len(rows) * np.sum(loads, axis=0)).displacement
         flat = displacement.transpose(1, 0, 2).ravel()
-        uplift[i] = np.mean([share @ flat for share in at])
+        uplift[i] = np.mean([load @ flat for load in loads])
     return uplift
 
 
@@ -42,11 +42,11 @@ def non_uniformity(elasticity: Array) -> float:
     Parameters
     ----------
     elasticity : (n,) ndarray
-        Along a span, in any unit.
+        Elasticity along a span, in any unit.
 
     Returns
     -------
     float
-        [-].
+        Non-uniformity [-].
     """
     return float((elasticity.max() - elasticity.min()) / (elasticity.max() + elasticity.min()))

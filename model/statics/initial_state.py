@@ -1,8 +1,11 @@
 """Initial state: the line at rest under its own weight, with the contact wire at its prescribed heights.
 
-The contact wire's heights at the droppers give the dropper tensions; these and the weights give the shape of the wires
-above; the distance between the two gives the dropper lengths. Equilibrium holds exactly in the finite-element sense, so
-that the dynamics about this state start from rest.
+1. The prescribed heights of the contact wire give the dropper tensions.
+2. Dropper tensions and weights give the shape of messenger and stitch wires.
+3. Staggers give the lateral shape, with the droppers as lateral springs.
+4. The distance between the wires gives length and direction of the droppers.
+
+Equilibrium holds exactly in the finite-element sense, so that a simulation started from this state is at rest.
 """
 
 from collections.abc import Callable
@@ -10,7 +13,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
 from pantocheck.model.arrays import Array
 from pantocheck.model.catenary import GRAVITY, Catenary, Kind
@@ -21,6 +23,7 @@ from pantocheck.model.statics.lateral_state import compute_lateral_state
 from pantocheck.model.statics.prescribed_displacements import solve_with_prescribed_displacements
 
 Stiffness = Callable[[Beams, int], sp.csr_array]
+"""Stiffness matrix of the wires of one row: as beams or as strings."""
 
 
 @dataclass(frozen=True)
@@ -30,14 +33,14 @@ class InitialState:
     Parameters
     ----------
     deflection : (rows, stations, 2) ndarray
-        Vertical rows: height over the contact wire at the supports; lateral rows: distance from the track's centre
-        line; and slope [m, -].
+        Vertical rows: height above the contact wire at the supports; lateral rows: distance from the track centre
+        line; each with its slope [m, -].
     dropper_tension : (droppers,) ndarray
-        Axial, at mid-length [N].
+        Axial tension at mid-length [N].
     dropper_length : (droppers,) ndarray
-        Between the wires' axes [m].
+        Length between the axes of the wires [m].
     dropper_direction : (droppers, 2) ndarray
-        From the lower to the upper wire, y and z [-].
+        Direction from the lower to the upper wire, y and z [-].
     clamp_force : (clamps, 2) ndarray
         Force of the upper on the lower wire, y and z [N].
     arm_force : (steady arms, 2) ndarray
@@ -55,68 +58,151 @@ class InitialState:
 def compute_initial_state(
     catenary: Catenary, mesh: Mesh, beams: Beams, stiffness: Stiffness = wire_stiffness
 ) -> InitialState:
-    """Equilibrium of the line under its weight.
+    """Compute the equilibrium of the line under its weight.
 
     Parameters
     ----------
     catenary : Catenary
-        The line.
+        Line.
     mesh : Mesh
-        Its stations and rows.
+        Stations and rows.
     beams : Beams
-        Its rows of beams.
-    stiffness : Stiffness
-        Of the wires of one row; as beams, unless strings are asked for.
+        Rows of beams.
+    stiffness : callable
+        Stiffness of the wires of one row: beams (default) or strings.
 
     Returns
     -------
     InitialState
-        The initial state.
+        Line at rest.
 
     Raises
     ------
     NoInitialState
-        a dropper would have to push.
+        A dropper would have to push, or two wires cross.
     """
     vertical = [row for row in range(mesh.rows) if mesh.row_field[row] == "z"]
     contact = [row for row in vertical if mesh.row_kind[row] is Kind.CONTACT_WIRE]
     upper = [row for row in vertical if row not in contact]
     deflection = np.zeros((mesh.rows, mesh.position.size, 2))
     reaction = np.zeros((mesh.rows, mesh.position.size))
+    clamp_force, arm_force = np.zeros((len(catenary.clamps), 2)), np.zeros((len(catenary.steady_arms), 2))
+    # 1. Contact wires.
     for row in contact:
-        shape, reaction[row] = _hold_contact_wire(catenary, mesh, beams, row, stiffness(beams, row))
-        deflection[row] = shape
+        deflection[row], reaction[row] = _hold_contact_wire(catenary, mesh, beams, row, stiffness(beams, row))
+    tension = _dropper_tension(catenary, mesh, reaction)
+    for n, arm in enumerate(catenary.steady_arms):
+        if arm.carries_share:
+            arm_force[n, 1] = reaction[mesh.row_of[arm.wire, "z"], mesh.station(arm.position)]
+    # 2. Messenger and stitch wires.
+    if upper:
+        matrix = sp.block_diag([stiffness(beams, row) for row in upper], format="csr")
+        deflection[upper], clamp_force[:, 1] = _hang_upper_wires(catenary, mesh, beams, tension, matrix)
+    height = _dropper_extent(catenary, mesh, deflection, "z")
+    if height.size and height.min() <= 0:
+        position = catenary.droppers[int(np.argmin(height))].position
+        raise NoInitialState(
+            f"the wires cross at the dropper at x = {position:g} m: the encumbrance is smaller than the sag"
+        )
+    # 3. Lateral shape.
+    width = np.zeros_like(height)
+    if catenary.has_lateral_field:
+        lateral = compute_lateral_state(catenary, mesh, beams, tension / height)
+        deflection[lateral.rows], clamp_force[:, 0], arm_force[:, 0] = lateral.shape, lateral.clamps, lateral.arms
+        width = _dropper_extent(catenary, mesh, deflection, "y")
+    # 4. Droppers.
+    length = np.hypot(height, width)
+    direction = np.stack([width / length, height / length], axis=1)
+    return InitialState(deflection, tension * length / height, length, direction, clamp_force, arm_force)
+
+
+def _hold_contact_wire(
+    catenary: Catenary, mesh: Mesh, beams: Beams, row: int, stiffness: sp.csr_array
+) -> tuple[Array, Array]:
+    """Shape of a contact wire held at its prescribed heights, and the holding force at each station."""
+    names = {name for (name, field), wire_row in mesh.row_of.items() if wire_row == row and field == "z"}
+    heights = {
+        mesh.station(d.position): d.contact_wire_height
+        for d in catenary.droppers
+        if d.lower in names and d.contact_wire_height is not None
+    }
+    heights |= {
+        mesh.station(arm.position): 0.0 for arm in catenary.steady_arms if arm.wire in names and arm.carries_share
+    }
+    load, free = weight(beams, row, GRAVITY), beams.free[row].copy()
+    shape = np.zeros((mesh.position.size, 2))
+    for station, height in heights.items():
+        free[station, 0] = False
+        shape[station, 0] = height
+    solution = solve_with_prescribed_displacements(stiffness, load, free.ravel(), shape.ravel())
+    return solution.reshape(-1, 2), (stiffness @ solution - load)[::2]
+
+
+def _dropper_tension(catenary: Catenary, mesh: Mesh, reaction: Array) -> Array:
+    """Vertical force at mid-length of every dropper, from the forces that hold the contact wires at each station."""
     tension = np.array(
         [
             reaction[mesh.row_of[d.lower, "z"], mesh.station(d.position)] + GRAVITY * (d.lower_clamp_mass + d.mass / 2)
             for d in catenary.droppers
         ]
     )
-    _refuse_pushing(catenary, tension)
-    clamp_force = np.zeros((len(catenary.clamps), 2))
-    if upper:
-        deflection[upper], clamp_force[:, 1] = _hang_upper_wires(
-            catenary, mesh, beams, upper, tension, [stiffness(beams, row) for row in upper]
+    if tension.size and tension.min() <= 0:
+        worst = int(np.argmin(tension))
+        raise NoInitialState(
+            f"the dropper at x = {catenary.droppers[worst].position:g} m would have to push with"
+            f" {-tension[worst]:.3g} N to hold the contact wire at its prescribed height; a dropper cannot push"
         )
-    rise = _difference(catenary, mesh, deflection, "z")
-    if rise.size and rise.min() <= 0:
-        place = catenary.droppers[int(np.argmin(rise))].position
-        raise NoInitialState(f"the wires cross at the dropper at x = {place:g} m; the encumbrance is too small")
-    arm_force = np.zeros((len(catenary.steady_arms), 2))
-    for n, arm in enumerate(catenary.steady_arms):
-        if arm.carries_share:
-            arm_force[n, 1] = reaction[mesh.row_of[arm.wire, "z"], mesh.station(arm.position)]
-    run = np.zeros_like(rise)
-    if catenary.has_lateral_field:
-        lateral = compute_lateral_state(catenary, mesh, beams, tension / rise)
-        deflection[lateral.rows], clamp_force[:, 0], arm_force[:, 0] = lateral.shape, lateral.clamps, lateral.arms
-        run = _difference(catenary, mesh, deflection, "y")
-    length = np.hypot(rise, run)
-    direction = np.stack([run / length, rise / length], axis=1)
-    return InitialState(deflection, tension * length / rise, length, direction, clamp_force, arm_force)
+    return tension
 
 
-def _difference(catenary: Catenary, mesh: Mesh, deflection: Array, field: str) -> Array:
+def _hang_upper_wires(
+    catenary: Catenary, mesh: Mesh, beams: Beams, tension: Array, stiffness: sp.csr_array
+) -> tuple[Array, Array]:
+    """Shape of messenger and stitch wires under weight and dropper tensions, and the vertical forces of the clamps."""
+    rows = [r for r in range(mesh.rows) if mesh.row_field[r] == "z" and mesh.row_kind[r] is not Kind.CONTACT_WIRE]
+    stations = mesh.position.size
+    load = np.concatenate([weight(beams, row, GRAVITY) for row in rows])
+    free, shape = beams.free[rows].ravel(), np.zeros(len(rows) * stations * 2)
+
+    def deflection_index(wire: str, position: float) -> int:
+        return 2 * (rows.index(mesh.row_of[wire, "z"]) * stations + mesh.station(position))
+
+    for dropper, force in zip(catenary.droppers, tension, strict=True):
+        weight_share = GRAVITY * (dropper.mass / 2 + dropper.upper_clamp_mass)
+        load[deflection_index(dropper.upper, dropper.position)] -= force + weight_share
+    for name, position, height in _messenger_heights(catenary):
+        free[deflection_index(name, position)] = False
+        shape[deflection_index(name, position)] = height
+    # A clamp makes two deflections one: that of the lower wire is replaced by that of the upper wire.
+    merged = np.arange(free.size)
+    for clamp in catenary.clamps:
+        merged[deflection_index(clamp.lower, clamp.position)] = deflection_index(clamp.upper, clamp.position)
+        load[deflection_index(clamp.upper, clamp.position)] -= GRAVITY * clamp.mass
+    join = sp.csr_array((np.ones(free.size), (np.arange(free.size), merged)), shape=(free.size, free.size))
+    free[merged != np.arange(free.size)] = False
+    solution = join @ solve_with_prescribed_displacements(join.T @ stiffness @ join, join.T @ load, free, shape)
+    residual = load - stiffness @ solution
+    clamp_force = np.array([-residual[deflection_index(c.lower, c.position)] for c in catenary.clamps])
+    return np.reshape(solution, (len(rows), stations, 2)), clamp_force
+
+
+def _messenger_heights(catenary: Catenary) -> list[tuple[str, float, float]]:
+    """Wire, position and height of the supports of the messenger wires; an anchor is level with the next support."""
+    heights = []
+    for wire in catenary.wires:
+        if wire.kind is Kind.MESSENGER_WIRE:
+            supports = sorted(
+                (support.position, support.height)
+                for support in catenary.messenger_supports
+                if support.wire == wire.name
+            )
+            if supports:
+                heights += [(wire.name, wire.start, supports[0][1]), (wire.name, wire.end, supports[-1][1])]
+            heights += [(wire.name, *support) for support in supports]
+    return heights
+
+
+def _dropper_extent(catenary: Catenary, mesh: Mesh, deflection: Array, field: str) -> Array:
     """Upper minus lower end of every dropper in one field."""
     return np.array(
         [
@@ -125,76 +211,3 @@ def _difference(catenary: Catenary, mesh: Mesh, deflection: Array, field: str) -
             for d in catenary.droppers
         ]
     )
-
-
-def _hold_contact_wire(
-    catenary: Catenary, mesh: Mesh, beams: Beams, row: int, stiffness: sp.csr_array
-) -> tuple[Array, Array]:
-    """Shape of a contact wire held at its prescribed heights, and the force that holds it at each station."""
-    names = {name for (name, field), at in mesh.row_of.items() if at == row and field == "z"}
-    held = {
-        mesh.station(d.position): d.contact_wire_height
-        for d in catenary.droppers
-        if d.lower in names and d.contact_wire_height is not None
-    }
-    held |= {mesh.station(arm.position): 0.0 for arm in catenary.steady_arms if arm.wire in names and arm.carries_share}
-    load = weight(beams, row, GRAVITY)
-    free = beams.free[row].copy()
-    shape = np.zeros((mesh.position.size, 2))
-    for at, height in held.items():
-        free[at, 0] = False
-        shape[at, 0] = height
-    solved = solve_with_prescribed_displacements(stiffness, load, free.ravel(), shape.ravel())
-    return solved.reshape(-1, 2), (stiffness @ solved - load)[::2]
-
-
-def _hang_upper_wires(
-    catenary: Catenary, mesh: Mesh, beams: Beams, rows: list[int], tension: Array, wires: list[sp.csr_array]
-) -> tuple[Array, Array]:
-    """Shape of messenger and stitch wires under weight and dropper tensions, clamped together, held at the supports."""
-    stations = mesh.position.size
-    place = {row: index for index, row in enumerate(rows)}
-    stiffness = sp.block_diag(wires, format="csr")
-    load = np.concatenate([weight(beams, row, GRAVITY) for row in rows])
-    free = beams.free[rows].copy()
-    shape = np.zeros((len(rows), stations, 2))
-
-    def deflection_index(name: str, position: float) -> int:
-        return 2 * (place[mesh.row_of[name, "z"]] * stations + mesh.station(position))
-
-    for d, n in zip(catenary.droppers, tension, strict=True):
-        load[deflection_index(d.upper, d.position)] -= n + GRAVITY * (d.mass / 2 + d.upper_clamp_mass)
-    for wire in catenary.wires:
-        if wire.kind is Kind.MESSENGER_WIRE:
-            _hold_messenger(catenary, mesh, wire.name, place[mesh.row_of[wire.name, "z"]], free, shape)
-    # A clamp makes two deflections one: the lower wire's is expressed by the upper wire's.
-    merge = np.arange(free.size)
-    for clamp in catenary.clamps:
-        merge[deflection_index(clamp.lower, clamp.position)] = deflection_index(clamp.upper, clamp.position)
-        load[deflection_index(clamp.upper, clamp.position)] -= GRAVITY * clamp.mass
-    join = sp.csr_array((np.ones(free.size), (np.arange(free.size), merge)), shape=(free.size, free.size))
-    flat = free.ravel().copy()
-    flat[merge != np.arange(free.size)] = False
-    solved = join @ solve_with_prescribed_displacements(join.T @ stiffness @ join, join.T @ load, flat, shape.ravel())
-    residual = load - stiffness @ solved
-    clamp_tension = np.array([-residual[deflection_index(c.lower, c.position)] for c in catenary.clamps])
-    return np.reshape(solved, (len(rows), stations, 2)), clamp_tension
-
-
-def _hold_messenger(catenary: Catenary, mesh: Mesh, name: str, row: int, free: NDArray[np.bool_], shape: Array) -> None:
-    supports = sorted((s for s in catenary.messenger_supports if s.wire == name), key=lambda s: s.position)
-    wire = catenary.wire(name)
-    ends = [] if not supports else [(wire.start, supports[0].height), (wire.end, supports[-1].height)]
-    for position, height in [*ends, *((s.position, s.height) for s in supports)]:
-        free[row, mesh.station(position), 0] = False
-        shape[row, mesh.station(position), 0] = height
-
-
-def _refuse_pushing(catenary: Catenary, tension: Array) -> None:
-    if tension.size and tension.min() <= 0:
-        worst = int(np.argmin(tension))
-        place = catenary.droppers[worst].position
-        raise NoInitialState(
-            f"the dropper at x = {place:g} m would have to push with {-tension[worst]:.3g} N to hold the contact wire"
-            " at its prescribed height; a dropper cannot push"
-        )

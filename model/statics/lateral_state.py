@@ -7,8 +7,8 @@
       |              `-o---o-'
                        arm
 
-The wires are straight between the places where arms and supports hold them, but for the droppers: one that leans pulls
-both its wires sideways by its vertical force times its slope, which is a lateral spring of stiffness force over height.
+Without droppers the wires are straight between steady arms and supports. An inclined dropper pulls both its wires
+sideways with its vertical force times its slope: it acts as a lateral spring of stiffness force over height.
 """
 
 from dataclasses import dataclass
@@ -17,10 +17,13 @@ import numpy as np
 import scipy.sparse as sp
 
 from pantocheck.model.arrays import Array
-from pantocheck.model.catenary import Catenary
-from pantocheck.model.fem.beams import Beams, wire_matrices
+from pantocheck.model.catenary import Catenary, Clamp, Dropper
+from pantocheck.model.fem.beams import Beams, wire_stiffness
 from pantocheck.model.fem.mesh import Mesh
 from pantocheck.model.statics.prescribed_displacements import solve_with_prescribed_displacements
+
+CLAMP_STIFFNESS = 1e9
+"""Lateral stiffness of a clamp: large against 1e4 N/m of a wire, small enough for ten digits of the solution [N/m]."""
 
 
 @dataclass(frozen=True)
@@ -29,10 +32,10 @@ class LateralState:
 
     Parameters
     ----------
-    rows : list[int]
-        The lateral rows.
+    rows : list of int
+        Indices of the lateral rows.
     shape : (lateral rows, stations, 2) ndarray
-        Distance from the centre line, and slope [m, -].
+        Distance from the track centre line, and slope [m, -].
     clamps : (clamps,) ndarray
         Lateral force of the upper on the lower wire [N].
     arms : (steady arms,) ndarray
@@ -46,40 +49,39 @@ class LateralState:
 
 
 def compute_lateral_state(catenary: Catenary, mesh: Mesh, beams: Beams, dropper_stiffness: Array) -> LateralState:
-    """Equilibrium of the lateral rows.
+    """Compute the equilibrium of the lateral rows.
 
     Parameters
     ----------
     catenary : Catenary
-        The line, its wires with their staggers.
+        Line with the staggers of its wires.
     mesh : Mesh
         Stations and rows.
     beams : Beams
         Rows of beams.
     dropper_stiffness : (droppers,) ndarray
-        Vertical force over height of each dropper [N/m].
+        Lateral stiffness of each dropper, vertical force over height [N/m].
 
     Returns
     -------
     LateralState
-        The plan view.
+        Plan view at rest.
     """
     rows = [row for row in range(mesh.rows) if mesh.row_field[row] == "y"]
     stations = mesh.position.size
-    wires = sp.block_diag([wire_matrices(beams, row)[0] for row in rows], format="csr")
+    wires = sp.block_diag([wire_stiffness(beams, row) for row in rows], format="csr")
 
-    def at(wire: str, position: float) -> int:
+    def deflection_index(wire: str, position: float) -> int:
         return 2 * (rows.index(mesh.row_of[wire, "y"]) * stations + mesh.station(position))
 
-    upper = [at(d.upper, d.position) for d in catenary.droppers] + [at(c.upper, c.position) for c in catenary.clamps]
-    lower = [at(d.lower, d.position) for d in catenary.droppers] + [at(c.lower, c.position) for c in catenary.clamps]
-    # Stiff against a wire's 1e4 N/m, soft enough to leave the solution ten digits.
-    clamp = np.full(len(catenary.clamps), 1e9)
-    bars = np.concatenate([dropper_stiffness, clamp])
-    number = np.arange(bars.size)
-    joint = sp.csr_array(
-        (np.repeat([1.0, -1.0], bars.size), (np.concatenate([upper, lower]), np.tile(number, 2))),
-        shape=(wires.shape[0], bars.size),
+    bars: list[Dropper | Clamp] = [*catenary.droppers, *catenary.clamps]
+    upper = [deflection_index(bar.upper, bar.position) for bar in bars]
+    lower = [deflection_index(bar.lower, bar.position) for bar in bars]
+    bar_stiffness = np.concatenate([dropper_stiffness, np.full(len(catenary.clamps), CLAMP_STIFFNESS)])
+    number = np.arange(len(bars))
+    elongation = sp.csr_array(
+        (np.repeat([1.0, -1.0], len(bars)), (np.concatenate([upper, lower]), np.tile(number, 2))),
+        shape=(wires.shape[0], len(bars)),
     )
     free = beams.free[rows].copy()
     shape = np.zeros((len(rows), stations, 2))
@@ -88,13 +90,13 @@ def compute_lateral_state(catenary: Catenary, mesh: Mesh, beams: Beams, dropper_
             row, station = rows.index(mesh.row_of[wire.name, "y"]), mesh.station(x)
             free[row, station, 0] = False
             shape[row, station, 0] = y
-    stiffness = sp.csr_array(wires + joint @ sp.diags_array(bars) @ joint.T)
-    solved = solve_with_prescribed_displacements(stiffness, np.zeros(shape.size), free.ravel(), shape.ravel())
-    force = bars * (joint.T @ solved)
-    reaction = stiffness @ solved
+    stiffness = sp.csr_array(wires + elongation @ sp.diags_array(bar_stiffness) @ elongation.T)
+    solution = solve_with_prescribed_displacements(stiffness, np.zeros(shape.size), free.ravel(), shape.ravel())
+    force = bar_stiffness * (elongation.T @ solution)
+    reaction = stiffness @ solution
     return LateralState(
         rows=rows,
-        shape=np.reshape(solved, shape.shape),
+        shape=np.reshape(solution, shape.shape),
         clamps=force[len(catenary.droppers) :],
-        arms=np.array([reaction[at(arm.wire, arm.position)] for arm in catenary.steady_arms]),
+        arms=np.array([reaction[deflection_index(arm.wire, arm.position)] for arm in catenary.steady_arms]),
     )

@@ -1,4 +1,4 @@
-"""Linear statics with some unknowns held at given values."""
+"""Linear statics with prescribed displacements."""
 
 import numpy as np
 import scipy.sparse as sp
@@ -9,20 +9,20 @@ from pantocheck.model.arrays import Array
 
 
 def solve_with_prescribed_displacements(
-    stiffness: sp.csr_array, load: Array, free: NDArray[np.bool_], held: Array
+    stiffness: sp.csr_array, load: Array, free: NDArray[np.bool_], prescribed: Array
 ) -> Array:
-    """Solve K q = f for the free unknowns, the others held.
+    """Solve K q = f for the free unknowns, with prescribed values of the others.
 
     Parameters
     ----------
-    stiffness : sp.csr_array
-        (n, n); an unknown without stiffness stays at zero.
-    load : ndarray
-        (n,).
+    stiffness : (n, n) sparse array
+        Stiffness matrix K; an unknown without stiffness stays at zero.
+    load : (n,) ndarray
+        Forces f.
     free : (n,) ndarray
-        Which unknowns can move.
-    held : (n,) ndarray
-        Values of the others.
+        Whether each unknown can move.
+    prescribed : (n,) ndarray
+        Values of the fixed unknowns.
 
     Returns
     -------
@@ -30,7 +30,7 @@ def solve_with_prescribed_displacements(
         All unknowns.
     """
     active = np.flatnonzero(free & (stiffness.diagonal() != 0))
-    solution: Array = np.where(free, 0.0, held)
+    solution: Array = np.where(free, 0.0, prescribed)
     inner = sp.csc_array(stiffness[active][:, active])
     solution[active] = splu(inner).solve((load - stiffness @ solution)[active])
     return solution

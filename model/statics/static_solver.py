@@ -1,4 +1,4 @@
-"""Static deflection under loads, with droppers going slack."""
+"""Static deflection under loads, with slack droppers."""
 
 from dataclasses import dataclass
 
@@ -12,6 +12,9 @@ from pantocheck.model.discretised_line import DiscretisedLine
 from pantocheck.model.failures import NoEquilibrium
 from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, connector_directions
 
+MAX_ITERATIONS = 100
+"""Largest number of changes of the set of slack droppers."""
+
 
 @dataclass(frozen=True)
 class Deflection:
@@ -22,7 +25,7 @@ class Deflection:
     displacement : (rows, stations, 2) ndarray
         Deflection and slope [m, -].
     tension : (connectors,) ndarray
-        In total [N].
+        Total tension [N].
     """
 
     displacement: Array
@@ -30,7 +33,7 @@ class Deflection:
 
     @property
     def slack(self) -> NDArray[np.bool_]:
-        """(connectors,) which carry nothing."""
+        """Whether each connector carries no force, (connectors,)."""
         return np.equal(self.tension, 0.0)
 
 
@@ -39,8 +42,8 @@ class StaticSolver:
 
     Parameters
     ----------
-    line
-        The discretised line.
+    line : DiscretisedLine
+        Discretised line.
     """
 
     def __init__(self, line: DiscretisedLine) -> None:
@@ -51,7 +54,7 @@ class StaticSolver:
         self._direction = sp.csc_array(connector_directions(line)[self._free])
 
     def deflection(self, load: Array) -> Deflection:
-        """Deflection under a load.
+        """Compute the deflection under a load.
 
         Parameters
         ----------
@@ -61,7 +64,7 @@ class StaticSolver:
         Returns
         -------
         Deflection
-            The deflection.
+            Displacements and tensions.
 
         Raises
         ------
@@ -71,11 +74,11 @@ class StaticSolver:
         connectors = self.line.connectors
         taut = self._factor.solve(np.asarray(load, dtype=float)[self._free])
         slack = np.zeros(connectors.station.size, dtype=np.bool_)
-        for _ in range(100):
+        for _ in range(MAX_ITERATIONS):
             solution = taut
             index = np.flatnonzero(slack)
             if index.size:
-                # Cancel what the slack droppers would push, and hold their preload back from the wires.
+                # Cancel the compression of the slack droppers, and release their preload.
                 b = self._direction[:, index].toarray()
                 compliance = self._factor.solve(b)
                 k, preload = connectors.stiffness[index], connectors.preload[index]
@@ -87,9 +90,12 @@ class StaticSolver:
             if np.array_equal(now_slack, slack):
                 return self._expand(solution, np.where(slack, 0.0, tension))
             slack = now_slack
-        raise NoEquilibrium("no static equilibrium: the set of slack droppers still changes after 100 iterations")
+        raise NoEquilibrium(
+            f"no static equilibrium: the set of slack droppers still changes after {MAX_ITERATIONS} iterations"
+        )
 
     def _expand(self, solution: Array, tension: Array) -> Deflection:
+        """Deflection of all unknowns from that of the free ones."""
         full = np.zeros(self.line.beams.free.size)
         full[bandwidth_order(self.line)[self._free]] = solution
         return Deflection(full.reshape(self.line.beams.free.shape), tension)

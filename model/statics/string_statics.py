@@ -1,7 +1,7 @@
-"""String statics: the line at rest with the bending of its wires left out, as dropper tables are computed by hand.
+"""String statics: the line at rest without bending stiffness, as dropper tables are computed by hand.
 
-A string element carries no moment; its nodal deflections under uniform and nodal loads are exact whatever its length,
-so that the stations at the connectors are enough.
+A string element carries no moment. Its nodal deflections under uniform and nodal loads are exact for any length, so
+that stations at the connectors are sufficient.
 """
 
 import math
@@ -11,23 +11,23 @@ import scipy.sparse as sp
 
 from pantocheck.model.catenary import Catenary
 from pantocheck.model.fem import beam
-from pantocheck.model.fem.beams import Beams, build_beams, by_station
+from pantocheck.model.fem.beams import Beams, assemble_row, build_beams
 from pantocheck.model.fem.mesh import build_mesh
 from pantocheck.model.statics.initial_state import InitialState, compute_initial_state
 
 
 def string_state(catenary: Catenary) -> InitialState:
-    """The line at rest, its wires strings, in the vertical plane.
+    """Compute the line at rest with its wires as strings, in the vertical plane.
 
     Parameters
     ----------
     catenary : Catenary
-        The line; staggers are left out.
+        Line; its staggers are ignored.
 
     Returns
     -------
     InitialState
-        Its state at the places of its connectors.
+        State at the positions of the connectors.
 
     Raises
     ------
@@ -40,23 +40,23 @@ def string_state(catenary: Catenary) -> InitialState:
 
 
 def in_vertical_plane(catenary: Catenary) -> Catenary:
-    """The same line without staggers."""
+    """Remove the staggers of a line."""
     return replace(catenary, wires=tuple(replace(wire, stagger=None) for wire in catenary.wires))
 
 
 def string_stiffness(beams: Beams, row: int) -> sp.csr_array:
-    """Stiffness of the wires of one row as strings; the slopes have none.
+    """Stiffness of the wires of one row as strings; the slopes have no stiffness.
 
     Parameters
     ----------
     beams : Beams
-        The rows.
+        Rows of beams.
     row : int
-        Which one.
+        Index of the row.
 
     Returns
     -------
-    sp.csr_array
-        (2 S, 2 S) with unknowns (w, r) by station [N/m].
+    (2 S, 2 S) sparse array
+        Unknowns (w, r) by station [N/m].
     """
-    return by_station(beam.springs(beams.tension[row] / beams.length))
+    return assemble_row(beam.springs(beams.tension[row] / beams.length))

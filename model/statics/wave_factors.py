@@ -1,4 +1,4 @@
-"""Waves on the wires: the factors by which a line is judged fit for a speed.
+"""Wave propagation factors of a line: Doppler factor, reflection and amplification coefficient.
 
 Definitions as in Kiessling, Puschmann, Schmieder and Schneider, Contact Lines for Electric Railways.
 """
@@ -15,30 +15,30 @@ def impedance(wires: Iterable[Wire]) -> float:
 
 
 def doppler_factor(speed: float, wave_speed: float) -> float:
-    """Doppler factor (c - v) / (c + v): how a wave sent ahead is stretched when it comes back to its train.
+    """Doppler factor (c - v) / (c + v): frequency ratio between a wave sent ahead and its reflection at the train.
 
     Parameters
     ----------
     speed : float
-        v of the train [m/s].
+        Speed v of the train [m/s].
     wave_speed : float
-        c of the contact wire [m/s].
+        Wave speed c of the contact wire [m/s].
 
     Returns
     -------
     float
-        [-].
+        Factor [-].
     """
     return (wave_speed - speed) / (wave_speed + speed)
 
 
 def reflection_coefficient(contact_wires: Iterable[Wire], messenger_wires: Iterable[Wire]) -> float:
-    """Share of a wave on the contact wire that a dropper reflects, were it rigid and without mass.
+    """Share of a wave on the contact wire that a rigid, massless dropper reflects.
 
     Parameters
     ----------
-    contact_wires, messenger_wires : Iterable[Wire]
-        That the dropper joins.
+    contact_wires, messenger_wires : iterable of Wire
+        Wires that the dropper connects.
 
     Returns
     -------
@@ -50,5 +50,5 @@ def reflection_coefficient(contact_wires: Iterable[Wire], messenger_wires: Itera
 
 
 def amplification_coefficient(reflection: float, doppler: float) -> float:
-    """Factor by which a wave grows between train and dropper at every turn: reflection over Doppler factor [-]."""
+    """Growth of a wave with every reflection between train and dropper: reflection over Doppler factor [-]."""
     return reflection / doppler

@@ -9,7 +9,7 @@ from pantocheck.conformance.results.outcome import Delivered, StudyResult
 from pantocheck.conformance.results.results_format import Criterion
 from pantocheck.conformance.studies.vovan2015.damping_models import computed_damping_ratios
 from pantocheck.model import Catenary, discretise
-from pantocheck.model.modal.modal_damping import modes_below
+from pantocheck.model.modal.modes import compute_modes_below
 
 ELEMENT = 1.5
 
@@ -17,7 +17,7 @@ ELEMENT = 1.5
 def computed_modes(line: Catenary, spans: int, highest: float) -> list[Mode]:
     """All modes of a line below a frequency [Hz], numbered in groups of one mode per span."""
     mesh = discretise(line, ELEMENT)
-    shapes = modes_below(mesh, highest)
+    shapes = compute_modes_below(mesh, highest)
     return [
         Mode(
             frequency_Hz=float(f),

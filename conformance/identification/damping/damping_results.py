@@ -25,8 +25,8 @@ from pantocheck.conformance.identification.damping.sensor_shapes import compute_
 from pantocheck.conformance.identification.mode import Mode
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.model import Catenary, Kind, discretise
-from pantocheck.model.modal.modal_damping import apply_modal_bands, modes_below
-from pantocheck.model.modal.modes import component_energies, damping_ratios
+from pantocheck.model.modal.modal_damping import apply_modal_bands
+from pantocheck.model.modal.modes import component_energies, compute_modes_below, damping_ratios
 
 MIN_PAIRS = 6
 """Identified modes with a computed counterpart that a fit needs."""
@@ -56,7 +56,7 @@ def build_damping_results(modes: Sequence[Mode], line: Catenary, element: float,
         raise InputError(source, "holds no certain mode that belongs to a group", "Identify longer or more records.")
     positions = find_sensor_positions(usable, line, source)
     mesh = discretise(line, element, tuple(sorted(x for _, x in positions)))
-    shapes = modes_below(mesh, 1.1 * max(mode.frequency_Hz for mode in usable))
+    shapes = compute_modes_below(mesh, 1.1 * max(mode.frequency_Hz for mode in usable))
     frequency = np.array([mode.frequency_Hz for mode in usable])
     measured_shapes, computed_shapes = compute_sensor_shapes(usable, mesh, shapes, positions)
     pairs = pair_modes(frequency, measured_shapes, shapes.frequency, computed_shapes)

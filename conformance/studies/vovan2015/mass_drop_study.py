@@ -18,7 +18,7 @@ from pantocheck.conformance.studies.vovan2015.fit_comparison import build_fit_re
 from pantocheck.conformance.studies.vovan2015.group_findings import compute_group_findings
 from pantocheck.conformance.studies.vovan2015.provenance_table import build_provenance_table
 from pantocheck.model import discretise
-from pantocheck.model.modal.modal_damping import modes_below
+from pantocheck.model.modal.modes import compute_modes_below
 
 
 def run_mass_drop_study(case: Case) -> Delivered:
@@ -63,7 +63,7 @@ def _against_frequency(case: Case, found: Identification, bound: float | None) -
     told = require_mass_drop(case)
     own = build_catenary(case.line)
     mesh = discretise(own, case.file.discretisation.element_m)
-    shapes = modes_below(mesh, told.highest_Hz)
+    shapes = compute_modes_below(mesh, told.highest_Hz)
     models = build_lines(case) or {"damping of the case": own}
     certain = [mode for mode in found.modes if mode.certain and not mode.lateral]
     return Chart(

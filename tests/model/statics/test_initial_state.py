@@ -10,7 +10,7 @@ from pantocheck.model import Catenary, Clamp, Dropper, Kind, MessengerSupport, S
 from pantocheck.model.catenary import GRAVITY
 from pantocheck.model.discretised_line import DiscretisedLine, discretise
 from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, connector_directions
-from pantocheck.model.fem.beams import weight, wire_matrices
+from pantocheck.model.fem.beams import weight, wire_stiffness
 
 LENGTHS_2018 = np.array([1.017, 0.896, 0.810, 0.758, 0.741, 0.758, 0.810, 0.896, 1.017])
 """Printed dropper lengths of the EN 50318:2018 simple line (published_values.toml, en50318_2018.ac_simple) [m]."""
@@ -56,7 +56,7 @@ def end_pull(line: DiscretisedLine, name: str) -> float:
     Read from the shape alone: T times the jump of the slope, less the shear of bending, by the shape functions' ends.
     """
     row = line.mesh.row_of[name, "z"]
-    stiffness, _ = wire_matrices(line.beams, row)
+    stiffness = wire_stiffness(line.beams, row)
     residual = (stiffness @ line.state.deflection[row].ravel() - weight(line.beams, row, GRAVITY))[::2]
     held = [line.mesh.station(x) for x in (line.catenary.wire(name).start, line.catenary.wire(name).end)]
     if line.catenary.wire(name).kind is Kind.MESSENGER_WIRE:
@@ -81,7 +81,7 @@ def test_equilibrium_holds_for_every_unknown() -> None:
     """Of the whole line in global order: wires, dropper tensions and arm forces, to 1e-9 of the weights (2.4 kN)."""
     line = discretise(simple_line(spans=3), 0.5)
     place = bandwidth_order(line)
-    wires = np.concatenate([wire_matrices(line.beams, row)[0] @ line.state.deflection[row].ravel() for row in range(2)])
+    wires = np.concatenate([wire_stiffness(line.beams, row) @ line.state.deflection[row].ravel() for row in range(2)])
     pulled = np.concatenate([weight(line.beams, row, GRAVITY) for row in range(2)])
     for arm, force in zip(line.catenary.steady_arms, line.state.arm_force[:, 1], strict=True):
         pulled[2 * line.mesh.station(arm.position)] += force

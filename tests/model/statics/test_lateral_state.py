@@ -18,7 +18,7 @@ from pantocheck.model import (
     discretise,
     simulate_passage,
 )
-from pantocheck.model.fem.beams import wire_matrices
+from pantocheck.model.fem.beams import wire_stiffness
 from pantocheck.model.fem.connectors import RIGID
 from pantocheck.model.statics.elasticity import static_uplift
 
@@ -105,7 +105,7 @@ def test_lateral_forces_balance_on_every_station() -> None:
     line = discretise(with_stagger(simple_line(spans), STAGGER, spans), 0.5)
     for name, side in (("contact", 1.0), ("messenger", -1.0)):
         row = line.mesh.row_of[name, "y"]
-        stiffness, _ = wire_matrices(line.beams, row)
+        stiffness = wire_stiffness(line.beams, row)
         left = -(stiffness @ line.state.deflection[row].ravel())[::2]
         for n, dropper in enumerate(line.catenary.droppers):
             at = line.mesh.station(dropper.position)

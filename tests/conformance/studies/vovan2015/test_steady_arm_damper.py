@@ -12,8 +12,7 @@ from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.studies.vovan2015.steady_arm_damper import damping_gains
 from pantocheck.model import Kind, Rayleigh, discretise
-from pantocheck.model.modal.modal_damping import modes_below
-from pantocheck.model.modal.modes import damping_ratios
+from pantocheck.model.modal.modes import compute_modes_below, damping_ratios
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +26,7 @@ def verdicts_of(case):
     """Verdicts for a line that takes the damped one's place, by quantity and band."""
     plain = build_catenary(case.line)
     mesh = discretise(plain, ELEMENT)
-    shapes = modes_below(mesh, case.file.study.bands_Hz[-1][1])
+    shapes = compute_modes_below(mesh, case.file.study.bands_Hz[-1][1])
 
     def medians(line):
         ratio = damping_ratios(discretise(line, ELEMENT), shapes)

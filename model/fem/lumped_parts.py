@@ -1,0 +1,84 @@
+"""Lumped parts: masses, springs and dampers that act on a single row at a single station.
+
+Droppers and clamps contribute their masses, steady arms and messenger supports also stiffness and damping.
+"""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from pantocheck.model.arrays import Array
+from pantocheck.model.catenary import Catenary, Kind, Rayleigh
+from pantocheck.model.fem.mesh import Mesh
+
+
+class LumpedParts(NamedTuple):
+    """Sums of the lumped parts; B rows, S stations.
+
+    Parameters
+    ----------
+    mass, stiffness, damping : (B, S) ndarray
+        Coefficients on the deflections [kg, N/m, N s/m].
+    """
+
+    mass: Array
+    stiffness: Array
+    damping: Array
+
+
+class LumpedPart(NamedTuple):
+    """Mass, spring and damper at a position on a row [m, kg, N/m, N s/m]."""
+
+    kind: Kind
+    row: int
+    position: float
+    mass: float
+    stiffness: float = 0.0
+    damping: float = 0.0
+
+
+def sum_lumped_parts(catenary: Catenary, mesh: Mesh) -> LumpedParts:
+    """Sum the lumped parts of a line, with the Rayleigh damping of their kind, at each station.
+
+    Parameters
+    ----------
+    catenary : Catenary
+        Line.
+    mesh : Mesh
+        Stations and rows.
+
+    Returns
+    -------
+    LumpedParts
+        Sums by row and station.
+    """
+    mass, stiffness, damping = (np.zeros((mesh.rows, mesh.position.size)) for _ in range(3))
+    undamped = Rayleigh()
+    for part in _lumped_parts(catenary, mesh):
+        station, rayleigh = mesh.station(part.position), catenary.damping.get(part.kind, undamped)
+        mass[part.row, station] += part.mass
+        stiffness[part.row, station] += part.stiffness
+        damping[part.row, station] += (
+            part.damping + rayleigh.mass_coefficient * part.mass + rayleigh.stiffness_coefficient * part.stiffness
+        )
+    return LumpedParts(mass, stiffness, damping)
+
+
+def _lumped_parts(catenary: Catenary, mesh: Mesh) -> Iterator[LumpedPart]:
+    for field in dict.fromkeys(mesh.row_field):
+        for dropper in catenary.droppers:
+            half = dropper.mass / 2
+            upper, lower = mesh.row_of[dropper.upper, field], mesh.row_of[dropper.lower, field]
+            yield LumpedPart(Kind.DROPPER, upper, dropper.position, half + dropper.upper_clamp_mass)
+            yield LumpedPart(Kind.DROPPER, lower, dropper.position, half + dropper.lower_clamp_mass)
+        for clamp in catenary.clamps:
+            yield LumpedPart(Kind.DROPPER, mesh.row_of[clamp.upper, field], clamp.position, clamp.mass)
+        for arm in catenary.steady_arms:
+            yield LumpedPart(Kind.STEADY_ARM, mesh.row_of[arm.wire, field], arm.position, arm.mass)
+        for support in catenary.messenger_supports:
+            row = mesh.row_of[support.wire, field]
+            yield LumpedPart(Kind.MESSENGER_SUPPORT, row, support.position, 0.0, support.stiffness, support.damping)
+    for arm in catenary.steady_arms:
+        row, stiffness = mesh.row_of[arm.wire, "z"], arm.vertical_stiffness or 0.0
+        yield LumpedPart(Kind.STEADY_ARM, row, arm.position, 0.0, stiffness, arm.vertical_damper)
