@@ -12,7 +12,8 @@ from pantocheck.conformance.command_line.console import console, escape_text
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
-from pantocheck.conformance.mass_drops.drop_writing import write_drop_csv, write_drop_hdf5, write_drop_uff
+from pantocheck.conformance.mass_drops.drop_writing import write_drop_csv, write_drop_hdf5
+from pantocheck.conformance.mass_drops.uff_writing import write_drop_uff
 from pantocheck.conformance.simulation.drop_simulation import require_mass_drop, simulate_drop
 
 SUFFIXES = (".uff", ".csv", ".h5")

@@ -13,6 +13,7 @@ from pantocheck.conformance.identification.identify import identify_modes
 from pantocheck.conformance.identification.modes_file import ModesFile
 from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import check_writable
+from pantocheck.conformance.input_files.table_formats import TABLE_FORMATS, list_suffixes
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
 from pantocheck.conformance.reports.document import write_html, write_pdf
 from pantocheck.conformance.reports.mass_drop.identification_report import build_identification_document
@@ -21,9 +22,7 @@ from pantocheck.conformance.reports.mass_drop.identification_report import build
 def identify_command(
     records: Annotated[
         list[Path],
-        typer.Argument(
-            help="Records: .csv, .uff, .mat, .h5, .tdms or .mf4; a sidecar .toml of the same name is read, too."
-        ),
+        typer.Argument(help=f"Records: {list_suffixes(TABLE_FORMATS)}; a sidecar .toml of the same name is read, too."),
     ],
     out: Annotated[Path, typer.Option(help="Folder for modes.json, identification.json, .html and .pdf.")],
     poles: Annotated[

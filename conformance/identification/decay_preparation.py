@@ -9,7 +9,7 @@ from pantocheck.conformance.identification.decay_filters import complete_overlap
 from pantocheck.conformance.identification.linear_decay import FrequencyBand, LinearDecay, find_linear_decay
 from pantocheck.conformance.identification.release import Release, find_release
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.mass_drops.drop_assembly import find_clipping
+from pantocheck.conformance.mass_drops.clipping import find_clipping
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
 
 CLIPPED_EARLY = 0.15  # share of the decay: a channel clipped beyond it is left out

@@ -12,7 +12,7 @@ import numpy as np
 from pantocheck.conformance.array_types import ComplexArray, RealArray
 from pantocheck.conformance.identification.decay_filters import filter_gain
 from pantocheck.conformance.identification.identify import Identification
-from pantocheck.conformance.input_files.channel_units import STANDARD_GRAVITY
+from pantocheck.conformance.input_files.units import STANDARD_GRAVITY
 
 POWER_OF_OMEGA = {"acceleration": 0, "velocity": 1, "displacement": 2}
 

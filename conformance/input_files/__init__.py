@@ -1,1 +1,1 @@
-"""Reading a stranger's file: errors, TOML, units, suggestions; writing without leaving half a file."""
+"""Files that users give to the suite: bounded reading, validation, units, tables of measured data, input errors."""

@@ -9,8 +9,8 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.key_units import convert_key
 from pantocheck.conformance.input_files.suggestions import suggest_names
+from pantocheck.conformance.input_files.units import suggest_key
 
 _BOUNDS = {
     "greater_than": ("must be greater than", "gt"),
@@ -70,7 +70,7 @@ def _explained(detail: ErrorDetails, table: type[BaseModel], field: FieldInfo | 
     known = list(table.model_fields)
     about = f"It is: {field.description}." if field is not None and field.description else "See `pantocheck schema`."
     if kind == "extra_forbidden":
-        return "unknown key", convert_key(name, value, known) or suggest_names(name, known)
+        return "unknown key", suggest_key(name, value, known) or suggest_names(name, known)
     if kind == "missing":
         return "missing", about
     if kind == "finite_number":

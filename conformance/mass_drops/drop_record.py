@@ -1,14 +1,12 @@
-"""The record of one mass drop, in SI units and with every axis pointing the positive way."""
+"""Record of one mass drop in SI units, every channel along a positive axis."""
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
-
-Axis = Literal["x", "y", "z"]
-MotionQuantity = Literal["acceleration", "velocity", "displacement"]
+from pantocheck.conformance.input_files.measured_table import Axis
+from pantocheck.conformance.input_files.units import MotionQuantity
 
 
 @dataclass(frozen=True)
@@ -18,7 +16,7 @@ class DropChannel:
     Parameters
     ----------
     name : str
-        As the file calls it.
+        Name in the file.
     sensor : int
         Number of the sensor.
     axis : Axis
@@ -26,7 +24,7 @@ class DropChannel:
     wire : str
         `CW` contact wire, `MW` messenger wire or another name; empty if not known.
     position : float or None
-        Along the line from its first support [m]; None if not known.
+        Position along the line from its first support [m]; None if not known.
     """
 
     name: str
@@ -38,18 +36,18 @@ class DropChannel:
 
 @dataclass(frozen=True)
 class DropDescription:
-    """What was dropped.
+    """Mass drop.
 
     Parameters
     ----------
     mass : float or None
-        [kg]; None if not known.
+        Mass that was dropped [kg]; None if not known.
     wire : str
-        Wire it hung from; empty if not known.
+        Wire that carried the mass; empty if not known.
     position : float or None
-        Along the line from its first support [m]; None if not known.
+        Position along the line from its first support [m]; None if not known.
     trigger_nominal : float or None
-        When the release was planned, in the record's time [s]; None if not known.
+        Planned time of the release in the record [s]; None if not known.
     """
 
     mass: float | None = None
@@ -60,14 +58,14 @@ class DropDescription:
 
 @dataclass(frozen=True)
 class DropLine:
-    """What the file says of the line: enough to tell whether two records are of the same one.
+    """Facts about the line that tell whether two records belong to the same line.
 
     Parameters
     ----------
-    spans : tuple[float, ...]
+    spans : tuple of float
         Lengths of the spans [m]; empty if not known.
     contact_wire_tension, messenger_wire_tension : float or None
-        [N]; None if not known.
+        Tensions of the wires [N]; None if not known.
     """
 
     spans: tuple[float, ...] = ()
@@ -77,7 +75,7 @@ class DropLine:
 
 @dataclass(frozen=True)
 class DropRecord:
-    """Signals of all channels over rest, release and decay.
+    """Signals of all channels during rest, release and decay.
 
     Parameters
     ----------
@@ -86,19 +84,21 @@ class DropRecord:
     source : str
         Name of the file, for messages.
     rate : float
-        Samples per second [Hz].
+        Sampling rate [Hz].
     signals : (n, c) ndarray
-        [m/s2], [m/s] or [m] after `quantity`; read-only.
-    channels : tuple[DropChannel, ...]
-        (c,) what each column is.
+        Signals [m/s2, m/s or m, by `quantity`]; read-only.
+    channels : tuple of DropChannel
+        Descriptions of the c columns.
     quantity : MotionQuantity
-        What the sensors measure.
-    drop, line : DropDescription or DropLine
-        The test.
-    warnings : tuple[str, ...]
-        What is doubtful about the record.
+        Quantity that the sensors measure.
+    drop : DropDescription
+        Mass drop.
+    line : DropLine
+        Line.
+    warnings : tuple of str
+        Doubts about the record.
     file : str
-        Where it was read from, which tells files of one name apart; empty if it was not read.
+        Path of the file, which distinguishes files of the same name; empty if the record was not read.
     """
 
     name: str
@@ -122,9 +122,9 @@ class DropRecord:
 
     @property
     def duration(self) -> float:
-        """[s]"""
+        """Duration of the record [s]."""
         return float(self.signals.shape[0] / self.rate)
 
     def along(self, axis: Axis) -> tuple[int, ...]:
-        """Columns that measure along an axis."""
+        """Numbers of the columns that measure along an axis."""
         return tuple(c for c, channel in enumerate(self.channels) if channel.axis == axis)

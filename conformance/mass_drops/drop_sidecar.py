@@ -1,23 +1,25 @@
-"""The TOML file beside a record that says what its columns are."""
+"""Sidecar of a mass-drop record: the TOML file that describes its columns and the test."""
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from pantocheck.conformance.input_files.measured_table import TableColumn
 from pantocheck.conformance.input_files.toml_file import read_model
+from pantocheck.conformance.input_files.units import MotionQuantity
 
 PositiveNumber = Annotated[float, Field(gt=0)]
 
 
-class _Open(BaseModel):
-    """A table in which a measuring team may keep keys of its own."""
+class _OpenTable(BaseModel):
+    """Table in which a measuring team may keep keys of its own."""
 
     model_config = ConfigDict(extra="ignore", frozen=True, strict=True, allow_inf_nan=False)
 
 
-class DropTestTable(_Open):
-    """The test and its line."""
+class DropTestTable(_OpenTable):
+    """Test and line."""
 
     name: Annotated[str, Field(max_length=200, description="name of the test")] = ""
     spans_m: Annotated[
@@ -27,58 +29,88 @@ class DropTestTable(_Open):
     mw_tension_n: Annotated[float | None, Field(gt=0, description="tension of the messenger wire [N]")] = None
 
 
-class DropTable(_Open):
-    """The mass."""
+class DropTable(_OpenTable):
+    """Mass that was dropped."""
 
-    mass_kg: Annotated[float | None, Field(gt=0, le=1000, description="mass dropped [kg]")] = None
-    wire: Annotated[str, Field(max_length=20, description="wire it hung from: CW or MW")] = ""
-    position_m: Annotated[float | None, Field(description="where it hung, from the first support [m]")] = None
+    mass_kg: Annotated[float | None, Field(gt=0, le=1000, description="mass that was dropped [kg]")] = None
+    wire: Annotated[str, Field(max_length=20, description="wire that carried the mass: CW or MW")] = ""
+    position_m: Annotated[float | None, Field(description="position of the mass from the first support [m]")] = None
 
 
-class DropRecordTable(_Open):
-    """The recording."""
+class DropRecordTable(_OpenTable):
+    """Recording."""
 
     sampling_rate_hz: Annotated[float, Field(gt=0, le=1e6, description="samples per second [Hz]")]
-    trigger_nominal_s: Annotated[float | None, Field(ge=0, description="when the release was planned [s]")] = None
+    trigger_nominal_s: Annotated[float | None, Field(ge=0, description="planned time of the release [s]")] = None
     n_channels: Annotated[int | None, Field(ge=1, description="number of columns")] = None
-    quantity: Annotated[
-        Literal["acceleration", "velocity", "displacement"] | None, Field(description="what the sensors measure")
-    ] = None
+    quantity: Annotated[MotionQuantity | None, Field(description="quantity that the sensors measure")] = None
 
 
-class DropChannelTable(_Open):
-    """A column."""
+class DropChannelTable(_OpenTable):
+    """Column of the record."""
 
-    column: Annotated[int, Field(ge=1, le=10000, description="number of the column, from 1, time not counted")]
+    column: Annotated[int, Field(ge=1, le=10000, description="number of the column from 1, without the time column")]
     name: Annotated[str, Field(max_length=100, description="name of the channel")]
     sensor: Annotated[int, Field(ge=0, description="number of the sensor")]
-    wire: Annotated[str, Field(max_length=20, description="wire it sits on: CW or MW")] = ""
-    position_m: Annotated[float | None, Field(description="where it sits, from the first support [m]")] = None
-    direction: Annotated[str, Field(max_length=10, description="+x, -x, +y, -y, +z or -z")]
-    unit: Annotated[str, Field(max_length=40, description="m/s2, g, ...")]
+    wire: Annotated[str, Field(max_length=20, description="wire that carries the sensor: CW or MW")] = ""
+    position_m: Annotated[float | None, Field(description="position of the sensor from the first support [m]")] = None
+    direction: Annotated[str, Field(max_length=10, description="direction of measurement: +x, -x, +y, -y, +z or -z")]
+    unit: Annotated[str, Field(max_length=40, description="unit, such as m/s2 or g")]
+
+    @property
+    def description(self) -> TableColumn:
+        """Description of the column in the terms of a measured table."""
+        return TableColumn(
+            self.name,
+            unit=self.unit,
+            sensor=self.sensor,
+            wire=self.wire,
+            position=self.position_m,
+            direction=self.direction,
+        )
 
 
-class DropSidecar(_Open):
-    """A sidecar file."""
+class DropSidecar(_OpenTable):
+    """Sidecar of a mass-drop record."""
 
     test: DropTestTable = DropTestTable()
     drop: DropTable = DropTable()
     record: DropRecordTable
     channel: Annotated[tuple[DropChannelTable, ...], Field(strict=False, min_length=1, description="one per column")]
 
+    @property
+    def channel_names(self) -> tuple[str, ...]:
+        """Names of the channels in the order of their columns."""
+        return tuple(channel.name for channel in sorted(self.channel, key=lambda channel: channel.column))
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """Facts about the run that the sidecar holds, by the names of `MeasuredTable.attributes`."""
+        attributes = {
+            "test": self.test.name,
+            "drop_mass_kg": self.drop.mass_kg,
+            "drop_wire": self.drop.wire,
+            "drop_position_m": self.drop.position_m,
+            "trigger_nominal_s": self.record.trigger_nominal_s,
+            "spans_m": self.test.spans_m,
+            "cw_tension_n": self.test.cw_tension_n,
+            "mw_tension_n": self.test.mw_tension_n,
+        }
+        return {name: value for name, value in attributes.items() if value not in (None, "", ())}
+
 
 def find_drop_sidecar(record: Path) -> Path:
-    """Where the sidecar of a record is looked for: beside it, with the same stem."""
+    """Path of the sidecar of a record: beside it, with the same stem."""
     return record.with_suffix(".toml")
 
 
 def read_drop_sidecar(record: Path) -> DropSidecar | None:
-    """The sidecar of a record, None if there is none.
+    """Read the sidecar of a record; None if there is none.
 
     Raises
     ------
     InputError
-        It cannot be read or is wrong.
+        It cannot be read or does not fit the model.
     """
     path = find_drop_sidecar(record)
     return read_model(path, DropSidecar, "sidecar") if path.is_file() else None

@@ -1,40 +1,35 @@
-"""Channels of a record: what may be in a table, and the units that may stand at the end of a name."""
+"""Channels of a contact-force record, and the names of their columns with any unit of the channel."""
 
 import re
 from dataclasses import dataclass
+from typing import Literal
 
-from pantocheck.conformance.input_files.key_units import KEY_UNITS, convert_key
 from pantocheck.conformance.input_files.suggestions import suggest_names
+from pantocheck.conformance.input_files.units import find_key_units, suggest_key
 
 
 @dataclass(frozen=True)
 class RecordChannel:
-    """A kind of channel.
+    """Kind of channel.
 
     Parameters
     ----------
     name : str
-        Without number and unit.
+        Name without number and unit.
     unit : str
-        That it is kept in, as at the end of its key.
-    per : str
-        What has one row of it each; `record`: there is one for all.
+        SI unit as at the end of a key, such as `m_s`.
+    per : {"record", "pantograph", "support"}
+        Each pantograph or support has one row of the channel; `record` stands for one row in all.
     """
 
     name: str
     unit: str
-    per: str
+    per: Literal["record", "pantograph", "support"]
 
     @property
     def key(self) -> str:
-        """Name of the channel in SI units, as HDF5 files have it."""
+        """Name with the SI unit, as in HDF5 files."""
         return f"{self.name}_{self.unit}"
-
-    @property
-    def units(self) -> dict[str, float]:
-        """Units that a file may use, each with its factor to `unit`."""
-        kind, base = KEY_UNITS[self.unit]
-        return {unit: factor / base for unit, (of, factor) in KEY_UNITS.items() if of == kind}
 
 
 CHANNELS: dict[str, RecordChannel] = {
@@ -52,28 +47,32 @@ CHANNELS: dict[str, RecordChannel] = {
 
 @dataclass(frozen=True)
 class RecordColumn:
-    """What a column or dataset holds: its channel, its number (1 if there is one for the record), and its factor."""
+    """Meaning of a column.
+
+    Parameters
+    ----------
+    channel : RecordChannel
+        Channel.
+    number : int
+        Number of the pantograph or support, from 1; 1 for a channel of the record.
+    factor : float
+        Factor to the SI unit of the channel.
+    """
 
     channel: RecordChannel
     number: int
     factor: float
 
 
-def find_column(name: str) -> RecordColumn | None:
-    """Meaning of a CSV column such as `force_1_N`; None if there is no such column."""
-    for stem, number, unit in _readings(name):
+def find_column(name: str, row: int) -> RecordColumn | None:
+    """Meaning of a column `force_1_N`, or of a row of the data set `force_N`; None if there is no such channel."""
+    for stem, number, unit in _list_readings(name):
         channel = CHANNELS.get(stem)
-        if channel is not None and (number is None) == (channel.per == "record") and unit in channel.units:
-            return RecordColumn(channel, int(number or 1), channel.units[unit])
-    return None
-
-
-def find_dataset(name: str) -> RecordColumn | None:
-    """Meaning of an HDF5 dataset such as `force_N`; None if there is no such dataset."""
-    for channel in CHANNELS.values():
-        unit = name.removeprefix(f"{channel.name}_")
-        if unit != name and unit in channel.units:
-            return RecordColumn(channel, 1, channel.units[unit])
+        if channel is None or (number is not None and channel.per == "record"):
+            continue
+        factor = find_key_units(channel.unit).get(unit)
+        if factor is not None:
+            return RecordColumn(channel, int(number or row), factor)
     return None
 
 
@@ -84,17 +83,17 @@ def column_name(key: str, number: int) -> str:
 
 
 def suggest_column(name: str, known: list[str]) -> str:
-    """What an unknown column or dataset probably was meant to be."""
-    return convert_key(name, None, known) or suggest_names(name, known)
+    """Hint for an unknown column."""
+    return suggest_key(name, None, known) or suggest_names(name, known)
 
 
-def _readings(name: str) -> list[tuple[str, str | None, str]]:
-    """Every way to split a name into channel, number and unit: units such as m_s hold an underscore themselves."""
+def _list_readings(name: str) -> list[tuple[str, str | None, str]]:
+    """Every way to split a name into channel, number and unit; units such as `m_s` contain underscores."""
     parts = name.split("_")
     splits = [("_".join(parts[:i]), "_".join(parts[i:])) for i in range(1, len(parts))]
-    found: list[tuple[str, str | None, str]] = [(stem, None, unit) for stem, unit in splits]
+    readings: list[tuple[str, str | None, str]] = [(stem, None, unit) for stem, unit in splits]
     for stem, unit in splits:
         channel, _, number = stem.rpartition("_")
         if re.fullmatch("[1-9][0-9]{0,3}", number):
-            found.append((channel, number, unit))
-    return found
+            readings.append((channel, number, unit))
+    return readings

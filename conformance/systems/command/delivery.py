@@ -5,7 +5,8 @@ from pathlib import Path
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.input_files.atomic_writing import file_digest
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.records.record_reading import MAX_RECORD_BYTES, read_record
+from pantocheck.conformance.input_files.table_formats import MAX_TABLE_BYTES
+from pantocheck.conformance.records.record_reading import read_record
 from pantocheck.conformance.records.record_sidecar import RunTable
 from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.systems.command.protocol_messages import DeliveredAnswer, File
@@ -58,8 +59,8 @@ def _checked(file: File, folder: Path) -> Path:
             raise DeliveryRefused(f"the file {file.file!r} lies outside the folder of the run")
         if not path.is_file():
             raise DeliveryRefused(f"there is no file {file.file!r} in the folder of the run")
-        if path.stat().st_size > MAX_RECORD_BYTES:
-            raise InputError(f"record '{path.name}'", "too large", f"A record has at most {MAX_RECORD_BYTES} bytes.")
+        if path.stat().st_size > MAX_TABLE_BYTES:
+            raise InputError(f"record '{path.name}'", "too large", f"A record has at most {MAX_TABLE_BYTES} bytes.")
         digest = file_digest(path)
     except (OSError, ValueError) as error:
         if isinstance(error, DeliveryRefused | InputError):

@@ -121,7 +121,7 @@ def test_plan_holds_the_options_and_the_command_line_goes_before_it(
             ["simulate", "en50318-2002/*", "--out", "a.csv"],
             "expected one case with a train, found en50318-2002/250, en50318-2002/300",
         ),
-        (["simulate", "en50318-2002/250", "--out", "a.xls"], "the suffix '.xls' is no format"),
+        (["simulate", "en50318-2002/250", "--out", "a.xls"], "format '.xls' is not known"),
     ],
 )
 def test_bad_input_ends_with_one_message_and_exit_code_2(

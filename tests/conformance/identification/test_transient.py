@@ -6,7 +6,7 @@ import pytest
 from pantocheck.conformance.identification.frequency_response import compute_frequency_response
 from pantocheck.conformance.identification.identify import identify_modes
 from pantocheck.conformance.identification.repeatability import compare_records
-from pantocheck.conformance.input_files.channel_units import STANDARD_GRAVITY
+from pantocheck.conformance.input_files.units import STANDARD_GRAVITY
 from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
 
 RATE, RELEASE, MASS = 50.0, 5.0, 20.0

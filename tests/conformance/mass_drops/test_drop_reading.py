@@ -13,7 +13,8 @@ import tomli_w
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
 from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
-from pantocheck.conformance.mass_drops.drop_writing import write_drop_csv, write_drop_hdf5, write_drop_uff
+from pantocheck.conformance.mass_drops.drop_writing import write_drop_csv, write_drop_hdf5
+from pantocheck.conformance.mass_drops.uff_writing import write_drop_uff
 
 RATE, N = 100.0, 400
 FLIPS = 400  # files; on fewer some of the errors that the libraries raise do not show

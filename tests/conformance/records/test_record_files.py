@@ -1,12 +1,18 @@
 """Records on disk: what is written is read back, and what is damaged is refused with its place."""
 
+from collections.abc import Callable
+from pathlib import Path
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_reading import read_record
 from pantocheck.conformance.records.record_writing import write_record
+
+Writer = Callable[[str], Path]
 
 
 @pytest.fixture
@@ -49,60 +55,77 @@ def without_digest(path):
     return path
 
 
-def damaged_csv(written, change):
-    path = without_digest(written("a.csv"))
+def damaged_csv(path: Path, line: int, text: str) -> Path:
+    """A written CSV record, its digest unknown, with one line (from 1) replaced."""
+    without_digest(path)
     lines = path.read_text().splitlines()
-    change(lines)
+    lines[line - 1] = text
     path.write_text("\n".join(lines) + "\n")
     return path
 
 
+def renamed_column(path: Path, old: str, new: str) -> Path:
+    """A written CSV record, its digest unknown, with one column renamed."""
+    head = path.read_text().splitlines()[0]
+    assert old in head.split(",")
+    return damaged_csv(path, 1, head.replace(old, new))
+
+
 @pytest.mark.parametrize(
-    ("line", "replacement", "message"),
+    ("line", "text", "message"),
     [
-        (4, "x,1,2,3", "line 5"),
-        (4, "abc" + ",1" * 14, "line 5, column 1: 'abc' is not a number"),
-        (4, "1,2,3", "line 5: 3 columns where there were 15"),
-        (4, "0.003,260,nan" + ",1" * 12, "channel force: 1 values are not finite, the first at sample 4"),
-        (
-            0,
-            "time_s,position_1_m,force_1_lbf",
-            r"line 1, column 'force_1_lbf': unknown column.\n  Did you mean force_1_N",
-        ),
-        (
-            0,
-            "time_s,position_1_m,force_2_N",
-            r"line 1, column 'force_2_N': the sidecar has no pantograph 2.\n  It has 1",
-        ),
-        (0, "force_1_N,position_1_m,force_1_kN", "two columns have the same name"),
-        (0, "time_s,position_1_m,contact_height_1_m", "columns of numbers under 3 names"),
-        (0, "time_s,time_s,force_1_N", "two columns have the same name"),
+        (5, "x,1,2,3", "line 5: does not fit: 4 values, expected 15"),
+        (5, "abc" + ",1" * 14, "line 5, column 1: 'abc' is not a number"),
+        (5, "1,2,3", "line 5: does not fit: 3 values, expected 15"),
+        (5, "0.003,260,nan" + ",1" * 12, "channel force: 1 values are not finite, the first at sample 4"),
+        (5, "0.003,260,-1e300" + ",1" * 12, "force_1_N: -1e\\+300 at sample 4 is impossible"),
+        (1, "1" + ",1" * 14, "has no head line"),
+        (1, "time_s,position_1_m,contact_height_1_m", "line 2: does not fit: 15 values, expected 3"),
     ],
 )
-def test_damaged_csv_names_its_place(written, line, replacement, message):
-    path = damaged_csv(written, lambda lines: lines.__setitem__(line, replacement))
+def test_damaged_csv_names_its_place(written: Writer, line: int, text: str, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        read_record(damaged_csv(written("a.csv"), line, text))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("force_1_N", "force_1_lbf", r"column 'force_1_lbf': unknown column.\n  Did you mean force_1_N"),
+        ("force_1_N", "force_2_N", r"column 'force_2_N': the sidecar has no pantograph 2.\n  It has 1"),
+        ("time_s", "force_1_kN", "two columns have the same name"),
+        ("position_1_m", "time_ms", "two columns have the same name"),
+        ("force_1_N", "speed_m_s", "there is no channel force_N"),
+    ],
+)
+def test_wrong_column_is_named(written: Writer, old: str, new: str, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        read_record(renamed_column(written("a.csv"), old, new))
+
+
+@pytest.mark.parametrize(
+    ("start", "end", "message"),
+    [(1, None, "holds a head line but no samples"), (0, None, "holds no data"), (100, 200, "not evenly spaced")],
+)
+def test_missing_lines_are_refused(written: Writer, start: int, end: int | None, message: str) -> None:
+    path = without_digest(written("a.csv"))
+    lines = path.read_text().splitlines()
+    del lines[start:end]
+    path.write_text("\n".join(lines) + "\n")
     with pytest.raises(InputError, match=message):
         read_record(path)
 
 
-def test_missing_channel_empty_table_and_gap(written):
-    def drop_force(lines):
-        lines[:] = [",".join(line.split(",")[:2]) for line in lines]
-
-    with pytest.raises(InputError, match="there is no channel force_N"):
-        read_record(damaged_csv(written, drop_force))
-    with pytest.raises(InputError, match="no columns of numbers"):
-        read_record(damaged_csv(written, lambda lines: lines.__delitem__(slice(1, None))))
-    with pytest.raises(InputError, match="the first line is empty"):
-        read_record(damaged_csv(written, lambda lines: lines.clear()))
-    with pytest.raises(InputError, match="not evenly spaced"):
-        read_record(damaged_csv(written, lambda lines: lines.__delitem__(slice(100, 200))))
+def test_decimal_commas_are_read(written: Writer, record: Record) -> None:
+    path = without_digest(written("a.csv"))
+    path.write_text(path.read_text().replace(",", ";").replace(".", ","))
+    assert_allclose(read_record(path)[0].force, record.force, rtol=1e-11)
 
 
 def test_csv_with_more_numbers_than_a_record_may_have_is_refused_not_cut(written, record, monkeypatch):
     """The limit lowered to half of what is there: read up to it, the rest would be missing without a word."""
     path = written("a.csv")
-    monkeypatch.setattr("pantocheck.conformance.records.record_tables.MAX_SAMPLES", record.time.size)
+    monkeypatch.setattr("pantocheck.conformance.records.channel_rows.MAX_SAMPLES", record.time.size)
     with pytest.raises(InputError, match=f"more than {record.time.size} numbers"):
         read_record(path)
 
@@ -121,10 +144,10 @@ def test_stretch_of_the_case_holds_where_the_sidecar_names_none(written, record)
 def test_truncated_or_foreign_hdf5(written, tmp_path):
     path = without_digest(written("a.h5"))
     path.write_bytes(path.read_bytes()[:3000])
-    with pytest.raises(InputError, match="is not a readable HDF5 file"):
+    with pytest.raises(InputError, match="is damaged or not HDF5"):
         read_record(path)
     path.write_bytes(b"")
-    with pytest.raises(InputError, match="is not a readable HDF5 file"):
+    with pytest.raises(InputError, match="is empty"):
         read_record(path)
 
 
@@ -159,14 +182,14 @@ def test_wrong_sidecar(written, old, new, message):
 def test_record_never_overwrites_a_case_file(record, own_case):
     path = own_case("250.toml", "order = 6", "order = 4")
     before = path.read_bytes()
-    with pytest.raises(InputError, match=r"250\.toml would overwrite a file that is none"):
+    with pytest.raises(InputError, match=r"would overwrite 250\.toml, which is not a sidecar"):
         write_record(path.with_suffix(".csv"), record)
     assert path.read_bytes() == before
     assert not path.with_suffix(".csv").exists()
 
 
 def test_unknown_suffix(record, tmp_path):
-    with pytest.raises(InputError, match=r"suffix '\.xls'"):
+    with pytest.raises(InputError, match=r"format '\.xls' is not known"):
         write_record(tmp_path / "a.xls", record)
 
 

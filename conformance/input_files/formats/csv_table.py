@@ -1,0 +1,126 @@
+"""CSV tables: numbers under one head line, in either decimal dialect (`1.5,2` or `1,5;2`)."""
+
+import warnings
+from collections.abc import Iterator
+from itertools import chain, islice
+from pathlib import Path
+from typing import TextIO
+
+import numpy as np
+
+from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.measured_table import MeasuredTable, TableColumn
+
+LONGEST_LINE = 1_000_000  # [characters]
+
+Lines = Iterator[tuple[int, str]]
+"""Numbered lines of a file, from 1."""
+
+
+def read_csv_table(path: Path, names: tuple[str, ...], largest: int) -> list[MeasuredTable]:
+    """Read the run of a CSV file; arguments and errors as in `table_formats.Reader`.
+
+    Blank lines, and lines before the head line that begin with `#`, are skipped.
+    """
+    del names  # a CSV file is read the same way with and without a sidecar
+    where = f"record '{path.name}'"
+    try:
+        with path.open(encoding="utf-8-sig") as file:
+            start = list(islice(_numbered(file, where), 3))
+            if not start:
+                raise InputError(where, "holds no data", "Export the record again.")
+            delimiter, decimal = _dialect([line for _, line in start])
+            head = [cell.strip().strip('"') for cell in start[0][1].split(delimiter)]
+            named = not all(_is_number(cell, decimal) for cell in head)
+            body = (line.replace(decimal, ".") for _, line in chain(start[named:], _numbered(file, where)))
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", UserWarning)  # numpy's warning of a table without rows
+                values = np.loadtxt(
+                    body, delimiter=delimiter, ndmin=2, comments=None, max_rows=largest // len(head) + 1
+                )
+    except UnicodeDecodeError as error:
+        raise InputError(where, f"byte {error.start + 1} is not UTF-8 text", "Save the file as UTF-8.") from None
+    except OSError as error:
+        raise InputError(where, f"cannot be read ({error.strerror})", "Check the path.") from None
+    except ValueError as error:
+        if isinstance(error, InputError):
+            raise
+        raise _find_fault(path, where, named) from None
+    if values.size > largest:
+        raise InputError(where, f"more than {largest} numbers", "Cut the record, or leave channels out.")
+    if values.size == 0:
+        raise InputError(where, "holds a head line but no samples", "Export the record again.")
+    if values.shape[1] != len(head):
+        raise _find_fault(path, where, named)
+    return [MeasuredTable(path.name, values, tuple(TableColumn(name if named else None) for name in head))]
+
+
+def write_csv_table(path: Path, names: list[str], values: RealArray, digits: int) -> None:
+    """Write a CSV table (decimal point, commas).
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    names : list of str
+        Names of the columns.
+    values : (n, c) ndarray
+        Samples.
+    digits : int
+        Significant digits.
+    """
+    head = ",".join(names)
+    np.savetxt(path, values, f"%.{digits}g", ",", header=head, comments="", encoding="utf-8")
+
+
+def _numbered(file: TextIO, where: str) -> Lines:
+    """Lines of the table: those after the first comments that are not blank."""
+    comments = True
+    for number, line in enumerate(iter(lambda: file.readline(LONGEST_LINE), ""), 1):
+        if len(line) == LONGEST_LINE:
+            raise InputError(f"{where}, line {number}", "is too long", f"A line has at most {LONGEST_LINE} characters.")
+        comments = comments and line.lstrip().startswith("#")
+        if line.strip() and not comments:
+            yield number, line
+
+
+def _dialect(lines: list[str]) -> tuple[str, str]:
+    """Delimiter and decimal mark of the first lines."""
+    for delimiter in (";", "\t"):
+        if all(delimiter in line for line in lines):
+            return delimiter, "," if any("," in line for line in lines[1:]) else "."
+    return ",", "."
+
+
+def _is_number(cell: str, decimal: str) -> bool:
+    try:
+        float(cell.replace(decimal, "."))
+    except ValueError:
+        return False
+    return True
+
+
+def _find_fault(path: Path, where: str, named: bool) -> InputError:
+    """First line of a damaged table whose width or numbers are wrong."""
+    with path.open(encoding="utf-8-sig") as file:
+        lines = list(_numbered(file, where))
+    delimiter, decimal = _dialect([line for _, line in lines[:3]])
+    width = lines[0][1].count(delimiter) + 1
+    for number, line in lines[named:]:
+        cells = [cell.strip() for cell in line.split(delimiter)]
+        if len(cells) != width:
+            ending = "is cut short" if number == lines[-1][0] else "does not fit"
+            return InputError(
+                f"{where}, line {number}",
+                f"{ending}: {len(cells)} values, expected {width}",
+                "Every line has one value per column; the file may be truncated.",
+            )
+        for column, cell in enumerate(cells, 1):
+            if not _is_number(cell, decimal):
+                return InputError(
+                    f"{where}, line {number}, column {column}",
+                    f"{cell[:40]!r} is not a number",
+                    "Write 1.5 with commas between columns, or 1,5 with semicolons; nan marks a missing value.",
+                )
+    return InputError(where, "cannot be read as numbers", "Export the record again.")

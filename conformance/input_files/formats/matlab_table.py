@@ -1,0 +1,98 @@
+"""MATLAB tables, version 5 (scipy) and 7.3 (HDF5): a matrix of samples or one vector per channel, with a sidecar."""
+
+import struct
+import zlib
+from pathlib import Path
+
+import h5py
+import numpy as np
+import scipy.io
+from scipy.io.matlab import MatReadError
+
+from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.input_files.formats.hdf5_table import open_hdf5, read_numbers
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.measured_table import MeasuredTable, TableColumn, stack_channels
+
+MATLAB_TIME_NAMES = ("time", "time_s", "t")
+RATE_NAMES = ("sampling_rate_hz", "fs", "rate")
+MATLAB_DAMAGE = (
+    ValueError,
+    TypeError,
+    KeyError,
+    IndexError,
+    EOFError,
+    OSError,
+    NotImplementedError,
+    MatReadError,
+    struct.error,
+    zlib.error,
+)
+"""Exceptions that scipy raises for damaged files."""
+
+
+def read_matlab_table(path: Path, names: tuple[str, ...], largest: int) -> list[MeasuredTable]:
+    """Read the run of a MATLAB file; arguments and errors as in `table_formats.Reader`."""
+    where = f"record '{path.name}'"
+    arrays = _read_version_7_3(path, where, largest) if h5py.is_hdf5(path) else _read_version_5(path, where)
+    time = next((array.ravel() for array in _find_arrays(arrays, MATLAB_TIME_NAMES) if array.size > 1), None)
+    rate = next((float(array.ravel()[0]) for array in _find_arrays(arrays, RATE_NAMES) if array.size), None)
+    data = {name: array for name, array in arrays.items() if name.lower() not in MATLAB_TIME_NAMES + RATE_NAMES}
+    if names and all(name in data for name in names):
+        values = stack_channels([data[name].ravel() for name in names], where, largest)
+        columns = tuple(TableColumn(name) for name in names)
+    else:
+        values = _find_largest_matrix(data, where)
+        columns = (TableColumn(),) * values.shape[1]
+    if time is not None and time.size != values.shape[0]:
+        raise InputError(where, f"{time.size} times for {values.shape[0]} samples", "Export the record again.")
+    return [MeasuredTable(path.name, values, columns, time=time, rate=rate)]
+
+
+def _find_arrays(arrays: dict[str, RealArray], names: tuple[str, ...]) -> list[RealArray]:
+    """Arrays of these names, in the order of the names; upper and lower case are the same."""
+    return [array for wanted in names for name, array in arrays.items() if name.lower() == wanted]
+
+
+def _find_largest_matrix(data: dict[str, RealArray], where: str) -> RealArray:
+    """Matrix of the samples, (n, c)."""
+    tables = {name: array for name, array in data.items() if array.ndim == 2 and max(array.shape) > 1}
+    if not tables:
+        raise InputError(
+            where,
+            f"holds no table of samples ({', '.join(sorted(data)[:8]) or 'nothing'})",
+            "Store one matrix (samples by channels), or one vector per channel named as in the sidecar.",
+        )
+    most = max(table.size for table in tables.values())
+    largest = sorted(name for name, table in tables.items() if table.size == most)
+    if len(largest) > 1:
+        raise InputError(
+            f"{where}, {', '.join(largest[:8])}",
+            "holds several tables of one size",
+            "Name each vector as in the sidecar, or store one matrix (samples by channels).",
+        )
+    table = tables[largest[0]]
+    return np.ascontiguousarray(table if table.shape[0] >= table.shape[1] else table.T)
+
+
+def _read_version_5(path: Path, where: str) -> dict[str, RealArray]:
+    try:
+        content = scipy.io.loadmat(path, struct_as_record=True)
+    except MATLAB_DAMAGE as error:
+        raise InputError(where, f"is damaged or not a MATLAB file ({str(error)[:100]})", "Export it again.") from None
+    return {
+        name: np.asarray(value, dtype=np.float64)
+        for name, value in content.items()
+        if not name.startswith("__") and isinstance(value, np.ndarray) and value.dtype.kind in "fiu"
+    }
+
+
+def _read_version_7_3(path: Path, where: str, largest: int) -> dict[str, RealArray]:
+    with open_hdf5(path) as file:
+        return {
+            # MATLAB stores matrices by columns, so they are transposed here.
+            name: read_numbers(item, f"{where}, variable {name!r}", largest).T
+            for name, item in file.items()
+            # h5py gives a name that is not UTF-8 as bytes; no sidecar can mean it.
+            if isinstance(name, str) and isinstance(item, h5py.Dataset) and item.dtype.kind in "fiu"
+        }

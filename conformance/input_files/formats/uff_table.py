@@ -1,0 +1,126 @@
+"""Universal files, data set 58 (ASCII) and 58b (binary): one function of time per channel."""
+
+import re
+import struct
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyuff
+
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.measured_table import MeasuredTable, TableColumn, stack_channels
+from pantocheck.conformance.input_files.units import SI_UNITS, MotionQuantity
+
+TIME_RESPONSE = 1  # function type of the format
+DIRECTIONS = {1: "+x", 2: "+y", 3: "+z", -1: "-x", -2: "-y", -3: "-z"}
+DATA_TYPES: dict[MotionQuantity, int] = {"acceleration": 12, "velocity": 11, "displacement": 8}
+"""Specific data types of the format."""
+CHANNEL_LINE = re.compile(r"(?P<name>\S+) (?P<wire>\S+) at (?P<position>[-+.\deE]+) m dir (?P<direction>[-+][xyz])")
+DROP_LINE = re.compile(
+    r"(?P<mass>[.\deE+]+) kg on (?P<wire>\S+) at (?P<position>[-+.\deE]+) m(?:, trigger at (?P<trigger>[.\deE+]+) s)?"
+)
+
+
+def read_uff_table(path: Path, names: tuple[str, ...], largest: int) -> list[MeasuredTable]:
+    """Read the run of a universal file; arguments and errors as in `table_formats.Reader`."""
+    where = f"record '{path.name}'"
+    sets = [data_set for data_set in _read_sets(path, where) if data_set.get("func_type") == TIME_RESPONSE]
+    if not sets:
+        raise InputError(where, "holds no time response (data set 58, function type 1)", "Export time histories.")
+    values = stack_channels([np.real(data_set["data"]).astype(np.float64) for data_set in sets], where, largest)
+    steps = {round(float(data_set["abscissa_inc"]), 12) for data_set in sets}
+    if len(steps) > 1:
+        found = ", ".join(f"{step:g}" for step in sorted(steps)[:4])
+        raise InputError(
+            where,
+            f"its channels differ in sampling interval ({found} s)",
+            "The channels of a record must be sampled together; export them again.",
+        )
+    (step,) = steps
+    if not step > 0:
+        raise InputError(where, f"sampling interval {step:g} s", "Export evenly spaced time histories.")
+    columns = tuple(
+        _read_stated_facts(data_set) if names else _read_column(data_set, f"{where}, data set {number}")
+        for number, data_set in enumerate(sets, 1)
+    )
+    return [MeasuredTable(path.name, values, columns, rate=1 / step, attributes=_read_attributes(sets[0]))]
+
+
+def _read_sets(path: Path, where: str) -> list[dict[str, Any]]:
+    """All data sets 58 of a file."""
+    try:
+        universal = pyuff.UFF(str(path))
+        kinds = [int(kind) for kind in universal.get_set_types()]
+        sets = [universal.read_sets(i) for i, kind in enumerate(kinds) if kind == 58]
+    except OSError as error:
+        raise InputError(where, f"cannot be read ({error.strerror or error})", "Check the path.") from None
+    except (ValueError, IndexError, KeyError, TypeError, struct.error, UnicodeDecodeError, OverflowError, MemoryError):
+        raise InputError(
+            where, "is damaged or not a universal file", "Export the record again as data set 58 or 58b."
+        ) from None
+    except Exception as error:
+        # pyuff raises plain `Exception` for files it cannot read; any other type is a defect of the suite.
+        if type(error) is not Exception:
+            raise
+        raise InputError(where, f"is not a readable universal file ({str(error)[:100]})", "Export it again.") from None
+    for number, data_set in enumerate(sets, 1):
+        if len(data_set["data"]) != int(data_set["num_pts"]):
+            raise InputError(
+                f"{where}, data set {number}",
+                f"{len(data_set['data'])} samples, its head says {int(data_set['num_pts'])}",
+                "The file is truncated: export it again.",
+            )
+    return sets
+
+
+def _read_stated_facts(data_set: dict[str, Any]) -> TableColumn:
+    """Name and unit that a data set states itself, for comparison with the sidecar."""
+    name = _match_channel(data_set)
+    return TableColumn(name["name"] if name else None, unit=_unit_label(data_set))
+
+
+def _read_column(data_set: dict[str, Any], where: str) -> TableColumn:
+    """Full description of a channel; the data type of the format stands in for a missing unit label."""
+    channel = _match_channel(data_set)
+    types = {number: SI_UNITS[quantity] for quantity, number in DATA_TYPES.items()}
+    unit = _unit_label(data_set) or types.get(int(data_set["ordinate_spec_data_type"]))
+    direction = channel["direction"] if channel else DIRECTIONS.get(int(data_set["rsp_dir"]))
+    if direction is None or unit is None:
+        raise InputError(
+            where,
+            "states no direction" if direction is None else "states no unit",
+            "Give direction and unit of every channel in a sidecar.",
+        )
+    sensor = int(data_set["rsp_node"])
+    return TableColumn(
+        channel["name"] if channel else f"S{sensor}_{direction[1]}",
+        unit=unit,
+        sensor=sensor,
+        wire=channel["wire"] if channel else "",
+        position=float(channel["position"]) if channel else None,
+        direction=direction,
+    )
+
+
+def _match_channel(data_set: dict[str, Any]) -> re.Match[str] | None:
+    return CHANNEL_LINE.fullmatch(str(data_set.get("id3", "")).strip())
+
+
+def _unit_label(data_set: dict[str, Any]) -> str | None:
+    label = str(data_set.get("ordinate_axis_units_lab", "")).strip()
+    return None if label.upper() in ("", "NONE") else label
+
+
+def _read_attributes(data_set: dict[str, Any]) -> dict[str, Any]:
+    """Test and mass drop from the identification lines."""
+    test = {"test": str(data_set.get("id1", "")).strip()}
+    drop = DROP_LINE.fullmatch(str(data_set.get("id2", "")).strip())
+    if drop is None:
+        return test
+    return test | {
+        "drop_mass_kg": drop["mass"],
+        "drop_wire": drop["wire"],
+        "drop_position_m": drop["position"],
+        "trigger_nominal_s": drop["trigger"],
+    }

@@ -1,0 +1,126 @@
+"""Measured table: columns of numbers as a file holds them, with the description of each column that the file gives."""
+
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal, get_args
+
+import numpy as np
+
+from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.input_files.input_error import InputError
+
+Axis = Literal["x", "y", "z"]
+
+
+TIME_NAMES = ("time", "time_s", "t", "t_s", "zeit", "temps")
+"""Names of a time column, in lower case."""
+
+
+@dataclass(frozen=True)
+class TableColumn:
+    """Description of a column; None and empty text stand for facts that the file does not hold.
+
+    Parameters
+    ----------
+    name : str or None
+        Name in the file.
+    row : int
+        Row of its data set, from 1, where a data set of the file has several rows.
+    unit : str or None
+        Unit as the file spells it.
+    sensor : int or None
+        Number of the sensor.
+    wire : str
+        Wire that carries the sensor.
+    position : float or None
+        Position of the sensor along the line [m].
+    direction : str or None
+        Direction of measurement, such as `+z`.
+    """
+
+    name: str | None = None
+    row: int = 1
+    unit: str | None = None
+    sensor: int | None = None
+    wire: str = ""
+    position: float | None = None
+    direction: str | None = None
+
+
+@dataclass(frozen=True)
+class MeasuredTable:
+    """Table of one run.
+
+    Parameters
+    ----------
+    source : str
+        Name of the file.
+    values : (n, c) ndarray
+        Samples in the units of the file.
+    columns : tuple of TableColumn
+        Descriptions of the c columns.
+    time : (n,) ndarray or None
+        Time column [s].
+    rate : float or None
+        Sampling rate that the file states [Hz].
+    run : int
+        Number of the run from 1; 0 in a file of one run.
+    attributes : dict[str, Any]
+        Facts about the run by the names of the HDF5 attributes, such as `drop_mass_kg`.
+    """
+
+    source: str
+    values: RealArray
+    columns: tuple[TableColumn, ...]
+    time: RealArray | None = None
+    rate: float | None = None
+    run: int = 0
+    attributes: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def where(self) -> str:
+        """Name of the file in messages."""
+        return f"record '{self.source}'"
+
+    def separate_time(self) -> "MeasuredTable":
+        """Table whose first column, if its name is that of a time [s], is the time column.
+
+        Raises
+        ------
+        InputError
+            No other column is left.
+        """
+        if (self.columns[0].name or "").lower() not in TIME_NAMES:
+            return self
+        if len(self.columns) == 1:
+            raise InputError(self.where, "has no column beside the time", "A record has at least one channel.")
+        return replace(self, values=self.values[:, 1:], columns=self.columns[1:], time=self.values[:, 0])
+
+
+def parse_direction(text: str, where: str) -> tuple[Axis, float]:
+    """Axis and sign of a direction such as `+z` or `-x`.
+
+    Raises
+    ------
+    InputError
+        It is none of +x, -x, +y, -y, +z, -z.
+    """
+    name = text.strip().lower()
+    for axis in get_args(Axis):
+        if name.lstrip("+-") == axis:
+            return axis, -1.0 if name.startswith("-") else 1.0
+    raise InputError(where, f"direction {text[:40]!r} is not known", "Write +x, -x, +y, -y, +z or -z; z is upward.")
+
+
+def stack_channels(channels: list[RealArray], where: str, largest: int) -> RealArray:
+    """Samples of channels as columns, (n, c).
+
+    Raises
+    ------
+    InputError
+        The channels differ in length, or hold more than `largest` numbers together.
+    """
+    if len({channel.size for channel in channels}) > 1:
+        raise InputError(where, "its channels differ in length", "The channels of a record must be sampled together.")
+    if sum(channel.size for channel in channels) > largest:
+        raise InputError(where, f"more than {largest} numbers", "Cut the record, or leave channels out.")
+    return np.column_stack(channels)

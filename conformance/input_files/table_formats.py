@@ -1,0 +1,114 @@
+"""File formats of measured tables. A new format is a module in `formats/` and a row in `TABLE_FORMATS`."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+
+from pantocheck.conformance.input_files.bounded_file import check_file
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.measured_table import MeasuredTable
+
+MAX_TABLE_BYTES = 2_000_000_000
+"""Largest table that is read [bytes]."""
+
+Reader = Callable[[Path, tuple[str, ...], int], list[MeasuredTable]]
+"""Reader of a format. Its arguments are the path, the channels that a sidecar names (none without a sidecar) and the
+largest count of numbers; it raises `InputError` for a file that cannot be used."""
+
+
+@dataclass(frozen=True)
+class TableFormat:
+    """File format of measured tables.
+
+    Parameters
+    ----------
+    module : str
+        Module of its reader in `formats/`; the reader is called `read_` and the name of the module.
+    suffixes : tuple of str
+        Suffixes of its files in lower case, the usual one first.
+    extra : str
+        Optional extra of the package that installs its library; empty if it is always installed.
+    """
+
+    module: str
+    suffixes: tuple[str, ...]
+    extra: str = ""
+
+    def read(self, path: Path, names: tuple[str, ...], largest: int) -> list[MeasuredTable]:
+        """Read a file of this format; the library of the format is imported here, because imports take time."""
+        try:
+            module = import_module(f"pantocheck.conformance.input_files.formats.{self.module}")
+            reader: Reader = getattr(module, f"read_{self.module}")
+            return reader(path, names, largest)
+        except ModuleNotFoundError as error:
+            raise InputError(
+                f"record '{path.name}'",
+                f"needs the package {error.name}, which is not installed",
+                f"Install it: pip install 'pantocheck[{self.extra}]'",
+            ) from None
+
+
+CSV = TableFormat("csv_table", (".csv", ".txt"))
+HDF5 = TableFormat("hdf5_table", (".h5", ".hdf5"))
+
+TABLE_FORMATS = (
+    CSV,
+    TableFormat("uff_table", (".uff", ".unv", ".uf", ".uff58", ".58")),
+    TableFormat("matlab_table", (".mat",)),
+    HDF5,
+    TableFormat("tdms_table", (".tdms",), extra="tdms"),
+    TableFormat("mdf_table", (".mf4", ".mdf"), extra="mdf"),
+)
+
+
+def list_suffixes(formats: tuple[TableFormat, ...]) -> str:
+    """Usual suffixes of formats for a message: `.csv, .uff or .h5`."""
+    first = [table_format.suffixes[0] for table_format in formats]
+    return " or ".join(part for part in (", ".join(first[:-1]), first[-1]) if part)
+
+
+def find_table_format(path: Path, formats: tuple[TableFormat, ...] = TABLE_FORMATS) -> TableFormat:
+    """Format of a file by its suffix.
+
+    Raises
+    ------
+    InputError
+        The suffix belongs to none of the formats.
+    """
+    where, suffix = f"record '{path.name}'", path.suffix.lower()
+    if suffix == ".toml":
+        raise InputError(where, "is a sidecar", f"Name the record beside it: {list_suffixes(formats)}.")
+    for table_format in formats:
+        if suffix in table_format.suffixes:
+            return table_format
+    raise InputError(where, f"format '{suffix}' is not known", f"Known formats are {list_suffixes(formats)}.")
+
+
+def read_tables(
+    path: Path, names: tuple[str, ...], largest: int, formats: tuple[TableFormat, ...] = TABLE_FORMATS
+) -> list[MeasuredTable]:
+    """Read all runs in a file.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    names : tuple of str
+        Channels that its sidecar names, in the order of their columns; empty if it has none.
+    largest : int
+        Largest count of numbers.
+    formats : tuple of TableFormat
+        Formats to choose from.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, is damaged, too large or of another format.
+    """
+    table_format = find_table_format(path, formats)
+    where = f"record '{path.name}'"
+    check_file(path, where, MAX_TABLE_BYTES)
+    if path.stat().st_size == 0:
+        raise InputError(where, "is empty", "Export the record again.")
+    return table_format.read(path, names, largest)

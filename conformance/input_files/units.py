@@ -1,0 +1,153 @@
+"""Units: one table for the units at the end of keys and the units of measured channels."""
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from pantocheck.conformance.input_files.input_error import InputError
+
+STANDARD_GRAVITY = 9.80665  # [m/s2]
+
+MotionQuantity = Literal["acceleration", "velocity", "displacement"]
+
+
+@dataclass(frozen=True)
+class UnitFamily:
+    """Units of one physical quantity.
+
+    Parameters
+    ----------
+    rule : str
+        Sentence that names the unit of the schema.
+    factors : dict[str, float]
+        Factor to SI units by symbol.
+    """
+
+    rule: str
+    factors: dict[str, float]
+
+
+_LENGTH = UnitFamily("Lengths are given in metres", {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "km": 1e3})
+_SPEED = UnitFamily(
+    "Speeds are given in kilometres per hour",
+    {"m/s": 1.0, "mm/s": 1e-3, "km/h": 1 / 3.6, "mph": 1.609344 / 3.6},
+)
+_ACCELERATION = UnitFamily(
+    "Accelerations are given in metres per second squared",
+    {"m/s2": 1.0, "mm/s2": 1e-3, "g": STANDARD_GRAVITY, "mg": 1e-3 * STANDARD_GRAVITY},
+)
+
+UNIT_FAMILIES = (
+    UnitFamily("Forces are given in newtons", {"N": 1.0, "kN": 1e3, "daN": 10.0}),
+    _LENGTH,
+    UnitFamily("Masses are given in kilograms", {"kg": 1.0, "g": 1e-3, "t": 1e3}),
+    UnitFamily(
+        "Masses per length are given in kilograms per metre",
+        {"kg/m": 1.0, "g/m": 1e-3, "kg/km": 1e-3},
+    ),
+    UnitFamily(
+        "Stiffnesses are given in newtons per metre",
+        {"N/m": 1.0, "kN/m": 1e3, "MN/m": 1e6, "N/mm": 1e3, "kN/mm": 1e6},
+    ),
+    UnitFamily(
+        "Dampers are given in newton seconds per metre",
+        {"N s/m": 1.0, "Ns/m": 1.0, "kN s/m": 1e3, "kNs/m": 1e3},
+    ),
+    UnitFamily(
+        "Bending stiffnesses are given in newton square metres",
+        {"N m2": 1.0, "Nm2": 1.0, "kN m2": 1e3, "kNm2": 1e3},
+    ),
+    UnitFamily("Cross-sections are given in square millimetres", {"mm2": 1e-6, "cm2": 1e-4, "m2": 1.0}),
+    _SPEED,
+    _ACCELERATION,
+    UnitFamily("Times are given in seconds", {"s": 1.0, "ms": 1e-3}),
+    UnitFamily("Frequencies are given in hertz", {"Hz": 1.0, "kHz": 1e3}),
+)
+
+MOTION_UNITS: dict[MotionQuantity, dict[str, float]] = {
+    "acceleration": _ACCELERATION.factors,
+    "velocity": _SPEED.factors,
+    "displacement": _LENGTH.factors,
+}
+"""Units of sensors of motion, each with its factor to SI units."""
+
+SI_UNITS: dict[MotionQuantity, str] = {"acceleration": "m/s2", "velocity": "m/s", "displacement": "m"}
+
+SPELLINGS = {"m/s^2": "m/s2", "m/s**2": "m/s2", "m/s²": "m/s2", "ms-2": "m/s2", "m s-2": "m/s2", "gn": "g", "g_n": "g"}
+
+
+def key_suffix(symbol: str) -> str:
+    """Unit at the end of a key: `N_s_m` for `N s/m`."""
+    return symbol.replace(" ", "_").replace("/", "_")
+
+
+_FAMILY_BY_SUFFIX = sorted(
+    ((key_suffix(symbol), family) for family in UNIT_FAMILIES for symbol in family.factors),
+    key=lambda item: -len(item[0]),
+)
+"""Longest suffix first: `stiffness_N_m` is a stiffness, not a length."""
+
+
+def find_key_units(suffix: str) -> dict[str, float]:
+    """Suffixes of all units of the same quantity, each with its factor to the unit of `suffix`."""
+    family = next(family for known, family in _FAMILY_BY_SUFFIX if known == suffix)
+    factors = {key_suffix(symbol): factor for symbol, factor in family.factors.items()}
+    return {known: factor / factors[suffix] for known, factor in factors.items()}
+
+
+def suggest_key(key: str, value: object, known: list[str]) -> str | None:
+    """Hint for a key in a unit that the schema does not use.
+
+    Parameters
+    ----------
+    key : str
+        Unknown key.
+    value : object
+        Its value, which the hint repeats in the unit of the schema.
+    known : list of str
+        Keys of the schema.
+
+    Returns
+    -------
+    str or None
+        Sentence with the key of the schema; None if the unit is not the mistake.
+    """
+    for other in known:
+        for suffix, family in _FAMILY_BY_SUFFIX:
+            if not other.endswith(f"_{suffix}"):
+                continue
+            stem = other.removesuffix(f"_{suffix}")
+            factors = {f"{stem}_{unit}": factor for unit, factor in find_key_units(suffix).items()} | {stem: 1.0}
+            if key not in factors:
+                continue
+            if isinstance(value, bool) or not isinstance(value, int | float | list):
+                return f"{family.rule}: did you mean {other} ?"
+            return f"{family.rule}: did you mean {other} = {_scaled(value, factors[key])} ?"
+    return None
+
+
+def _scaled(value: object, factor: float) -> str:
+    """Value of a key in another unit, as TOML."""
+    if isinstance(value, list):
+        return f"[{', '.join(_scaled(item, factor) for item in value[:20])}{', ...' if len(value) > 20 else ''}]"
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return repr(value)
+    scaled = float(value) * factor
+    return repr(float(f"{scaled:.12g}")) if math.isfinite(scaled) else str(scaled)
+
+
+def convert_unit(text: str, where: str) -> tuple[MotionQuantity, float]:
+    """Quantity that a unit of motion measures, and its factor to SI units.
+
+    Raises
+    ------
+    InputError
+        The unit is not known. A guess would scale every amplitude.
+    """
+    name = text.strip()
+    name = SPELLINGS.get(name.lower(), name)
+    for quantity, factors in MOTION_UNITS.items():
+        if name in factors:
+            return quantity, factors[name]
+    known = ", ".join(unit for factors in MOTION_UNITS.values() for unit in factors)
+    raise InputError(where, f"unit {text[:40]!r} is not known", f"Known units are {known}.")

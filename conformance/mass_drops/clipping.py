@@ -1,0 +1,25 @@
+"""Clipping: flat tops that a saturated amplifier leaves in a signal."""
+
+import numpy as np
+
+from pantocheck.conformance.array_types import RealArray
+
+SAME_EXTREMES = 4  # consecutive samples with exactly the extreme value that make a flat top
+
+
+def find_clipping(signal: RealArray) -> list[tuple[int, int]]:
+    """Flat tops [start, end) of a saturated amplifier: those far from the median of the signal.
+
+    The noise floor of a converter also repeats its smallest value, but it lies near the median.
+    """
+    middle, reach = np.median(signal), 0.2 * np.ptp(signal)
+    return [top for top in _find_flat_tops(signal) if abs(signal[top[0]] - middle) > reach]
+
+
+def _find_flat_tops(signal: RealArray) -> list[tuple[int, int]]:
+    """Intervals [start, end) in which a signal stays at its maximum or minimum."""
+    tops = []
+    for extreme in {float(signal.max()), float(signal.min())}:
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], signal == extreme, [False]]).astype(np.int8)))
+        tops += [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True) if b - a >= SAME_EXTREMES]
+    return sorted(tops)

@@ -1,0 +1,67 @@
+"""Descriptions of the columns of a mass-drop record: from the sidecar if there is one, else from the file."""
+
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.measured_table import MeasuredTable, TableColumn
+from pantocheck.conformance.input_files.units import convert_unit
+from pantocheck.conformance.mass_drops.drop_sidecar import DropChannelTable, DropSidecar
+
+
+def describe_columns(table: MeasuredTable, sidecar: DropSidecar | None) -> list[tuple[int, TableColumn]]:
+    """Number (from 1) and description of every column that is a channel of the record.
+
+    Raises
+    ------
+    InputError
+        The file describes no channels and has no sidecar, or file and sidecar contradict each other.
+    """
+    if sidecar is None:
+        if any(column.direction is None for column in table.columns):
+            raise InputError(
+                table.where,
+                "does not describe its columns and has no sidecar",
+                "Put NAME.toml beside it, with [record] sampling_rate_hz and one [[channel]] per column.",
+            )
+        return list(enumerate(table.columns, 1))
+    _check_count(table, sidecar)
+    for channel in sidecar.channel:
+        if channel.column <= len(table.columns):
+            _check_agreement(channel, table.columns[channel.column - 1], table.where)
+    return [(channel.column, channel.description) for channel in sidecar.channel]
+
+
+def _check_count(table: MeasuredTable, sidecar: DropSidecar) -> None:
+    declared, width = sidecar.record.n_channels, len(table.columns)
+    if declared is not None and declared != len(sidecar.channel):
+        raise InputError(
+            f"sidecar of {table.where}",
+            f"n_channels = {declared}, but {len(sidecar.channel)} channels are described",
+            "Describe every column once.",
+        )
+    if declared is not None and width < declared:
+        missing = [channel.name for channel in sidecar.channel if channel.column > width]
+        raise InputError(
+            table.where,
+            f"{width} columns, the sidecar describes {declared} (missing: {', '.join(missing[:6]) or 'unknown'})",
+            "A channel is missing from the export, or the sidecar belongs to another file.",
+        )
+    columns = [channel.column for channel in sidecar.channel]
+    repeated = [column for column in columns if columns.count(column) > 1]
+    if repeated:
+        raise InputError(
+            f"sidecar of {table.where}", f"column {repeated[0]} is described twice", "Describe every column once."
+        )
+
+
+def _check_agreement(channel: DropChannelTable, column: TableColumn, where: str) -> None:
+    if column.name and column.name.strip() != channel.name.strip():
+        raise InputError(
+            where,
+            f"column {channel.column} is headed '{column.name[:60]}', the sidecar calls it '{channel.name}'",
+            "Correct the sidecar: a confused channel gives wrong mode shapes.",
+        )
+    if column.unit and convert_unit(column.unit, where) != convert_unit(channel.unit, f"sidecar of {where}"):
+        raise InputError(
+            f"{where}, channel '{channel.name}'",
+            f"the file says {column.unit}, the sidecar says {channel.unit}",
+            "Correct the one that is wrong.",
+        )

@@ -1,0 +1,100 @@
+"""Writing of mass-drop records as universal file, one data set 58 per channel, with a sidecar."""
+
+import warnings
+from pathlib import Path
+from typing import Any, Literal
+
+import pyuff
+
+from pantocheck.conformance.input_files.atomic_writing import produce_atomically
+from pantocheck.conformance.input_files.formats.uff_table import DATA_TYPES
+from pantocheck.conformance.input_files.units import SI_UNITS
+from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropDescription, DropRecord
+from pantocheck.conformance.mass_drops.drop_writing import write_drop_sidecar
+
+
+def write_drop_uff(record: DropRecord, path: Path, form: Literal["ascii", "binary"] = "binary") -> None:
+    """Write a record as universal file and its sidecar beside it.
+
+    The format has no field for wire, position, mass and trigger; its identification lines and the sidecar hold them.
+
+    Parameters
+    ----------
+    record : DropRecord
+        One run.
+    path : Path
+        The file.
+    form : {"ascii", "binary"}
+        ASCII numbers have twelve digits.
+
+    Raises
+    ------
+    InputError
+        It cannot be written.
+    """
+    sets = [_build_data_set(record, c, form) for c in range(len(record.channels))]
+
+    def produce(temporary: Path) -> None:
+        # pyuff's mode 'overwrite' damages binary files; adding to a new file does not.
+        temporary.unlink()
+        with warnings.catch_warnings():
+            # pyuff leaves its files to the garbage collector, which closes them when it returns.
+            warnings.simplefilter("ignore", ResourceWarning)
+            pyuff.UFF(str(temporary)).write_sets(sets, mode="add")
+
+    write_drop_sidecar(record, path)
+    produce_atomically(path, produce)
+
+
+def _build_data_set(record: DropRecord, c: int, form: Literal["ascii", "binary"]) -> dict[str, Any]:
+    """Data set 58 of a channel; fields the format has for other kinds of data are set to 0 or NONE."""
+    channel = record.channels[c]
+    data_set = pyuff.prepare_58(
+        binary=int(form == "binary"),
+        func_type=1,
+        rsp_node=channel.sensor,
+        rsp_dir="xyz".index(channel.axis) + 1,
+        ref_node=0,
+        ref_dir=0,
+        ord_data_type=4,
+        num_pts=record.signals.shape[0],
+        data=record.signals[:, c].copy(),
+        x=record.time,
+        abscissa_spacing=1,
+        abscissa_min=0.0,
+        abscissa_inc=1 / record.rate,
+        abscissa_spec_data_type=17,
+        abscissa_axis_units_lab="s",
+        ordinate_spec_data_type=DATA_TYPES[record.quantity],
+        ordinate_axis_units_lab=SI_UNITS[record.quantity],
+        orddenom_spec_data_type=0,
+        orddenom_axis_units_lab="NONE",
+        z_axis_spec_data_type=0,
+        z_axis_axis_units_lab="NONE",
+        id1=_encode_line(record.name),
+        id2=_encode_line(_format_drop(record.drop)),
+        id3=_encode_line(_format_channel(channel)),
+        id4=record.quantity,
+        id5="NONE",
+    )
+    return dict(data_set)
+
+
+def _format_drop(drop: DropDescription) -> str:
+    """Identification line of the mass drop; empty unless the drop is fully known."""
+    if drop.mass is None or drop.position is None or not drop.wire:
+        return ""
+    trigger = "" if drop.trigger_nominal is None else f", trigger at {drop.trigger_nominal:g} s"
+    return f"{drop.mass:g} kg on {drop.wire} at {drop.position:g} m{trigger}"
+
+
+def _format_channel(channel: DropChannel) -> str:
+    """Identification line of a channel; empty if the line would change its name, which the sidecar then holds."""
+    if channel.position is None or not channel.wire or " " in channel.name or not channel.name.isascii():
+        return ""
+    return f"{channel.name} {channel.wire} at {channel.position:g} m dir +{channel.axis}"
+
+
+def _encode_line(text: str) -> str:
+    """Identification line: 80 ASCII characters, never empty."""
+    return text.encode("ascii", "replace").decode("ascii")[:80].strip() or "NONE"

@@ -1,0 +1,104 @@
+"""Rows of each channel of a contact-force record, in SI units, from a measured table."""
+
+from pathlib import Path
+
+import numpy as np
+
+from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.measured_table import TableColumn
+from pantocheck.conformance.input_files.table_formats import CSV, HDF5, read_tables
+from pantocheck.conformance.records.record import LARGEST_NUMBER, MAX_SAMPLES
+from pantocheck.conformance.records.record_channels import (
+    CHANNELS,
+    RecordColumn,
+    column_name,
+    find_column,
+    suggest_column,
+)
+from pantocheck.conformance.records.record_sidecar import RecordSidecar
+
+RECORD_FORMATS = (CSV, HDF5)
+"""File formats of contact-force records."""
+
+ChannelRows = dict[str, dict[int, RealArray]]
+"""Rows of each channel by number from 1."""
+
+
+def read_channel_rows(path: Path, sidecar: RecordSidecar) -> ChannelRows:
+    """Read the table of a record.
+
+    Raises
+    ------
+    InputError
+        The table is damaged, has an unknown column, lacks a channel, or contradicts its sidecar.
+    """
+    tables = read_tables(path, (), MAX_SAMPLES, RECORD_FORMATS)
+    where = tables[0].where
+    if len(tables) > 1:
+        raise InputError(where, f"holds {len(tables)} runs", "Write one file per run.")
+    rows: ChannelRows = {}
+    for column, values in zip(tables[0].columns, tables[0].values.T, strict=True):
+        meaning = _find_meaning(column, sidecar, where)
+        channel = rows.setdefault(meaning.channel.name, {})
+        if meaning.number in channel:
+            raise InputError(where, "two columns have the same name", "Each channel stands in one column.")
+        with np.errstate(invalid="ignore", over="ignore"):  # numbers too large are reported by `_check_size`
+            channel[meaning.number] = meaning.factor * values
+    _check_complete(rows, where)
+    for name in rows:
+        _check_count(name, rows[name], sidecar, where)
+        _check_size(name, rows[name], where)
+    return rows
+
+
+def _find_meaning(column: TableColumn, sidecar: RecordSidecar, where: str) -> RecordColumn:
+    """Channel and number of a column, which the sidecar must allow."""
+    if column.name is None:
+        raise InputError(where, "has no head line", "Write the names of the columns into the first line.")
+    place = f"{where}, column {column.name[:80]!r}"
+    meaning = find_column(column.name, column.row)
+    if meaning is None:
+        known = [
+            column_name(channel.key, i)
+            for channel in CHANNELS.values()
+            for i in range(1, sidecar.rows(channel.per) + 1)
+        ]
+        raise InputError(place, "unknown column", suggest_column(column.name, known))
+    allowed = sidecar.rows(meaning.channel.per)
+    if meaning.number > allowed:
+        raise InputError(place, f"the sidecar has no {meaning.channel.per} {meaning.number}", f"It has {allowed}.")
+    return meaning
+
+
+def _check_complete(rows: ChannelRows, where: str) -> None:
+    """Refuse a table without force, or with neither time nor position."""
+    if "force" not in rows:
+        raise InputError(where, "there is no channel force_N", "A record needs force_N, and time_s or position_m.")
+    if not rows.keys() & {"time", "position"}:
+        raise InputError(where, "there is no channel time_s or position_m", "A record needs force_N, and one of these.")
+
+
+def _check_count(name: str, rows: dict[int, RealArray], sidecar: RecordSidecar, where: str) -> None:
+    """Refuse a channel that lacks a pantograph; uplift may be measured at some of the supports."""
+    expected = sidecar.rows(CHANNELS[name].per)
+    first_alone = name == "position" and list(rows) == [1] and sidecar.spacing_m is not None
+    if name != "uplift" and len(rows) != expected and not first_alone:
+        raise InputError(
+            where,
+            f"{len(rows)} rows of {CHANNELS[name].key}, expected {expected}",
+            "Give one per pantograph, or position_1_m and spacing_m in the sidecar.",
+        )
+
+
+def _check_size(name: str, rows: dict[int, RealArray], where: str) -> None:
+    """Refuse numbers that are impossibly large or infinite; NaN marks a missing value."""
+    for number, values in rows.items():
+        impossible = np.abs(values) > LARGEST_NUMBER
+        if impossible.any():
+            sample = int(np.argmax(impossible))
+            raise InputError(
+                f"{where}, {column_name(CHANNELS[name].key, number)}",
+                f"{values[sample]:.3g} at sample {sample + 1} is impossible",
+                "Write nan where a value is missing.",
+            )
