@@ -12,7 +12,7 @@ from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.measured_table import MeasuredTable, TableColumn
 
-LONGEST_LINE = 1_000_000  # [characters]
+LONGEST_ROW = 1_000_000  # longest line of a table [characters]
 
 Lines = Iterator[tuple[int, str]]
 """Numbered lines of a file, from 1."""
@@ -77,9 +77,9 @@ def write_csv_table(path: Path, names: list[str], values: RealArray, digits: int
 def _numbered(file: TextIO, where: str) -> Lines:
     """Lines of the table: those after the first comments that are not blank."""
     comments = True
-    for number, line in enumerate(iter(lambda: file.readline(LONGEST_LINE), ""), 1):
-        if len(line) == LONGEST_LINE:
-            raise InputError(f"{where}, line {number}", "is too long", f"A line has at most {LONGEST_LINE} characters.")
+    for number, line in enumerate(iter(lambda: file.readline(LONGEST_ROW), ""), 1):
+        if len(line) == LONGEST_ROW:
+            raise InputError(f"{where}, line {number}", "is too long", f"A line has at most {LONGEST_ROW} characters.")
         comments = comments and line.lstrip().startswith("#")
         if line.strip() and not comments:
             yield number, line
