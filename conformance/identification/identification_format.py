@@ -6,7 +6,7 @@ from pydantic import ConfigDict, Field
 
 from pantocheck.conformance.identification.mode import Mode
 from pantocheck.conformance.identification.rounded_model import Rounded, RoundedModel
-from pantocheck.conformance.mass_drops.drop_record import MotionQuantity
+from pantocheck.conformance.input_files.units import MotionQuantity
 
 Curve = list[float]
 """Ordinates or abscissae of a curve, with six significant digits."""
