@@ -10,7 +10,7 @@ from pantocheck.conformance.authenticity.attachment import (
 )
 from pantocheck.conformance.authenticity.recomputation import find_discrepancies
 from pantocheck.conformance.grading.verdicts import Verdict
-from pantocheck.conformance.reports.certificate.certificate_page import TITLE
+from pantocheck.conformance.reports.certificate.certificate_page import HEADING
 from pantocheck.conformance.reports.page_text import clean_text
 from pantocheck.conformance.reports.words import read_words
 
@@ -63,7 +63,7 @@ def verify_certificate(path: Path) -> Verification:
     title, first_page = read_title_and_first_page(path, reader)
     if not title.startswith(word):
         found.append(f"the document's title does not begin with the verdict {word}: '{title}'")
-    heading = next((line for line in first_page.splitlines() if line.startswith(TITLE)), "")
+    heading = next((line for line in first_page.splitlines() if line.startswith(HEADING)), "")
     if word not in heading.split():
         found.append(f"the first page does not print the verdict {word} in its heading: '{heading}'")
     return Verification(

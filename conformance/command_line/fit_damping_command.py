@@ -14,7 +14,7 @@ from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_model, read_toml
-from pantocheck.conformance.reports.document import write_html, write_pdf
+from pantocheck.conformance.reports.formats.report_writers import write_report
 from pantocheck.conformance.reports.mass_drop.damping_report import build_damping_document
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 
@@ -44,9 +44,9 @@ def fit_damping_command(
         with_modal = write_damping_toml(results, results.modal)
         write_atomically(out / "damping_with_modal.toml", with_modal.encode("utf-8"))
         write_model(out / "damping.json", results)
-        write_html(document, out / "damping.html")
-        write_pdf(document, out / "damping.pdf")
-    output.print(escape_text(document.headline))
+        for suffix in (".html", ".pdf"):
+            write_report(document, out / f"damping{suffix}")
+    output.print(escape_text(document.header.headline))
     output.print(escape_text(block))
     output.print(
         escape_text(f"{out}: damping.toml, damping_with_modal.toml, damping.json, damping.html, damping.pdf"),

@@ -15,8 +15,11 @@ from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.table_formats import TABLE_FORMATS, list_suffixes
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
-from pantocheck.conformance.reports.document import write_html, write_pdf
-from pantocheck.conformance.reports.mass_drop.identification_report import build_identification_document
+from pantocheck.conformance.reports.formats.report_writers import write_report
+from pantocheck.conformance.reports.mass_drop.identification_report import (
+    build_identification_document,
+    collect_warnings,
+)
 
 
 def identify_command(
@@ -55,10 +58,11 @@ def identify_command(
         lines = tuple(analyse_identification(identification) for identification in identifications)
         write_model(out / "modes.json", ModesFile(tuple(mode for line in lines for mode in line.modes)))
         write_model(out / "identification.json", IdentificationFile(lines=lines))
-        document = build_identification_document([line.model_dump(mode="json", by_alias=True) for line in lines])
-        write_html(document, out / "identification.html")
-        write_pdf(document, out / "identification.pdf")
-    output.print(escape_text(document.headline))
+        data = [line.model_dump(mode="json", by_alias=True) for line in lines]
+        document = build_identification_document(data)
+        for suffix in (".html", ".pdf"):
+            write_report(document, out / f"identification{suffix}")
+    output.print(escape_text(document.header.headline))
     for group in (group for line in lines for group in line.groups):
         median = None if group.median_damping_ratio is None else 100 * group.median_damping_ratio
         output.print(
@@ -67,7 +71,7 @@ def identify_command(
                 f"{group.from_Hz:.3f}-{group.to_Hz:.3f} Hz, median damping ratio {format_number(median)} %"
             )
         )
-    for text in document.warnings:
+    for text in collect_warnings(data):
         output.print(escape_text(f"warning: {text}"))
     output.print(
         escape_text(f"{out}: modes.json, identification.json, identification.html, identification.pdf"),

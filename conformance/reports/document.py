@@ -1,107 +1,264 @@
-"""A report of headings, texts, tables and figures, as one HTML file and as PDF: that of a mass drop."""
+"""Pages as values: every report is composed once as a `Document`, which the HTML, PDF and Markdown writers render.
 
-import json
-from dataclasses import asdict, dataclass
-from pathlib import Path
-from typing import Any
+A new page element is a class here and one macro or function in each of `templates/elements.html`,
+`templates/elements.typ` and `formats/markdown.py`. The writers escape every text.
+"""
 
-import typst
-
-from pantocheck.conformance.input_files.atomic_writing import write_atomically
-from pantocheck.conformance.reports.formats.html import build_environment
-from pantocheck.conformance.reports.formats.pdf import FONTS, find_showable
-from pantocheck.conformance.reports.page_text import clean_tree
-from pantocheck.conformance.reports.words import TEMPLATES
+from dataclasses import dataclass, fields
+from typing import Any, Literal
 
 
 @dataclass(frozen=True)
-class Picture:
-    """A figure: its SVG, what a reader who cannot see it should know, and its caption."""
+class Code:
+    """A name or a value in typewriter letters."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Remark:
+    """A remark below the text that it belongs to."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Link:
+    """A link to a place of the same page."""
+
+    text: str
+    anchor: str
+
+
+@dataclass(frozen=True)
+class VerdictMark:
+    """A verdict with its symbol."""
+
+    verdict: str
+
+
+@dataclass(frozen=True)
+class TrustMark:
+    """A level of trust with its symbol; empty: none."""
+
+    trust: str
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A small drawing in a line of text, made by this project from numbers alone."""
+
+    svg: str
+    alternative: str
+
+
+Inline = str | Code | Remark | Link | VerdictMark | TrustMark | Drawing
+RichText = Inline | tuple[Inline, ...]
+
+
+@dataclass(frozen=True)
+class Paragraph:
+    """A paragraph."""
+
+    text: RichText
+
+
+@dataclass(frozen=True)
+class SmallPrint:
+    """An explanation in small letters below a table."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class CodeBlock:
+    """Lines of a file, to be copied; their line breaks are kept."""
+
+    code: str
+
+
+@dataclass(frozen=True)
+class BulletList:
+    """A list of sentences."""
+
+    items: tuple[RichText, ...]
+
+
+@dataclass(frozen=True)
+class NumberedList:
+    """A list that a table refers to: item n has the number [n] and the anchor `<anchor>-<n>`."""
+
+    label: str
+    items: tuple[str, ...]
+    anchor: str
+
+
+@dataclass(frozen=True)
+class WarningBox:
+    """Caveats for the reader, in a coloured box."""
+
+    sentences: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Facts:
+    """Names and values.
+
+    Parameters
+    ----------
+    pairs : tuple of (str, str)
+        Facts that follow from the input.
+    times : tuple of (str, str)
+        Times of the run. The PDF omits them, so that two runs of the same input give the same bytes.
+    """
+
+    pairs: tuple[tuple[str, str], ...]
+    times: tuple[tuple[str, str], ...] = ()
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a table.
+
+    Parameters
+    ----------
+    heading : str
+        Its heading.
+    share : float
+        Share of the remaining width on paper; 0: as wide as its content.
+    number : bool
+        Whether the column holds numbers, which are aligned to the right and never broken.
+    short : str
+        Heading on paper where the column is narrow; empty: the same heading.
+    """
+
+    heading: str
+    share: float = 0.0
+    number: bool = False
+    short: str = ""
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table.
+
+    Parameters
+    ----------
+    columns : tuple of Column
+        Columns.
+    rows : tuple of tuple of RichText
+        Cells, one row after the other.
+    caption : str
+        Text above the table; empty if the heading of its section says enough.
+    layout : {"text", "grid", "cards"}
+        Rows with a heading cell; a dense grid of values; rows that become cards on a narrow screen.
+    """
+
+    columns: tuple[Column, ...]
+    rows: tuple[tuple[RichText, ...], ...]
+    caption: str = ""
+    layout: Literal["text", "grid", "cards"] = "text"
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A figure as SVG, its alternative text and its caption; two that are not wide stand side by side."""
 
     svg: str
     alternative: str
     caption: str
+    wide: bool = True
 
 
 @dataclass(frozen=True)
-class Grid:
-    """A table: heads of the columns, rows of texts."""
+class Figures:
+    """Figures in their order."""
 
-    columns: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-    caption: str
+    figures: tuple[Figure, ...]
 
 
 @dataclass(frozen=True)
 class Section:
-    """A heading and what stands under it."""
+    """A heading and the blocks below it; a section with an anchor can be the target of a link."""
 
     heading: str
-    texts: tuple[str, ...] = ()
-    grids: tuple[Grid, ...] = ()
-    pictures: tuple[Picture, ...] = ()
-    code: str = ""
+    blocks: "tuple[Block, ...]"
+    anchor: str = ""
+    new_page: bool = False
+
+
+Block = Paragraph | SmallPrint | CodeBlock | BulletList | NumberedList | WarningBox | Facts | Table | Figures | Section
+
+
+@dataclass(frozen=True)
+class PlainHeader:
+    """Head of a report that judges nothing: its heading and its result in one sentence."""
+
+    heading: str
+    headline: str
+
+
+@dataclass(frozen=True)
+class VerdictHeader:
+    """Head of a report with a verdict.
+
+    Parameters
+    ----------
+    heading : str
+        Heading, printed before the verdict.
+    verdict : str
+        The overall verdict.
+    statement : str
+        Nature of the report, printed on every page.
+    headline : str
+        The verdict in one sentence.
+    subject : str
+        System, suite and trust in sentences.
+    footer : str
+        Suite and system, printed at the foot of every page.
+    """
+
+    heading: str
+    verdict: str
+    statement: str
+    headline: str
+    subject: str
+    footer: str
 
 
 @dataclass(frozen=True)
 class Document:
-    """A report.
+    """A whole report.
 
     Parameters
     ----------
     title : str
-        What it is on.
-    headline : str
-        The result in a sentence.
-    warnings : tuple[str, ...]
-        What should make a reader careful.
-    sections : tuple[Section, ...]
-        The rest.
+        Title in the metadata of the file.
+    header : PlainHeader or VerdictHeader
+        Head of the first page.
+    blocks : tuple of Block
+        Sections, and warnings before them.
+    results : dict or None
+        Results to be embedded in the PDF, which then bears the date of their run; None: no attachment and no date.
     """
 
     title: str
-    headline: str
-    warnings: tuple[str, ...]
-    sections: tuple[Section, ...]
+    header: PlainHeader | VerdictHeader
+    blocks: tuple[Block, ...]
+    results: dict[str, Any] | None = None
 
 
-def write_html(document: Document, path: Path) -> None:
-    """Write a report as one HTML file: no script, nothing fetched, every text escaped.
-
-    Raises
-    ------
-    InputError
-        It cannot be written.
-    """
-    text = build_environment().get_template("document.html").render(document=_plain(document))
-    write_atomically(path, text.encode("utf-8"))
+def to_plain(value: Any) -> Any:
+    """The parts of a document as dictionaries and lists for a template; `kind` names the class of each part."""
+    if isinstance(value, tuple):
+        return [to_plain(item) for item in value]
+    if hasattr(value, "__dataclass_fields__"):
+        parts = {field.name: to_plain(getattr(value, field.name)) for field in fields(value)}
+        return {"kind": type(value).__name__} | parts
+    return value
 
 
-def write_pdf(document: Document, path: Path) -> None:
-    """Write a report as PDF; it bears no date, so that the same report gives the same bytes.
-
-    Raises
-    ------
-    InputError
-        It cannot be written.
-    """
-    # typst takes a dictionary of files, which its type hints do not know.
-    sources: Any = {
-        "main.typ": (TEMPLATES / "document.typ").read_bytes(),
-        "document.json": json.dumps(find_showable(_plain(document))).encode("ascii"),
-    }
-    made = typst.compile(sources, ignore_system_fonts=True, font_paths=[str(FONTS)])
-    write_atomically(path, bytes(made))
-
-
-def _plain(document: Document) -> dict[str, Any]:
-    """The report as plain data, its texts cleaned; pictures and code are the project's own and stay as they are."""
-    data = asdict(document)
-    pictures = [[picture.pop("svg") for picture in section["pictures"]] for section in data["sections"]]
-    codes = [section.pop("code") for section in data["sections"]]
-    shown: dict[str, Any] = clean_tree(data)
-    for section, svgs, code in zip(shown["sections"], pictures, codes, strict=True):
-        section["code"] = code
-        for picture, svg in zip(section["pictures"], svgs, strict=True):
-            picture["svg"] = svg
-    return shown
+def make_grid(caption: str, headings: tuple[str, ...], rows: list[tuple[str, ...]]) -> Table:
+    """A dense table of values; its last column takes the remaining width."""
+    columns = (*map(Column, headings[:-1]), Column(headings[-1], share=1))
+    return Table(columns, tuple(rows), caption, layout="grid")

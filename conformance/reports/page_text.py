@@ -1,20 +1,21 @@
-"""Text and numbers as a page shows them."""
+"""Texts and numbers as a page shows them."""
 
 import re
 import unicodedata
 from typing import Any
 
 LONGEST = 2000
-# Noncharacters, private use and lone surrogates have no meaning to a reader; bidirectional controls can make one text
+"""Largest number of characters of a text."""
+# Noncharacters, private use and lone surrogates have no meaning for a reader; bidirectional controls can make one text
 # look like another ("gpj.exe" for "exe.jpg").
 UNSHOWABLE = re.compile("[\ud800-\udfff\ue000-\uf8ff\ufdd0-\ufdef\ufffe\uffff\U000f0000-\U0010ffff]")
 BIDIRECTIONAL = re.compile("[\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]")
 
 
 def clean_text(text: str) -> str:
-    """Text on one line that any page can carry: no control characters, at most `LONGEST` characters.
+    """Text on one line for any page: without control characters, at most `LONGEST` characters.
 
-    Escaping is left to each format; this only takes out what no format can hold.
+    Each format escapes the text; this function only removes characters that no format can hold.
     """
     text = UNSHOWABLE.sub("\N{REPLACEMENT CHARACTER}", BIDIRECTIONAL.sub("", text))
     text = " ".join("".join(" " if unicodedata.category(c) == "Cc" else c for c in text).split())
@@ -22,7 +23,7 @@ def clean_text(text: str) -> str:
 
 
 def clean_tree(value: Any) -> Any:
-    """The same nest of dictionaries and lists with every text, keys included, made `clean`."""
+    """Dictionaries and lists with every text, keys included, cleaned by `clean_text`."""
     if isinstance(value, str):
         return clean_text(value)
     if isinstance(value, dict):
@@ -33,7 +34,7 @@ def clean_tree(value: Any) -> Any:
 
 
 def format_value(value: float | None, digits: int = 4) -> str:
-    """A measured number with a fixed count of significant digits, as `119.7`; an en dash if there is none."""
+    """A computed number with significant digits, as `119.7`; an en dash for no number."""
     if value is None:
         return "–"
     if value == 0:
@@ -43,17 +44,17 @@ def format_value(value: float | None, digits: int = 4) -> str:
 
 
 def format_plain(value: float | None) -> str:
-    """A given number, as short as it can be written: `20`, `0.001`."""
+    """An input number in its shortest form: `20`, `0.001`."""
     return "–" if value is None else replace_minus(f"{value:.12g}")
 
 
 def replace_minus(text: str) -> str:
-    """ASCII hyphens before digits as true minus signs."""
+    """Replace ASCII hyphens by minus signs."""
     return text.replace("-", "−")
 
 
 def format_beside_limits(value: float | None, lower: float | None, upper: float | None) -> str:
-    """`number` with as many digits as it takes to show on which side of its limits the value lies."""
+    """A value with enough digits to show on which side of its limits it lies."""
     if value is None:
         return format_value(value)
     for digits in range(4, 16):
@@ -66,7 +67,7 @@ def format_beside_limits(value: float | None, lower: float | None, upper: float 
 
 
 def format_limits(lower: float | None, upper: float | None) -> str:
-    """Limits in words and signs: `26 to 31`, `≤ 225`, `≥ 30`, `= 0`."""
+    """Limits: `26 to 31`, `≤ 225`, `≥ 30`, `= 0`, `none`."""
     if lower is None and upper is None:
         return "none"
     if lower is None:

@@ -1,4 +1,4 @@
-"""The words of the pages, read from the templates' `words.toml`."""
+"""Words of the pages, read from the templates' `words.toml`."""
 
 import tomllib
 from functools import cache
@@ -17,20 +17,21 @@ def read_words() -> dict[str, Any]:
 
 
 def quantity_label(quantity: str) -> str:
-    """What a quantity is called; its own name if it has no other."""
+    """Label of a quantity; a quantity that the suite does not know keeps its name."""
     return QUANTITIES[quantity].label if quantity in QUANTITIES else quantity
 
 
 def quantity_unit(quantity: str) -> str:
-    """Unit of a quantity, empty if it has none or is not known."""
+    """Unit of a quantity; empty for a ratio and for a quantity that the suite does not know."""
     return QUANTITIES[quantity].unit if quantity in QUANTITIES else ""
 
 
-def holder(key: str | int | None) -> str:
-    """Whose a value is: `pantograph 1`, or `line`."""
+def name_holder(key: str | int | None) -> str:
+    """Holder of a value: `pantograph 1`, or `line`."""
     return "line" if key in (None, 0, "0") else f"pantograph {key}"
 
 
-def owner(row: dict[str, Any]) -> str:
-    """Whose value a criterion grades, with its number among several: `pantograph 1`, `line, no. 3`."""
-    return holder(row.get("pantograph")) + (f", no. {row['item']}" if row.get("item") else "")
+def name_owner(criterion: dict[str, Any]) -> str:
+    """Holder of the value of a criterion, with its number among several: `pantograph 1`, `line, no. 3`."""
+    number = f", no. {criterion['item']}" if criterion.get("item") else ""
+    return f"{name_holder(criterion.get('pantograph'))}{number}"

@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from pantocheck.conformance.reports.formats import html, pdf
+from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
+from pantocheck.conformance.reports.formats.html import render_html
+from pantocheck.conformance.reports.formats.pdf import render_pdf
 
 SOURCE = "Wang et al., An extended Habedank's equation-based EMTP model, IEEE Trans. Power Delivery, Table III"
 SPEED = 250 / 3.6
@@ -299,16 +301,16 @@ def hostile() -> dict[str, Any]:
 @pytest.fixture(scope="session")
 def page_text() -> str:
     """The example as HTML."""
-    return html.render_html(example())
+    return render_html(build_certificate(example()))
 
 
 @pytest.fixture(scope="session")
 def hostile_text() -> str:
     """The example with hostile text as HTML."""
-    return html.render_html(with_hostile_text())
+    return render_html(build_certificate(with_hostile_text()))
 
 
 @pytest.fixture(scope="session")
 def certificate() -> bytes:
     """The example as PDF."""
-    return pdf.render_pdf(example(), 1_700_000_000)
+    return render_pdf(build_certificate(example()))

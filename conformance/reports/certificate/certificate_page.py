@@ -1,137 +1,134 @@
-"""From results.json to a page: choosing, ordering and wording; nothing is computed here that is not in the results."""
+"""The certificate: from results.json to a document. Every number of the page stands in the results."""
 
-import json
-from functools import lru_cache
 from typing import Any
 
-from pantocheck.conformance.quantities.bands import BANDS
-from pantocheck.conformance.reports.certificate import case_facts as facts
-from pantocheck.conformance.reports.certificate import quantity_tables as tables
-from pantocheck.conformance.reports.certificate import verdict_reasons as reasons
-from pantocheck.conformance.reports.certificate.criteria_rows import build_criterion_row
-from pantocheck.conformance.reports.certificate.page_content import CaseSection, Figure, InputRow, Page, PlainTable
-from pantocheck.conformance.reports.figures import charts
-from pantocheck.conformance.reports.figures import force_figures as figures
-from pantocheck.conformance.reports.page_text import clean_tree, format_plain, format_value
+from pantocheck.conformance.reports.certificate.case_facts import (
+    list_case_facts,
+    list_suite_facts,
+    name_suite,
+    name_system,
+)
+from pantocheck.conformance.reports.certificate.case_figures import draw_case_figures
+from pantocheck.conformance.reports.certificate.criteria_table import criteria_blocks
+from pantocheck.conformance.reports.certificate.quantity_tables import (
+    build_band_table,
+    build_quantity_table,
+    list_skipped,
+)
+from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline, list_reasons, summarise_case
+from pantocheck.conformance.reports.document import (
+    Block,
+    BulletList,
+    Code,
+    Column,
+    Document,
+    Figures,
+    Link,
+    Paragraph,
+    Section,
+    Table,
+    TrustMark,
+    VerdictHeader,
+    VerdictMark,
+    WarningBox,
+)
+from pantocheck.conformance.reports.page_text import clean_tree
 from pantocheck.conformance.reports.words import read_words
 
-TITLE = "Conformance report"
+HEADING = "Conformance report"
 
 
-def build_certificate(results: dict[str, Any]) -> Page:
-    """Everything a certificate says.
+def build_certificate(results: dict[str, Any]) -> Document:
+    """The certificate of a run.
 
     Parameters
     ----------
-    results : dict[str, Any]
+    results : dict
         results.json as a dictionary.
     """
-    results = clean_tree(results)
-    trust = results.get("trust") or ""
-    meaning = read_words()["trust"].get(trust, {}).get("meaning")
-    return Page(
-        title=TITLE,
-        statement=results.get("statement") or "",
-        verdict=results["verdict"],
-        headline=reasons.build_headline(results),
-        trust=trust,
-        trust_sentence=f"Lowest trust of the limits that count: {trust} ({meaning})." if meaning else "",
-        system=facts.name_system(results),
-        suite=facts.name_suite(results),
-        reasons=reasons.build_reasons(results),
-        cases=tuple(_case(case, at) for at, case in enumerate(results["cases"], start=1)),
-        facts=facts.list_suite_facts(results),
-    )
-
-
-def _case(case: dict[str, Any], at: int) -> CaseSection:
-    sources: list[str] = []
-    rows = tuple(build_criterion_row(row, sources) for row in case["criteria"])
-    return CaseSection(
-        anchor=f"case-{at}",
-        id=case["id"],
-        title=case.get("title") or case["id"],
-        verdict=case["verdict"],
-        sentence=reasons.build_case_reasons(case),
-        criteria=rows,
-        error_name=error_name(case),
-        sources=tuple(sources),
-        bands=tables.bands(case),
-        quantities=tables.quantities(case),
-        skipped=tables.skipped(case),
-        tables=tuple(
-            PlainTable(one["caption"], tuple(one["columns"]), tuple(tuple(row) for row in one["rows"]))
-            for one in case.get("tables") or []
+    cleaned = clean_tree(results)
+    header = build_header(cleaned)
+    cases = cleaned["cases"]
+    anchors = [f"case-{number}" for number in range(1, len(cases) + 1)]
+    reasons = list_reasons(cleaned) or (Paragraph("Nothing was graded."),)
+    trusts = read_words()["trust"].items()
+    levels = BulletList(tuple((TrustMark(name), f" {level['meaning']}") for name, level in trusts))
+    closing = Paragraph(f"This is a {header.statement}. It is not a certification by a third party.")
+    return Document(
+        title=f"{read_words()['verdict'][header.verdict]['word']} – {HEADING} – {name_system(cleaned)}",
+        header=header,
+        blocks=(
+            Section("Reasons", reasons, anchor="reasons"),
+            Section("Cases", (_case_index(cases, anchors),), anchor="cases"),
+            *map(_case_section, cases, anchors),
+            Section(
+                "Reproducibility",
+                (list_suite_facts(cleaned), Section("Levels of trust", (levels,)), closing),
+                anchor="reproducibility",
+            ),
         ),
-        figures=_figures(case),
-        inputs=tuple(InputRow(one["group"], one["trust"], one.get("source") or "") for one in case.get("inputs") or []),
-        notes=tuple(case.get("notes") or []),
-        warnings=tuple(case.get("warnings") or []),
-        facts=facts.list_case_facts(case),
+        results=results,
     )
 
 
-def error_name(case: dict[str, Any]) -> str:
-    """What stands beside the values of a case: their uncertainty, or their discretisation error."""
-    uncertain = any(row.get("uncertainty") is not None for row in case["criteria"])
-    return "Uncertainty (95 %)" if uncertain else "Discretisation error"
+def build_header(results: dict[str, Any]) -> VerdictHeader:
+    """Head of the pages made from results.json."""
+    trust = results.get("trust") or ""
+    level = read_words()["trust"].get(trust)
+    system, suite = name_system(results), name_suite(results)
+    counted = f" Lowest trust of the limits that count: {trust} ({level['meaning']})." if level else ""
+    return VerdictHeader(
+        heading=HEADING,
+        verdict=results["verdict"],
+        statement=results.get("statement") or "",
+        headline=build_headline(results),
+        subject=f"{system}, checked with {suite}.{counted}",
+        footer=f"{suite} · {system}",
+    )
 
 
-def _figures(case: dict[str, Any]) -> tuple[Figure, ...]:
-    return _drawn(json.dumps({key: case.get(key) for key in ("charts", "traces", "uplift", "criteria", "quantities")}))
+def _case_index(cases: list[dict[str, Any]], anchors: list[str]) -> Table:
+    rows = tuple(
+        (Link(case["id"], anchor), VerdictMark(case["verdict"]), summarise_case(case))
+        for case, anchor in zip(cases, anchors, strict=True)
+    )
+    return Table((Column("Case", share=2), Column("Verdict"), Column("Criteria", share=3)), rows)
 
 
-@lru_cache(maxsize=32)
-def _drawn(content: str) -> tuple[Figure, ...]:
-    """Figures of the parts of a case that are drawn. Drawing takes most of a page's time, so HTML and PDF share it."""
-    case = json.loads(content)
-    drawn = [
-        Figure(charts.draw_chart(one), one["alternative"], one["caption"], one["wide"])
-        for one in case.get("charts") or []
+def _case_section(case: dict[str, Any], anchor: str) -> Section:
+    blocks: list[Block] = [
+        Paragraph((VerdictMark(case["verdict"]), " ", Code(case["id"]))),
+        Paragraph(summarise_case(case)),
     ]
-    for key, trace in sorted((case.get("traces") or {}).items(), key=lambda item: (len(item[0]), item[0])):
-        rows = [row for row in case["criteria"] if str(row.get("pantograph")) == key]
-        if trace.get("position_m"):
-            drawn.append(_force(key, trace, rows))
-        if (trace.get("spectrum") or {}).get("frequency_Hz"):
-            drawn.append(_spectrum(key, trace, case["quantities"].get(key, {})))
-        if (trace.get("histogram") or {}).get("share_pct"):
-            drawn.append(_histogram(key, trace))
-    supports = [support for support in case.get("uplift") or [] if support["time_s"]]
-    if supports:
-        peaks = ", ".join(
-            f"{format_value(max(s['uplift_mm']), 3)} mm at {format_plain(s['support_m'])} m" for s in supports
-        )
-        caption = f"Uplift at the supports. Largest: {peaks}."
-        drawn.append(Figure(figures.draw_uplift(supports, case["criteria"]), caption, caption, wide=True))
-    return tuple(drawn)
+    if case.get("warnings"):
+        blocks.append(WarningBox(tuple(case["warnings"])))
+    if case["criteria"]:
+        blocks.append(Section("Criteria", criteria_blocks(case, anchor)))
+    blocks += [Section(table["caption"], (_study_table(table),)) for table in case.get("tables") or []]
+    bands, quantities = build_band_table(case), build_quantity_table(case)
+    if bands.rows:
+        blocks.append(Section("Extended band, up to 50 Hz", (bands,)))
+    figures = tuple(draw_case_figures(case))
+    if figures:
+        blocks.append(Section("Figures", (Figures(figures),)))
+    if quantities.rows:
+        blocks.append(Section("All quantities", (quantities,)))
+    for heading, sentences in (("Skipped", list_skipped(case)), ("Notes", tuple(case.get("notes") or ()))):
+        if sentences:
+            blocks.append(Section(heading, (BulletList(sentences),)))
+    if case.get("inputs"):
+        blocks.append(Section("Inputs", (_input_table(case["inputs"]),)))
+    blocks.append(Section("Run", (list_case_facts(case),)))
+    return Section(case.get("title") or case["id"], tuple(blocks), anchor=anchor, new_page=True)
 
 
-def _force(key: str, trace: dict[str, Any], rows: list[dict[str, Any]]) -> Figure:
-    start, end = trace["position_m"][0], trace["position_m"][-1]
-    mean, std = trace.get("mean_N"), trace.get("std_N")
-    text = f"Pantograph {key}: contact force from {format_plain(start)} m to {format_plain(end)} m"
-    if mean is not None and std is not None:
-        low, high = format_value(mean - 3 * std), format_value(mean + 3 * std)
-        text += f"; mean {format_value(mean)} N, mean ± 3 σ from {low} N to {high} N"
-    limited = figures.limited_rows(rows)
-    strip = " On the right: the limits of the force's statistics, and where the values lie." if limited else ""
-    return Figure(figures.draw_force(trace, limited), f"{text}.", f"{text}.{strip}", wide=True)
+def _study_table(table: dict[str, Any]) -> Table:
+    names = table["columns"]
+    shares = (2.0, 0.0, 3.0) if len(names) <= 3 else (2.0, *(1.0 for _ in names[1:]))
+    columns = tuple(Column(name, share) for name, share in zip(names, shares, strict=False))
+    return Table(columns, tuple(map(tuple, table["rows"])))
 
 
-def _spectrum(key: str, trace: dict[str, Any], quantities: dict[str, Any]) -> Figure:
-    bands = [
-        f"{low} to {high} Hz: {format_value(quantities[name])} N"
-        for low, high, name in BANDS
-        if quantities.get(name) is not None
-    ]
-    caption = f"Pantograph {key}: amplitude spectrum of the force, with the RMS of its bands."
-    alternative = f"{caption} {'; '.join(bands)}." if bands else caption
-    return Figure(figures.draw_spectrum(trace, quantities), alternative, caption, wide=False)
-
-
-def _histogram(key: str, trace: dict[str, Any]) -> Figure:
-    edges = trace["histogram"]["edges_N"]
-    caption = f"Pantograph {key}: histogram of the 20 Hz force."
-    alternative = f"{caption} From {format_value(edges[0])} N to {format_value(edges[-1])} N."
-    return Figure(figures.draw_histogram(trace), alternative, caption, wide=False)
+def _input_table(inputs: list[dict[str, Any]]) -> Table:
+    rows = tuple((Code(group["group"]), TrustMark(group["trust"]), group.get("source") or "") for group in inputs)
+    return Table((Column("Group", share=1), Column("Trust"), Column("Source", share=3)), rows)

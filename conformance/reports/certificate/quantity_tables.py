@@ -1,79 +1,75 @@
 """Tables of quantities: one row per quantity, one column per pantograph."""
 
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from pantocheck.conformance.quantities.registry import QUANTITIES, table_quantities
-from pantocheck.conformance.reports.certificate.page_content import QuantityTable
+from pantocheck.conformance.reports.document import Code, Column, Table
 from pantocheck.conformance.reports.page_text import format_value
-from pantocheck.conformance.reports.words import holder, quantity_label, quantity_unit, read_words
+from pantocheck.conformance.reports.words import name_holder, quantity_label, quantity_unit, read_words
+
+BAND_CAPTION = (
+    "Standard deviation, coefficient of variation and RMS by band; each value with its verdict, or informative where "
+    "no limit counts."
+)
 
 
-def columns(case: dict[str, Any]) -> list[str]:
-    """Keys of whatever has quantities: pantographs in running order, then the line as "0"."""
+def list_holders(case: dict[str, Any]) -> list[str]:
+    """Keys of the quantities of a case: pantographs in running order, then the line as "0"."""
     keys = set(case["quantities"]) | set(case["skipped"])
     return sorted(keys, key=lambda key: (key == "0", len(key), key))
 
 
-def heading(key: str) -> str:
-    """Name of a column."""
-    return holder(key).capitalize()
-
-
-def bands(case: dict[str, Any]) -> QuantityTable:
-    """The extended band table: each cell with its verdict where graded, else marked informative."""
-    pantographs = [key for key in columns(case) if key != "0"]
-    graded = {
-        (row["quantity"], str(row.get("pantograph"))): row["verdict"]
-        for row in case["criteria"]
-        if row["verdict"] != "info"
+def build_band_table(case: dict[str, Any]) -> Table:
+    """Quantities of the bands up to 50 Hz, each with its verdict or marked informative."""
+    verdicts = {
+        (criterion["quantity"], str(criterion.get("pantograph"))): criterion["verdict"]
+        for criterion in case["criteria"]
+        if criterion["verdict"] != "info"
     }
 
-    def cell(name: str, key: str) -> str:
-        value = case["quantities"].get(key, {}).get(name)
+    def cell(quantity: str, key: str) -> str:
+        value = case["quantities"].get(key, {}).get(quantity)
         if value is None:
             return "not available"
-        verdict = graded.get((name, key))
+        verdict = verdicts.get((quantity, key))
         return f"{format_value(value)} ({read_words()['verdict'][verdict]['word'] if verdict else 'informative'})"
 
-    return QuantityTable(
-        tuple(heading(key) for key in pantographs),
-        tuple(
-            (quantity_label(name), name, quantity_unit(name), tuple(cell(name, key) for key in pantographs))
-            for name in table_quantities("bands")
-        )
-        if pantographs
-        else (),
-    )
+    pantographs = [key for key in list_holders(case) if key != "0"]
+    return _table(table_quantities("bands") if pantographs else (), pantographs, cell, BAND_CAPTION)
 
 
-def quantities(case: dict[str, Any]) -> QuantityTable:
-    """Every quantity of a case; what is neither there nor skipped is left blank."""
-    keys = columns(case)
+def build_quantity_table(case: dict[str, Any]) -> Table:
+    """Every quantity of a case; a quantity that a pantograph does not have is a dash."""
+    keys = list_holders(case)
     order = list(QUANTITIES)
     names = {name for key in keys for name in (*case["quantities"].get(key, {}), *case["skipped"].get(key, {}))}
     ordered = sorted(names, key=lambda name: (order.index(name) if name in order else len(order), name))
 
-    def cell(name: str, key: str) -> str:
-        value = case["quantities"].get(key, {}).get(name)
+    def cell(quantity: str, key: str) -> str:
+        value = case["quantities"].get(key, {}).get(quantity)
         if value is None:
-            return "skipped" if name in case["skipped"].get(key, {}) else ""
-        error = (case.get("uncertainty") or {}).get(key, {}).get(name)
-        shown = ", ".join(format_value(one, 5) for one in (value if isinstance(value, list) else [value]))
-        return shown if error is None else f"{shown} ± {format_value(error, 2)}"
+            return "skipped" if quantity in case["skipped"].get(key, {}) else "–"
+        error = (case.get("uncertainty") or {}).get(key, {}).get(quantity)
+        text = ", ".join(format_value(number, 5) for number in (value if isinstance(value, list) else [value]))
+        return text if error is None else f"{text} ± {format_value(error, 2)}"
 
-    return QuantityTable(
-        tuple(heading(key) for key in keys),
-        tuple(
-            (quantity_label(name), name, quantity_unit(name), tuple(cell(name, key) for key in keys))
-            for name in ordered
-        ),
-    )
+    return _table(ordered, keys, cell)
 
 
-def skipped(case: dict[str, Any]) -> tuple[tuple[str, str, str], ...]:
-    """What was skipped: whose, which quantity, why."""
+def list_skipped(case: dict[str, Any]) -> tuple[str, ...]:
+    """Skipped quantities with their reasons."""
     return tuple(
-        (heading(key), quantity_label(name), reason)
-        for key in columns(case)
-        for name, reason in sorted(case["skipped"].get(key, {}).items())
+        f"{name_holder(key).capitalize()}, {quantity_label(quantity)}: {reason}"
+        for key in list_holders(case)
+        for quantity, reason in sorted(case["skipped"].get(key, {}).items())
     )
+
+
+def _table(quantities: Iterable[str], keys: list[str], cell: Callable[[str, str], str], caption: str = "") -> Table:
+    holders = (Column(name_holder(key).capitalize(), share=1, number=True) for key in keys)
+    rows = tuple(
+        ((f"{quantity_label(name)} ", Code(name)), quantity_unit(name) or "–", *(cell(name, key) for key in keys))
+        for name in quantities
+    )
+    return Table((Column("Quantity", share=2.4), Column("Unit"), *holders), rows, caption)

@@ -1,25 +1,27 @@
-"""Why a verdict is what it is: what failed, what could not be evaluated, and the closest margins."""
+"""Reasons of a verdict: failed and missing criteria, close values and the smallest margins."""
 
 from collections import Counter
+from collections.abc import Iterator
 from typing import Any
 
-from pantocheck.conformance.reports.certificate.criteria_rows import (
+from pantocheck.conformance.reports.certificate.criteria_table import (
     criterion_title,
     format_signed,
-    is_unresolved,
+    is_close,
     total_error,
 )
-from pantocheck.conformance.reports.certificate.page_content import Reasons
+from pantocheck.conformance.reports.document import BulletList, Section
 from pantocheck.conformance.reports.page_text import format_beside_limits, format_limits
-from pantocheck.conformance.reports.words import owner, read_words
+from pantocheck.conformance.reports.words import name_owner, read_words
 
-CLOSEST = 3
+MARGINS_SHOWN = 3
+"""Number of the smallest margins in the reasons."""
 
 
 def build_headline(results: dict[str, Any]) -> str:
-    """The verdict in one sentence with its count."""
-    verdicts = Counter(row["verdict"] for case in results["cases"] for row in case["criteria"])
-    counted = sum(verdicts[v] for v in ("pass", "fail", "skip", "error"))
+    """The verdict in one sentence with its counts."""
+    verdicts = Counter(criterion["verdict"] for case in results["cases"] for criterion in case["criteria"])
+    counted = sum(verdicts[verdict] for verdict in ("pass", "fail", "skip", "error"))
     cases = f"{len(results['cases'])} {'case' if len(results['cases']) == 1 else 'cases'}"
     broken = sum(case["verdict"] == "error" for case in results["cases"])
     if broken:
@@ -27,8 +29,9 @@ def build_headline(results: dict[str, Any]) -> str:
     if verdicts["fail"]:
         return f"{verdicts['fail']} of {counted} counted criteria in {cases} lie outside their limits."
     if results["verdict"] == "skip":
-        idle = sum(case["verdict"] == "skip" for case in results["cases"])
-        return f"{idle} of {cases} could not be evaluated in full; {verdicts['pass']} of {counted} criteria are inside."
+        incomplete = sum(case["verdict"] == "skip" for case in results["cases"])
+        inside = f"{verdicts['pass']} of {counted} criteria are inside their limits"
+        return f"{incomplete} of {cases} could not be evaluated completely; {inside}."
     if not counted:
         return f"No limit counts in {cases}: the numbers are informative."
     if verdicts["pass"] == counted:
@@ -36,64 +39,74 @@ def build_headline(results: dict[str, Any]) -> str:
     return f"{verdicts['pass']} of {counted} counted criteria in {cases} lie inside their limits."
 
 
-def build_reasons(results: dict[str, Any]) -> tuple[Reasons, ...]:
-    """Sentences under headings, the gravest first; empty groups are left out."""
-    cases = results["cases"]
-    rows = [(case, row) for case in cases for row in case["criteria"]]
-
-    def of(verdict: str) -> list[tuple[dict[str, Any], dict[str, Any]]]:
-        chosen = [(case, row) for case, row in rows if row["verdict"] == verdict]
-        return sorted(chosen, key=lambda pair: 0.0 if pair[1].get("margin") is None else pair[1]["margin"])
-
-    def whole(verdict: str) -> list[str]:
-        return [
-            f"{case['id']}: {case['reason']}" for case in cases if case["verdict"] == verdict and case.get("reason")
-        ]
-
-    unsure: dict[str, list[str]] = {}
-    for case, row in rows:
-        if is_unresolved(row):
-            unsure.setdefault(total_error(row)[1], []).append(_where(case, row))
-    groups = (
-        ("What could not be run", [*whole("error"), *(_why(case, row) for case, row in of("error"))]),
-        ("What failed", [*whole("fail"), *(_where(case, row) for case, row in of("fail"))]),
-        ("What could not be evaluated", [*whole("skip"), *(_why(case, row) for case, row in of("skip"))]),
-        *((f"Closer to a limit than the {name}", sentences) for name, sentences in unsure.items()),
-        ("Closest margins", [_where(case, row) for case, row in of("pass") if _has_width(row)][:CLOSEST]),
+def list_reasons(results: dict[str, Any]) -> tuple[Section, ...]:
+    """Sentences under headings, errors first; a heading without sentences is left out."""
+    passed = _select(results, "pass")
+    bounded = [(case, criterion) for case, criterion in passed if criterion["lower"] != criterion["upper"]]
+    groups = {
+        "Errors": [*_case_reasons(results, "error"), *map(_reason, _select(results, "error"))],
+        "Failed": [*_case_reasons(results, "fail"), *map(_value, _select(results, "fail"))],
+        "Not evaluated": [*_case_reasons(results, "skip"), *map(_reason, _select(results, "skip"))],
+    }
+    for case, criterion in _criteria(results):
+        if is_close(criterion):
+            heading = f"Closer to a limit than the {total_error(criterion)[1]}"
+            groups.setdefault(heading, []).append(_value((case, criterion)))
+    # Between two equal limits a margin is 0 at best and says nothing about closeness.
+    groups["Smallest margins"] = [_value(pair) for pair in bounded[:MARGINS_SHOWN]]
+    return tuple(
+        Section(heading, (BulletList(tuple(sentences)),)) for heading, sentences in groups.items() if sentences
     )
-    return tuple(Reasons(name, tuple(sentences)) for name, sentences in groups if sentences)
 
 
-def build_case_reasons(case: dict[str, Any]) -> str:
+def summarise_case(case: dict[str, Any]) -> str:
     """The verdict of one case in one sentence."""
     if case.get("reason"):
         return str(case["reason"])
-    verdicts = Counter(row["verdict"] for row in case["criteria"])
-    words_of = read_words()["verdict"]
+    verdicts = Counter(criterion["verdict"] for criterion in case["criteria"])
+    words = read_words()["verdict"]
     parts = [
-        f"{verdicts[v]} {words_of[v]['meaning'] if v != 'info' else 'informative'}"
-        for v in ("error", "fail", "skip", "pass", "info")
-        if verdicts[v]
+        f"{verdicts[verdict]} {words[verdict]['meaning'] if verdict != 'info' else 'informative'}"
+        for verdict in ("error", "fail", "skip", "pass", "info")
+        if verdicts[verdict]
     ]
     return f"{sum(verdicts.values())} criteria: {', '.join(parts)}." if parts else "No criteria."
 
 
-def criterion_subject(row: dict[str, Any]) -> str:
-    """The owner of a value and the quantity's name in words."""
-    return f"{owner(row)}, {criterion_title(row)}"
+Pair = tuple[dict[str, Any], dict[str, Any]]
+"""A case and one of its criteria."""
 
 
-def _has_width(row: dict[str, Any]) -> bool:
-    """Whether a margin above 0 is possible: between two equal limits it is 0 at best, and tells nothing."""
-    return bool(row["lower"] != row["upper"])
+def _criteria(results: dict[str, Any]) -> Iterator[Pair]:
+    return ((case, criterion) for case in results["cases"] for criterion in case["criteria"])
 
 
-def _where(case: dict[str, Any], row: dict[str, Any]) -> str:
-    value = format_beside_limits(row["value"], row["lower"], row["upper"])
-    margin = "" if row.get("margin") is None else f", margin {format_signed(row['margin'])}"
-    text = f"{case['id']}, {criterion_subject(row)}: {value} {row.get('unit') or ''}".rstrip()
-    return f"{text}, limits {format_limits(row['lower'], row['upper'])}{margin}."
+def _select(results: dict[str, Any], verdict: str) -> list[Pair]:
+    """Criteria with one verdict, the smallest margin first."""
+    pairs = [pair for pair in _criteria(results) if pair[1]["verdict"] == verdict]
+    return sorted(pairs, key=lambda pair: pair[1].get("margin") or 0.0)
 
 
-def _why(case: dict[str, Any], row: dict[str, Any]) -> str:
-    return f"{case['id']}, {criterion_subject(row)}: {row.get('reason') or 'no reason given'}"
+def _case_reasons(results: dict[str, Any], verdict: str) -> list[str]:
+    return [
+        f"{case['id']}: {case['reason']}"
+        for case in results["cases"]
+        if case["verdict"] == verdict and case.get("reason")
+    ]
+
+
+def _value(pair: Pair) -> str:
+    case, criterion = pair
+    value = format_beside_limits(criterion["value"], criterion["lower"], criterion["upper"])
+    margin = "" if criterion.get("margin") is None else f", margin {format_signed(criterion['margin'])}"
+    text = f"{_subject(case, criterion)}: {value} {criterion.get('unit') or ''}".rstrip()
+    return f"{text}, limits {format_limits(criterion['lower'], criterion['upper'])}{margin}."
+
+
+def _reason(pair: Pair) -> str:
+    case, criterion = pair
+    return f"{_subject(case, criterion)}: {criterion.get('reason') or 'no reason given'}"
+
+
+def _subject(case: dict[str, Any], criterion: dict[str, Any]) -> str:
+    return f"{case['id']}, {name_owner(criterion)}, {criterion_title(criterion)}"

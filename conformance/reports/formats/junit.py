@@ -1,53 +1,32 @@
 """JUnit XML: one test suite per case, one test case per criterion, so that any CI server shows the verdicts."""
 
-from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
-from pantocheck.conformance.input_files.atomic_writing import write_atomically
 from pantocheck.conformance.reports.certificate.case_facts import name_system
 from pantocheck.conformance.reports.page_text import clean_tree
-from pantocheck.conformance.reports.words import owner
+from pantocheck.conformance.reports.words import name_owner
 
-# What a verdict is called in JUnit; `pass` and `info` have no element of their own.
 ELEMENTS = {"fail": "failure", "error": "error", "skip": "skipped"}
+"""Name of each verdict in JUnit; `pass` and `info` have no element of their own."""
 
-
-def write_junit(results: dict[str, Any], path: Path) -> None:
-    """Write `junit.xml`.
-
-    Parameters
-    ----------
-    results : dict[str, Any]
-        results.json as a dictionary.
-    path : Path
-        The file to write.
-
-    Raises
-    ------
-    InputError
-        The file cannot be written.
-    """
-    write_atomically(path, render_junit(results))
+COUNTERS = ("tests", "failures", "errors", "skipped")
+"""Attributes that count the tests of a suite."""
 
 
 def render_junit(results: dict[str, Any]) -> bytes:
-    """The XML document."""
+    """JUnit XML of results.json as a dictionary."""
     results = clean_tree(results)
     suites = [_suite(case, results) for case in results["cases"]]
-    total = {name: str(sum(int(suite.get(name, "0")) for suite in suites)) for name in _counters()}
+    total = {name: str(sum(int(suite.get(name, "0")) for suite in suites)) for name in COUNTERS}
     root = ElementTree.Element("testsuites", {"name": "pantocheck", **total})
     root.extend(suites)
     ElementTree.indent(root)
     return bytes(ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)) + b"\n"
 
 
-def _counters() -> tuple[str, ...]:
-    return ("tests", "failures", "errors", "skipped")
-
-
 def _suite(case: dict[str, Any], results: dict[str, Any]) -> ElementTree.Element:
-    # A case that was not graded is one test of its own, or it would vanish from the count.
+    # A case without criteria counts as one test, or the count would omit it.
     tests = [_test(case["id"], row) for row in case["criteria"]] or [_whole(case)]
     count = {
         "tests": len(tests),
@@ -56,7 +35,7 @@ def _suite(case: dict[str, Any], results: dict[str, Any]) -> ElementTree.Element
         "skipped": sum(test.find("skipped") is not None for test in tests),
     }
     wall = (case.get("run") or {}).get("wall_s")
-    attributes = {"name": case["id"], **{name: str(count[name]) for name in _counters()}}
+    attributes = {"name": case["id"], **{name: str(count[name]) for name in COUNTERS}}
     if wall is not None:
         attributes["time"] = f"{wall:.3f}"
     if results.get("started"):
@@ -85,7 +64,7 @@ def _whole(case: dict[str, Any]) -> ElementTree.Element:
 
 def _test(case: str, row: dict[str, Any]) -> ElementTree.Element:
     kind = "" if row.get("baseline") is None else "drift of "
-    test = ElementTree.Element("testcase", {"classname": case, "name": f"{kind}{row['quantity']} of {owner(row)}"})
+    test = ElementTree.Element("testcase", {"classname": case, "name": f"{kind}{row['quantity']} of {name_owner(row)}"})
     value = "no value" if row["value"] is None else f"{row['value']:.8g} {row['unit']}".rstrip()
     bounds = f"limits {_bound(row['lower'])} to {_bound(row['upper'])}"
     margin = "" if row["margin"] is None else f", margin {row['margin']:.4g}"

@@ -1,70 +1,113 @@
-"""The summary of a run in Markdown, for the page of a CI job."""
+"""A document as Markdown, for the page of a CI job and for the documentation; every text is escaped."""
 
 import re
-from pathlib import Path
-from typing import Any
+from collections.abc import Iterable, Iterator
 
-from jinja2 import Environment, FunctionLoader, StrictUndefined
+from pantocheck.conformance.reports.document import (
+    Block,
+    BulletList,
+    Code,
+    CodeBlock,
+    Document,
+    Drawing,
+    Facts,
+    Figures,
+    Inline,
+    NumberedList,
+    Paragraph,
+    RichText,
+    Section,
+    SmallPrint,
+    Table,
+    TrustMark,
+    VerdictHeader,
+    VerdictMark,
+    WarningBox,
+)
+from pantocheck.conformance.reports.words import read_words
 
-from pantocheck.conformance.input_files.atomic_writing import write_atomically
-from pantocheck.conformance.reports.certificate import case_facts as facts
-from pantocheck.conformance.reports.certificate import verdict_reasons as reasons
-from pantocheck.conformance.reports.certificate.certificate_page import error_name
-from pantocheck.conformance.reports.certificate.criteria_rows import build_criterion_row
-from pantocheck.conformance.reports.page_text import clean_tree
-from pantocheck.conformance.reports.words import TEMPLATES, read_words
-
-# Everything that means something in GitHub's or GitLab's Markdown, mentions (@) and references (#, !) included.
+# Everything with a meaning in the Markdown of GitHub or GitLab, mentions (@) and references (#, !) included.
 SPECIAL = re.compile(r"([\\`*_{}\[\]()#+!|~$@])")
 
 
-def write_markdown(results: dict[str, Any], path: Path) -> None:
-    """Write `summary.md`.
-
-    Parameters
-    ----------
-    results : dict[str, Any]
-        results.json as a dictionary.
-    path : Path
-        The file to write.
-
-    Raises
-    ------
-    InputError
-        The file cannot be written.
-    """
-    write_atomically(path, render_markdown(results).encode("utf-8"))
+def render_markdown(document: Document) -> str:
+    """Markdown text of a document; figures are replaced by their alternative texts."""
+    header = document.header
+    if isinstance(header, VerdictHeader):
+        parts = [
+            f"# {_word(header.verdict)}: {escape_markdown(header.headline)}",
+            escape_markdown(f"{header.subject} This is a {header.statement}."),
+        ]
+    else:
+        parts = [f"# {escape_markdown(header.heading)}", escape_markdown(header.headline)]
+    for block in document.blocks:
+        parts += _render(block, level=2)
+    return "\n\n".join(filter(None, parts)) + "\n"
 
 
-def render_markdown(results: dict[str, Any]) -> str:
-    """The Markdown text; whatever the template prints is escaped."""
-    results = clean_tree(results)
-    environment = Environment(
-        loader=FunctionLoader(lambda name: (TEMPLATES / name).read_text("utf-8")),
-        autoescape=False,  # HTML's escaping does not suit Markdown: `finalize` escapes every printed value instead
-        finalize=escape_markdown,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
-    return environment.get_template("summary.md").render(
-        results=results,
-        headline=reasons.build_headline(results),
-        reasons=reasons.build_reasons(results),
-        system=facts.name_system(results),
-        suite=facts.name_suite(results),
-        cases=[
-            (case, [build_criterion_row(row, []) for row in case["criteria"]], error_name(case))
-            for case in results["cases"]
-        ],
-        words={name: of["word"] for name, of in read_words()["verdict"].items()},
-    )
-
-
-def escape_markdown(value: Any) -> str:
-    """Text that Markdown shows as it is, in a table as well."""
-    text = str(value).replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+def escape_markdown(text: str) -> str:
+    """Text that Markdown shows unchanged, in a table as well."""
+    text = text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
     text = SPECIAL.sub(r"\\\1", text)
     # Bare addresses and the start of a list would still be taken as markup.
     return re.sub(r"(?i)(https?|ftp)://", r"\1:&#8203;//", text).replace("www.", "www&#8203;.")
+
+
+def _render(block: Block, level: int) -> Iterator[str]:
+    """Paragraphs of one block."""
+    match block:
+        case Section():
+            yield f"{'#' * level} {escape_markdown(block.heading)}"
+            for part in block.blocks:
+                yield from _render(part, level + 1)
+        case Paragraph() | SmallPrint():
+            yield _text(block.text)
+        case CodeBlock():
+            yield "\n".join(f"    {line}" for line in block.code.splitlines())
+        case BulletList():
+            yield _bullets(map(_text, block.items))
+        case NumberedList():
+            yield "\n".join(f"{number}. {_text(item)}" for number, item in enumerate(block.items, start=1))
+        case WarningBox():
+            yield _bullets(f"Warning: {_text(sentence)}" for sentence in block.sentences)
+        case Facts():
+            yield _bullets(f"{_text(name)}: {_text(value)}" for name, value in block.pairs + block.times)
+        case Table():
+            yield _table(block)
+        case Figures():
+            yield _bullets(_text(figure.alternative) for figure in block.figures)
+
+
+def _table(table: Table) -> str:
+    rules = (":--" if not column.number else "--:" for column in table.columns)
+    rows = [[_text(column.heading) for column in table.columns], rules, *(map(_text, row) for row in table.rows)]
+    caption = f"{_text(table.caption)}\n\n" if table.caption else ""
+    return caption + "\n".join(f"| {' | '.join(row)} |" for row in rows)
+
+
+def _bullets(items: Iterable[str]) -> str:
+    return "\n".join(f"* {item}" for item in items)
+
+
+def _text(text: RichText) -> str:
+    return "".join(map(_inline, text)) if isinstance(text, tuple) else _inline(text)
+
+
+def _inline(element: Inline) -> str:
+    match element:
+        case str():
+            return escape_markdown(element)
+        case Code() if not re.search(r"[`|\\]", element.text):
+            return f"`{element.text}`"
+        case VerdictMark():
+            return _word(element.verdict)
+        case TrustMark():
+            return escape_markdown(element.trust or "–")
+        case Drawing():
+            return escape_markdown(element.alternative)
+        case _:
+            return escape_markdown(element.text)
+
+
+def _word(verdict: str) -> str:
+    return str(read_words()["verdict"][verdict]["word"])

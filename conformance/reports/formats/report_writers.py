@@ -1,13 +1,18 @@
-"""Formats of a report: what each is called and which module writes it, loaded only when it is asked for."""
+"""Writing reports: a document in the format of its file name, and the results of a run in several formats.
 
-from collections.abc import Callable, Sequence
-from importlib import import_module
+Functions import the writers that they need, because matplotlib, Typst and the template engine are slow to load.
+"""
+
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from pantocheck.conformance.input_files.atomic_writing import write_atomically
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.suggestions import suggest_names
+from pantocheck.conformance.reports.document import Document
+from pantocheck.conformance.reports.formats.badge import render_badge
+from pantocheck.conformance.reports.formats.junit import render_junit
 from pantocheck.conformance.results.results_format import Results
 
 FILES = {
@@ -20,23 +25,41 @@ FILES = {
 }
 """File that each format is written to."""
 
-_WRITERS = {
-    "html": ("html", "write_certificate_html"),
-    "pdf": ("pdf", "write_certificate_pdf"),
-    "junit": ("junit", "write_junit"),
-    "md": ("markdown", "write_markdown"),
-    "badge": ("badge", "write_badge"),
-}
-"""Module and function that write each format; a module is loaded only when its format is asked for."""
+CERTIFICATE = ("html", "pdf")
+"""Formats of the certificate."""
 
 
-def check_formats(names: Sequence[str]) -> tuple[str, ...]:
-    """Formats in the order they are written; results.json always is.
+def write_report(document: Document, path: Path) -> None:
+    """Write a document as HTML, PDF or Markdown, by the suffix of the file name.
 
     Raises
     ------
     InputError
-        There is no such format.
+        The file cannot be written, or `SOURCE_DATE_EPOCH` is not a number of seconds.
+    """
+    match path.suffix:
+        case ".html":
+            from pantocheck.conformance.reports.formats.html import render_html
+
+            content = render_html(document).encode("utf-8")
+        case ".pdf":
+            from pantocheck.conformance.reports.formats.pdf import render_pdf
+
+            content = render_pdf(document)
+        case _:
+            from pantocheck.conformance.reports.formats.markdown import render_markdown
+
+            content = render_markdown(document).encode("utf-8")
+    write_atomically(path, content)
+
+
+def check_formats(names: Sequence[str]) -> tuple[str, ...]:
+    """Formats in the order of writing; results.json is always written.
+
+    Raises
+    ------
+    InputError
+        Unknown format.
     """
     for name in names:
         if name not in FILES:
@@ -44,27 +67,39 @@ def check_formats(names: Sequence[str]) -> tuple[str, ...]:
     return ("json", *(name for name in FILES if name in names and name != "json"))
 
 
-def find_writer(name: str) -> Callable[[dict[str, Any], Path], None]:
-    """Function that writes results in a format other than json."""
-    module, function = _WRITERS[name]
-    write: Callable[[dict[str, Any], Path], None] = getattr(
-        import_module(f"pantocheck.conformance.reports.formats.{module}"), function
-    )
-    return write
-
-
 def write_all(results: Results, folder: Path, formats: Sequence[str]) -> list[Path]:
-    """Write results in several formats; where each was written.
+    """Write results in several formats.
+
+    Returns
+    -------
+    list of Path
+        The written files.
 
     Raises
     ------
     InputError
-        a file cannot be written.
+        A file cannot be written.
     """
-    content = results.to_dict()
-    for name in formats:
-        if name == "json":
-            write_atomically(folder / FILES[name], results.to_json())
-        else:
-            find_writer(name)(content, folder / FILES[name])
+    if "json" in formats:
+        write_atomically(folder / FILES["json"], results.to_json())
+    write_pages(results.to_dict(), folder, formats)
     return [folder / FILES[name] for name in formats]
+
+
+def write_pages(results: dict[str, Any], folder: Path, formats: Sequence[str]) -> None:
+    """Write every format but results.json; the certificate is composed once for all its formats."""
+    pages = [name for name in formats if name in CERTIFICATE]
+    if pages:
+        from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
+
+        certificate = build_certificate(results)
+        for name in pages:
+            write_report(certificate, folder / FILES[name])
+    if "md" in formats:
+        from pantocheck.conformance.reports.certificate.summary_page import build_summary
+
+        write_report(build_summary(results), folder / FILES["md"])
+    if "junit" in formats:
+        write_atomically(folder / FILES["junit"], render_junit(results))
+    if "badge" in formats:
+        write_atomically(folder / FILES["badge"], render_badge(results).encode("utf-8"))

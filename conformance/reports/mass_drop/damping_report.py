@@ -1,13 +1,29 @@
-"""The report of a damping fit, from damping.json alone."""
+"""Report on a damping fit, from damping.json."""
 
 from typing import Any
 
-from pantocheck.conformance.identification.damping.observability import RATIO_NEEDED, SHARE_NEEDED
-from pantocheck.conformance.reports.document import Document, Grid, Picture, Section
-from pantocheck.conformance.reports.figures import mass_drop_figures as figures
-from pantocheck.conformance.reports.page_text import format_value
+from pantocheck.conformance.reports.document import (
+    Block,
+    CodeBlock,
+    Document,
+    Figure,
+    Figures,
+    Paragraph,
+    PlainHeader,
+    Section,
+    Table,
+    WarningBox,
+    make_grid,
+)
+from pantocheck.conformance.reports.figures.damping_figures import draw_comparison, draw_observability
+from pantocheck.conformance.reports.page_text import clean_tree, format_value
 
+TITLE = "Damping model from mass drops"
 COEFFICIENT_UNITS = {"stiffness": "s", "mass": "1/s"}
+RESULT = (
+    "The block replaces [damping] in the line file. Mass coefficients multiply M, stiffness coefficients multiply K."
+)
+COMPARISON = "The line as it is has the damping of its present file."
 
 
 def build_damping_document(results: dict[str, Any], block: str) -> Document:
@@ -15,65 +31,69 @@ def build_damping_document(results: dict[str, Any], block: str) -> Document:
 
     Parameters
     ----------
-    results : dict[str, Any]
-        Of damping.json.
+    results : dict
+        damping.json as a dictionary.
     block : str
-        The TOML block of the result.
+        The result as a TOML block for the line file.
     """
-    seen = [row for row in results["observability"] if row["observable"]]
-    kinds = dict.fromkeys(row["kind"].replace("_", " ") for row in seen)
+    results = clean_tree(results)
+    observable = [row for row in results["observability"] if row["observable"]]
+    kinds = dict.fromkeys(row["kind"].replace("_", " ") for row in observable)
     headline = (
         f"Rayleigh damping fitted to {len(results['pairs'])} modes leaves {100 * results['residual']:.2g} % "
         f"of their damping ratios. Observable: {', '.join(kinds) or 'nothing'}."
     )
-    without = ", ".join(format_value(f) for f in results["unpaired"])
-    warnings = (f"measured modes without a counterpart in the line's model: {without} Hz",) if without else ()
-    return Document(
-        "Damping model from mass drops",
-        headline,
-        warnings,
-        (
-            Section("Result", texts=(RESULT,), code=block, grids=(_coefficients(results),)),
-            Section("Comparison", texts=(COMPARISON,), pictures=(_comparison(results),)),
-            Section("Observability", (OBSERVABILITY,), (_observability(results),), (_observability_picture(results),)),
-            Section("Pairs of modes", grids=(_pairs(results),)),
+    blocks: list[Block] = []
+    if results["unpaired"]:
+        frequencies = ", ".join(format_value(frequency) for frequency in results["unpaired"])
+        blocks.append(WarningBox((f"measured modes without a counterpart in the model of the line: {frequencies} Hz",)))
+    blocks += [
+        Section("Result", (Paragraph(RESULT), CodeBlock(block), _coefficients(results))),
+        Section("Comparison", (Paragraph(COMPARISON), Figures((_comparison(results),)))),
+        Section(
+            "Observability",
+            (
+                Paragraph(describe_observability(results["thresholds"])),
+                Figures((_observability_figure(results),)),
+                _observability(results),
+            ),
         ),
+        Section("Pairs of modes", (_pairs(results),)),
+    ]
+    return Document(TITLE, PlainHeader(TITLE, headline), tuple(blocks))
+
+
+def describe_observability(thresholds: dict[str, float]) -> str:
+    """Meaning of an observable coefficient, by the `thresholds` of damping.json."""
+    return (
+        f"A coefficient is observable if its plausible value contributes at least {100 * thresholds['largest_share']:g} "
+        f"% of the damping of some mode and is at least {thresholds['plausible_over_std']:g} times its standard "
+        "deviation. The standard deviation takes the coefficients of the wires as unknown as well."
     )
 
 
-RESULT = (
-    "The block takes the place of [damping] in the line file; mass coefficients multiply M, stiffness coefficients K."
-)
-COMPARISON = "Line as it is: with the damping its file has now."
-OBSERVABILITY = (
-    f"A coefficient is observable if its plausible value would make up at least {100 * SHARE_NEEDED:g} % of some "
-    f"mode's damping and is at least {RATIO_NEEDED:g} times the standard deviation with which the modes determine it, "
-    "the wires' coefficients being unknown too."
-)
-
-
-def _coefficients(results: dict[str, Any]) -> Grid:
+def _coefficients(results: dict[str, Any]) -> Table:
     rows = [
         (
-            c["kind"].replace("_", " "),
-            c["matrix"],
-            f"{format_value(c['value'])} {COEFFICIENT_UNITS[c['matrix']]}",
-            f"{format_value(c['low_95'], 3)} to {format_value(c['high_95'], 3)}",
+            row["kind"].replace("_", " "),
+            row["matrix"],
+            f"{format_value(row['value'])} {COEFFICIENT_UNITS[row['matrix']]}",
+            f"{format_value(row['low_95'], 3)} to {format_value(row['high_95'], 3)}",
         )
-        for c in results["coefficients"]
+        for row in results["coefficients"]
     ]
-    return Grid(("Component", "Multiplies", "Value", "95 % interval"), tuple(rows), "Coefficients")
+    return make_grid("Coefficients", ("Component", "Multiplies", "Value", "95 % interval"), rows)
 
 
-def _comparison(results: dict[str, Any]) -> Picture:
-    return Picture(
-        figures.draw_comparison(results["comparison"]),
+def _comparison(results: dict[str, Any]) -> Figure:
+    return Figure(
+        draw_comparison(results["comparison"]),
         "Damping ratio over frequency, measured and of the models; the pairs are in the table.",
         "Damping ratio: measured (95 % intervals), of the line as it is, of Rayleigh, and of Rayleigh + modal damping.",
     )
 
 
-def _observability(results: dict[str, Any]) -> Grid:
+def _observability(results: dict[str, Any]) -> Table:
     rows = [
         (
             row["kind"].replace("_", " "),
@@ -87,7 +107,7 @@ def _observability(results: dict[str, Any]) -> Grid:
         )
         for row in results["observability"]
     ]
-    heads = (
+    headings = (
         "Component",
         "Multiplies",
         "Share [%]",
@@ -97,29 +117,29 @@ def _observability(results: dict[str, Any]) -> Grid:
         "Residual without",
         "Observable",
     )
-    return Grid(heads, tuple(rows), "What the modes tell of each coefficient")
+    return make_grid("Information of the modes on each coefficient", headings, rows)
 
 
-def _observability_picture(results: dict[str, Any]) -> Picture:
-    return Picture(
-        figures.draw_observability(results["observability"]),
+def _observability_figure(results: dict[str, Any]) -> Figure:
+    return Figure(
+        draw_observability(results["observability"], results["thresholds"]),
         "Bars of the numbers in the table; filled bars are observable.",
         "Observability: filled bars are observable, dashed lines are the thresholds.",
     )
 
 
-def _pairs(results: dict[str, Any]) -> Grid:
+def _pairs(results: dict[str, Any]) -> Table:
     rows = [
         (
-            format_value(p["measured_Hz"], 5),
-            format_value(p["computed_Hz"], 5),
-            format_value(p["mac"], 4),
-            str(p["group"]),
-            format_value(100 * p["measured"], 4),
-            format_value(100 * p["fitted"], 4),
-            "yes" if p["used"] else "no: outlier of its group",
+            format_value(pair["measured_Hz"], 5),
+            format_value(pair["computed_Hz"], 5),
+            format_value(pair["mac"], 4),
+            str(pair["group"]),
+            format_value(100 * pair["measured"], 4),
+            format_value(100 * pair["fitted"], 4),
+            "yes" if pair["used"] else "no: outlier of its group",
         )
-        for p in results["pairs"]
+        for pair in results["pairs"]
     ]
-    heads = ("Measured [Hz]", "Computed [Hz]", "MAC", "Group", "Measured ζ [%]", "Fitted ζ [%]", "Used")
-    return Grid(heads, tuple(rows), "Measured modes and their computed counterparts")
+    headings = ("Measured [Hz]", "Computed [Hz]", "MAC", "Group", "Measured ζ [%]", "Fitted ζ [%]", "Used")
+    return make_grid("Measured modes and their computed counterparts", headings, rows)

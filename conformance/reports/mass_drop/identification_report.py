@@ -1,12 +1,30 @@
-"""The report of an identification, from identification.json alone."""
+"""Report on an identification, from identification.json."""
 
+from collections.abc import Iterator
 from typing import Any
 
-from pantocheck.conformance.reports.document import Document, Grid, Picture, Section
-from pantocheck.conformance.reports.figures import mass_drop_figures as figures
-from pantocheck.conformance.reports.page_text import format_value
+from pantocheck.conformance.reports.document import (
+    Block,
+    Document,
+    Figure,
+    Figures,
+    Paragraph,
+    PlainHeader,
+    Section,
+    Table,
+    WarningBox,
+    make_grid,
+)
+from pantocheck.conformance.reports.figures import identification_figures as figures
+from pantocheck.conformance.reports.page_text import clean_tree, format_value
 
-UNIT = {"acceleration": "m/s²", "velocity": "m/s", "displacement": "m"}
+TITLE = "Identification of mass drops"
+UNITS = {"acceleration": "m/s²", "velocity": "m/s", "displacement": "m"}
+MODES_TEXT = (
+    "Uncertainties are one standard deviation: the Cramér-Rao bound with the noise estimated from the residual, widened "
+    "where the residual around a mode exceeds noise. Error: residual of the fit in the band of the mode, relative to "
+    "the measured spectrum."
+)
 
 
 def build_identification_document(lines: list[dict[str, Any]]) -> Document:
@@ -14,66 +32,65 @@ def build_identification_document(lines: list[dict[str, Any]]) -> Document:
 
     Parameters
     ----------
-    lines : list[dict[str, Any]]
-        Of identification.json, one entry per line.
+    lines : list of dict
+        `lines` of identification.json.
     """
+    lines = clean_tree(lines)
     modes = [mode for line in lines for mode in line["modes"]]
     certain = [mode for mode in modes if mode["certain"] and not mode["lateral"]]
     doubtful = len(modes) - len(certain)
     headline = f"{len(certain)} modes identified with a damping ratio known to better than 5 %"
     headline += f"; {doubtful} more are uncertain or lateral." if doubtful else "."
-    sections = []
+    warnings = collect_warnings(lines)
+    blocks: list[Block] = [WarningBox(warnings)] if warnings else []
     for line in lines:
         names = ", ".join(record["name"] for record in line["records"])
-        sections += _sections(line, f" ({names})" if len(lines) > 1 else "")
-    warnings = tuple(dict.fromkeys(text for line in lines for text in line["warnings"]))
-    return Document("Identification of mass drops", headline, warnings, tuple(sections))
+        blocks += _list_sections(line, f" ({names})" if len(lines) > 1 else "")
+    return Document(TITLE, PlainHeader(TITLE, headline), tuple(blocks))
 
 
-def _sections(line: dict[str, Any], suffix: str) -> list[Section]:
-    unit = UNIT[line["quantity"]]
-    return [
-        Section(f"Damping{suffix}", grids=(_groups(line),), pictures=_damping_pictures(line)),
-        Section(f"Modes{suffix}", texts=(MODES_TEXT,), grids=(_modes(line),)),
-        Section(f"Fit{suffix}", texts=(_fit_text(line),), pictures=tuple(_spectrum(s, unit) for s in line["spectra"])),
-        *_repeatability(line, suffix, unit),
-        *_responses(line, suffix),
-        Section(f"Records{suffix}", grids=(_records(line),)),
-    ]
+def collect_warnings(lines: list[dict[str, Any]]) -> tuple[str, ...]:
+    """Warnings of all lines, each once."""
+    return tuple(dict.fromkeys(text for line in lines for text in line["warnings"]))
 
 
-MODES_TEXT = (
-    "Uncertainties are one standard deviation: Cramér-Rao with the noise estimated from the residual, widened where "
-    "the residual around a mode is more than noise. Error: what the fit leaves in the mode's band over what is "
-    "measured there."
-)
+def _list_sections(line: dict[str, Any], suffix: str) -> Iterator[Section]:
+    unit = UNITS[line["quantity"]]
+    spectra = tuple(_spectrum(data, unit) for data in line["spectra"])
+    yield Section(f"Damping{suffix}", (*_damping_figures(line), _groups(line)))
+    yield Section(f"Modes{suffix}", (Paragraph(MODES_TEXT), _modes(line)))
+    yield Section(f"Fit{suffix}", (Paragraph(_describe_fit(line)), Figures(spectra)))
+    if line["repeatability"]:
+        yield Section(f"Repeatability{suffix}", tuple(_repeatability(line, unit)))
+    if line["frequency_responses"]:
+        yield Section(f"Frequency responses{suffix}", (Figures((_response(line["frequency_responses"][0]),)),))
+    yield Section(f"Records{suffix}", (_records(line),))
 
 
-def _fit_text(line: dict[str, Any]) -> str:
+def _describe_fit(line: dict[str, Any]) -> str:
     return (
-        f"The squared residual is {format_value(line['misfit'], 3)} times what noise alone would leave "
+        f"The squared residual is {format_value(line['misfit'], 3)} times that of noise alone "
         f"(1 for a complete model); modes between {line['band_Hz'][0]:g} and {line['band_Hz'][1]:g} Hz."
     )
 
 
-def _damping_pictures(line: dict[str, Any]) -> tuple[Picture, ...]:
+def _damping_figures(line: dict[str, Any]) -> tuple[Figures, ...]:
     if not line["modes"]:
         return ()
-    return (
-        Picture(
-            figures.draw_boxes(line["modes"]),
-            "Box plots of the damping ratio of each group of span modes; the numbers are in the table of groups.",
-            "Damping ratio per group of span modes: quartiles, median, modes, outliers; without uncertain modes.",
-        ),
-        Picture(
-            figures.draw_damping(line["modes"]),
-            "Damping ratio over frequency with error bars; the numbers are in the table of modes.",
-            "Damping ratio of every mode with its 95 % interval.",
-        ),
+    boxes = Figure(
+        figures.draw_boxes(line["modes"]),
+        "Box plots of the damping ratio of each group of span modes; the numbers are in the table of groups.",
+        "Damping ratio per group of span modes: quartiles, median, modes, outliers; without uncertain modes.",
     )
+    ratios = Figure(
+        figures.draw_damping(line["modes"]),
+        "Damping ratio over frequency with error bars; the numbers are in the table of modes.",
+        "Damping ratio of every mode with its 95 % interval.",
+    )
+    return (Figures((boxes, ratios)),)
 
 
-def _groups(line: dict[str, Any]) -> Grid:
+def _groups(line: dict[str, Any]) -> Table:
     rows = [
         (
             str(group["group"]),
@@ -84,11 +101,11 @@ def _groups(line: dict[str, Any]) -> Grid:
         )
         for group in line["groups"]
     ]
-    heads = ("Group", "Frequency [Hz]", "Certain modes", "Median damping ratio [%]", "Range [%]")
-    return Grid(heads, tuple(rows), "Groups of span modes")
+    headings = ("Group", "Frequency [Hz]", "Certain modes", "Median damping ratio [%]", "Range [%]")
+    return make_grid("Groups of span modes", headings, rows)
 
 
-def _modes(line: dict[str, Any]) -> Grid:
+def _modes(line: dict[str, Any]) -> Table:
     rows = [
         (
             format_value(mode["frequency_Hz"], 6),
@@ -98,69 +115,64 @@ def _modes(line: dict[str, Any]) -> Grid:
             "–" if mode["group"] is None else str(mode["group"]),
             format_value(mode["phase_collinearity"], 4),
             format_value(100 * mode["error"], 2),
-            "; ".join(_short(text) for text in mode["warnings"]) or "–",
+            "; ".join(_shorten(text) for text in mode["warnings"]) or "–",
         )
         for mode in line["modes"]
     ]
-    heads = ("f [Hz]", "± [mHz]", "ζ [%]", "± [% of ζ]", "Group", "Collinearity", "Error [%]", "Warnings")
-    return Grid(heads, tuple(rows), "Modes by frequency")
+    headings = ("f [Hz]", "± [mHz]", "ζ [%]", "± [% of ζ]", "Group", "Collinearity", "Error [%]", "Warnings")
+    return make_grid("Modes by frequency", headings, rows)
 
 
-def _short(text: str) -> str:
-    return text.split(";", maxsplit=1)[0] if text.startswith("half-power") else text
+def _shorten(warning: str) -> str:
+    return warning.split(";", maxsplit=1)[0] if warning.startswith("half-power") else warning
 
 
-def _spectrum(data: dict[str, Any], unit: str) -> Picture:
-    return Picture(
+def _spectrum(data: dict[str, Any], unit: str) -> Figure:
+    return Figure(
         figures.draw_spectra(data, unit),
         f"Spectra of the vertical sensors of {data['record']} with the identified fit over them.",
-        f"{data['record']}: transform of the free decay, the identified modes and what they leave.",
+        f"{data['record']}: spectrum of the free decay, the identified modes and the residual.",
     )
 
 
-def _repeatability(line: dict[str, Any], suffix: str, unit: str) -> list[Section]:
-    if not line["repeatability"]:
-        return []
-    texts, grids = [], []
-    for one in line["repeatability"]:
-        texts.append(f"{one['verdict'].capitalize()}: {one['reason']}.")
-        rows = [
-            (
-                f"{c['first']} / {c['second']}",
-                c["channel"],
-                format_value(c["correlation_at_start"], 5),
-                format_value(c["correlation_later"], 5),
-                format_value(100 * c["residual_at_start"], 3),
-                format_value(None if c["residual_later"] is None else 100 * c["residual_later"], 3),
-            )
-            for c in one["comparisons"]
-        ]
-        heads = ("Records", "Channel", "Correlation, start", "a minute later", "Residual [%], start", "a minute later")
-        grids.append(Grid(heads, tuple(rows), "Repeats compared below 6 Hz over ten seconds"))
-    pictures = tuple(
-        Picture(
+def _repeatability(line: dict[str, Any], unit: str) -> Iterator[Block]:
+    for result in line["repeatability"]:
+        yield Paragraph(f"{result['verdict'].capitalize()}: {result['reason']}.")
+    overlays = tuple(
+        Figure(
             figures.draw_overlay(overlay["runs"], overlay["channel"], unit),
             "Repeats of the drop laid over each other; their correlations are in the table.",
             f"Repeats at {overlay['channel']} at the start and a minute later.",
         )
         for overlay in line["overlays"]
     )
-    return [Section(f"Repeatability{suffix}", tuple(texts), tuple(grids), pictures)]
+    if overlays:
+        yield Figures(overlays)
+    headings = ("Records", "Channel", "Correlation, start", "a minute later", "Residual [%], start", "a minute later")
+    for result in line["repeatability"]:
+        rows = [
+            (
+                f"{pair['first']} / {pair['second']}",
+                pair["channel"],
+                format_value(pair["correlation_at_start"], 5),
+                format_value(pair["correlation_later"], 5),
+                format_value(100 * pair["residual_at_start"], 3),
+                format_value(None if pair["residual_later"] is None else 100 * pair["residual_later"], 3),
+            )
+            for pair in result["comparisons"]
+        ]
+        yield make_grid("Repeats compared below 6 Hz over ten seconds", headings, rows)
 
 
-def _responses(line: dict[str, Any], suffix: str) -> list[Section]:
-    pictures = tuple(
-        Picture(
-            figures.draw_responses(data),
-            f"Magnitude and phase of the frequency responses of {data['record']}, measured and identified.",
-            f"{data['record']}: accelerance, the release taken as a step force m g.",
-        )
-        for data in line["frequency_responses"][:1]
+def _response(data: dict[str, Any]) -> Figure:
+    return Figure(
+        figures.draw_responses(data),
+        f"Magnitude and phase of the frequency responses of {data['record']}, measured and identified.",
+        f"{data['record']}: accelerance, with the release as a step force m g.",
     )
-    return [Section(f"Frequency responses{suffix}", pictures=pictures)] if pictures else []
 
 
-def _records(line: dict[str, Any]) -> Grid:
+def _records(line: dict[str, Any]) -> Table:
     rows = [
         (
             record["name"],
@@ -173,8 +185,8 @@ def _records(line: dict[str, Any]) -> Grid:
         )
         for record in line["records"]
     ]
-    heads = ("Record", "Drop", "Recording", "Used after the release", "Channels")
-    return Grid(heads, tuple(rows), "Records and the linear stretch used of each")
+    headings = ("Record", "Drop", "Recording", "Used after the release", "Channels")
+    return make_grid("Records and the part of each that was used", headings, rows)
 
 
 def _percent(ratio: float | None) -> str:

@@ -7,8 +7,8 @@ import pytest
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.identification.damping import observability
 from pantocheck.conformance.identification.damping.damping_format import DampingResults, Observability
-from pantocheck.conformance.reports.figures import mass_drop_figures as massdrop_figures
-from pantocheck.conformance.reports.mass_drop.damping_report import OBSERVABILITY
+from pantocheck.conformance.reports.figures.damping_figures import draw_observability
+from pantocheck.conformance.reports.mass_drop.damping_report import describe_observability
 from pantocheck.conformance.studies.vovan2015 import fit_comparison as fitted
 
 OBSERVED = tuple(
@@ -51,11 +51,13 @@ def test_what_is_well_determined_is_not_called_observable_for_that_alone(chart):
 
 def test_drawn_threshold_is_that_of_the_fit(chart):
     assert chart.marks[0].low == observability.THRESHOLDS.plausible_over_std
-    left, right = massdrop_figures.draw_observability.__wrapped__([row.model_dump() for row in OBSERVED]).axes
-    assert set(left.lines[0].get_xdata()) == {100 * observability.SHARE_NEEDED}
-    assert set(right.lines[0].get_xdata()) == {observability.RATIO_NEEDED}
-    assert f"at least {100 * observability.SHARE_NEEDED:g} % of some mode's damping" in OBSERVABILITY
-    assert f"at least {observability.RATIO_NEEDED:g} times the standard deviation" in OBSERVABILITY
+    rows, thresholds = [row.model_dump() for row in OBSERVED], observability.THRESHOLDS.model_dump()
+    left, right = draw_observability.__wrapped__(rows, thresholds).axes
+    assert set(left.lines[0].get_xdata()) == {100 * thresholds["largest_share"]}
+    assert set(right.lines[0].get_xdata()) == {thresholds["plausible_over_std"]}
+    description = describe_observability(thresholds)
+    assert f"at least {100 * thresholds['largest_share']:g} % of the damping of some mode" in description
+    assert f"at least {thresholds['plausible_over_std']:g} times its standard deviation" in description
 
 
 def test_floor_of_the_logarithmic_scale_is_said(chart):

@@ -1,0 +1,67 @@
+"""Figures of a case with their captions and alternative texts."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from pantocheck.conformance.quantities.bands import BANDS
+from pantocheck.conformance.reports.document import Figure
+from pantocheck.conformance.reports.figures.force_figures import (
+    draw_force,
+    draw_histogram,
+    draw_spectrum,
+    select_limited,
+)
+from pantocheck.conformance.reports.figures.study_chart import draw_chart
+from pantocheck.conformance.reports.figures.uplift_figure import draw_uplift
+from pantocheck.conformance.reports.page_text import format_plain, format_value
+
+
+def draw_case_figures(case: dict[str, Any]) -> Iterator[Figure]:
+    """Charts of a study, then force, spectrum and histogram of each pantograph, then the uplift."""
+    for chart in case.get("charts") or []:
+        yield Figure(draw_chart(chart), chart["alternative"], chart["caption"], chart["wide"])
+    for key, trace in sorted((case.get("traces") or {}).items(), key=lambda item: (len(item[0]), item[0])):
+        if trace.get("position_m"):
+            yield _force_figure(key, trace, [row for row in case["criteria"] if str(row.get("pantograph")) == key])
+        if (trace.get("spectrum") or {}).get("frequency_Hz"):
+            yield _spectrum_figure(key, trace, case["quantities"].get(key, {}))
+        if (trace.get("histogram") or {}).get("share_pct"):
+            yield _histogram_figure(key, trace)
+    supports = [support for support in case.get("uplift") or [] if support["time_s"]]
+    if supports:
+        peaks = ", ".join(
+            f"{format_value(max(support['uplift_mm']), 3)} mm at {format_plain(support['support_m'])} m"
+            for support in supports
+        )
+        caption = f"Uplift at the supports. Largest: {peaks}."
+        yield Figure(draw_uplift(supports, case["criteria"]), caption, caption)
+
+
+def _force_figure(key: str, trace: dict[str, Any], criteria: list[dict[str, Any]]) -> Figure:
+    start, end = trace["position_m"][0], trace["position_m"][-1]
+    mean, std = trace.get("mean_N"), trace.get("std_N")
+    text = f"Pantograph {key}: contact force from {format_plain(start)} m to {format_plain(end)} m"
+    if mean is not None and std is not None:
+        low, high = format_value(mean - 3 * std), format_value(mean + 3 * std)
+        text += f"; mean {format_value(mean)} N, mean ± 3 σ from {low} N to {high} N"
+    limited = select_limited(criteria)
+    strip = " On the right: limits and values of the force statistics." if limited else ""
+    return Figure(draw_force(trace, limited), f"{text}.", f"{text}.{strip}")
+
+
+def _spectrum_figure(key: str, trace: dict[str, Any], quantities: dict[str, Any]) -> Figure:
+    values = [
+        f"{low:g} to {high:g} Hz: {format_value(quantities[name])} N"
+        for low, high, name in BANDS
+        if quantities.get(name) is not None
+    ]
+    caption = f"Pantograph {key}: amplitude spectrum of the force, with the RMS of its bands."
+    alternative = f"{caption} {'; '.join(values)}." if values else caption
+    return Figure(draw_spectrum(trace, quantities), alternative, caption, wide=False)
+
+
+def _histogram_figure(key: str, trace: dict[str, Any]) -> Figure:
+    edges = trace["histogram"]["edges_N"]
+    caption = f"Pantograph {key}: histogram of the 20 Hz force."
+    alternative = f"{caption} From {format_value(edges[0])} N to {format_value(edges[-1])} N."
+    return Figure(draw_histogram(trace), alternative, caption, wide=False)

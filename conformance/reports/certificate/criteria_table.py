@@ -1,0 +1,167 @@
+"""Table of the criteria of a case."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from pantocheck.conformance.reports.document import (
+    Block,
+    Code,
+    Column,
+    Drawing,
+    Link,
+    NumberedList,
+    Remark,
+    RichText,
+    SmallPrint,
+    Table,
+    TrustMark,
+    VerdictMark,
+)
+from pantocheck.conformance.reports.figures.margin_bar import draw_margin_bar
+from pantocheck.conformance.reports.page_text import format_beside_limits, format_limits, format_value
+from pantocheck.conformance.reports.words import name_owner, quantity_label, read_words
+
+MARGIN_KEY = (
+    "Margin: distance to the nearer limit over half the distance between the limits; 1 in the middle, 0 on a limit, "
+    "negative outside. In the bars, the band lies between the limits; a disc is inside, a cross is outside, an open "
+    "ring does not count, an arrow lies beyond the drawing, the whisker is the "
+)
+
+
+@dataclass(frozen=True)
+class CriterionTexts:
+    """Texts of one criterion."""
+
+    quantity: str
+    label: str
+    pantograph: str
+    value: str
+    error: str
+    limits: str
+    margin: str
+    remarks: tuple[str, ...]
+
+
+def describe_criterion(criterion: dict[str, Any]) -> CriterionTexts:
+    """Texts of a criterion of results.json."""
+    value, lower, upper = criterion["value"], criterion["lower"], criterion["upper"]
+    error, _ = total_error(criterion)
+    unit = "" if value is None else criterion.get("unit") or ""
+    return CriterionTexts(
+        quantity=criterion["quantity"],
+        label=criterion_title(criterion),
+        pantograph=name_owner(criterion).removeprefix("pantograph "),
+        value=f"{format_beside_limits(value, lower, upper)} {unit}".rstrip(),
+        error="–" if error is None else f"± {format_value(error, 2)}",
+        limits=format_limits(lower, upper),
+        margin="–" if criterion.get("margin") is None else format_signed(criterion["margin"]),
+        remarks=tuple(filter(None, (criterion.get("reason"), remark_close(criterion), remark_shift(criterion)))),
+    )
+
+
+def criteria_blocks(case: dict[str, Any], anchor: str) -> tuple[Block, ...]:
+    """The table of criteria, its key and the sources of the limits.
+
+    Parameters
+    ----------
+    case : dict
+        One entry of `cases` of results.json.
+    anchor : str
+        Anchor of the section of the case.
+    """
+    criteria = case["criteria"]
+    sources = list(dict.fromkeys(criterion["source"] for criterion in criteria if criterion.get("source")))
+    error = error_name(case)
+    columns = (
+        Column("Quantity", share=1),
+        Column("Pantograph", short="Pant."),
+        Column("Value", number=True),
+        Column(error, number=True, short=error.replace("Discretisation", "Discr.").replace(" (95 %)", "")),
+        Column("Limits", number=True),
+        Column("Margin"),
+        Column("Verdict"),
+        Column("Trust"),
+        Column("Source"),
+    )
+    rows = tuple(_row(criterion, sources, anchor) for criterion in criteria)
+    blocks: list[Block] = [Table(columns, rows, layout="cards"), SmallPrint(f"{MARGIN_KEY}{error.lower()}.")]
+    if sources:
+        blocks.append(NumberedList("Sources of the limits", tuple(sources), f"{anchor}-source"))
+    return tuple(blocks)
+
+
+def _row(criterion: dict[str, Any], sources: list[str], anchor: str) -> tuple[RichText, ...]:
+    texts = describe_criterion(criterion)
+    limited = criterion["lower"] is not None or criterion["upper"] is not None
+    source = sources.index(criterion["source"]) + 1 if criterion.get("source") else None
+    return (
+        (f"{texts.label} ", Code(texts.quantity), *map(Remark, texts.remarks)),
+        texts.pantograph,
+        texts.value,
+        texts.error,
+        texts.limits,
+        (_bar(criterion, texts), f" {texts.margin}") if limited and criterion["value"] is not None else texts.margin,
+        VerdictMark(criterion["verdict"]),
+        TrustMark(criterion["trust"] if limited else ""),
+        "–" if source is None else Link(f"[{source}]", f"{anchor}-source-{source}"),
+    )
+
+
+def _bar(criterion: dict[str, Any], texts: CriterionTexts) -> Drawing:
+    error, _ = total_error(criterion)
+    meaning = read_words()["verdict"][criterion["verdict"]]["meaning"]
+    value, lower, upper = criterion["value"], criterion["lower"], criterion["upper"]
+    shown = format_beside_limits(value, lower, upper)
+    drawing = draw_margin_bar(value, lower, upper, error, criterion["verdict"])
+    return Drawing(drawing, f"{meaning}: {shown}, limits {texts.limits}")
+
+
+def error_name(case: dict[str, Any]) -> str:
+    """Heading of the errors of a case: their uncertainty, or their discretisation error."""
+    uncertain = any(criterion.get("uncertainty") is not None for criterion in case["criteria"])
+    return "Uncertainty (95 %)" if uncertain else "Discretisation error"
+
+
+def total_error(criterion: dict[str, Any]) -> tuple[float | None, str]:
+    """Error of a value and its name: from the length of a record, or from mesh and time step of a simulation."""
+    if criterion.get("uncertainty") is not None:
+        return criterion["uncertainty"], "uncertainty"
+    return criterion.get("discretisation_error"), "discretisation error"
+
+
+def criterion_title(criterion: dict[str, Any]) -> str:
+    """Label of the quantity, or of its drift from a baseline."""
+    drift = "" if criterion.get("baseline") is None else ", drift from the baseline"
+    return f"{quantity_label(criterion['quantity'])}{drift}"
+
+
+def format_signed(margin: float) -> str:
+    """A margin with its sign and two decimals, three or more where two would show no distance to the limit."""
+    for decimals in range(2, 13):
+        text = f"{margin:+.{decimals}f}"
+        if margin == 0 or float(text) != 0:
+            return "0.00" if margin == 0 else text.replace("-", "−")
+    return f"{margin:+.1e}".replace("-", "−")
+
+
+def is_close(criterion: dict[str, Any]) -> bool:
+    """Whether a value is closer to a limit than its error, so that its verdict could be reversed."""
+    value, (error, _) = criterion["value"], total_error(criterion)
+    lower, upper = criterion["lower"], criterion["upper"]
+    if value is None or not error or criterion["verdict"] not in ("pass", "fail") or lower == upper:
+        return False
+    return any(limit is not None and abs(value - limit) < error for limit in (lower, upper))
+
+
+def remark_close(criterion: dict[str, Any]) -> str | None:
+    """A remark on a value that is close to a limit."""
+    return f"closer to its limit than its {total_error(criterion)[1]}" if is_close(criterion) else None
+
+
+def remark_shift(criterion: dict[str, Any]) -> str | None:
+    """A remark on the change of a value when the analysis section is shifted, where the case asks for it."""
+    spread = criterion.get("spread")
+    if spread is None or criterion["value"] is None:
+        return None
+    change = f"{format_value(spread, 2)} {criterion.get('unit') or ''}".rstrip()
+    return f"changes by up to {change} when the analysis section is shifted"

@@ -1,0 +1,64 @@
+"""Figures of a damping fit: observability of the coefficients, measured and fitted damping ratios."""
+
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from pantocheck.conformance.reports.figures.figure_style import FULL, GREY, INK, SHADES, add_legend, render_svg
+
+
+@render_svg
+def draw_observability(rows: list[dict[str, Any]], thresholds: dict[str, float]) -> Figure:
+    """Largest share of each coefficient in the damping of a mode, and its plausible value over its uncertainty.
+
+    Parameters
+    ----------
+    rows : list of dict
+        `observability` of damping.json.
+    thresholds : dict
+        `thresholds` of damping.json.
+    """
+    names = [f"{row['kind'].replace('_', ' ')}, {row['matrix']}" for row in rows]
+    places = np.arange(len(rows))
+    figure = Figure(figsize=(FULL, 0.9 + 0.24 * len(rows)))
+    left, right = figure.subplots(1, 2, sharey=True)
+    fills = [SHADES[1] if row["observable"] else "white" for row in rows]
+    left.barh(places, [100 * row["largest_share"] for row in rows], color=fills, edgecolor=INK, linewidth=0.7)
+    left.axvline(100 * thresholds["largest_share"], color=INK, linestyle="--", linewidth=0.9)
+    left.set_xlabel("largest share of a mode's damping [%]")
+    left.set_yticks(places, names)
+    left.invert_yaxis()
+    right.barh(places, [row["plausible_over_std"] for row in rows], color=fills, edgecolor=INK, linewidth=0.7)
+    right.axvline(thresholds["plausible_over_std"], color=INK, linestyle="--", linewidth=0.9)
+    right.set_xscale("symlog", linthresh=0.1)
+    right.set_xlim(left=0)
+    right.set_xlabel("plausible value / standard deviation [-]")
+    return figure
+
+
+@render_svg
+def draw_comparison(data: dict[str, Any]) -> Figure:
+    """Measured damping ratios and those of the models at the computed modes."""
+    figure = Figure(figsize=(FULL, 3.2))
+    axes = figure.subplots()
+    measured = data["measured"]
+    axes.errorbar(
+        measured["frequency_Hz"],
+        [100 * value for value in measured["damping_ratio"]],
+        yerr=[196 * value for value in measured["std"]],
+        fmt="o",
+        color=INK,
+        markersize=3.5,
+        elinewidth=0.8,
+        label="measured",
+    )
+    for (name, ratios), style, shade in zip(data["models"].items(), ("--", "-", ":"), (GREY, INK, INK), strict=False):
+        axes.plot(
+            data["frequency_Hz"], [100 * value for value in ratios], style, color=shade, linewidth=1.1, label=name
+        )
+    axes.set_ylim(0, 1.5 * max(100 * value for value in measured["damping_ratio"]))
+    axes.set_xlabel("frequency [Hz]")
+    axes.set_ylabel("damping ratio [%]")
+    add_legend(axes)
+    return figure

@@ -1,0 +1,70 @@
+"""One style for all figures: SVG, letters as paths, no dates, the same bytes every time."""
+
+import io
+from collections.abc import Callable
+from functools import cache, wraps
+from importlib.resources import as_file
+from typing import Any, ParamSpec
+
+import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.figure import Figure
+
+from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.reports.words import TEMPLATES
+
+INK, GREY, PALE = "#1a1d21", "#8a929b", "#e9edf1"
+SHADES = (INK, "#6b747e", "#9aa3ac", "#c3cad2")
+LIMIT_FILL = "#d5dbe1"
+LINES = ("-", "--", "-.", ":")
+LIMIT_LINE = (0, (6, 2))
+FULL, HALF = 6.9, 3.4
+"""Widths of a figure [in]: the text of an A4 page, and half of it."""
+
+Arguments = ParamSpec("Arguments")
+
+
+@cache
+def _read_style() -> Any:
+    with as_file(TEMPLATES / "figure.mplstyle") as path:
+        settings = dict(matplotlib.rc_params_from_file(path, use_default_template=True))
+    # The backend is the choice of the importing program; `render_svg` names its canvas.
+    return {key: value for key, value in settings.items() if not key.startswith("backend")}
+
+
+def render_svg(paint: Callable[Arguments, Figure]) -> Callable[Arguments, str]:
+    """Turn a function that paints a figure into a function that returns its SVG text in the common style."""
+
+    @wraps(paint)
+    def render(*args: Arguments.args, **kwargs: Arguments.kwargs) -> str:
+        with matplotlib.rc_context(_read_style()):
+            buffer = io.StringIO()
+            # No metadata: they would hold the date and the version of matplotlib.
+            metadata = dict.fromkeys(("Date", "Creator", "Format", "Type"))
+            canvas: Any = FigureCanvasSVG(paint(*args, **kwargs))
+            canvas.print_svg(buffer, metadata=metadata)
+        text = buffer.getvalue()
+        return text[text.index("<svg") :]
+
+    return render
+
+
+def add_legend(axes: Axes, columns: int = 5) -> None:
+    """A legend above the axes, where it cannot cover the data."""
+    axes.legend(loc="lower left", bbox_to_anchor=(0, 1.02), ncols=columns, borderaxespad=0.2, columnspacing=1.4)
+
+
+def add_box(axes: Axes, values: RealArray, place: float) -> None:
+    """Quartiles and median of some values as a box at one place of the x axis, whose ticks are kept."""
+    axes.boxplot(
+        values,
+        positions=[place],
+        widths=0.5,
+        showfliers=False,
+        boxprops={"color": INK},
+        medianprops={"color": INK, "linewidth": 1.6},
+        whiskerprops={"color": GREY},
+        capprops={"color": GREY},
+        manage_ticks=False,
+    )

@@ -1,0 +1,146 @@
+"""Figures of an identification: repeats, spectra, frequency responses and damping ratios."""
+
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from pantocheck.conformance.reports.figures.figure_style import (
+    FULL,
+    GREY,
+    INK,
+    LINES,
+    SHADES,
+    add_box,
+    add_legend,
+    render_svg,
+)
+
+
+@render_svg
+def draw_overlay(runs: list[dict[str, Any]], channel: str, unit: str) -> Figure:
+    """Repeats of one drop laid over each other at the start and a minute later.
+
+    Parameters
+    ----------
+    runs : list of dict
+        Each {"name", "windows": [{"time_s", "signal"}, ...]}.
+    channel : str
+        Name of the channel.
+    unit : str
+        Unit of the signal.
+    """
+    windows = max(len(run["windows"]) for run in runs)
+    figure = Figure(figsize=(FULL, 2.4 * windows))
+    panels = np.atleast_1d(figure.subplots(windows, 1))
+    for window, axes in enumerate(panels):
+        for number, run in enumerate(runs):
+            if window < len(run["windows"]):
+                data = run["windows"][window]
+                shade, style = SHADES[number % len(SHADES)], LINES[number % len(LINES)]
+                axes.plot(data["time_s"], data["signal"], style, color=shade, linewidth=1.0, label=run["name"])
+        axes.set_ylabel(f"{channel} [{unit}]")
+    panels[-1].set_xlabel("time after the release [s]")
+    add_legend(panels[0])
+    return figure
+
+
+@render_svg
+def draw_spectra(data: dict[str, Any], unit: str) -> Figure:
+    """Spectrum of every sensor with the identified fit, its residual and the frequencies of the modes."""
+    n = len(data["channels"])
+    figure = Figure(figsize=(FULL, 0.6 + 1.6 * n))
+    panels = np.atleast_1d(figure.subplots(n, 1, sharex=True))
+    for axes, channel, measured, fitted, residual in zip(
+        panels, data["channels"], data["measured"], data["fitted"], data["residual"], strict=True
+    ):
+        axes.plot(data["frequency_Hz"], measured, color=SHADES[3], linewidth=2.4, label="measured")
+        axes.plot(data["frequency_Hz"], fitted, color=INK, linewidth=0.8, label="identified")
+        axes.plot(data["frequency_Hz"], residual, ":", color=GREY, linewidth=0.7, label="residual")
+        axes.set_yscale("log")
+        ticks, top = np.ones(len(data["poles_Hz"])), axes.get_xaxis_transform()
+        axes.plot(data["poles_Hz"], ticks, "|", color=INK, markersize=6, transform=top, clip_on=False)
+        axes.set_ylabel(f"{channel} [{unit} s]")
+    panels[-1].set_xlabel("frequency [Hz]; ticks: identified modes")
+    add_legend(panels[0])
+    return figure
+
+
+@render_svg
+def draw_responses(data: dict[str, Any]) -> Figure:
+    """Accelerance of every sensor: magnitude and phase, measured and of the identified modes."""
+    n = len(data["channels"])
+    figure = Figure(figsize=(FULL, 0.6 + 2.2 * n))
+    panels = np.atleast_2d(figure.subplots(2 * n, 1, sharex=True, height_ratios=(2, 1) * n)).reshape(n, 2)
+    for (upper, lower), channel, measured, identified in zip(
+        panels, data["channels"], data["measured"], data["identified"], strict=True
+    ):
+        upper.plot(data["frequency_Hz"], measured["abs"], color=SHADES[3], linewidth=2.4, label="measured")
+        upper.plot(data["frequency_Hz"], identified["abs"], color=INK, linewidth=0.8, label="identified")
+        upper.set_yscale("log")
+        upper.set_ylabel(f"{channel}\n[m/s²/N]")
+        lower.plot(data["frequency_Hz"], np.degrees(measured["phase_rad"]), ".", color=SHADES[3], markersize=2.5)
+        lower.plot(data["frequency_Hz"], np.degrees(identified["phase_rad"]), color=INK, linewidth=0.6)
+        lower.set_ylabel("phase [°]")
+        lower.set_yticks([-180, 0, 180])
+    panels[-1][1].set_xlabel("frequency [Hz]")
+    add_legend(panels[0][0])
+    return figure
+
+
+@render_svg
+def draw_boxes(modes: list[dict[str, Any]]) -> Figure:
+    """Damping ratios per group of span modes: quartiles, median, every mode, outliers as crosses."""
+    groups = sorted({mode["group"] for mode in modes if mode["group"] is not None})
+    figure = Figure(figsize=(FULL, 2.8))
+    axes = figure.subplots()
+    for number in groups:
+        members = [mode for mode in modes if mode["group"] == number and mode["certain"] and not mode["lateral"]]
+        values = np.array([100 * mode["damping_ratio"] for mode in members])
+        if not values.size:
+            continue
+        add_box(axes, values, number)
+        for mode, value in zip(members, values, strict=True):
+            axes.plot(
+                number + 0.36, value, "x" if mode["outlier"] else "o", color=INK, markersize=4, markerfacecolor="white"
+            )
+    axes.set_xlim(0.4, (groups[-1] if groups else 1) + 0.8)
+    axes.set_xticks(groups, [str(number) for number in groups])
+    axes.set_ylim(bottom=0)
+    axes.set_xlabel("group of span modes (circles: modes; crosses: outliers)")
+    axes.set_ylabel("damping ratio [%]")
+    return figure
+
+
+@render_svg
+def draw_damping(modes: list[dict[str, Any]]) -> Figure:
+    """Damping ratio over frequency with 95 % intervals; open markers: uncertain modes."""
+    figure = Figure(figsize=(FULL, 2.8))
+    axes = figure.subplots()
+    kinds = (
+        ("certain", "o", INK, [mode for mode in modes if mode["certain"] and not mode["lateral"]]),
+        ("uncertain", "o", "white", [mode for mode in modes if not mode["certain"] and not mode["lateral"]]),
+        ("lateral", "s", GREY, [mode for mode in modes if mode["lateral"]]),
+    )
+    for label, marker, face, shown in kinds:
+        if shown:
+            axes.errorbar(
+                [mode["frequency_Hz"] for mode in shown],
+                [100 * mode["damping_ratio"] for mode in shown],
+                yerr=[196 * mode["damping_ratio_std"] for mode in shown],
+                fmt=marker,
+                color=INK,
+                markerfacecolor=face,
+                markersize=4,
+                elinewidth=0.8,
+                capsize=2,
+                label=label,
+            )
+    certain = [100 * mode["damping_ratio"] for mode in modes if mode["certain"]]
+    # The scale follows the certain modes: one uncertain mode with a large ratio would flatten all others.
+    axes.set_ylim(0, 1.4 * max(certain) if certain else None)
+    axes.margins(x=0.02)
+    axes.set_xlabel("frequency [Hz]")
+    axes.set_ylabel("damping ratio [%]")
+    add_legend(axes)
+    return figure
