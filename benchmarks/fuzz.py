@@ -42,7 +42,8 @@ from pantocheck.conformance.plan import read_plan
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_sidecar import LineTable
 from pantocheck.conformance.records.record_writing import write_record
-from pantocheck.conformance.reports.formats import pdf
+from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
+from pantocheck.conformance.reports.formats.pdf import render_pdf
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.results.results_reading import read_results
 from pantocheck.conformance.runner import run_cases
@@ -160,7 +161,7 @@ def targets(folder: Path) -> list[Target]:
         Target("results as baseline", {"r.json": results.to_json()}, "r.json", use_baseline(results)),
         Target(
             "certificate",
-            {"c.pdf": pdf.render_pdf(results.to_dict(), 1)},
+            {"c.pdf": render_pdf(build_certificate(results.to_dict()))},
             "c.pdf",
             lambda p: verify_certificate(p / "c.pdf"),
         ),

@@ -4,6 +4,7 @@ A new page element is a class here and one macro or function in each of `templat
 `templates/elements.typ` and `formats/markdown.py`. The writers escape every text.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import Any, Literal
 
@@ -258,7 +259,7 @@ def to_plain(value: Any) -> Any:
     return value
 
 
-def make_grid(caption: str, headings: tuple[str, ...], rows: list[tuple[str, ...]]) -> Table:
+def make_grid(caption: str, headings: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> Table:
     """A dense table of values; its last column takes the remaining width."""
     columns = (*map(Column, headings[:-1]), Column(headings[-1], share=1))
     return Table(columns, tuple(rows), caption, layout="grid")

@@ -97,7 +97,7 @@ def _case_index(cases: list[dict[str, Any]], anchors: list[str]) -> Table:
 
 def _case_section(case: dict[str, Any], anchor: str) -> Section:
     blocks: list[Block] = [
-        Paragraph((VerdictMark(case["verdict"]), " ", Code(case["id"]))),
+        Paragraph((VerdictMark(case["verdict"]), "\N{EN SPACE}", Code(case["id"]))),
         Paragraph(summarise_case(case)),
     ]
     if case.get("warnings"):

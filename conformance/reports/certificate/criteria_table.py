@@ -26,6 +26,8 @@ MARGIN_KEY = (
     "negative outside. In the bars, the band lies between the limits; a disc is inside, a cross is outside, an open "
     "ring does not count, an arrow lies beyond the drawing, the whisker is the "
 )
+SHORT_NAMES = {"Discretisation error": "Discr.\nerror", "Uncertainty (95 %)": "Uncer-\ntainty"}
+"""Headings of the errors on paper."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +78,7 @@ def criteria_blocks(case: dict[str, Any], anchor: str) -> tuple[Block, ...]:
         Column("Quantity", share=1),
         Column("Pantograph", short="Pant."),
         Column("Value", number=True),
-        Column(error, number=True, short=error.replace("Discretisation", "Discr.").replace(" (95 %)", "")),
+        Column(error, number=True, short=SHORT_NAMES[error]),
         Column("Limits", number=True),
         Column("Margin"),
         Column("Verdict"),

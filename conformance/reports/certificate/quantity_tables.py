@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from pantocheck.conformance.quantities.registry import QUANTITIES, table_quantities
-from pantocheck.conformance.reports.document import Code, Column, Table
+from pantocheck.conformance.reports.document import Code, Column, RichText, Table
 from pantocheck.conformance.reports.page_text import format_value
 from pantocheck.conformance.reports.words import name_holder, quantity_label, quantity_unit, read_words
 
@@ -68,8 +68,8 @@ def list_skipped(case: dict[str, Any]) -> tuple[str, ...]:
 
 def _table(quantities: Iterable[str], keys: list[str], cell: Callable[[str, str], str], caption: str = "") -> Table:
     holders = (Column(name_holder(key).capitalize(), share=1, number=True) for key in keys)
-    rows = tuple(
-        ((f"{quantity_label(name)} ", Code(name)), quantity_unit(name) or "–", *(cell(name, key) for key in keys))
-        for name in quantities
-    )
-    return Table((Column("Quantity", share=2.4), Column("Unit"), *holders), rows, caption)
+    rows: list[tuple[RichText, ...]] = []
+    for name in quantities:
+        label = (f"{quantity_label(name)} ", Code(name))
+        rows.append((label, quantity_unit(name) or "–", *(cell(name, key) for key in keys)))
+    return Table((Column("Quantity", share=2.4), Column("Unit"), *holders), tuple(rows), caption)

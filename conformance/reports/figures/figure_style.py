@@ -12,6 +12,7 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
 from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.reports.source_date import read_source_date
 from pantocheck.conformance.reports.words import TEMPLATES
 
 INK, GREY, PALE = "#1a1d21", "#8a929b", "#e9edf1"
@@ -38,6 +39,7 @@ def render_svg(paint: Callable[Arguments, Figure]) -> Callable[Arguments, str]:
 
     @wraps(paint)
     def render(*args: Arguments.args, **kwargs: Arguments.kwargs) -> str:
+        read_source_date()  # refuse a wrong date: matplotlib reads it as well and fails without a message
         with matplotlib.rc_context(_read_style()):
             buffer = io.StringIO()
             # No metadata: they would hold the date and the version of matplotlib.

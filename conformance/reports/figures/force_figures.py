@@ -104,7 +104,7 @@ def draw_spectrum(trace: dict[str, Any], quantities: dict[str, Any]) -> Figure:
     figure = Figure(figsize=(HALF, 2.3))
     axes = figure.subplots()
     axes.plot(frequency, amplitude, color=INK, linewidth=0.9)
-    above = {"va": "bottom", "fontsize": 7}
+    above: dict[str, Any] = {"va": "bottom", "fontsize": 7}
     for number, (low, high, quantity) in enumerate(BANDS):
         axes.axvspan(low, high, color=PALE if number % 2 == 0 else "white", zorder=0)
         axes.axvline(high, color=GREY, linewidth=0.8, linestyle="--")

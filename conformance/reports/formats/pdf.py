@@ -1,7 +1,6 @@
 """A document as PDF, typeset by Typst; with embedded results it is PDF/A-3a."""
 
 import json
-import os
 from dataclasses import replace
 from datetime import UTC, datetime
 from functools import cache
@@ -12,9 +11,9 @@ import matplotlib
 import typst
 from matplotlib.ft2font import FT2Font
 
-from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.reports.document import Document, to_plain
 from pantocheck.conformance.reports.formats.embedding import NAME, encode_attachment, strip_times
+from pantocheck.conformance.reports.source_date import read_source_date
 from pantocheck.conformance.reports.words import TEMPLATES, read_words
 
 # Typst brings Libertinus Serif and DejaVu Sans Mono, matplotlib DejaVu Sans. No font of the machine is used.
@@ -35,7 +34,7 @@ def render_pdf(document: Document) -> bytes:
     """
     if document.results is None:
         return _compile(document, {}, attachment=None, date="")
-    seconds = parse_date(document.results)
+    seconds = _find_date(document.results)
     date = f"{datetime.fromtimestamp(seconds, UTC):%Y-%m-%d %H:%M:%S} UTC" if seconds else ""
     files = {NAME: encode_attachment(strip_times(document.results))}
     return _compile(document, files, attachment=NAME, date=date, pdf_standards="a-3a", timestamp=seconds)
@@ -59,22 +58,11 @@ def _compile(document: Document, files: dict[str, bytes], attachment: str | None
     return bytes(typst.compile(sources, ignore_system_fonts=True, font_paths=[str(FONTS)], **options))
 
 
-def parse_date(results: dict[str, Any]) -> int:
-    """Date of a document [s since 1970]: `SOURCE_DATE_EPOCH`, else the start of the run, else 0.
-
-    Raises
-    ------
-    InputError
-        `SOURCE_DATE_EPOCH` is not a number of seconds.
-    """
-    epoch = os.environ.get("SOURCE_DATE_EPOCH")
-    if epoch is not None:
-        # Up to the end of the year 9999, the last date that can be written.
-        if not (epoch.isascii() and epoch.isdigit() and int(epoch[:15]) <= 253402300799):
-            raise InputError(
-                "SOURCE_DATE_EPOCH", f"'{epoch}' is not a date", "Give whole seconds since 1970-01-01 UTC."
-            )
-        return int(epoch)
+def _find_date(results: dict[str, Any]) -> int:
+    """Date of a document [s since 1970]: `SOURCE_DATE_EPOCH`, else the start of the run, else 0."""
+    date = read_source_date()
+    if date is not None:
+        return date
     started = results.get("started")
     return int(datetime.fromisoformat(started).timestamp()) if started else 0
 

@@ -18,7 +18,6 @@ from pantocheck.conformance.reports.document import (
 from pantocheck.conformance.reports.figures.damping_figures import draw_comparison, draw_observability
 from pantocheck.conformance.reports.page_text import clean_tree, format_value
 
-TITLE = "Damping model from mass drops"
 COEFFICIENT_UNITS = {"stiffness": "s", "mass": "1/s"}
 RESULT = (
     "The block replaces [damping] in the line file. Mass coefficients multiply M, stiffness coefficients multiply K."
@@ -43,10 +42,11 @@ def build_damping_document(results: dict[str, Any], block: str) -> Document:
         f"Rayleigh damping fitted to {len(results['pairs'])} modes leaves {100 * results['residual']:.2g} % "
         f"of their damping ratios. Observable: {', '.join(kinds) or 'nothing'}."
     )
+    header = PlainHeader("Damping model from mass drops", headline)
     blocks: list[Block] = []
     if results["unpaired"]:
         frequencies = ", ".join(format_value(frequency) for frequency in results["unpaired"])
-        blocks.append(WarningBox((f"measured modes without a counterpart in the model of the line: {frequencies} Hz",)))
+        blocks.append(WarningBox((f"measured modes without a counterpart in the model: {frequencies} Hz",)))
     blocks += [
         Section("Result", (Paragraph(RESULT), CodeBlock(block), _coefficients(results))),
         Section("Comparison", (Paragraph(COMPARISON), Figures((_comparison(results),)))),
@@ -60,15 +60,16 @@ def build_damping_document(results: dict[str, Any], block: str) -> Document:
         ),
         Section("Pairs of modes", (_pairs(results),)),
     ]
-    return Document(TITLE, PlainHeader(TITLE, headline), tuple(blocks))
+    return Document(header.heading, header, tuple(blocks))
 
 
 def describe_observability(thresholds: dict[str, float]) -> str:
     """Meaning of an observable coefficient, by the `thresholds` of damping.json."""
     return (
-        f"A coefficient is observable if its plausible value contributes at least {100 * thresholds['largest_share']:g} "
-        f"% of the damping of some mode and is at least {thresholds['plausible_over_std']:g} times its standard "
-        "deviation. The standard deviation takes the coefficients of the wires as unknown as well."
+        "A coefficient is observable if its plausible value contributes at least "
+        f"{100 * thresholds['largest_share']:g} % of the damping of some mode and is at least "
+        f"{thresholds['plausible_over_std']:g} times its standard deviation. "
+        "The standard deviation takes the coefficients of the wires as unknown as well."
     )
 
 

@@ -18,12 +18,11 @@ from pantocheck.conformance.reports.document import (
 from pantocheck.conformance.reports.figures import identification_figures as figures
 from pantocheck.conformance.reports.page_text import clean_tree, format_value
 
-TITLE = "Identification of mass drops"
 UNITS = {"acceleration": "m/s²", "velocity": "m/s", "displacement": "m"}
 MODES_TEXT = (
-    "Uncertainties are one standard deviation: the Cramér-Rao bound with the noise estimated from the residual, widened "
-    "where the residual around a mode exceeds noise. Error: residual of the fit in the band of the mode, relative to "
-    "the measured spectrum."
+    "Uncertainties are one standard deviation: the Cramér-Rao bound with the noise estimated from the residual, "
+    "widened where the residual around a mode exceeds noise. Error: residual of the fit in the band of the mode, "
+    "relative to the measured spectrum."
 )
 
 
@@ -41,12 +40,13 @@ def build_identification_document(lines: list[dict[str, Any]]) -> Document:
     doubtful = len(modes) - len(certain)
     headline = f"{len(certain)} modes identified with a damping ratio known to better than 5 %"
     headline += f"; {doubtful} more are uncertain or lateral." if doubtful else "."
+    header = PlainHeader("Identification of mass drops", headline)
     warnings = collect_warnings(lines)
     blocks: list[Block] = [WarningBox(warnings)] if warnings else []
     for line in lines:
         names = ", ".join(record["name"] for record in line["records"])
         blocks += _list_sections(line, f" ({names})" if len(lines) > 1 else "")
-    return Document(TITLE, PlainHeader(TITLE, headline), tuple(blocks))
+    return Document(header.heading, header, tuple(blocks))
 
 
 def collect_warnings(lines: list[dict[str, Any]]) -> tuple[str, ...]:

@@ -14,6 +14,7 @@ from pantocheck.conformance.authenticity.recomputation import find_discrepancies
 from pantocheck.conformance.authenticity.verification import verify_certificate
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
 from pantocheck.conformance.reports.formats import pdf
 from pantocheck.conformance.results import results_reading as results_file
 from pantocheck.conformance.runner import run_cases
@@ -83,7 +84,7 @@ def test_tampering_is_found(results, name):
 def test_a_whole_certificate_made_from_changed_results(results, tmp_path):
     row(results, 1, 1)["verdict"] = "pass"
     results["cases"][1]["verdict"] = "pass"
-    (tmp_path / "a.pdf").write_bytes(pdf.render_pdf(results, 1))
+    (tmp_path / "a.pdf").write_bytes(pdf.render_pdf(build_certificate(results)))
     found = verify_certificate(tmp_path / "a.pdf")
     assert len(found.discrepancies) == 3  # the row, its case, the suite
 
@@ -92,7 +93,7 @@ def test_pages_that_say_other_than_the_results(results, passing, tmp_path, monke
     """Pages of a failing run with the results of a passing one: consistent in themselves, but not with each other."""
     encode_attachment = pdf.encode_attachment
     monkeypatch.setattr(pdf, "encode_attachment", lambda _: encode_attachment(passing))
-    (tmp_path / "a.pdf").write_bytes(pdf.render_pdf(results, 1))
+    (tmp_path / "a.pdf").write_bytes(pdf.render_pdf(build_certificate(results)))
     found = verify_certificate(tmp_path / "a.pdf")
     assert found.verdict == "pass"
     assert len(found.discrepancies) == 2
@@ -197,7 +198,7 @@ def test_command(certificate_file, results, tmp_path):
     good = runner.invoke(app, ["verify", str(certificate_file)])
     assert (good.exit_code, good.stdout.split(":")[0]) == (0, "consistent")
     row(results, 1, 1)["margin"] = 0.5
-    (tmp_path / "bad.pdf").write_bytes(pdf.render_pdf(results, 1))
+    (tmp_path / "bad.pdf").write_bytes(pdf.render_pdf(build_certificate(results)))
     bad = runner.invoke(app, ["verify", str(tmp_path / "bad.pdf")])
     assert bad.exit_code == 1
     assert "en50318-2002/300, std_force_N of pantograph 1: margin 0.5 stated, -0.32" in bad.stdout

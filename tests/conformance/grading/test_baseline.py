@@ -11,7 +11,7 @@ from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.grading.baseline import compare_with_baseline
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.reports.formats import junit
+from pantocheck.conformance.reports.formats.junit import render_junit
 from pantocheck.conformance.results.results_reading import read_results
 from pantocheck.conformance.runner import run_cases
 from pantocheck.conformance.systems.system_choice import choose_system
@@ -51,7 +51,7 @@ def test_value_that_drifts_fails_within_its_limits(results, was, drifts):
         # To a hundredth of the drift of 0.54 N: four decimals, not twelve.
         assert (finding.lower, finding.upper) == (round(0.98 * was, 4), round(1.02 * was, 4))
         assert find_discrepancies(compared.to_dict()) == []
-        assert b'name="drift of std_force_N of pantograph 1"' in junit.render_junit(compared.to_dict())
+        assert b'name="drift of std_force_N of pantograph 1"' in render_junit(compared.to_dict())
         assert compared.cases[1].verdict == "pass"
 
 

@@ -9,7 +9,7 @@ from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.grading.section_spread import section_spread
 from pantocheck.conformance.records.record_signals import RecordSignals, evaluate_record
-from pantocheck.conformance.reports.certificate.criteria_rows import shifted
+from pantocheck.conformance.reports.certificate.criteria_table import remark_shift
 from pantocheck.conformance.results.outcome import Delivered
 
 
@@ -61,9 +61,9 @@ def test_verdict_that_another_stretch_could_turn_is_named(growing):
     (row,) = result.criteria
     assert row.spread == result.spread["1"]["mean_force_N"]
     assert any("less than its spread over analysis sections of 2 N" in text for text in result.warnings)
-    remark = shifted(row.model_dump())
+    remark = remark_shift(row.model_dump())
     assert remark is not None
-    assert remark.startswith("moves by up to 2.0 N when the evaluated stretch")
+    assert remark.startswith("changes by up to 2.0 N when the analysis section")
 
 
 def test_case_that_does_not_ask_has_none(case_250, wave):

@@ -1,4 +1,4 @@
-"""The HTML certificate: self-contained, escaped, accessible, the same every time."""
+"""HTML writer: self-contained, escaped, accessible, the same every time."""
 
 import re
 from html.parser import HTMLParser
@@ -6,7 +6,8 @@ from itertools import pairwise
 
 import pytest
 
-from pantocheck.conformance.reports.formats import html
+from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
+from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.reports.words import TEMPLATES
 
 VOID = {"meta", "img", "line", "rect", "path", "circle", "link", "br"}
@@ -37,12 +38,12 @@ class Outline(HTMLParser):
         return [attrs[attribute] for _, attrs in self.tags if attribute in attrs]
 
 
-def test_same_results_give_the_same_bytes(results, page_text):
-    assert html.render_html(results) == page_text
+def test_html_is_deterministic(results, page_text):
+    assert render_html(build_certificate(results)) == page_text
 
 
 @pytest.mark.parametrize("name", ["page_text", "hostile_text"])
-def test_nothing_is_fetched_or_run(name, request):
+def test_html_fetches_and_runs_nothing(name, request):
     text = request.getfixturevalue(name)
     outline = Outline(text)
     assert {tag for tag, _ in outline.tags} & {"script", "link", "iframe", "object", "embed", "base", "form"} == set()
@@ -56,7 +57,7 @@ def test_nothing_is_fetched_or_run(name, request):
 
 
 @pytest.mark.parametrize("name", ["page_text", "hostile_text"])
-def test_structure_is_sound(name, request):
+def test_html_has_a_valid_structure(name, request):
     outline = Outline(request.getfixturevalue(name))
     assert outline.open == []
     identities = outline.values("id")
@@ -72,15 +73,15 @@ def test_structure_is_sound(name, request):
     assert all(attrs.get("aria-label") for _, attrs in outline.tags if attrs.get("role") == "img")
 
 
-def test_verdict_comes_first(page_text):
+def test_html_begins_with_the_verdict(page_text):
     seen = " ".join(Outline(page_text).texts)
     seen = seen[seen.index("self-declared") :]  # after the style sheet
-    order = ["FAIL", "1 of 21 counted", "What failed", "Closest margins", "Criteria", "Extended band", "All quantities"]
+    order = ["FAIL", "1 of 21 counted", "Failed", "Smallest margins", "Criteria", "Extended band", "All quantities"]
     places = [seen.index(text) for text in order]
     assert places == sorted(places)
 
 
-def test_hostile_text_stays_text(hostile_text):
+def test_html_escapes_hostile_text(hostile_text):
     assert "<script" not in hostile_text
     assert "&lt;script&gt;alert(1)&lt;/script&gt;" in hostile_text
     assert "{{ 7*7 }} {% raw %}" in hostile_text
@@ -88,8 +89,9 @@ def test_hostile_text_stays_text(hostile_text):
     hostile_text.encode("utf-8")
 
 
-def test_every_criterion_is_there_with_its_trust(results, page_text):
-    rows = re.findall(r'<tr role="row">\n<th role="rowheader".*?</tr>', page_text, re.S)
+def test_html_criteria_show_trust_verdict_and_bar(results, page_text):
+    tables = re.findall(r'<table class="cards".*?</table>', page_text, re.S)
+    rows = re.findall(r'<tr role="row">\n<th role="rowheader".*?</tr>', "".join(tables), re.S)
     criteria = [row for case in results["cases"] for row in case["criteria"]]
     assert len(rows) == len(criteria)
     for text, row in zip(rows, criteria, strict=True):
@@ -99,21 +101,21 @@ def test_every_criterion_is_there_with_its_trust(results, page_text):
         assert text.count("<svg") == (row["value"] is not None)
 
 
-def test_statement_and_no_claim_of_certification(page_text):
+def test_html_states_self_declaration_and_no_certification(page_text):
     assert "self-declared conformance report, in the style of EN 50318" in page_text
     assert "not a certification" in page_text
 
 
 def luminance(colour):
-    """Relative luminance [-], WCAG 2.1."""
+    """Relative luminance of a colour [-], WCAG 2.1."""
     channels = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
     linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in channels]
     return sum(weight * channel for weight, channel in zip((0.2126, 0.7152, 0.0722), linear, strict=True))
 
 
-def test_inks_have_contrast_against_white():
-    """WCAG AA asks for 4.5 for small text; the warning's ground is nearly white, hence 5."""
-    style = (TEMPLATES / "certificate.css").read_text("utf-8")
+def test_css_colours_have_contrast_against_white():
+    """WCAG AA requires 4.5 for small text; the warning box is nearly white, hence 5."""
+    style = (TEMPLATES / "page.css").read_text("utf-8")
     inks = re.findall(r"--(?:accent|ink|soft): (#[0-9a-f]{6})", style) + re.findall(r"[ ;]color: (#[0-9a-f]{6})", style)
     assert len(inks) >= 7
     assert all(1.05 / (luminance(ink) + 0.05) > 5 for ink in inks)

@@ -1,18 +1,36 @@
 """JUnit, Markdown summary and badge."""
 
-import json
 import re
 from xml.etree import ElementTree
 
 import pytest
 
-from pantocheck.conformance.reports.formats import badge, junit
-from pantocheck.conformance.reports.formats import markdown as summary
-from pantocheck.conformance.reports.formats.report_writers import FILES, find_writer
+from pantocheck.conformance.reports.certificate.summary_page import build_summary
+from pantocheck.conformance.reports.document import (
+    BulletList,
+    Code,
+    CodeBlock,
+    Document,
+    Drawing,
+    Facts,
+    Figure,
+    Figures,
+    Link,
+    NumberedList,
+    Paragraph,
+    PlainHeader,
+    Remark,
+    Section,
+    TrustMark,
+)
+from pantocheck.conformance.reports.formats.badge import render_badge
+from pantocheck.conformance.reports.formats.junit import render_junit
+from pantocheck.conformance.reports.formats.markdown import render_markdown
+from pantocheck.conformance.reports.formats.report_writers import FILES, write_pages
 
 
 def test_junit_counts_what_the_results_say(results):
-    root = ElementTree.fromstring(junit.render_junit(results))
+    root = ElementTree.fromstring(render_junit(results))
     suites = root.findall("testsuite")
     assert [suite.get("name") for suite in suites] == [case["id"] for case in results["cases"]]
     assert [root.get(name) for name in ("tests", "failures", "errors", "skipped")] == ["23", "1", "0", "2"]
@@ -29,13 +47,13 @@ def test_junit_counts_what_the_results_say(results):
 
 def test_junit_holds_an_error_of_a_case(passing):
     passing["cases"][0] |= {"verdict": "error", "reason": "the solver diverged", "criteria": []}
-    root = ElementTree.fromstring(junit.render_junit(passing))
+    root = ElementTree.fromstring(render_junit(passing))
     assert root.get("errors") == "1"
     assert next(root.iter("error")).get("message") == "the solver diverged"
 
 
 def test_junit_is_valid_xml_for_any_text(hostile):
-    root = ElementTree.fromstring(junit.render_junit(hostile))
+    root = ElementTree.fromstring(render_junit(hostile))
     assert root.find("testsuite[2]").get("name") == "en50318-2002/300a|b `c` *d* [e](f) \\ _g_"
     assert all("\n" not in value for element in root.iter() for value in element.attrib.values())
 
@@ -43,35 +61,62 @@ def test_junit_is_valid_xml_for_any_text(hostile):
 @pytest.mark.parametrize("name", ["results", "hostile"])
 def test_summary_tables_keep_their_columns(name, request):
     results = request.getfixturevalue(name)
-    rows = [line for line in summary.render_markdown(results).splitlines() if line.startswith("|")]
+    rows = [line for line in render_markdown(build_summary(results)).splitlines() if line.startswith("|")]
     assert len(rows) == 2 * 2 + 22
     assert {len(re.findall(r"(?<!\\)\|", row)) for row in rows} == {9}
 
 
 def test_summary_begins_with_the_verdict_and_escapes(results, hostile):
-    assert summary.render_markdown(results).startswith(
+    assert render_markdown(build_summary(results)).startswith(
         "# FAIL: 1 of 21 counted criteria in 3 cases lie outside their limits.\n"
     )
-    text = summary.render_markdown(hostile)
+    text = render_markdown(build_summary(hostile))
     assert "<script" not in text
     assert "`c`" not in text.replace(r"\`c\`", "")
-    assert "https://" not in summary.render_markdown(
-        results | {"system": {"name": "see https://example.org", "version": ""}}
+    assert "https://" not in render_markdown(
+        build_summary(results | {"system": {"name": "see https://example.org", "version": ""}})
     )
 
 
-def test_badge(results, tmp_path):
-    badge.write_badge(results, tmp_path / "badge.json")
-    content = json.loads((tmp_path / "badge.json").read_text())
-    assert content["schemaVersion"] == 1
-    assert content["message"] == "fail 19/21"
-    badge.write_badge(results, tmp_path / "badge.svg")
-    root = ElementTree.parse(tmp_path / "badge.svg").getroot()
+def test_badge(results):
+    root = ElementTree.fromstring(render_badge(results))
     assert root.get("aria-label") == "EN 50318 style: fail 19/21"
 
 
-def test_every_format_has_a_writer_that_leaves_one_file(passing, tmp_path):
-    for name in FILES:
-        if name != "json":
-            find_writer(name)(passing, tmp_path / FILES[name])
+def test_write_pages_leaves_one_file_per_format(passing, tmp_path):
+    write_pages(passing, tmp_path, list(FILES))
     assert {path.name for path in tmp_path.iterdir()} == set(FILES.values()) - {"results.json"}
+
+
+def test_markdown_renders_every_element():
+    text = (Code("a_b"), " ", Code("a`b"), Remark("*r*"), Link("[1]", "x"), TrustMark(""), Drawing("<svg/>", "bar"))
+    blocks = (
+        Paragraph(text),
+        CodeBlock("x = 1\n[t]"),
+        BulletList(("one_",)),
+        NumberedList("Sources", ("first", "second"), "x"),
+        Facts((("Suite", "1.0"),), times=(("Started", "now"),)),
+        Figures((Figure("<svg/>", "a line", "caption"),)),
+    )
+    document = Document(
+        "t",
+        PlainHeader("Heading", "Result."),
+        (
+            Section(
+                "Part",
+                (*blocks, Section("Deeper", ())),
+            ),
+        ),
+    )
+    assert render_markdown(document).split("\n\n") == [
+        "# Heading",
+        "Result.",
+        "## Part",
+        r"`a_b` a\`b\*r\*\[1\]–bar",
+        "    x = 1\n    [t]",
+        r"* one\_",
+        "1. first\n2. second",
+        "* Suite: 1.0\n* Started: now",
+        "* a line",
+        "### Deeper\n",
+    ]

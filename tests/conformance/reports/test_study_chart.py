@@ -1,10 +1,11 @@
-"""Charts and tables of studies on the pages: drawn with what is printed, and in both formats."""
+"""Charts and tables of studies."""
 
 import pytest
 from numpy.testing import assert_allclose
 
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
-from pantocheck.conformance.reports.figures.charts import draw_chart
+from pantocheck.conformance.reports.document import Section
+from pantocheck.conformance.reports.figures.study_chart import draw_chart
 from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.results.results_format import Chart, Mark, Series, TextTable
 
@@ -19,18 +20,18 @@ def data(**parts):
     return Chart.model_validate(given | parts).model_dump()
 
 
-def drawn(**parts):
+def draw(**parts):
     return draw_chart(data(**parts))
 
 
 def axes_of(**parts):
-    """The axes before they are made a picture."""
+    """The axes of the chart before they are rendered."""
     (axes,) = draw_chart.__wrapped__(data(**parts)).axes
     return axes
 
 
-def test_same_data_same_bytes():
-    assert drawn() == drawn()
+def test_chart_is_deterministic():
+    assert draw() == draw()
 
 
 @pytest.mark.parametrize(
@@ -48,31 +49,34 @@ def test_same_data_same_bytes():
         {"wide": False},
     ],
 )
-def test_everything_a_chart_can_hold_changes_the_drawing(change):
-    assert drawn(**change) != drawn()
+def test_chart_draws_every_element(change):
+    assert draw(**change) != draw()
 
 
-def test_negative_values_are_not_cut_off():
+def test_chart_axis_includes_negative_values():
     """An axis that starts at zero would hide half of a velocity; positive values start there."""
     assert axes_of().get_ylim()[0] == 0
     assert axes_of(series=[LINE.model_copy(update={"y": [-3.0, 2.0, 1.0]})]).get_ylim()[0] < -3
 
 
-def test_errors_of_points_are_drawn_in_their_length():
+def test_chart_error_bars_have_their_length():
     (container,) = axes_of(series=[POINTS.model_copy(update={"error": [0.1, 0.2, 0.3]})]).containers
     (bars,) = container.lines[2]
     lengths = [upper - lower for (_, lower), (_, upper) in bars.get_segments()]
     assert_allclose(lengths, [0.2, 0.4, 0.6], rtol=1e-12)
-    assert drawn(series=[POINTS.model_copy(update={"error": [0.1, 0.2, 0.3]})]) != drawn(series=[POINTS])
+    assert draw(series=[POINTS.model_copy(update={"error": [0.1, 0.2, 0.3]})]) != draw(series=[POINTS])
 
 
-def test_tables_and_charts_stand_on_the_page_escaped(results):
+def test_certificate_shows_tables_and_charts_of_a_study_escaped(results):
     case = results["cases"][0]
     case["charts"] = [Chart(caption="Figure of a study", alternative="what it shows", x_label="x", y_label="y",
                             series=[LINE]).model_dump()]  # fmt: skip
     table = TextTable(caption="Findings", columns=["Finding", "Verdict"], rows=[["<b>less</b> in front", "reproduced"]])
     case["tables"] = [table.model_dump()]
-    text = render_html(results)
+    document = build_certificate(results)
+    text = render_html(document)
     assert "Figure of a study" in text
     assert "&lt;b&gt;less&lt;/b&gt; in front" in text
-    assert build_certificate(results).cases[0].tables[0].rows == (("<b>less</b> in front", "reproduced"),)
+    [cases] = [block for block in document.blocks if block.anchor == "case-1"]
+    [section] = [block for block in cases.blocks if isinstance(block, Section) and block.heading == "Findings"]
+    assert section.blocks[0].rows == (("<b>less</b> in front", "reproduced"),)

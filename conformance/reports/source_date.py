@@ -1,0 +1,24 @@
+"""Date of a document from the environment, so that the same results give the same bytes."""
+
+import os
+
+from pantocheck.conformance.input_files.input_error import InputError
+
+LATEST = 253402300799
+"""End of the year 9999 [s since 1970], the last date that can be written."""
+
+
+def read_source_date() -> int | None:
+    """`SOURCE_DATE_EPOCH` [s since 1970]; None if the environment does not set it.
+
+    Raises
+    ------
+    InputError
+        `SOURCE_DATE_EPOCH` is not a number of seconds.
+    """
+    epoch = os.environ.get("SOURCE_DATE_EPOCH")
+    if epoch is None:
+        return None
+    if not (epoch.isascii() and epoch.isdigit() and int(epoch[:15]) <= LATEST):
+        raise InputError("SOURCE_DATE_EPOCH", f"'{epoch}' is not a date", "Give whole seconds since 1970-01-01 UTC.")
+    return int(epoch)

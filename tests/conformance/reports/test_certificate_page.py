@@ -1,0 +1,110 @@
+"""Content of a certificate: criteria, reasons, bands, facts and figures."""
+
+from typing import Any
+
+from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.reports.certificate.case_facts import list_case_facts
+from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
+from pantocheck.conformance.reports.certificate.criteria_table import criteria_blocks, describe_criterion
+from pantocheck.conformance.reports.certificate.quantity_tables import build_band_table
+from pantocheck.conformance.reports.certificate.verdict_reasons import list_reasons
+from pantocheck.conformance.reports.document import (
+    BulletList,
+    Document,
+    Figures,
+    Link,
+    NumberedList,
+    Section,
+    Table,
+    TrustMark,
+    VerdictMark,
+)
+from pantocheck.conformance.reports.page_text import format_value
+from pantocheck.conformance.results.results_format import Results
+
+
+def case_section(document: Document, number: int) -> dict[str, Section]:
+    """Sections of a case by their headings."""
+    [case] = [block for block in document.blocks if isinstance(block, Section) and block.anchor == f"case-{number}"]
+    return {block.heading: block for block in case.blocks if isinstance(block, Section)}
+
+
+def sentences(section: Section) -> tuple[str, ...]:
+    [items] = section.blocks
+    assert isinstance(items, BulletList)
+    return tuple(map(str, items.items))
+
+
+def test_example_has_the_format_of_results(results: dict[str, Any]) -> None:
+    Results.model_validate(results)
+
+
+def test_every_quantity_has_a_label() -> None:
+    assert all(quantity.label for quantity in QUANTITIES.values())
+
+
+def test_criterion_shows_all_its_values(passing: dict[str, Any]) -> None:
+    case = passing["cases"][0]
+    row = case["criteria"][0] | {"value": 118.2, "margin": 0.36, "discretisation_error": 0.1234}
+    case["criteria"] = [row | {"source": "another"}, row]
+    texts = describe_criterion(row)
+    assert (texts.value, texts.error, texts.limits) == ("118.2 N", "± 0.12", "110 to 120")
+    assert (texts.margin, texts.pantograph) == ("+0.36", "1")
+    table, _, sources = criteria_blocks(case, "case-1")
+    assert isinstance(table, Table)
+    assert table.rows[1][-3:] == (VerdictMark("pass"), TrustMark("secondary"), Link("[2]", "case-1-source-2"))
+    assert sources == NumberedList("Sources of the limits", ("another", row["source"]), "case-1-source")
+    line = describe_criterion(row | {"pantograph": 0, "item": 3, "discretisation_error": None})
+    assert (line.pantograph, line.error) == ("line, no. 3", "–")
+
+
+def test_criterion_close_to_its_limit_is_marked_in_row_and_reasons(passing: dict[str, Any]) -> None:
+    row = passing["cases"][0]["criteria"][0]
+    row |= {"value": 119.9, "discretisation_error": 0.2, "margin": 0.02}
+    assert describe_criterion(row).remarks == ("closer to its limit than its discretisation error",)
+    headings = [section.heading for section in list_reasons(passing)]
+    assert headings == ["Closer to a limit than the discretisation error", "Smallest margins"]
+
+
+def test_reasons_begin_with_the_worst(results: dict[str, Any]) -> None:
+    groups = {section.heading: sentences(section) for section in list_reasons(results)}
+    assert list(groups) == ["Failed", "Not evaluated", "Smallest margins"]
+    assert len(groups["Failed"]) == 1
+    assert "31.68 N, limits 32 to 34, margin −0.32" in groups["Failed"][0]
+    assert len(groups["Not evaluated"]) == 2
+    assert "Contact loss" not in "".join(groups["Smallest margins"])
+
+
+def test_band_table_marks_graded_and_informative_values(results: dict[str, Any]) -> None:
+    front, rear = ([str(row[2]) for row in build_band_table(case).rows] for case in results["cases"][:2])
+    assert front[0].endswith("(PASS)")
+    assert front[6].endswith("(informative)")
+    assert rear[0].endswith("(FAIL)")
+    assert rear[5].endswith("(informative)")  # its limit is provisional
+    assert rear[6] == "not available"
+
+
+def test_case_facts_show_wall_time_and_filter(passing: dict[str, Any]) -> None:
+    facts = list_case_facts(passing["cases"][0])
+    assert dict(facts.times)["Wall time / simulated time"] == format_value(0.412 / 7.0, 3)
+    assert dict(facts.pairs)["Filter"] == "Butterworth, order 6, −3 dB at 20 Hz, zero phase"
+
+
+def test_certificate_of_a_record_with_gaps(passing: dict[str, Any]) -> None:
+    """A filtered or measured record lacks some traces and facts; null is not drawn."""
+    case = passing["cases"][0]
+    case["traces"]["1"] |= {"force_20_N": None, "std_N": None, "histogram": None, "supports_m": []}
+    case["quantities"]["0"] = {"dropper_length_m": [1.017, 0.896]}
+    case["run"] |= dict.fromkeys(("simulated_s", "wall_s", "dt_s", "element_m"))
+    Results.model_validate(passing)
+    sections = case_section(build_certificate(passing), 1)
+    [figures] = sections["Figures"].blocks
+    assert isinstance(figures, Figures)
+    assert [figure.caption.split(":")[0] for figure in figures.figures] == [
+        *2 * ["Pantograph 1"],
+        *3 * ["Pantograph 2"],
+        "Uplift at the supports. Largest",
+    ]
+    [table] = sections["All quantities"].blocks
+    assert isinstance(table, Table)
+    assert "1.0170, 0.89600" in [row[-1] for row in table.rows]

@@ -1,0 +1,45 @@
+"""Figures of a certificate."""
+
+import math
+from typing import Any
+
+import matplotlib
+import pytest
+
+from pantocheck.conformance.reports.figures.force_figures import select_limited
+from pantocheck.conformance.reports.figures.uplift_figure import draw_uplift
+
+
+def test_uplift_figure_names_only_the_largest_of_many_supports() -> None:
+    """A legend of eleven names would halve the width of the figure."""
+    supports = [{"support_m": 55.0 * i, "time_s": [0, 1, 2], "uplift_mm": [0, 40 + i % 7, 0]} for i in range(11)]
+    named = draw_uplift.__wrapped__(supports, []).axes[0].get_legend().get_texts()
+    assert [text.get_text() for text in named] == ["other supports", "largest: support at 330 m"]
+
+
+def test_force_figure_shows_limits_of_force_statistics_only() -> None:
+    rows = [
+        {"quantity": "std_force_N", "lower": 26.0, "upper": 31.0},
+        {"quantity": "mean_force_N", "lower": None, "upper": 120.0},
+        {"quantity": "max_force_N", "lower": None, "upper": None},
+        {"quantity": "change_rms_20_50_pct", "lower": 0.0, "upper": None},
+    ]
+    assert [row["quantity"] for row in select_limited(rows)] == ["mean_force_N"]
+
+
+def test_figures_do_not_depend_on_the_settings_of_matplotlib(passing: dict[str, Any]) -> None:
+    case = passing["cases"][0]
+    expected = draw_uplift(case["uplift"], case["criteria"])
+    with matplotlib.rc_context({"font.family": "monospace", "axes.grid": False, "svg.fonttype": "none"}):
+        assert draw_uplift(case["uplift"], case["criteria"]) == expected
+        assert matplotlib.rcParams["svg.fonttype"] == "none"
+    assert "<text" not in expected
+    assert "dc:date" not in expected
+
+
+def test_example_spectrum_agrees_with_its_signal(passing: dict[str, Any]) -> None:
+    """The example has 0.98 x 24 N at the span-passing frequency; two spans hold two periods: no leakage."""
+    trace = passing["cases"][0]["traces"]["1"]["spectrum"]
+    peak = max(zip(trace["amplitude_N"], trace["frequency_Hz"], strict=True))
+    assert peak[1] == pytest.approx(250 / 3.6 / 60, rel=0.01)
+    assert math.isclose(peak[0], 24 * 0.98, rel_tol=0.02)
