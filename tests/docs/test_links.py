@@ -1,0 +1,31 @@
+"""Links between the pages, and README lines that the continuous integration runs."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+DOCS = ROOT / "docs"
+PAGES = [ROOT / "README.md", *sorted(DOCS.glob("*.md"))]
+
+
+def linked_files(page: Path) -> set[Path]:
+    """Local files to which a page links."""
+    targets = re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8"))
+    return {(page.parent / target).resolve() for target in targets if "://" not in target}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_every_link_leads_to_a_file(page: Path) -> None:
+    assert [target for target in linked_files(page) if not target.exists()] == []
+
+
+def test_index_lists_every_page() -> None:
+    assert linked_files(DOCS / "index.md") == {path.resolve() for path in DOCS.glob("*.md")} - {DOCS / "index.md"}
+
+
+@pytest.mark.parametrize("command", ["pytest", "pantocheck run"])
+def test_readme_has_one_line_for_each_job_of_the_continuous_integration(command: str) -> None:
+    lines = (ROOT / "README.md").read_text(encoding="utf-8").splitlines()
+    assert len([line for line in lines if re.match(rf"python3 -m venv .*{command}", line)]) == 1
