@@ -51,8 +51,8 @@ def print_results(results: Results, files: Sequence[Path]) -> None:
         if case.criteria:
             output.print(_build_criterion_table(case))
         for item in case.criteria:
-            if item.reason:
-                output.print(escape_text(f"  {_name(item)}: {item.reason}"))
+            for remark in filter(None, (item.reason, *item.close)):
+                output.print(escape_text(f"  {_name(item)}: {remark}"))
     output.print()
     if counted:
         output.print(Text(LEGEND, "dim"))

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
-from pantocheck.conformance.grading.criterion_grading import near_limit_warnings
 from pantocheck.conformance.grading.extended_band import extended_band_warnings
 from pantocheck.conformance.grading.verdicts import Verdict, worst_verdict
 from pantocheck.conformance.input_files.trust import Trust
@@ -54,7 +53,6 @@ def grade_evaluation(evaluation: CaseEvaluation, lowest_trust: Trust) -> CaseRes
         warnings=[
             *delivered.warnings,
             *(finding.text for finding in findings if finding.kind == "doubt"),
-            *near_limit_warnings(criteria),
             *evaluation.edge_warnings(),
             *extended_band_warnings(values.evaluation, values.refined, delivered.run.dt_s),
         ],

@@ -1,7 +1,7 @@
 """Grading of one criterion: a value against its limits."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from pantocheck.conformance.cases.library import source_text
@@ -155,11 +155,6 @@ def criterion_name(criterion: Criterion) -> str:
     """Name of a criterion: quantity, item and owner."""
     name = f"{criterion.quantity}[{criterion.item}]" if criterion.item else criterion.quantity
     return f"{name} of pantograph {criterion.pantograph}" if criterion.pantograph else f"{name} of the line"
-
-
-def near_limit_warnings(criteria: Sequence[Criterion]) -> list[str]:
-    """Near-limit remarks of criteria as warnings of their case."""
-    return [f"{criterion_name(criterion)} {remark}" for criterion in criteria for remark in criterion.close]
 
 
 def find_value(limit: Limit, values: Mapping[int, Mapping[str, Value]]) -> float | None:

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.profile_file import Profile
 from pantocheck.conformance.grading.assessed_record import AssessedRecord
-from pantocheck.conformance.grading.criterion_grading import near_limit_warnings
 from pantocheck.conformance.grading.extended_band import find_unvalidated
 from pantocheck.conformance.grading.rule_grading import RuleGrading
 from pantocheck.conformance.grading.verdicts import worst_verdict
@@ -58,7 +57,6 @@ def assess_record(
         warnings=[
             *_name_sources(records, "warnings"),
             *graded.omitted,
-            *near_limit_warnings(graded.criteria),
             *find_unvalidated(subject.values),
         ],
         inputs=[group for record in records for group in record.inputs],

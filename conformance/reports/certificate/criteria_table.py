@@ -47,8 +47,9 @@ class CriterionTexts:
 def describe_criterion(criterion: dict[str, Any]) -> CriterionTexts:
     """Texts of a criterion of results.json."""
     value, lower, upper = criterion["value"], criterion["lower"], criterion["upper"]
-    error, _ = total_error(criterion)
+    error = find_error(criterion)
     unit = "" if value is None else criterion.get("unit") or ""
+    close = criterion["close"] if is_close(criterion) else ()
     return CriterionTexts(
         quantity=criterion["quantity"],
         label=criterion_title(criterion),
@@ -57,7 +58,7 @@ def describe_criterion(criterion: dict[str, Any]) -> CriterionTexts:
         error="–" if error is None else f"± {format_value(error, 2)}",
         limits=format_limits(lower, upper),
         margin="–" if criterion.get("margin") is None else format_signed(criterion["margin"]),
-        remarks=tuple(filter(None, (criterion.get("reason"), remark_close(criterion), remark_shift(criterion)))),
+        remarks=tuple(filter(None, (criterion.get("reason"), *close, remark_shift(criterion)))),
     )
 
 
@@ -110,7 +111,7 @@ def _row(criterion: dict[str, Any], sources: list[str], anchor: str) -> tuple[Ri
 
 
 def _bar(criterion: dict[str, Any], texts: CriterionTexts) -> Drawing:
-    error, _ = total_error(criterion)
+    error = find_error(criterion)
     meaning = read_words()["verdict"][criterion["verdict"]]["meaning"]
     value, lower, upper = criterion["value"], criterion["lower"], criterion["upper"]
     shown = format_beside_limits(value, lower, upper)
@@ -124,11 +125,11 @@ def error_name(case: dict[str, Any]) -> str:
     return "Uncertainty (95 %)" if uncertain else "Discretisation error"
 
 
-def total_error(criterion: dict[str, Any]) -> tuple[float | None, str]:
-    """Error of a value and its name: from the length of a record, or from mesh and time step of a simulation."""
+def find_error(criterion: dict[str, Any]) -> float | None:
+    """Error of a value: from the length of a record, or else from mesh and time step of a simulation."""
     if criterion.get("uncertainty") is not None:
-        return criterion["uncertainty"], "uncertainty"
-    return criterion.get("discretisation_error"), "discretisation error"
+        return float(criterion["uncertainty"])
+    return criterion.get("discretisation_error")
 
 
 def criterion_title(criterion: dict[str, Any]) -> str:
@@ -147,17 +148,8 @@ def format_signed(margin: float) -> str:
 
 
 def is_close(criterion: dict[str, Any]) -> bool:
-    """Whether a value is closer to a limit than its error, so that its verdict could be reversed."""
-    value, (error, _) = criterion["value"], total_error(criterion)
-    lower, upper = criterion["lower"], criterion["upper"]
-    if value is None or not error or criterion["verdict"] not in ("pass", "fail") or lower == upper:
-        return False
-    return any(limit is not None and abs(value - limit) < error for limit in (lower, upper))
-
-
-def remark_close(criterion: dict[str, Any]) -> str | None:
-    """A remark on a value that is close to a limit."""
-    return f"closer to its limit than its {total_error(criterion)[1]}" if is_close(criterion) else None
+    """Whether a counted value is closer to a limit than one of its errors, so that its verdict could be reversed."""
+    return bool(criterion.get("close")) and criterion["verdict"] in ("pass", "fail")
 
 
 def remark_shift(criterion: dict[str, Any]) -> str | None:

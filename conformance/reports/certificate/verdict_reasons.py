@@ -8,7 +8,6 @@ from pantocheck.conformance.reports.certificate.criteria_table import (
     criterion_title,
     format_signed,
     is_close,
-    total_error,
 )
 from pantocheck.conformance.reports.document import BulletList, Section
 from pantocheck.conformance.reports.page_text import format_beside_limits, format_limits
@@ -47,13 +46,10 @@ def list_reasons(results: dict[str, Any]) -> tuple[Section, ...]:
         "Errors": [*_case_reasons(results, "error"), *map(_reason, _select(results, "error"))],
         "Failed": [*_case_reasons(results, "fail"), *map(_value, _select(results, "fail"))],
         "Not evaluated": [*_case_reasons(results, "skip"), *map(_reason, _select(results, "skip"))],
+        "Closer to a limit than an error": [_value(pair) for pair in _criteria(results) if is_close(pair[1])],
+        # Between two equal limits a margin is 0 at best and says nothing about closeness.
+        "Smallest margins": [_value(pair) for pair in bounded[:MARGINS_SHOWN]],
     }
-    for case, criterion in _criteria(results):
-        if is_close(criterion):
-            heading = f"Closer to a limit than the {total_error(criterion)[1]}"
-            groups.setdefault(heading, []).append(_value((case, criterion)))
-    # Between two equal limits a margin is 0 at best and says nothing about closeness.
-    groups["Smallest margins"] = [_value(pair) for pair in bounded[:MARGINS_SHOWN]]
     return tuple(
         Section(heading, (BulletList(tuple(sentences)),)) for heading, sentences in groups.items() if sentences
     )

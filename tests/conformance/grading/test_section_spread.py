@@ -60,7 +60,7 @@ def test_verdict_that_another_stretch_could_turn_is_named(growing):
     result = grade_case(replace(case, limits=(limit,)), Delivered(record), "secondary")
     (row,) = result.criteria
     assert row.spread == result.spread["1"]["mean_force_N"]
-    assert any("less than its spread over analysis sections of 2 N" in text for text in result.warnings)
+    assert any("less than its spread over analysis sections of 2 N" in remark for remark in row.close)
     remark = remark_shift(row.model_dump())
     assert remark is not None
     assert remark.startswith("changes by up to 2.0 N when the analysis section")

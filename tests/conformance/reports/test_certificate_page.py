@@ -19,6 +19,7 @@ from pantocheck.conformance.reports.document import (
     TrustMark,
     VerdictMark,
 )
+from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.reports.page_text import format_value
 from pantocheck.conformance.results.results_format import Results
 
@@ -59,11 +60,22 @@ def test_criterion_shows_all_its_values(passing: dict[str, Any]) -> None:
 
 
 def test_criterion_close_to_its_limit_is_marked_in_row_and_reasons(passing: dict[str, Any]) -> None:
+    remark = "lies 0.1 N from a limit, less than its discretisation error of 0.2 N"
     row = passing["cases"][0]["criteria"][0]
-    row |= {"value": 119.9, "discretisation_error": 0.2, "margin": 0.02}
-    assert describe_criterion(row).remarks == ("closer to its limit than its discretisation error",)
+    row |= {"value": 119.9, "discretisation_error": 0.2, "margin": 0.02, "close": [remark]}
+    assert describe_criterion(row).remarks == (remark,)
     headings = [section.heading for section in list_reasons(passing)]
-    assert headings == ["Closer to a limit than the discretisation error", "Smallest margins"]
+    assert headings == ["Closer to a limit than an error", "Smallest margins"]
+    assert describe_criterion(row | {"verdict": "info"}).remarks == ()
+
+
+def test_certificate_states_a_close_criterion_once_per_place(passing: dict[str, Any]) -> None:
+    """Once in the row of the criterion and once among the reasons."""
+    remark = "lies 0.1 N from a limit, less than its discretisation error of 0.2 N"
+    passing["cases"][0]["criteria"][0] |= {"value": 119.91, "margin": 0.018, "close": [remark]}
+    text = render_html(build_certificate(passing))
+    assert text.count(remark) == 1
+    assert text[: text.index('id="cases"')].count("119.9 N") == 2  # close, and the smallest margin
 
 
 def test_reasons_begin_with_the_worst(results: dict[str, Any]) -> None:
