@@ -10,7 +10,7 @@
 -----    base
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import eigh
@@ -54,7 +54,6 @@ def chain(
     uplift_force: float,
     uplift_on: int,
     contact_stiffness: float,
-    unstretched_height: float = 0.0,
 ) -> Pantograph:
     """Build a chain of lumped masses from base to head.
 
@@ -70,8 +69,6 @@ def chain(
         Index of the mass on which it acts.
     contact_stiffness : float
         Stiffness of the penalty contact [N/m].
-    unstretched_height : float
-        Height of all masses above the contact wire at the supports at which the springs are unstretched [m].
 
     Returns
     -------
@@ -82,12 +79,10 @@ def chain(
     force, head = np.zeros(n), np.zeros(n)
     force[uplift_on] = uplift_force
     head[-1] = 1.0
-    stiff = _chain_matrix(stiffness)
-    force += stiff @ np.full(n, unstretched_height)
     return Pantograph(
         np.diag(np.asarray(masses, dtype=float)),
         _chain_matrix(damping),
-        stiff,
+        _chain_matrix(stiffness),
         head,
         force,
         uplift_force,
@@ -102,11 +97,10 @@ def from_matrices(
     head: Array,
     static_force: float,
     contact_stiffness: float,
-    working_height: float = 0.0,
 ) -> Pantograph:
-    """Build a pantograph from its matrices; it is at rest with its static force at a working height.
+    """Build a pantograph from its matrices, at rest under its static force with the head at height zero.
 
-    In a linear model the constant uplift force only determines this state of rest, wherever it acts.
+    In a linear model the constant uplift force only determines the state of rest, wherever it acts.
 
     Parameters
     ----------
@@ -118,23 +112,19 @@ def from_matrices(
         Contact force at rest [N].
     contact_stiffness : float
         Stiffness of the penalty contact [N/m].
-    working_height : float
-        Height of the head at rest above the contact wire at the supports [m].
 
     Returns
     -------
     Pantograph
         Linear model.
     """
-    head, stiff = np.asarray(head, dtype=float), np.asarray(stiffness, dtype=float)
-    # Any unknowns with the head at this height are suitable: the spring forces there become preload.
-    at_rest = head * working_height / (head @ head)
+    head = np.asarray(head, dtype=float)
     return Pantograph(
         np.asarray(mass, dtype=float),
         np.asarray(damping, dtype=float),
-        stiff,
+        np.asarray(stiffness, dtype=float),
         head,
-        static_force * head + stiff @ at_rest,
+        static_force * head,
         static_force,
         contact_stiffness,
     )
@@ -180,6 +170,11 @@ def from_modes(
         static_force,
         contact_stiffness,
     )
+
+
+def preload_springs(pantograph: Pantograph, displacement: Array) -> Pantograph:
+    """Preload the springs so that they are unstretched at a displacement of the unknowns, (n,) ndarray [m]."""
+    return replace(pantograph, force=pantograph.force + pantograph.stiffness @ displacement)
 
 
 def frequencies(pantograph: Pantograph) -> Array:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from pantocheck.conformance.cases.pantograph_file import PantographFile
-from pantocheck.model.pantograph import Pantograph, chain, from_matrices, from_modes
+from pantocheck.model.pantograph import Pantograph, chain, from_matrices, from_modes, preload_springs
 
 
 def build_pantograph(file: PantographFile, uplift_force: float, working_height: float) -> Pantograph:
@@ -26,19 +26,22 @@ def build_pantograph(file: PantographFile, uplift_force: float, working_height: 
     contact = file.contact.stiffness_N_m
     if file.chain is not None:
         parts = file.chain
-        return chain(
+        model = chain(
             np.array(parts.masses_kg),
             np.array(parts.stiffness_N_m),
             np.array(parts.damping_N_s_m),
             uplift_force,
             parts.uplift_mass,
             contact,
-            working_height if parts.base_spring_unstretched == "working_height" else 0.0,
         )
+        unstretched = working_height if parts.base_spring_unstretched == "working_height" else 0.0
+        return preload_springs(model, np.full(len(parts.masses_kg), unstretched))
     if file.matrices is not None:
         given = file.matrices
         matrices = (np.array(given.mass_kg), np.array(given.damping_N_s_m), np.array(given.stiffness_N_m))
-        return from_matrices(*matrices, np.array(given.head), uplift_force, contact, working_height)
+        model = from_matrices(*matrices, np.array(given.head), uplift_force, contact)
+        # Any unknowns with the head at the working height are suitable: the spring forces there become preload.
+        return preload_springs(model, model.head * working_height / (model.head @ model.head))
     modes = file.modes
     if modes is None:
         raise ValueError("a pantograph without a model")  # which no file passes as

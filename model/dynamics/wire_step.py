@@ -115,14 +115,15 @@ def build_wire_arrays(beams: Beams) -> WireArrays:
     matrices = np.array([element_stiffness(beams, row) for row in range(len(beams.mass_per_length))])
     k11, k12, k22, k24 = (matrices[:, :, i, j] for i, j in ((0, 0), (0, 1), (1, 1), (1, 3)))
     lumped = np.nonzero((beams.lumped_stiffness != 0) | (beams.lumped_damping != 0))
+    lumped_row, lumped_station = (np.ascontiguousarray(index) for index in lumped)
     return WireArrays(
         length=beams.length,
         stiffness=np.stack([k11, k12, (k22 + k24) / 2, (k22 - k24) / 2], axis=1),
         damped_mass=beams.mass_coefficient[:, None] * beams.mass_per_length * beams.length / 420,
         mass_coefficient=beams.mass_coefficient,
         stiffness_coefficient=beams.stiffness_coefficient,
-        lumped_row=lumped[0],
-        lumped_station=lumped[1],
+        lumped_row=lumped_row,
+        lumped_station=lumped_station,
         lumped_stiffness=beams.lumped_stiffness[lumped],
         lumped_damping=beams.lumped_damping[lumped],
     )

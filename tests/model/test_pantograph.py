@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from pantocheck.model.pantograph import Pantograph, apparent_mass, chain, frequencies, from_modes
+from pantocheck.model.pantograph import Pantograph, apparent_mass, chain, frequencies, from_modes, preload_springs
 
 MASSES, STIFFNESS, DAMPING = (np.array(v) for v in ([6.0, 9.0, 7.5], [160.0, 15500.0, 7000.0], [100.0, 0.1, 45.0]))
 
@@ -49,7 +49,7 @@ def test_apparent_mass_vanishes_at_the_frequencies() -> None:
 def test_modes_repeat_the_chain() -> None:
     """The same system by its modes, damped in proportion to its stiffness: same apparent mass, same rest."""
     beta = 1e-3
-    by_chain = chain(MASSES, STIFFNESS, beta * STIFFNESS, 169.0, 0, 50e3, 0.055)
+    by_chain = preload_springs(chain(MASSES, STIFFNESS, beta * STIFFNESS, 169.0, 0, 50e3), np.full(3, 0.055))
     w2, shapes = eigh(by_chain.stiffness, by_chain.mass)
     omega = np.sqrt(w2)
     by_modes = from_modes(
@@ -62,9 +62,9 @@ def test_modes_repeat_the_chain() -> None:
     assert rest[0] == pytest.approx(rest[1], rel=1e-9)
 
 
-def test_springs_are_unstretched_at_the_height_asked_for() -> None:
-    """Without uplift nothing moves the chain from that height."""
-    at_rest = chain(MASSES, STIFFNESS, DAMPING, 0.0, 0, 50e3, unstretched_height=0.055)
+def test_preload_springs_leaves_the_chain_at_rest_at_the_unstretched_height() -> None:
+    """Without uplift force no force moves the chain from that height."""
+    at_rest = preload_springs(chain(MASSES, STIFFNESS, DAMPING, 0.0, 0, 50e3), np.full(len(MASSES), 0.055))
     np.testing.assert_allclose(np.linalg.solve(at_rest.stiffness, at_rest.force), 0.055, rtol=1e-9)
 
 

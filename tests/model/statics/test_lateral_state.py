@@ -20,11 +20,12 @@ from pantocheck.model import (
 )
 from pantocheck.model.fem.beams import wire_stiffness
 from pantocheck.model.fem.connectors import RIGID
+from pantocheck.model.pantograph import preload_springs
 from pantocheck.model.statics.elasticity import static_uplift
 
 SPAN, STAGGER, TENSION = 60.0, 0.2, 20e3
-PANTOGRAPH = chain(
-    np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.array([90.0, 10.0]), 120.0, 0, 50e3, unstretched_height=0.06
+PANTOGRAPH = preload_springs(
+    chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.array([90.0, 10.0]), 120.0, 0, 50e3), np.full(2, 0.06)
 )
 
 

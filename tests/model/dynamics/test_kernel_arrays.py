@@ -1,0 +1,59 @@
+"""Kernel arrays: nested arrays of the time step of a line."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from helpers.lines import DAMPED, Array, simple_line
+from pantocheck.model import Kind, ModalBand, discretise
+from pantocheck.model.dynamics.active_window import max_wave_speed
+from pantocheck.model.dynamics.block_tridiagonal import solve_line
+from pantocheck.model.dynamics.kernel_arrays import KernelArrays, build_kernel_arrays, build_workspace
+from pantocheck.model.dynamics.train import empty_train
+
+
+def leaves(arrays: tuple[object, ...]) -> list[Array]:
+    """All arrays of nested named tuples."""
+    nested = [leaves(value) if isinstance(value, tuple) else [np.asarray(value)] for value in arrays]
+    return [array for part in nested for array in part]
+
+
+def test_kernel_arrays_are_contiguous_and_finite() -> None:
+    """The compiled step is specialised for contiguous arrays; another layout would compile it a second time."""
+    kernel = build_kernel_arrays(discretise(simple_line(damping=DAMPED), 1.0), 1e-3, reach=100.0)
+    for array in leaves(kernel):
+        assert array.flags.c_contiguous
+        assert array.dtype == np.bool_ or np.isfinite(array).all()
+
+
+def test_self_compliance_is_the_response_of_a_connector_to_its_own_tension() -> None:
+    """A unit tension on one dropper, solved on the whole line; the column is cut at 1e-12 of its peak."""
+    line = discretise(simple_line(damping=DAMPED), 1.0)
+    kernel = build_kernel_arrays(line, 1e-3)
+    number = 4
+    station, coefficient = line.connectors.station[number], line.connectors.coefficient[number]
+    w, r = np.zeros(line.beams.free.shape[:2]), np.zeros(line.beams.free.shape[:2])
+    w[:, station] = coefficient
+    solve_line(kernel.factor, 0, w.shape[1] - 1, w, r)
+    response = kernel.connectors.tension_per_acceleration[number] * (coefficient @ w[:, station])
+    assert kernel.connectors.self_compliance[number] == pytest.approx(response, rel=1e-10)
+
+
+def test_modal_damping_makes_the_whole_line_active() -> None:
+    """A mode moves every station, so the active window must not be limited; without modes it is."""
+    line = discretise(simple_line(damping=dict.fromkeys(Kind, DAMPED[Kind.DROPPER])), 2.0)
+    modal = replace(line, catenary=replace(line.catenary, modal_damping=(ModalBand(0.8, 1.5, 0.02),)))
+    limited, whole = (build_kernel_arrays(one, 1e-3, reach=50.0).window for one in (line, modal))
+    assert (limited.reach, limited.wave_front_speed) == (50.0, max_wave_speed(line))
+    assert (whole.reach, whole.wave_front_speed) == (math.inf, math.inf)
+
+
+def test_workspace_fits_the_kernel_arrays() -> None:
+    """One predicted tension per connector, one velocity per mode, no contact without a pantograph."""
+    kernel: KernelArrays = build_kernel_arrays(discretise(simple_line(), 1.0), 1e-3)
+    work = build_workspace(kernel, empty_train(1))
+    assert work.tension.size == kernel.connectors.station.size == 18
+    assert work.modal_velocity.size == 0
+    assert work.contact.shape.shape == (0, 1, 4)
