@@ -31,7 +31,7 @@ class LazyGroup(TyperGroup):
 
     def __init__(self, **settings: Any) -> None:
         super().__init__(**settings)
-        self.commands = {name: TyperCommand(name, help=summary) for name, summary in COMMANDS.items()}
+        self.commands = {name: TyperCommand(name, short_help=summary) for name, summary in COMMANDS.items()}
 
     def resolve_command(self, ctx: Any, args: list[str]) -> tuple[str | None, Any, list[str]]:
         """Replace the summary of the command by the command itself."""
@@ -43,7 +43,7 @@ def load_command(name: str) -> Any:
     """Command of a name, imported from its file."""
     name_in_code = f"{name.replace('-', '_')}_command"
     module = import_module(f"pantocheck.conformance.command_line.{name_in_code}")
-    single = typer.Typer(add_completion=False)
+    single = typer.Typer(add_completion=False, rich_markup_mode=None)
     single.command(name)(guard_command(getattr(module, name_in_code)))
     return get_command(single)
 
@@ -56,6 +56,7 @@ app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
+    rich_markup_mode=None,
 )
 
 

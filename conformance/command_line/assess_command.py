@@ -57,9 +57,9 @@ def assess_command(
 
     Examples:
 
-    pantocheck assess run42.csv --profile acceptance-ac --wave-speed-m-s 122 --out report
+    pantocheck assess run42.csv --profile acceptance-ac --wave-speed-m-s 122
 
-    pantocheck assess simulated.toml --profile line-test --measured train.toml --trust provisional
+    pantocheck assess simulated.toml --profile line-test --measured train.toml
     """
     options = build_options(out=str(out), formats=split_names(formats), trust=trust, drift_pct=drift)
     report_formats = check_formats(options.formats)

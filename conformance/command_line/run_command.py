@@ -61,9 +61,9 @@ def run_command(
 
     pantocheck run my-case.toml --system record:records --formats html,json
 
-    pantocheck run 'en50318-2002/*' --system 'command:python3 my_adapter.py' --timeout 300
+    pantocheck run 'en50318-2002/*' --system 'command:python3 adapter.py'
 
-    pantocheck run --plan conformance.toml --baseline baseline/results.json --drift 2
+    pantocheck run --plan conformance.toml --baseline results.json --drift 2
     """
     options = build_options(
         plan,
