@@ -198,7 +198,7 @@ def test_line_test_needs_a_fitting_pair(train):
     with pytest.raises(InputError, match="compares with a measured record, but none is given"):
         assess_record(simulated, profile)
     faster = load_assessed_record(PASSING / "300.toml", profile, LineTable())
-    with pytest.raises(InputError, match="it is of 300 km/h, train of 250 km/h"):
+    with pytest.raises(InputError, match="its speed is 300 km/h, that of train is 250 km/h"):
         assess_record(simulated, profile, measured=faster)
     with pytest.raises(InputError, match="does not compare"):
         assess_record(simulated, load_profile("acceptance-ac"), measured=simulated)
