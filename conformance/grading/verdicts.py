@@ -1,4 +1,4 @@
-"""Verdicts: a value and its limits give a verdict and a normalised margin."""
+"""Verdict and normalised margin of a value between its limits."""
 
 from collections.abc import Iterable
 from typing import Literal, get_args
@@ -9,28 +9,29 @@ WORST_FIRST: tuple[Verdict, ...] = get_args(Verdict)
 
 
 def judge(value: float, lower: float | None, upper: float | None) -> Verdict:
-    """`pass` if a value lies within its limits (the limits themselves included), else `fail`."""
+    """`pass` if a value lies within its limits, limits included; otherwise `fail`."""
     inside = (lower is None or value >= lower) and (upper is None or value <= upper)
     return "pass" if inside else "fail"
 
 
 def margin(value: float, lower: float | None, upper: float | None) -> float:
-    """Normalised distance of a value to its nearer limit: 0 on a limit, negative outside.
+    """Normalised distance of a value from its nearer limit: 0 on a limit, negative outside.
 
-    With two limits the unit is half their distance, so that 1 is the middle. With one limit, or two equal ones, the
-    unit is the limit itself (1 if the limit is 0, and at least 1 for two equal ones).
+    With two limits, the distance is divided by half their difference, so that the middle has the margin 1. With one
+    limit, it is divided by the absolute limit (by 1 if the limit is 0). With two equal limits, it is divided by the
+    absolute limit, but at least by 1.
 
     Parameters
     ----------
     value : float
-        The value graded.
+        Graded value.
     lower, upper : float or None
-        Limits in the unit of the value; at least one of them.
+        Limits in the unit of the value; at least one must be given.
 
     Returns
     -------
     float
-        [-].
+        Margin [-].
     """
     if lower is not None and upper is not None:
         if lower == upper:
@@ -44,5 +45,5 @@ def margin(value: float, lower: float | None, upper: float | None) -> float:
 
 
 def worst_verdict(verdicts: Iterable[Verdict]) -> Verdict:
-    """The verdict of a whole from those of its parts: error > fail > skip > pass > info; of nothing, `info`."""
+    """Worst of several verdicts, in the order error, fail, skip, pass, info; `info` if there are none."""
     return min(verdicts, key=WORST_FIRST.index, default="info")

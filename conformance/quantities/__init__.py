@@ -1,1 +1,1 @@
-"""Statistics of a record: each quantity is a definition, its unit, its source and what it needs."""
+"""Quantities: definition, unit, source and computation of every number that can be graded."""

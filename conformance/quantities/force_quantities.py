@@ -162,7 +162,7 @@ PANTOGRAPH_QUANTITIES: tuple[PantographQuantity, ...] = (
         needs="contact height",
         source=EN50318,
         never_negative=True,
-        compute=lambda signals, sampling: 1e3 * (sampling.largest(signals.height) - sampling.smallest(signals.height)),
+        compute=lambda signals, sampling: sampling.extent(signals.height, 1e3),
     ),
 )
 

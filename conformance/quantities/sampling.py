@@ -28,6 +28,9 @@ class Sampling(Protocol):
     def smallest(self, series: RealArray) -> RealArray:
         """Smallest value."""
 
+    def extent(self, series: RealArray, scale: float) -> RealArray:
+        """Largest minus smallest value, times a scale that converts its unit."""
+
     def percentage(self, condition: NDArray[np.bool_]) -> RealArray:
         """Share of the samples that meet a condition [%]."""
 
@@ -53,6 +56,10 @@ class WholeRecord:
     def smallest(self, series: RealArray) -> RealArray:
         """Smallest value."""
         return np.asarray(series.min())
+
+    def extent(self, series: RealArray, scale: float) -> RealArray:
+        """Largest minus smallest value, times a scale that converts its unit."""
+        return np.asarray(scale * np.ptp(series))
 
     def percentage(self, condition: NDArray[np.bool_]) -> RealArray:
         """Share of the samples that meet a condition [%]."""

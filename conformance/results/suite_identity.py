@@ -1,4 +1,4 @@
-"""Which state of the suite is at work."""
+"""Identity of the suite: commit of its repository."""
 
 import subprocess
 from functools import cache
@@ -8,10 +8,10 @@ from pathlib import Path
 
 @cache
 def find_suite_commit() -> str | None:
-    """Commit of the suite when it runs from its own repository, `-dirty` if files were changed; else None."""
+    """Commit of the suite if it runs from its own repository, with `-dirty` if files were changed; otherwise None."""
     source = Path(str(files("pantocheck.conformance"))).resolve()
     top = _git(source, "rev-parse", "--show-toplevel")
-    # An installed suite may lie inside somebody else's repository, whose commit says nothing about it.
+    # An installed suite may lie inside another repository, whose commit does not identify the suite.
     if top is None or Path(top).resolve() != source.parent:
         return None
     return _git(source, "describe", "--always", "--dirty", "--abbrev=12", "--exclude=*")

@@ -1,4 +1,8 @@
-"""A realistic results dictionary, made from a synthetic contact force whose statistics are known."""
+"""Realistic results.json of a synthetic contact force.
+
+Margin, bands and statistics are computed here a second time, on purpose: the example is an independent route, so that a
+fault in `quantities` or `grading` shows as a discrepancy. It covers numbers only; texts and layout are not repeated.
+"""
 
 import math
 from typing import Any

@@ -61,6 +61,10 @@ class BlockReplicates:
         """Smallest value of each replicate."""
         return -self.largest(-series)
 
+    def extent(self, series: RealArray, scale: float) -> RealArray:
+        """Largest minus smallest value of each replicate, times a scale that converts its unit."""
+        return self.largest(scale * series) - self.smallest(scale * series)
+
     def percentage(self, condition: NDArray[np.bool_]) -> RealArray:
         """Share of the samples that meet a condition [%], for each replicate."""
         return 100 * self.mean(condition.astype(np.float64))
