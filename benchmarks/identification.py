@@ -21,7 +21,6 @@ from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from pantocheck.conformance.identification.identify import Identification, identify_modes
-from pantocheck.conformance.identification.model_order import whiten
 from pantocheck.conformance.identification.pole_refinement import refine_poles
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
 from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
@@ -74,7 +73,7 @@ def made_up(seed: int, peers: bool) -> None:
     )
     (found,) = identify_modes((record,))
     # Modes in the fitted band that are not reported enter the bound, or their leakage would pass for excitation.
-    poles = poles[poles.imag < 2 * np.pi * found.band.fitted]
+    poles = poles[poles.imag < 2 * np.pi * found.fit.band.fitted]
     bound = bounds(found, poles)
     seen = (bound < 0.005) & (poles.imag < 2 * np.pi * 9.9)
     truth = np.column_stack([made.frequency, made.damping_ratio, np.ones(made.poles.size)])[: poles.size][seen]
@@ -83,7 +82,7 @@ def made_up(seed: int, peers: bool) -> None:
 
 def bounds(found: Identification, poles: NDArray[np.complex128]) -> Real:
     """Cramer-Rao bounds on the damping ratios, relative, with the noise of an identification, (m,)."""
-    white = whiten(list(found.blocks), list(found.noise))
+    white = found.fit.whitened_blocks()
     covariance = refine_poles(poles, white, iterations=0).covariance
     return np.asarray(np.sqrt(np.diag(covariance)[: poles.size]) / -poles.real)
 
@@ -128,9 +127,9 @@ def subspace(found: Identification) -> Real:
     from pyoma2.algorithms import SSI
     from pyoma2.setup import SingleSetup
 
-    longest = max(found.prepared, key=lambda one: one.stretch.duration)
-    step = max(1, round(1 / (longest.stretch.dt * SSI_RATE)))
-    setup = SingleSetup(longest.stretch.samples[::step], fs=1 / (longest.stretch.dt * step))
+    longest = max((record.decay.linear for record in found.fit.records), key=lambda decay: decay.duration)
+    step = max(1, round(1 / (longest.dt * SSI_RATE)))
+    setup = SingleSetup(longest.samples[::step], fs=1 / (longest.dt * step))
     algorithm = SSI(name="ssi", br=SSI_ROWS, ordmax=SSI_ORDER, method="cov", calc_unc=False)
     setup.add_algorithms(algorithm)
     with warnings.catch_warnings():

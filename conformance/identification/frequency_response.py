@@ -1,4 +1,4 @@
-"""Frequency responses of the transient drop: the release is a step force m g, upward, where the mass hung.
+"""Frequency responses to a mass drop: the release is an upward step force m g at the position of the mass.
 
 A step of height F at t = 0 has the transform F / (i w), so the accelerance of a sensor is
 
@@ -11,10 +11,11 @@ import numpy as np
 
 from pantocheck.conformance.array_types import ComplexArray, RealArray
 from pantocheck.conformance.identification.decay_filters import filter_gain
-from pantocheck.conformance.identification.identify import Identification
+from pantocheck.conformance.identification.line_fit import LineFit, RecordFit
 from pantocheck.conformance.input_files.units import STANDARD_GRAVITY
 
 POWER_OF_OMEGA = {"acceleration": 0, "velocity": 1, "displacement": 2}
+"""Powers of i w that turn a transform into that of the acceleration."""
 
 
 @dataclass(frozen=True)
@@ -24,15 +25,15 @@ class FrequencyResponse:
     Parameters
     ----------
     record : str
-        Name.
-    channels : tuple[str, ...]
-        (c,) names.
+        Name of the record.
+    channels : tuple of str
+        (c,) names of its channels.
     frequency : (k,) ndarray
-        [Hz].
+        Frequencies [Hz].
     measured : (k, c) complex ndarray
-        From the release to the end of the linear stretch [m/s2/N].
+        Response from the release to the end of the linear decay [m/s2/N].
     identified : (k, c) complex ndarray
-        Of the identified modes, carried back to the release [m/s2/N].
+        Response of the identified poles, extrapolated back to the release [m/s2/N].
     """
 
     record: str
@@ -42,54 +43,47 @@ class FrequencyResponse:
     identified: ComplexArray
 
 
-def compute_frequency_response(found: Identification, r: int) -> FrequencyResponse | None:
-    """Frequency responses of one record.
+def compute_frequency_response(fit: LineFit, record_fit: RecordFit) -> FrequencyResponse | None:
+    """Frequency responses of one record; None if its mass is unknown.
 
     Parameters
     ----------
-    found : Identification
-        The identification.
-    r : int
-        Which of its records.
-
-    Returns
-    -------
-    FrequencyResponse or None
-        None if the mass is not known.
+    fit : LineFit
+        Fit of the line.
+    record_fit : RecordFit
+        The record, one of `fit.records`.
     """
-    one = found.prepared[r]
-    record, stretch = one.record, one.stretch
+    decay, linear = record_fit.decay, record_fit.decay.linear
+    record, columns = decay.record, list(decay.columns)
     if record.drop.mass is None:
         return None
-    begin, end = (int(t * record.rate) for t in (one.release.time, stretch.end))
-    signals = record.signals[begin:end, list(one.columns)]
-    rest = record.signals[: max(int(one.release.rest_end * record.rate), 1), list(one.columns)]
+    begin, end = (int(t * record.rate) for t in (decay.release.time, linear.end))
+    signals = record.signals[begin:end, columns]
+    rest = record.signals[: max(int(decay.release.rest_end * record.rate), 1), columns]
     n = signals.shape[0]
     frequency = np.asarray(np.fft.rfftfreq(n, 1 / record.rate), dtype=np.float64)
-    used = (frequency >= found.band.low) & (frequency <= found.band.high)
+    used = (frequency >= fit.band.low) & (frequency <= fit.band.high)
     omega: RealArray = 2 * np.pi * frequency[used]
     to_accelerance = (1j * omega) ** (1 + POWER_OF_OMEGA[record.quantity]) / (record.drop.mass * STANDARD_GRAVITY)
     offset = rest.mean(axis=0) if rest.shape[0] > 10 else signals.mean(axis=0)
     measured = np.fft.rfft(signals - offset, axis=0)[used] / record.rate
-    b, columns = found.block_of[r], found.columns[r]
-    back = np.exp(-found.poles * (stretch.first - one.release.time)) / filter_gain(
-        stretch.taps, found.poles, stretch.rate
-    )
-    inside = np.abs(found.poles) < 2 * np.pi * found.band.fitted
-    residues = (found.fits[b].residues[:, columns] * back[:, None])[inside]
-    poles, duration = found.poles[inside], n / record.rate
-    response = _transform(poles, omega, duration) @ residues
-    response += _transform(poles.conj(), omega, duration) @ residues.conj()
+    to_release = np.exp(-fit.poles * (linear.first - decay.release.time))
+    to_release = to_release / filter_gain(linear.taps, fit.poles, linear.rate)
+    inside = np.abs(fit.poles) < 2 * np.pi * fit.band.fitted
+    residues = (record_fit.residues * to_release[:, None])[inside]
+    poles, duration = fit.poles[inside], n / record.rate
+    identified = _transform(poles, omega, duration) @ residues
+    identified += _transform(poles.conj(), omega, duration) @ residues.conj()
     return FrequencyResponse(
         record.name,
-        one.channel_names,
+        decay.channel_names,
         frequency[used],
         measured * to_accelerance[:, None],
-        response * to_accelerance[:, None],
+        identified * to_accelerance[:, None],
     )
 
 
 def _transform(poles: ComplexArray, omega: RealArray, duration: float) -> ComplexArray:
-    """Transform of exp(lambda t) over the record, (k, m) [s]."""
+    """Transform of exp(lambda t) over a duration [s], (k, m) [s]."""
     difference = poles[None, :] - 1j * omega[:, None]
     return np.asarray(np.expm1(difference * duration) / difference)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from pantocheck.conformance.array_types import ComplexArray
+from pantocheck.conformance.identification.decay_preparation import PreparedDecay
 from pantocheck.conformance.identification.frequency_response import compute_frequency_response
 from pantocheck.conformance.identification.identification_format import (
     Curve,
@@ -14,34 +15,34 @@ from pantocheck.conformance.identification.identification_format import (
     ResponseCurve,
 )
 from pantocheck.conformance.identification.identify import Identification
+from pantocheck.conformance.identification.line_fit import LineFit, RecordFit
 from pantocheck.conformance.identification.mode import Mode
 from pantocheck.conformance.identification.repeatability import compare_records, overlay_records, round_curve
 
 
 def analyse_identification(identification: Identification) -> IdentifiedLine:
     """Analyse the identification of one line."""
-    records = range(len(identification.prepared))
-    tests = dict.fromkeys(decay.test for decay in identification.prepared)
-    drops = [tuple(decay for decay in identification.prepared if decay.test == test) for test in tests]
+    fit, modes = identification.fit, identification.modes
+    decays = [record.decay for record in fit.records]
+    drops = [tuple(d for d in decays if d.test == test) for test in dict.fromkeys(decay.test for decay in decays)]
     repeated = [repeats for repeats in drops if len(repeats) > 1]
-    responses = (_responses(identification, r) for r in records)
+    responses = (_responses(fit, record) for record in fit.records)
     return IdentifiedLine(
-        quantity=identification.prepared[0].record.quantity,
-        band_Hz=(identification.band.low, identification.band.high),
-        misfit=identification.misfit,
+        quantity=decays[0].record.quantity,
+        band_Hz=(fit.band.low, fit.band.high),
+        misfit=fit.misfit,
         warnings=identification.warnings,
-        records=tuple(_record(identification, r) for r in records),
-        groups=_groups(identification.modes),
-        modes=identification.modes,
+        records=tuple(_record(decay) for decay in decays),
+        groups=_groups(modes),
+        modes=modes,
         repeatability=tuple(compare_records(repeats) for repeats in repeated),
         overlays=tuple(overlay_records(repeats) for repeats in repeated),
-        spectra=tuple(_spectra(identification, r) for r in records),
+        spectra=tuple(_spectra(fit, record, modes) for record in fit.records),
         frequency_responses=tuple(response for response in responses if response is not None),
     )
 
 
-def _record(identification: Identification, r: int) -> IdentifiedRecord:
-    decay = identification.prepared[r]
+def _record(decay: PreparedDecay) -> IdentifiedRecord:
     record, drop = decay.record, decay.record.drop
     return IdentifiedRecord(
         name=record.name,
@@ -52,8 +53,8 @@ def _record(identification: Identification, r: int) -> IdentifiedRecord:
         drop_wire=drop.wire,
         drop_position_m=drop.position,
         release_s=decay.release.time,
-        used_from_s=decay.stretch.start,
-        used_to_s=decay.stretch.end,
+        used_from_s=decay.linear.start,
+        used_to_s=decay.linear.end,
         channels=decay.channel_names,
     )
 
@@ -78,19 +79,18 @@ def _groups(modes: tuple[Mode, ...]) -> tuple[ModeGroup, ...]:
     return tuple(groups)
 
 
-def _spectra(identification: Identification, r: int) -> RecordSpectra:
-    decay, block = identification.prepared[r], identification.block_of[r]
-    data, fit, columns = identification.blocks[block], identification.fits[block], identification.columns[r]
-    shown = data.omega <= 2 * np.pi * identification.band.high
-    measured, residual = (values[shown][:, columns] * data.dt for values in (data.spectrum, fit.residual))
+def _spectra(fit: LineFit, record: RecordFit, modes: tuple[Mode, ...]) -> RecordSpectra:
+    data, columns = record.block.data, record.columns
+    shown = data.omega <= 2 * np.pi * fit.band.high
+    measured, residual = (values[shown][:, columns] * data.dt for values in (data.spectrum, record.block.fit.residual))
     return RecordSpectra(
-        record=decay.record.name,
-        channels=decay.channel_names,
+        record=record.decay.record.name,
+        channels=record.decay.channel_names,
         frequency_Hz=round_curve(data.omega[shown] / (2 * np.pi)),
         measured=_magnitudes(measured),
         fitted=_magnitudes(measured - residual),
         residual=_magnitudes(residual),
-        poles_Hz=tuple(mode.frequency_Hz for mode in identification.modes),
+        poles_Hz=tuple(mode.frequency_Hz for mode in modes),
     )
 
 
@@ -98,8 +98,8 @@ def _magnitudes(spectra: ComplexArray) -> tuple[Curve, ...]:
     return tuple(round_curve(np.abs(column)) for column in spectra.T)
 
 
-def _responses(identification: Identification, r: int) -> RecordResponses | None:
-    response = compute_frequency_response(identification, r)
+def _responses(fit: LineFit, record: RecordFit) -> RecordResponses | None:
+    response = compute_frequency_response(fit, record)
     if response is None:
         return None
     measured, identified = (

@@ -1,8 +1,8 @@
-"""Output error of a set of poles, with everything linear eliminated (variable projection).
+"""Output error of a set of poles, all linear parameters eliminated (variable projection).
 
-For given poles the residues and the residual terms are the solution of a linear least-squares problem; what is left is
-r = (I - Q Q') x with Q an orthonormal basis of the model's columns. Kaufman's Jacobian, -(I - Q Q') dPhi a, makes the
-Gauss-Newton matrix at the minimum equal to the Fisher information of the poles with the residues unknown.
+For given poles the residues and the residual terms solve a linear least-squares problem. Its residual is
+r = (I - Q Q') x, where Q is an orthonormal basis of the columns Phi of the model. With Kaufman's Jacobian,
+-(I - Q Q') dPhi a, the Gauss-Newton matrix at the minimum is the Fisher information of the poles for unknown residues.
 
 References
 ----------
@@ -35,15 +35,15 @@ class DataBlock:
     Parameters
     ----------
     lines : (k,) ndarray
-        Indices of the spectral lines used.
+        Indices of the spectral lines that are used.
     spectrum : (k, c) complex ndarray
-        Transforms of the channels at those lines, each in units of its noise.
+        Transforms of the channels at those lines.
     dt : float
         Sampling interval [s].
     n : int
         Number of samples.
     residual_terms : (2 k, r) ndarray
-        Columns for drift and for what lies outside the band.
+        Columns for the drift and for modes outside the band.
     """
 
     lines: IntegerArray
@@ -59,7 +59,7 @@ class DataBlock:
 
     @property
     def duration(self) -> float:
-        """[s]"""
+        """Duration [s]."""
         return self.n * self.dt
 
 
@@ -70,9 +70,9 @@ class ProjectionFit:
     Parameters
     ----------
     residues : (m, c) complex ndarray
-        A at the block's first sample, in the unit of the spectrum.
+        Residues A at the first sample of the block [unit of the spectrum].
     residual : (k, c) complex ndarray
-        What the poles and residual terms leave.
+        Spectrum minus that of poles and residual terms.
     """
 
     residues: ComplexArray
@@ -82,20 +82,20 @@ class ProjectionFit:
 def build_block(
     samples: RealArray, dt: float, low: float, high: float, drift_degree: int = 4, far_degree: int = 3
 ) -> DataBlock:
-    """Transform of channels and the residual terms that go with the band.
+    """Transform channels, and build the residual terms of a band.
 
     Parameters
     ----------
-    samples : ndarray
-        (n, c).
+    samples : (n, c) ndarray
+        Channels.
     dt : float
         Sampling interval [s].
     low, high : float
         Edges of the band [Hz].
     drift_degree : int
-        Highest polynomial of the offset drift in time.
+        Degree of the polynomial in time for the drift of the offset.
     far_degree : int
-        Highest polynomial over frequency, for modes outside the band.
+        Degree of the polynomial in frequency for modes outside the band.
     """
     n = samples.shape[0]
     lines = np.arange(max(1, int(np.ceil(low * n * dt))), min(n // 2, int(high * n * dt) + 1), dtype=np.int64)
@@ -105,9 +105,16 @@ def build_block(
     return DataBlock(lines, np.asarray(spectrum), dt, n, terms)
 
 
+def pole_columns(poles: ComplexArray, data: DataBlock) -> RealArray:
+    """Real columns of the residues of the poles at the lines of a block, (2 k, 2 m)."""
+    return real_columns(
+        decay_kernel(poles, data.omega, data.dt, data.n), decay_kernel(poles.conj(), data.omega, data.dt, data.n)
+    )
+
+
 def solve_residues(poles: ComplexArray, data: DataBlock) -> ProjectionFit:
-    """Residues and residual of given poles, shape (m,) [1/s]."""
-    columns = np.hstack([_pole_columns(poles, data), data.residual_terms])
+    """Solve for the residues of given poles, (m,) [1/s], by least squares."""
+    columns = np.hstack([pole_columns(poles, data), data.residual_terms])
     q, r = scipy.linalg.qr(columns, mode="economic", check_finite=False)
     x = stack_real_imaginary(data.spectrum)
     projected = q.T @ x
@@ -119,8 +126,8 @@ def solve_residues(poles: ComplexArray, data: DataBlock) -> ProjectionFit:
 
 
 def residue_spread(poles: ComplexArray, data: DataBlock) -> RealArray:
-    """Standard deviation of a residue's real or imaginary part for unit noise in the lines, poles known, (m,)."""
-    r = scipy.linalg.qr(np.hstack([_pole_columns(poles, data), data.residual_terms]), mode="r", check_finite=False)[0]
+    """Standard deviation of the real or imaginary part of a residue for unit noise and known poles, (m,)."""
+    r = scipy.linalg.qr(np.hstack([pole_columns(poles, data), data.residual_terms]), mode="r", check_finite=False)[0]
     inverse = np.linalg.pinv(r[: r.shape[1]])
     variance = np.sum(inverse**2, axis=1)
     m = poles.size
@@ -134,11 +141,11 @@ class NormalEquations:
     Parameters
     ----------
     cost : float
-        Sum of squares over all blocks.
+        Sum of squared residuals over all blocks.
     matrix : (2 m, 2 m) ndarray
-        J'J; decay rates first, then angular frequencies.
+        J'J of the Jacobian J; decay rates first, then angular frequencies.
     gradient : (2 m,) ndarray
-        J'r.
+        J'r of the residual r.
     """
 
     cost: float
@@ -147,13 +154,13 @@ class NormalEquations:
 
 
 def build_normal_equations(poles: ComplexArray, blocks: list[DataBlock]) -> NormalEquations:
-    """Normal equations of the poles over all blocks, residues eliminated per channel.
+    """Build the normal equations of the poles over all blocks; the residues are eliminated per channel.
 
     Parameters
     ----------
     poles : (m,) complex ndarray
-        Lambda = -delta + i omega [1/s].
-    blocks : list[DataBlock]
+        Poles lambda = -delta + i omega [1/s].
+    blocks : list of DataBlock
         Data, each channel in units of its noise.
     """
     m = poles.size
@@ -191,9 +198,3 @@ def _accumulate(
     c1, c2 = correlation[:m], correlation[m:]
     gradient[:m] += -np.sum(p * c1 + s * c2, axis=1)
     gradient[m:] += np.sum(-s * c1 + p * c2, axis=1)
-
-
-def _pole_columns(poles: ComplexArray, data: DataBlock) -> RealArray:
-    return real_columns(
-        decay_kernel(poles, data.omega, data.dt, data.n), decay_kernel(poles.conj(), data.omega, data.dt, data.n)
-    )

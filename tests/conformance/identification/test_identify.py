@@ -7,12 +7,12 @@ import pytest
 from scipy.optimize import linear_sum_assignment
 
 from helpers.synthetic_drops import drop, span_modes
+from pantocheck.conformance.identification.frequency_band import FrequencyBand
 from pantocheck.conformance.identification.hand_placed_poles import read_poles
 from pantocheck.conformance.identification.identification_analysis import analyse_identification
 from pantocheck.conformance.identification.identify import identify_modes
-from pantocheck.conformance.identification.linear_decay import FrequencyBand, find_linear_decay
+from pantocheck.conformance.identification.linear_decay import find_linear_decay
 from pantocheck.conformance.identification.mode_groups import find_group_outliers, number_groups
-from pantocheck.conformance.identification.model_order import whiten
 from pantocheck.conformance.identification.pole_refinement import refine_poles
 from pantocheck.conformance.identification.release import find_release
 from pantocheck.conformance.input_files.input_error import InputError
@@ -48,7 +48,7 @@ def test_blind_identification_reaches_the_bound(seed):
     made = drop(random, true, duration=100.0, rate=50.0, noise=0.002)
     (found,) = identify_modes((record_of(made),), highest=4.6)
     true = true[true.imag < 2 * np.pi * 4.5]
-    white = whiten(list(found.blocks), list(found.noise))
+    white = found.fit.whitened_blocks()
     bound = np.sqrt(np.diag(refine_poles(true, white, iterations=0).covariance))[: true.size] / -true.real
     poles = complex_poles(found.modes)
     rows, columns = linear_sum_assignment(np.minimum(np.abs(true[:, None] - poles[None, :]), 1.0))
@@ -62,7 +62,7 @@ def test_blind_identification_reaches_the_bound(seed):
         ratios.append(abs(relative) / bound[i])
     assert len(ratios) > 10
     assert np.percentile(ratios, 90) < 3
-    assert found.misfit == pytest.approx(1, abs=0.15)
+    assert found.fit.misfit == pytest.approx(1, abs=0.15)
 
 
 def test_weak_mode_comes_out_as_uncertain_or_not_at_all():
@@ -88,10 +88,10 @@ def test_disturbance_ends_the_stretch_and_slack_droppers_begin_it():
     wind = np.arange(made.samples.shape[0]) / made.rate > 80.0
     made.samples[wind] += 0.02 * random.standard_normal((int(wind.sum()), 4))
     (found,) = identify_modes((record_of(made),), highest=4.0)
-    stretch = found.prepared[0].stretch
+    stretch = found.fit.records[0].decay.linear
     assert 60 < stretch.end < 81.5  # a window of four seconds decides, a little of the wind may enter
     assert stretch.start > made.release + 1.3
-    assert any("no free decay explains" in text for text in found.warnings)
+    assert any("the rest is not a free decay" in text for text in found.warnings)
 
 
 def test_lateral_modes_are_told_by_the_lateral_channel():
@@ -113,7 +113,7 @@ def test_repeats_of_different_length_are_used_together_and_said():
     true = span_modes(random, 6)
     made = [drop(random, true, duration=length, rate=50.0, noise=0.003, weak=0.0) for length in (60.0, 90.0)]
     (found,) = identify_modes(tuple(record_of(one, f"run {k}") for k, one in enumerate(made)), highest=4.0)
-    assert len(found.blocks) == 2
+    assert len(found.fit.blocks) == 2
     assert any("differ in length" in text for text in found.warnings)
     poles = complex_poles(found.modes)
     for pole in true:
@@ -151,7 +151,7 @@ def test_amplitude_at_release_is_that_of_one_record_where_stretches_begin_apart(
     gusty = record_of(made, "gusty")
     (alone,) = identify_modes((noisy,), highest=4.0)
     (both,) = identify_modes((noisy, gusty), highest=4.0)
-    assert both.prepared[1].stretch.start > both.prepared[0].stretch.start + 3.0
+    assert both.fit.records[1].decay.linear.start > both.fit.records[0].decay.linear.start + 3.0
     expected = {mode.frequency_Hz: mode.amplitude_at_release for mode in alone.modes if mode.certain}
     strong = [mode for mode in both.modes if mode.certain and mode.record == "gusty"]
     assert len(strong) >= 3
@@ -253,8 +253,8 @@ def test_clipped_start_is_left_out():
     made.samples[:] = np.clip(made.samples, -top, top)
     (found,) = identify_modes((record_of(made),), highest=4.0)
     clipped = np.flatnonzero((np.abs(made.samples) >= top).any(axis=1))
-    assert found.prepared[0].stretch.start * made.rate > clipped[0]
-    assert found.misfit < 1.3
+    assert found.fit.records[0].decay.linear.start * made.rate > clipped[0]
+    assert found.fit.misfit < 1.3
 
 
 def test_stretch_begins_after_the_last_clipped_sample():
@@ -263,10 +263,9 @@ def test_stretch_begins_after_the_last_clipped_sample():
     made = record_of(drop(random, span_modes(random, 6), duration=60.0, rate=50.0, weak=0.0))
     band = FrequencyBand.up_to(4.0, made.rate)
     release = find_release(made.signals, made.rate, 5.0, "clean")
-    names = tuple(channel.name for channel in made.channels)
     last = release.time + 4.0
-    free = find_linear_decay(made.signals, made.rate, release, band, "clean", names)
-    late = find_linear_decay(made.signals, made.rate, release, band, "clean", names, last)
+    free = find_linear_decay(made, (0, 1, 2, 3), release, band)
+    late = find_linear_decay(made, (0, 1, 2, 3), release, band, last)
     assert free.start < release.time + 2.1
     assert late.start >= last
 

@@ -40,7 +40,7 @@ def test_response_is_that_of_the_oscillators():
     not the magnitude.
     """
     (found,) = identify_modes((record("one", np.random.default_rng(1)),), highest=4.0)
-    response = compute_frequency_response(found, 0)
+    response = compute_frequency_response(found.fit, found.fit.records[0])
     assert response is not None
     omega = 2 * np.pi * response.frequency
     omega_0 = 2 * np.pi * FREQUENCY
@@ -56,7 +56,7 @@ def test_response_is_that_of_the_oscillators():
 
 def test_identified_response_overlays_the_measured_one():
     (found,) = identify_modes((record("one", np.random.default_rng(2)),), highest=4.0)
-    response = compute_frequency_response(found, 0)
+    response = compute_frequency_response(found.fit, found.fit.records[0])
     assert response is not None
     low = response.frequency < 3.0
     left = np.linalg.norm((response.measured - response.identified)[low])
@@ -67,11 +67,11 @@ def test_repeats_correlate_and_another_line_does_not():
     random = np.random.default_rng(3)
     first, again = record("first", random), record("again", random, shift=0.13)
     (found,) = identify_modes((first, again), highest=4.0)
-    same = compare_records(found.prepared)
+    same = compare_records(tuple(record.decay for record in found.fit.records))
     assert same.verdict == "repeatable"
     assert min(c.correlation_at_start for c in same.comparisons) > 0.999
     other = record("other", random, other=-1.0)
     (changed,) = identify_modes((first, other), highest=4.0)
-    different = compare_records(changed.prepared)
+    different = compare_records(tuple(record.decay for record in changed.fit.records))
     assert different.verdict == "not repeatable"
     assert "S2_z" in different.reason

@@ -1,0 +1,185 @@
+"""Fit of one line: poles shared by all its records, and residues of each record."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pantocheck.conformance.array_types import ComplexArray, RealArray
+from pantocheck.conformance.identification.decay_preparation import PreparedDecay
+from pantocheck.conformance.identification.frequency_band import FrequencyBand
+from pantocheck.conformance.identification.noise_estimate import whiten
+from pantocheck.conformance.identification.pole_refinement import refine_poles
+from pantocheck.conformance.identification.projection import (
+    DataBlock,
+    ProjectionFit,
+    build_block,
+    residue_spread,
+    solve_residues,
+)
+
+SAME_LENGTH = 0.02
+"""Relative difference of the lengths of repeats below which they are cut to the shorter one and share a block."""
+
+
+@dataclass(frozen=True)
+class FittedBlock:
+    """Block of data with its fit.
+
+    Parameters
+    ----------
+    data : DataBlock
+        Spectra of the channels.
+    fit : ProjectionFit
+        Residues and residual.
+    noise : (c,) ndarray
+        Standard deviation of the real or imaginary part of a line.
+    residue_std : (m,) ndarray
+        Standard deviation of the real or imaginary part of a residue for unit noise.
+    """
+
+    data: DataBlock
+    fit: ProjectionFit
+    noise: RealArray
+    residue_std: RealArray
+
+
+@dataclass(frozen=True)
+class RecordFit:
+    """Part of a fit that belongs to one record.
+
+    Parameters
+    ----------
+    decay : PreparedDecay
+        The record.
+    block : FittedBlock
+        Block that holds its channels.
+    columns : slice
+        Its channels in the block.
+    """
+
+    decay: PreparedDecay
+    block: FittedBlock
+    columns: slice
+
+    @property
+    def residues(self) -> ComplexArray:
+        """Residues at the first sample of the linear decay, (m, c) [unit of the record]."""
+        return self.block.fit.residues[:, self.columns]
+
+    @property
+    def noise(self) -> RealArray:
+        """Standard deviation of the real or imaginary part of a line, (c,)."""
+        return self.block.noise[self.columns]
+
+
+@dataclass(frozen=True)
+class LineFit:
+    """Fit of all records of one line.
+
+    Parameters
+    ----------
+    band : FrequencyBand
+        Band of the identification.
+    poles : (m,) complex ndarray
+        Poles, including those beyond the band of the reported modes [1/s].
+    covariance : (2 m, 2 m) ndarray
+        Covariance of their decay rates [1/s] and angular frequencies [rad/s].
+    blocks : tuple of FittedBlock
+        Data of the fit.
+    records : tuple of RecordFit
+        The records, in the order of the user.
+    misfit : float
+        Squared residual over its expectation [-]; 1 if the model is complete.
+    """
+
+    band: FrequencyBand
+    poles: ComplexArray
+    covariance: RealArray
+    blocks: tuple[FittedBlock, ...]
+    records: tuple[RecordFit, ...]
+    misfit: float
+
+    def whitened_blocks(self) -> list[DataBlock]:
+        """Blocks with each channel in units of its noise."""
+        return whiten([block.data for block in self.blocks], [block.noise for block in self.blocks])
+
+
+@dataclass(frozen=True)
+class SharedBlocks:
+    """Samples of all records, in blocks of one sampling interval and length.
+
+    Parameters
+    ----------
+    samples : list of ((n, c) ndarray, float)
+        Samples and sampling interval [s] of each block.
+    places : list of (int, slice)
+        Block of each record, and its channels there.
+    """
+
+    samples: list[tuple[RealArray, float]]
+    places: list[tuple[int, slice]]
+
+    def transform(self, band: FrequencyBand) -> list[DataBlock]:
+        """Spectra of the blocks over the fitted band."""
+        return [build_block(samples, dt, band.low, band.fitted) for samples, dt in self.samples]
+
+
+def share_blocks(decays: list[PreparedDecay]) -> SharedBlocks:
+    """Put repeats of about one length into one block, cut to the shortest."""
+    blocks: list[tuple[RealArray, float]] = []
+    places = []
+    for decay in decays:
+        samples, dt = decay.linear.samples, decay.linear.dt
+        for b, (others, other_dt) in enumerate(blocks):
+            shorter = min(samples.shape[0], others.shape[0])
+            if dt == other_dt and shorter > (1 - SAME_LENGTH) * max(samples.shape[0], others.shape[0]):
+                places.append((b, slice(others.shape[1], others.shape[1] + samples.shape[1])))
+                blocks[b] = (np.hstack([others[:shorter], samples[:shorter]]), dt)
+                break
+        else:
+            places.append((len(blocks), slice(0, samples.shape[1])))
+            blocks.append((samples, dt))
+    return SharedBlocks(blocks, places)
+
+
+def fit_line(
+    decays: list[PreparedDecay],
+    places: list[tuple[int, slice]],
+    data: list[DataBlock],
+    poles: ComplexArray,
+    noise: list[RealArray],
+    band: FrequencyBand,
+) -> LineFit:
+    """Refine the poles once more and solve for the residues of every record.
+
+    Parameters
+    ----------
+    decays : list of PreparedDecay
+        The records.
+    places : list of (int, slice)
+        Block of each record, and its channels there.
+    data : list of DataBlock
+        The blocks.
+    poles : (m,) complex ndarray
+        Selected poles [1/s].
+    noise : list of (c,) ndarray
+        Noise of each block.
+    band : FrequencyBand
+        Band of the identification.
+    """
+    white = whiten(data, noise)
+    refined = refine_poles(poles, white, iterations=10)
+    poles = refined.poles
+    blocks = tuple(
+        FittedBlock(block, solve_residues(poles, block), sigma, residue_spread(poles, block))
+        for block, sigma in zip(data, noise, strict=True)
+    )
+    records = tuple(RecordFit(decay, blocks[b], columns) for decay, (b, columns) in zip(decays, places, strict=True))
+    misfit = _misfit(refined.cost, poles.size, white)
+    return LineFit(band, poles, refined.covariance, blocks, records, misfit)
+
+
+def _misfit(cost: float, poles: int, blocks: list[DataBlock]) -> float:
+    rows = sum(2 * data.lines.size * data.spectrum.shape[1] for data in blocks)
+    linear = sum((2 * poles + data.residual_terms.shape[1]) * data.spectrum.shape[1] for data in blocks)
+    return float(cost / max(rows - linear - 2 * poles, 1))

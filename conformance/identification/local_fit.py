@@ -1,0 +1,125 @@
+"""Local fit: the poles and spectral lines around a frequency, without the contribution of distant poles.
+
+A trial with one pole more or less costs milliseconds there.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from pantocheck.conformance.array_types import ComplexArray, RealArray
+from pantocheck.conformance.identification.decay_kernel import decay_kernel, far_pole_columns, stack_real_imaginary
+from pantocheck.conformance.identification.projection import DataBlock, ProjectionFit, pole_columns
+
+MIN_LINES = 8
+"""Spectral lines of a block that a local fit needs."""
+
+DAMPING_TRIALS = (0.3, 1.0, 3.0)
+"""Decay rates of trial poles, over the median of the neighbours."""
+
+
+@dataclass(frozen=True)
+class LocalFit:
+    """Neighbourhood of a frequency.
+
+    Parameters
+    ----------
+    poles : (l,) complex ndarray
+        Poles of the neighbourhood [1/s].
+    near : (m,) ndarray
+        Their places among all poles.
+    blocks : list of DataBlock
+        Lines of the neighbourhood, without the contribution of the distant poles.
+    """
+
+    poles: ComplexArray
+    near: NDArray[np.bool_]
+    blocks: list[DataBlock]
+
+
+def restrict_fit(
+    poles: ComplexArray, blocks: list[DataBlock], fits: list[ProjectionFit], centre: float, min_half: float = 0.0
+) -> LocalFit:
+    """Restrict a fit to the neighbourhood of a frequency.
+
+    Parameters
+    ----------
+    poles : (m,) complex ndarray
+        All poles [1/s].
+    blocks : list of DataBlock
+        Data, each channel in units of its noise.
+    fits : list of ProjectionFit
+        Fits of the blocks with all poles.
+    centre : float
+        Centre of the neighbourhood [rad/s].
+    min_half : float
+        Lower limit of its half-width [rad/s].
+    """
+    resolution = 2 * np.pi / min(data.duration for data in blocks)
+    half = max(12 * resolution, 2 * np.pi * 0.15, min_half)
+    near = np.abs(poles.imag - centre) < half
+    local = []
+    for data, fit in zip(blocks, fits, strict=True):
+        window = np.abs(data.omega - centre) < half + 6 * resolution
+        if window.sum() < MIN_LINES:
+            continue
+        omega = data.omega[window]
+        residues = fit.residues[near]
+        contribution = decay_kernel(poles[near], omega, data.dt, data.n) @ residues
+        contribution += decay_kernel(poles[near].conj(), omega, data.dt, data.n) @ residues.conj()
+        spectrum = fit.residual[window] + contribution
+        local.append(DataBlock(data.lines[window], spectrum, data.dt, data.n, far_pole_columns(omega, 2)))
+    return LocalFit(poles[near], near, local)
+
+
+def find_best_candidate(local: LocalFit, centre: float) -> tuple[complex, float] | None:
+    """Trial pole that reduces the squared residual most while the others are fixed, and the reduction.
+
+    Parameters
+    ----------
+    local : LocalFit
+        Neighbourhood.
+    centre : float
+        Centre of the grid of trial poles [rad/s].
+    """
+    resolution = 2 * np.pi / max(data.duration for data in local.blocks)
+    decay = float(np.median(-local.poles.real)) if local.poles.size else 0.003 * centre
+    omegas = centre + resolution * np.arange(-3, 3.01, 0.25)
+    trials = np.array([-decay * factor + 1j * omega for factor in DAMPING_TRIALS for omega in omegas if omega > 0])
+    gain = np.zeros(trials.size)
+    for data in local.blocks:
+        present = pole_columns(local.poles, data)
+        q = scipy.linalg.qr(np.hstack([present, data.residual_terms]), mode="economic")[0]
+        x = stack_real_imaginary(data.spectrum)
+        residual = x - q @ (q.T @ x)
+        new = pole_columns(trials, data)
+        new -= q @ (q.T @ new)
+        for t in range(trials.size):
+            pair = np.linalg.qr(new[:, [t, t + trials.size]])[0]
+            gain[t] += float(np.sum((pair.T @ residual) ** 2))
+    best = int(np.argmax(gain))
+    return (complex(trials[best]), float(gain[best])) if gain[best] > 0 else None
+
+
+def pole_contributions(poles: ComplexArray, blocks: list[DataBlock]) -> RealArray:
+    """Reduction of the squared error by each pole while the others are fixed, (m,)."""
+    m = poles.size
+    reduction = np.zeros(m)
+    for data in blocks:
+        q, r = scipy.linalg.qr(np.hstack([pole_columns(poles, data), data.residual_terms]), mode="economic")
+        inverse = scipy.linalg.pinv(r)
+        coefficients = inverse @ (q.T @ stack_real_imaginary(data.spectrum))
+        for j in range(m):
+            pair = [j, j + m]
+            covariance = inverse[pair] @ inverse[pair].T
+            reduction[j] += float(np.sum(coefficients[pair] * np.linalg.solve(covariance, coefficients[pair])))
+    return reduction
+
+
+def crowded_poles(poles: ComplexArray, blocks: list[DataBlock]) -> NDArray[np.bool_]:
+    """Poles so close to another one that one of the two may be idle, (m,)."""
+    resolution = 2 * np.pi / max(data.duration for data in blocks)
+    distance = np.abs(poles[:, None] - poles[None, :]) + np.where(np.eye(poles.size) > 0, np.inf, 0)
+    return np.asarray(distance.min(axis=1, initial=np.inf) < 1.5 * resolution)
