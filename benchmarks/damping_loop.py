@@ -1,8 +1,8 @@
-"""The loop closed: damping put into the simulator, a mass dropped, its record identified, a damping model fitted.
+"""Round trip of a damping model: simulated mass drop, identified modes, fitted damping model.
 
     python benchmarks/damping_loop.py
 
-Prints each coefficient put in, what came out, and its 95 % interval. Droppers slacken after the release.
+Prints each coefficient of the simulation, its identified value and 95 % interval. Droppers slacken after the release.
 """
 
 from dataclasses import replace
@@ -30,7 +30,7 @@ SPANS, MASS, PLACE, HANGING, DURATION, STEP, ELEMENT, NOISE = 6, 30.0, 165.0, 6.
 
 
 def main() -> None:
-    """Run the loop once."""
+    """Simulate, identify, fit and print."""
     case = select_cases(["en50318-2002/250"])[0]
     six_spans = case.line.geometry.shorten(SPANS)
     line = replace(build_catenary(case.line.model_copy(update={"geometry": six_spans})), damping=PUT_IN)

@@ -1,9 +1,9 @@
-"""The same physics in a general multibody engine: Exudyn integrates our matrices with its own Newmark and Newton.
+"""Comparison with a general multibody engine: Exudyn integrates our matrices with its own Newmark and Newton methods.
 
-The engine is given the assembled mass, damping and stiffness of line and pantographs with every dropper taut, as one
-general second-order object. What is not linear, slack droppers and the moving contact, is a user function of that
-object, with its tangent. Method (average acceleration), time step and elements are those of the kernel; solving of the
-equations, Newton's method and its tolerances are the engine's.
+Exudyn receives the assembled mass, damping and stiffness of line and pantographs with every dropper taut, as one
+general second-order object. The nonlinear forces, slack droppers and the moving contact, are a user function of that
+object, with its tangent. Method (average acceleration), time step and elements are those of the kernel; equation
+solver, Newton's method and its tolerances are those of Exudyn.
 """
 
 import math
@@ -32,14 +32,14 @@ Array = NDArray[np.float64]
 
 
 class DroppersAndContact:
-    """Forces of line and pantographs that are not linear, and their tangent.
+    """Nonlinear forces of line and pantographs, and their tangent.
 
     Parameters
     ----------
-    line
-        With one contact wire.
-    passage
-        Pantographs, their places and speed.
+    line : DiscretisedLine
+        Line with one contact wire.
+    passage : Passage
+        Pantographs, their positions and speed.
     """
 
     def __init__(self, line: DiscretisedLine, passage: Passage) -> None:
@@ -128,19 +128,19 @@ class DroppersAndContact:
 
 
 def run_exudyn(line: DiscretisedLine, passage: Passage) -> tuple[Array, float, float]:
-    """Exudyn's implicit Newmark solver with sparse matrices and Newton's method.
+    """Simulate a passage with Exudyn's implicit Newmark solver, sparse matrices and Newton's method.
 
     Parameters
     ----------
     line : DiscretisedLine
-        In the vertical plane, with one contact wire.
+        Line in the vertical plane with one contact wire.
     passage : Passage
-        What is to be run.
+        Pantographs, speed, duration.
 
     Returns
     -------
     (P, T) ndarray
-        Contact force [N], process time of the engine's solver [s], the part of it spent in user functions [s].
+        Contact force [N], process time of the solver [s], part of it in user functions [s].
     """
     model = DroppersAndContact(line, passage)
     forces: list[Array] = []
@@ -190,7 +190,7 @@ def run_exudyn(line: DiscretisedLine, passage: Passage) -> tuple[Array, float, f
     begin = time.process_time()
     system.SolveDynamic(_settings(passage))
     spent = time.process_time() - begin
-    # The first record is that of the start.
+    # The first record belongs to the initial state.
     return np.array(forces[1:]).T, spent, in_user_functions
 
 
@@ -201,15 +201,15 @@ def _sparse(matrix: sp.csr_matrix) -> exu.MatrixContainer:
 
 
 def _settings(passage: Passage) -> exu.SimulationSettings:
-    """The engine's defaults, but for Newmark of average acceleration with a constant step, and sparse matrices."""
+    """Default settings, except for average acceleration with a constant time step, and sparse matrices."""
     settings = exu.SimulationSettings()
     integration = settings.timeIntegration
     integration.numberOfSteps, integration.endTime = round(passage.duration / passage.time_step), passage.duration
     integration.adaptiveStep = False
     integration.generalizedAlpha.useNewmark = True
-    # The start is at rest under the forces that hold it: accelerations are zero, as the kernel has them.
+    # The simulation starts in equilibrium with zero accelerations, as in the kernel.
     integration.generalizedAlpha.computeInitialAccelerations = False
-    # The full method evaluates the forces about twice a step, the modified one seven times at the same cost in all.
+    # The full method evaluates the forces twice per step, the modified one seven times at the same total cost.
     integration.newton.useModifiedNewton = False
     settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
     settings.solution.file.write = False

@@ -1,4 +1,4 @@
-"""Lines and passages that the benchmarks share: AC simple of EN 50318:2018 at 320 km/h, made shorter or longer."""
+"""Lines and passages of the benchmarks: AC simple of EN 50318:2018 at 320 km/h with any number of spans."""
 
 from dataclasses import replace
 
@@ -25,13 +25,14 @@ QUANTITIES = (
     "max_uplift_at_support_mm",
 )
 UPLIFT_FORCE = 172.7
-"""Constant uplift force, with which the mean contact force is about 169 N [N]."""
+"""Constant uplift force, which gives a mean contact force of about 169 N [N]."""
 SPACING = 200.0
+"""Distance between two pantographs [m]."""
 
 
 def ac_simple(spans: int, stagger: float = 0.2, case: str = "en50318-2018/ac-simple/320") -> Case:
-    """The case with another number of spans and another stagger [m]."""
-    found = next(one for one in select_cases([case]) if one.id == case)
+    """Replace the number of spans and the stagger [m] of a case."""
+    found = next(selected for selected in select_cases([case]) if selected.id == case)
     geometry = found.line.geometry.model_copy(update={"spans": spans, "stagger_contact_wire_m": stagger})
     return replace(found, line=found.line.model_copy(update={"geometry": geometry}))
 
@@ -42,14 +43,14 @@ def staggered(case: Case) -> Catenary:
 
 
 def vertical(case: Case, state: InitialState) -> Catenary:
-    """The same line in the vertical plane, each arm as stiff as its axial force makes it under the stagger.
+    """Line of a case in the vertical plane; each arm has the stiffness of its axial force under the stagger.
 
     Parameters
     ----------
     case : Case
-        With stagger.
+        Case with stagger.
     state : InitialState
-        Of the line with stagger, which gives the forces.
+        Initial state of the line with stagger, which gives the axial forces.
     """
     built = build_catenary(case.line)
     arms = tuple(
@@ -68,22 +69,22 @@ def passage(
     until: float,
     reach: float,
 ) -> Passage:
-    """Pantographs from the end of the first span on, until the last has come to a place.
+    """Passage of pantographs from the end of the first span to a position.
 
     Parameters
     ----------
     case : Case
         Gives speed and pantograph.
     line : DiscretisedLine
-        The discretised line.
+        Discretised line.
     step : float
         Time step [s].
     pantographs : int
-        1 or 2.
+        Number of pantographs, 1 or 2.
     until : float
-        Where the last pantograph stops [m].
+        Final position of the last pantograph [m].
     reach : float
-        What lies farther than this from every pantograph stands still [m].
+        Half-width of the active window around the pantographs [m].
     """
     geometry = case.line.geometry
     first = geometry.span(1)[1]
@@ -101,7 +102,7 @@ def passage(
 
 
 def figures(way: Passage, history: History, evaluated: tuple[float, float]) -> dict[str, float]:
-    """The quantities of a run with one pantograph over a stretch [m]."""
+    """Quantities of a simulation with one pantograph over an analysis section [m]."""
     record = Record(
         time=history.time,
         speed=way.speed,

@@ -1,4 +1,4 @@
-"""The same physics with sparse matrices of scipy, factored anew for every guess of what is slack or open."""
+"""Independent time integration: sparse matrices of scipy, factored for every set of slack droppers."""
 
 import math
 import time
@@ -22,11 +22,11 @@ from pantocheck.model.fem.assembly import (
 
 
 def run_refactorised(line: DiscretisedLine, passage: Passage) -> tuple[np.ndarray, float]:
-    """Newmark average acceleration, Newton's method on the set of taut droppers and closed contacts.
+    """Integrate with average acceleration and Newton's method on the set of taut droppers and closed contacts.
 
     Returns
     -------
-    (T, P) ndarray
+    tuple of ((T, P) ndarray, float)
         Contact force [N], process time of the steps [s].
     """
     motion, train = start_motion(line, build_kernel_arrays(line, passage.time_step, math.inf), passage)

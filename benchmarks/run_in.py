@@ -1,4 +1,4 @@
-"""How the figures of AC simple settle with the run-in; prints the tables of docs/run-in.md.
+"""Influence of the run-in on the quantities of AC simple; prints the tables of docs/run-in.md.
 
 python benchmarks/run_in.py [--spans 72]
 """
@@ -14,14 +14,14 @@ from pantocheck.model import discretise, simulate_passage
 
 EVALUATED = 10
 CHOSEN = {275: 24, 320: 30}
-"""Spans before the evaluated ones in the cases."""
+"""Spans before the analysis section of the cases, by speed [km/h]."""
 FIRST = (3, 6, 10, 14, 17, 20, 24, 27, 30, 35, 40, 48)
 RESERVE = 10
-"""Spans left at the end, so that waves that come back from it are not evaluated."""
+"""Spans after the last analysis section, so that reflections from the end of the line do not reach it."""
 
 
-def table(speed: int, spans: int) -> None:
-    """Figures over ten spans after more and more spans of run-in, and how far they move when it is doubled."""
+def print_table(speed: int, spans: int) -> None:
+    """Print the quantities over ten spans after an increasing run-in, and their change when the run-in is doubled."""
     case = ac_simple(spans, case=f"en50318-2018/ac-simple/{speed}")
     geometry = case.line.geometry
     line = discretise(staggered(case), 0.5)
@@ -31,7 +31,7 @@ def table(speed: int, spans: int) -> None:
     history = simulate_passage(line, way)
 
     def after(first: int) -> np.ndarray:
-        """The quantities over the ten spans after the first so many."""
+        """Quantities over ten spans after a number of spans."""
         return np.array(list(figures(way, history, geometry.section(first + 1, first + EVALUATED)).values()))
 
     print(f"\n### {speed} km/h\n\n| run-in [spans] | {' | '.join(QUANTITIES)} |")
@@ -42,7 +42,7 @@ def table(speed: int, spans: int) -> None:
     chosen = CHOSEN[speed]
     twice = min(2 * chosen - 1, spans - RESERVE - EVALUATED)
     moved = 100 * (after(twice) / after(chosen) - 1)
-    print(f"| from {chosen - 1} to {twice - 1}: moves by [%] | {' | '.join(f'{value:+.2f}' for value in moved)} |")
+    print(f"| from {chosen - 1} to {twice - 1}: change [%] | {' | '.join(f'{value:+.2f}' for value in moved)} |")
 
 
 def main() -> None:
@@ -51,7 +51,7 @@ def main() -> None:
     options.add_argument("--spans", type=int, default=72, help="spans of the line")
     spans = options.parse_args().spans
     for speed in CHOSEN:
-        table(speed, spans)
+        print_table(speed, spans)
 
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 
 python benchmarks/speed.py
 
-Process time on one core is measured, after compilation, so that other work on the machine does not count.
+Process time on one core is measured after compilation, so that other work on the machine has little influence.
 """
 
 import argparse
@@ -27,13 +27,13 @@ from pantocheck.model.dynamics.active_window import causal_reach
 STEP, ELEMENT = 1e-3, 0.5
 SPANS = (10, 20, 30, 40, 60)
 RUN_SPANS = 4
-"""A run over so many spans, whatever the length of the line."""
+"""Simulated spans, for any length of the line."""
 WHOLE_RUN = 14
-"""Spans of a run over nearly all of 20 spans, the second pantograph 200 m behind the first."""
+"""Simulated spans on a line of 20 spans, with the second pantograph 200 m behind the first."""
 
 
-def measured(line: DiscretisedLine, way: Passage) -> tuple[float, np.ndarray]:
-    """Process time per simulated time, best of two, and the contact force."""
+def measure(line: DiscretisedLine, way: Passage) -> tuple[float, np.ndarray]:
+    """Process time per simulated time, the better of two simulations, and the contact force."""
     simulate_passage(line, replace(way, duration=0.01))
     best, force = math.inf, np.zeros(0)
     for _ in range(2):
@@ -43,7 +43,7 @@ def measured(line: DiscretisedLine, way: Passage) -> tuple[float, np.ndarray]:
     return best / way.duration, force
 
 
-def kernel(
+def measure_kernel(
     spans: int, pantographs: int, plane: bool, reach: float | None, run_spans: float = RUN_SPANS
 ) -> tuple[float, float]:
     """Process time per simulated time, and the standard deviation of the leading pantograph's force [-, N]."""
@@ -52,26 +52,26 @@ def kernel(
     line = discretise(vertical(case, discretise(built, ELEMENT).state) if plane else built, ELEMENT)
     way = passage(case, line, STEP, pantographs, 55.0 * (1 + run_spans), math.inf)
     causal = causal_reach(line, way.speed, way.duration)
-    ratio, force = measured(line, replace(way, reach=causal if reach is None else reach))
+    ratio, force = measure(line, replace(way, reach=causal if reach is None else reach))
     return ratio, float(force[0].std())
 
 
-def memory(spans: int) -> float:
-    """Largest memory of a process that runs one case with stagger and two pantographs [MB]."""
-    code = f"import speed; speed.kernel({spans}, 2, False, None)"
+def measure_memory(spans: int) -> float:
+    """Peak memory of a process that simulates one case with stagger and two pantographs [MB]."""
+    code = f"import speed; speed.measure_kernel({spans}, 2, False, None)"
     command = [sys.executable, "-c", code]
     subprocess.run(command, check=True, cwd=os.path.dirname(os.path.abspath(__file__)), timeout=600)
     return resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
 
 
-def same_line() -> None:
-    """Our kernel, and scipy refactorising, on one short stretch in the vertical plane."""
+def compare_refactorised() -> None:
+    """Compare the kernel with scipy, refactorising in every iteration, on a short stretch in the vertical plane."""
     from refactorised import run_refactorised
 
     case = ac_simple(20)
     line = discretise(vertical(case, discretise(staggered(case), ELEMENT).state), ELEMENT)
     way = replace(passage(case, line, STEP, 2, 55.0 * 3, math.inf), duration=0.5)
-    ratio, force = measured(line, way)
+    ratio, force = measure(line, way)
     print("\n| solver, 20 spans, vertical plane, 2 pantographs, 0.5 s | process time / simulated time | sigma [N] |")
     print("| :-- | --: | --: |")
     print(f"| kernel | {ratio:.3f} | {force[0].std():.4f} |")
@@ -82,14 +82,14 @@ def same_line() -> None:
     )
 
 
-def general_engine() -> None:
-    """Our kernel, and Exudyn on the same matrices, on one line in the vertical plane in one run."""
+def compare_general_engine() -> None:
+    """Compare the kernel with Exudyn on the same matrices of one line in the vertical plane."""
     print("\n| solver, 10 spans, vertical plane, 2 pantographs, 1 s | process time / simulated time | sigma [N] |")
     print("| :-- | --: | --: |")
     case = ac_simple(10)
     line = discretise(vertical(case, discretise(staggered(case), ELEMENT).state), ELEMENT)
     way = replace(passage(case, line, STEP, 2, 55.0 * 3, math.inf), duration=1.0)
-    ratio, force = measured(line, way)
+    ratio, force = measure(line, way)
     print(f"| kernel | {ratio:.3f} | {sigmas(force)} |", flush=True)
     if importlib.util.find_spec("exudyn") is None:
         print("| Exudyn | not installed: `pip install 'pantocheck[peers]'` | |")
@@ -97,33 +97,33 @@ def general_engine() -> None:
     from exudyn_engine import run_exudyn
 
     run_exudyn(line, replace(way, duration=0.01))
-    theirs, spent, in_python = min((run_exudyn(line, way) for _ in range(2)), key=lambda one: one[1])
+    theirs, spent, in_python = min((run_exudyn(line, way) for _ in range(2)), key=lambda result: result[1])
     print(f"| Exudyn {version('exudyn')} | {spent / way.duration:.2f} | {sigmas(theirs)} |")
     print(f"\nLargest difference of the force {np.abs(theirs - force).max():.1e} N.")
-    print(f"Of Exudyn's time {in_python / spent:.0%} passes in our Python functions for droppers and contact.")
+    print(f"Our Python functions for droppers and contact take {in_python / spent:.0%} of Exudyn's time.")
 
 
 def sigmas(force: np.ndarray) -> str:
     """Standard deviation of each pantograph's force."""
-    return ", ".join(f"{one:.4f}" for one in force.std(axis=1))
+    return ", ".join(f"{sigma:.4f}" for sigma in force.std(axis=1))
 
 
 def main() -> None:
     """Measure and print."""
     argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
-    print("| plane | pantographs | all moves | what waves reach | 220 m |\n| :-- | --: | --: | --: | --: |")
+    print("| plane | pantographs | whole line | wave front | 220 m |\n| :-- | --: | --: | --: | --: |")
     for plane in (True, False):
         for pantographs in (1, 2):
-            ratios = [kernel(20, pantographs, plane, reach, WHOLE_RUN)[0] for reach in (math.inf, None, 220.0)]
+            ratios = [measure_kernel(20, pantographs, plane, reach, WHOLE_RUN)[0] for reach in (math.inf, None, 220.0)]
             cells = " | ".join(f"{ratio:.3f}" for ratio in ratios)
             print(f"| {'vertical' if plane else 'with stagger'} | {pantographs} | {cells} |", flush=True)
-    print("\n| spans | all moves | what waves reach | 660 m |\n| --: | --: | --: | --: |")
+    print("\n| spans | whole line | wave front | 660 m |\n| --: | --: | --: | --: |")
     for spans in SPANS:
-        ratios = [kernel(spans, 2, False, reach)[0] for reach in (math.inf, None, 660.0)]
+        ratios = [measure_kernel(spans, 2, False, reach)[0] for reach in (math.inf, None, 660.0)]
         print(f"| {spans} | {' | '.join(f'{ratio:.3f}' for ratio in ratios)} |", flush=True)
-    print(f"\nMemory of a process with stagger, 2 pantographs, 60 spans: {memory(60):.0f} MB.")
-    same_line()
-    general_engine()
+    print(f"\nMemory of a process with stagger, 2 pantographs, 60 spans: {measure_memory(60):.0f} MB.")
+    compare_refactorised()
+    compare_general_engine()
 
 
 if __name__ == "__main__":
