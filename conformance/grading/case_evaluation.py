@@ -6,6 +6,7 @@ from functools import cached_property
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.consistency.check import CheckName, Finding
 from pantocheck.conformance.consistency.record_checks import check_record
+from pantocheck.conformance.consistency.record_positions import SPEED_TOLERANCE
 from pantocheck.conformance.grading.criterion_grading import GradedValues, grade_limit
 from pantocheck.conformance.grading.section_spread import section_spread
 from pantocheck.conformance.input_files.trust import Trust
@@ -14,9 +15,6 @@ from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.records.record_signals import RecordSignals, evaluate_record
 from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.results.results_format import Criterion
-
-SPEED_TOLERANCE = 0.005
-"""Relative difference between the speeds of a record and its case."""
 
 SECTION_TOLERANCE_M = 0.01
 """Difference between the analysis sections of a record and its case [m]."""

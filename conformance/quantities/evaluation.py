@@ -11,6 +11,9 @@ from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 Value = float | tuple[float, ...]
 """A number, or one number per dropper or mode."""
 
+ValuesByOwner = Mapping[int, Mapping[str, Value]]
+"""Values by pantograph (0: the line) and by name of the quantity."""
+
 LINE = 0
 """Key of the line itself, in place of the number of a pantograph."""
 

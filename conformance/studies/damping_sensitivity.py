@@ -9,7 +9,7 @@ from pantocheck.conformance.cases.library import library_folder
 from pantocheck.conformance.cases.study_tables import DampingSensitivity
 from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.quantities.bands import BAND_QUANTITIES
-from pantocheck.conformance.quantities.evaluation import LINE, Value
+from pantocheck.conformance.quantities.evaluation import LINE, ValuesByOwner
 from pantocheck.conformance.quantities.registry import table_quantities
 from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.results.outcome import Delivered, Outcome, StudyResult, missing_record_reason
@@ -19,10 +19,8 @@ from pantocheck.conformance.systems.system import System
 
 MODELS = {name: f"vovan2015/damping/{name}.toml" for name in ("benchmark", "initial", "updated")}
 """Damping files of the library that a study of any line uses."""
-ROWS = table_quantities("damping models")
+SENSITIVITY_QUANTITIES = table_quantities("damping models")
 OWN = "of the case"
-
-Values = Mapping[int, Mapping[str, Value]]
 
 
 def add_damping_study(case: Case) -> Case:
@@ -78,11 +76,11 @@ def _once(system: System, case: Case) -> Outcome:
     return system.run_unrefined(case) if isinstance(system, ReferenceSimulator) else system.run(case)
 
 
-def _table(values: Mapping[str, Values]) -> TextTable:
+def _table(values: Mapping[str, ValuesByOwner]) -> TextTable:
     owners = sorted({of for found in values.values() for of in found}, key=lambda of: (of == LINE, of))
     rows = []
     for of in owners:
-        for quantity in ROWS:
+        for quantity in SENSITIVITY_QUANTITIES:
             cells = [found.get(of, {}).get(quantity) for found in values.values()]
             if any(isinstance(cell, float) for cell in cells):
                 who = "line" if of == LINE else f"pantograph {of}"

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from pantocheck.model.arrays import Array
 
-Pair = tuple[float, float]
+ForceMoment = tuple[float, float]
 
 
 class Factor(NamedTuple):
@@ -156,19 +156,19 @@ def solve_row(factor: Factor, row: int, first: int, w: Array, r: Array) -> None:
 
 
 @njit(cache=True)
-def _pass_on(link: Array, s: int, force: float, moment: float) -> Pair:
+def _pass_on(link: Array, s: int, force: float, moment: float) -> ForceMoment:
     """Share of force and moment at a station that its inward neighbour takes: L g."""
     return link[s, 0] * force + link[s, 1] * moment, link[s, 2] * force + link[s, 3] * moment
 
 
 @njit(cache=True)
-def _multiply(inverse: Array, s: int, force: float, moment: float) -> Pair:
+def _multiply(inverse: Array, s: int, force: float, moment: float) -> ForceMoment:
     """Product of a symmetric inverse block with force and moment."""
     return inverse[s, 0] * force + inverse[s, 1] * moment, inverse[s, 1] * force + inverse[s, 2] * moment
 
 
 @njit(cache=True)
-def _substitute(inverse: Array, link: Array, s: int, force: Pair, inward: Pair) -> Pair:
+def _substitute(inverse: Array, link: Array, s: int, force: ForceMoment, inward: ForceMoment) -> ForceMoment:
     """Solution (w, r) at a station from its reduced force and moment and the solution at its inward neighbour."""
     w, r = _multiply(inverse, s, force[0], force[1])
     return w - (link[s, 0] * inward[0] + link[s, 2] * inward[1]), r - (link[s, 1] * inward[0] + link[s, 3] * inward[1])

@@ -14,9 +14,6 @@ from importlinter.cli import lint_imports
 ROOT = Path(__file__).parents[2]
 FILES = sorted(path for folder in ("model", "conformance") for path in (ROOT / folder).rglob("*.py"))
 
-KNOWN_NAMES = {"COVERAGE", "LEAST_DRAWN", "Pair", "ROWS", "SPEED_TOLERANCE", "Values"}
-"""Public names whose second meaning is still to be removed."""
-
 
 def test_import_rules_hold(capfd: pytest.CaptureFixture[str]) -> None:
     """The contracts of pyproject.toml; an import inside a function counts like any other."""
@@ -39,7 +36,7 @@ def test_a_public_name_is_defined_once() -> None:
     for path in FILES:
         for name in _public_names(ast.parse(path.read_text(encoding="utf-8"))):
             homes[name].add(str(path.relative_to(ROOT)))
-    assert not {name: sorted(files) for name, files in homes.items() if len(files) > 1 and name not in KNOWN_NAMES}
+    assert not {name: sorted(files) for name, files in homes.items() if len(files) > 1}
 
 
 def test_every_package_folder_is_installed() -> None:

@@ -22,7 +22,7 @@ BOOTSTRAP_REPLICATES = 1000
 FEWEST_BLOCKS = 5
 """Smallest number of blocks in a record: from fewer, the scatter of a statistic cannot be estimated."""
 
-COVERAGE = 1.96
+NORMAL_QUANTILE = 1.96
 """Half-width of a 95 % interval in standard deviations."""
 
 
@@ -108,7 +108,7 @@ def bootstrap_uncertainties(signals: PooledSignals, block_s: float, digest: str)
         return {}
     # The scatter among n blocks is taken about their own mean: smaller by (n - 1) / n than about the true one.
     blocks = replicates.starts.shape[1]
-    wider = COVERAGE * np.sqrt(blocks / (blocks - 1))
+    wider = NORMAL_QUANTILE * np.sqrt(blocks / (blocks - 1))
     uncertainties = {}
     for quantity in PANTOGRAPH_QUANTITIES:
         try:

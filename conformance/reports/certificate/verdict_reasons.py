@@ -69,15 +69,15 @@ def summarise_case(case: dict[str, Any]) -> str:
     return f"{sum(verdicts.values())} criteria: {', '.join(parts)}." if parts else "No criteria."
 
 
-Pair = tuple[dict[str, Any], dict[str, Any]]
+CaseCriterion = tuple[dict[str, Any], dict[str, Any]]
 """A case and one of its criteria."""
 
 
-def _criteria(results: dict[str, Any]) -> Iterator[Pair]:
+def _criteria(results: dict[str, Any]) -> Iterator[CaseCriterion]:
     return ((case, criterion) for case in results["cases"] for criterion in case["criteria"])
 
 
-def _select(results: dict[str, Any], verdict: str) -> list[Pair]:
+def _select(results: dict[str, Any], verdict: str) -> list[CaseCriterion]:
     """Criteria with one verdict, the smallest margin first."""
     pairs = [pair for pair in _criteria(results) if pair[1]["verdict"] == verdict]
     return sorted(pairs, key=lambda pair: pair[1].get("margin") or 0.0)
@@ -91,7 +91,7 @@ def _case_reasons(results: dict[str, Any], verdict: str) -> list[str]:
     ]
 
 
-def _value(pair: Pair) -> str:
+def _value(pair: CaseCriterion) -> str:
     case, criterion = pair
     value = format_beside_limits(criterion["value"], criterion["lower"], criterion["upper"])
     margin = "" if criterion.get("margin") is None else f", margin {format_signed(criterion['margin'])}"
@@ -99,7 +99,7 @@ def _value(pair: Pair) -> str:
     return f"{text}, limits {format_limits(criterion['lower'], criterion['upper'])}{margin}."
 
 
-def _reason(pair: Pair) -> str:
+def _reason(pair: CaseCriterion) -> str:
     case, criterion = pair
     return f"{_subject(case, criterion)}: {criterion.get('reason') or 'no reason given'}"
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import DampingChange
 from pantocheck.conformance.quantities.bands import BAND_QUANTITIES
-from pantocheck.conformance.quantities.evaluation import LINE, Value
+from pantocheck.conformance.quantities.evaluation import LINE, Value, ValuesByOwner
 from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.results.outcome import (
     Delivered,
@@ -22,9 +22,7 @@ from pantocheck.conformance.studies.vovan2015.findings_table import build_findin
 from pantocheck.conformance.studies.vovan2015.provenance_table import build_provenance_table
 from pantocheck.conformance.systems.system import System
 
-ROWS = ("cov_20", "cov_50", *BAND_QUANTITIES)
-
-Values = Mapping[int, Mapping[str, Value]]
+CHANGE_QUANTITIES = ("cov_20", "cov_50", *BAND_QUANTITIES)
 
 
 def run_damping_change(case: Case, study: DampingChange, system: System) -> Outcome:
@@ -74,12 +72,12 @@ def run_damping_change(case: Case, study: DampingChange, system: System) -> Outc
     )
 
 
-def band_changes(before: Values, after: Values) -> dict[int, dict[str, Value]]:
+def band_changes(before: ValuesByOwner, after: ValuesByOwner) -> dict[int, dict[str, Value]]:
     """Changes of the bands' RMS, by pantograph (0: between the first and the last) and name.
 
     Parameters
     ----------
-    before, after : Values
+    before, after : ValuesByOwner
         Quantities by pantograph and name; a band that one of them lacks is left out.
     """
     found: dict[int, dict[str, Value]] = {}
@@ -98,7 +96,7 @@ def band_changes(before: Values, after: Values) -> dict[int, dict[str, Value]]:
     return found
 
 
-def _values(case: Case, outcome: Delivered) -> Values:
+def _values(case: Case, outcome: Delivered) -> ValuesByOwner:
     if outcome.record is None:
         return {}
     return evaluate_record(outcome.record, case.file.filter.low_pass).values
@@ -112,11 +110,11 @@ def _printed_changes(
     )
 
 
-def _beside(values: Mapping[str, Values], printed: Mapping[tuple[str, int], Mapping[str, float]]) -> TextTable:
+def _beside(values: Mapping[str, ValuesByOwner], printed: Mapping[tuple[str, int], Mapping[str, float]]) -> TextTable:
     """Computed values beside the printed ones."""
     pantographs = sorted({p for of in values.values() for p in of if p != LINE})
     rows = []
-    for quantity in ROWS:
+    for quantity in CHANGE_QUANTITIES:
         for model, of in values.items():
             row = [quantity, model]
             for p in pantographs:

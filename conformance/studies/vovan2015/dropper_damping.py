@@ -32,7 +32,7 @@ from pantocheck.model.fem.dropper_laws import with_viscous_part_kept
 
 OFF = 0.1
 """Relative change of the force at which the transition begins, and share of it at which it has ended."""
-LEAST_DRAWN = 1.0
+LEAST_DRAWN_FORCE = 1.0
 """Force at which smaller ones are drawn on a logarithmic scale [N]."""
 
 
@@ -181,7 +181,7 @@ def _chart(case: Case, study: DropperDamping, force: dict[str, RealArray]) -> Ch
         marks.append(Mark(label="chosen by the study", axis="x", low=chosen))
     return Chart(
         caption=f"Largest compensation force of the dropper at {study.x_m:g} m against its stiffness coefficient; "
-        f"what is below {LEAST_DRAWN:g} N is drawn there.",
+        f"what is below {LEAST_DRAWN_FORCE:g} N is drawn there.",
         alternative="; ".join(f"{name}: {v[0]:.4g} N to {v[-1]:.4g} N" for name, v in force.items()),
         x_label="stiffness coefficient [s]",
         y_label="largest compensation force [N]",
@@ -192,7 +192,7 @@ def _chart(case: Case, study: DropperDamping, force: dict[str, RealArray]) -> Ch
                 label=name,
                 style="line",
                 x=thin_series(np.array(study.coefficients_s)),
-                y=thin_series(np.maximum(values, LEAST_DRAWN)),
+                y=thin_series(np.maximum(values, LEAST_DRAWN_FORCE)),
             )
             for name, values in force.items()
         ],

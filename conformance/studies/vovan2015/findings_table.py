@@ -1,25 +1,23 @@
 """Findings of a publication in a table: what it says, what was computed, and whether they agree."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.grading.criterion_grading import find_value
 from pantocheck.conformance.grading.verdicts import judge
-from pantocheck.conformance.quantities.evaluation import Value
+from pantocheck.conformance.quantities.evaluation import ValuesByOwner
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results.results_format import TextTable
 
-Values = Mapping[int, Mapping[str, Value]]
 
-
-def build_findings_table(limits: Sequence[Limit], computed: Values, printed: Values) -> TextTable:
+def build_findings_table(limits: Sequence[Limit], computed: ValuesByOwner, printed: ValuesByOwner) -> TextTable:
     """One row per limit of a case: the finding in words, printed and computed value, reproduced or not.
 
     Parameters
     ----------
     limits : Sequence[Limit]
         Of the case; their notes are the findings in words.
-    computed, printed : Values
+    computed, printed : ValuesByOwner
         By pantograph and name.
     """
     rows = []

@@ -10,7 +10,7 @@ from pantocheck.conformance.results.results_format import Chart, Mark, Series, T
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.model import Catenary, Kind
 
-LEAST_DRAWN = 1e-3
+LEAST_DRAWN_SHARE = 1e-3
 """Ratio at which smaller ones, nought among them, are drawn on a logarithmic scale [-]."""
 
 
@@ -67,8 +67,8 @@ def _observability(results: DampingResults) -> Chart:
     return Chart(
         caption="Observability of every coefficient: its plausible value over the standard deviation with which the "
         "modes determine it. An observable coefficient reaches the dashed line and makes up at least "
-        f"{100 * results.thresholds.largest_share:g} % of the damping of some mode. Values below {LEAST_DRAWN:g} are "
-        f"drawn at {LEAST_DRAWN:g}.",
+        f"{100 * results.thresholds.largest_share:g} % of the damping of some mode. "
+        f"Values below {LEAST_DRAWN_SHARE:g} are drawn at {LEAST_DRAWN_SHARE:g}.",
         alternative="; ".join(
             f"{row.kind} {row.matrix}: {row.plausible_over_std:.3g}, "
             f"{'observable' if row.observable else 'not observable'}"
@@ -83,7 +83,7 @@ def _observability(results: DampingResults) -> Chart:
                 label="all modes together",
                 style="bars",
                 x=[float(i) for i in range(len(rows))],
-                y=[max(row.plausible_over_std, LEAST_DRAWN) for row in rows],
+                y=[max(row.plausible_over_std, LEAST_DRAWN_SHARE) for row in rows],
             )
         ],
         marks=[Mark(label="needed", axis="y", low=results.thresholds.plausible_over_std)],
