@@ -40,8 +40,8 @@ from pantocheck.conformance.grading.profile_grading import assess_record
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.plan import read_plan
 from pantocheck.conformance.records.record import Record
-from pantocheck.conformance.records.record_sidecar import LineTable
 from pantocheck.conformance.records.record_writing import write_record
+from pantocheck.conformance.records.sidecar_tables import LineTable
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
 from pantocheck.conformance.reports.formats.pdf import render_pdf
 from pantocheck.conformance.results.results_format import Results

@@ -1,4 +1,4 @@
-"""Taking the results out of a certificate that a stranger sent."""
+"""Extraction of the results from a certificate of unknown origin."""
 
 from pathlib import Path
 from typing import Any
@@ -12,9 +12,9 @@ from pantocheck.conformance.reports.formats.embedding import NAME
 from pantocheck.conformance.reports.page_text import clean_text
 from pantocheck.conformance.results.results_reading import parse_results
 
-MAX_DOCUMENT_BYTES = 64 * 2**20  # bytes of a PDF; a certificate of two cases has half a million
+MAX_DOCUMENT_BYTES = 64 * 2**20
+"""Largest PDF that is read [bytes]; a certificate of two cases has half a million."""
 
-# A damaged file can break any assumption of the parser, and it has no single exception for that.
 DAMAGED = (
     PyPdfError,
     OSError,
@@ -27,15 +27,16 @@ DAMAGED = (
     ArithmeticError,
     AssertionError,
 )
+"""Exceptions of the parser for damaged files, which have no common base."""
 
 
 def open_document(path: Path) -> PdfReader:
-    """A PDF ready to be read.
+    """Open a PDF for reading.
 
     Raises
     ------
     InputError
-        No such file, too large, or not a PDF.
+        It cannot be read, is too large, is damaged or is not a PDF.
     """
     check_file(path, str(path), MAX_DOCUMENT_BYTES)
     try:
@@ -49,49 +50,49 @@ def open_document(path: Path) -> PdfReader:
         reader = PdfReader(path, strict=True)
         pages = len(reader.pages)
     except DAMAGED as error:
-        raise _damaged(path, error) from None
+        raise _build_damage_error(path, error) from None
     if pages == 0:
-        raise InputError(str(path), "a PDF without pages", "Ask for the certificate once more.")
+        raise InputError(str(path), "a PDF without pages", "Request the certificate again.")
     return reader
 
 
 def read_title_and_first_page(path: Path, reader: PdfReader) -> tuple[str, str]:
-    """Title in the metadata, and text of the first page.
+    """Read the title in the metadata and the text of the first page.
 
     Raises
     ------
     InputError
-        Damaged.
+        The PDF is damaged.
     """
     try:
         title = reader.metadata.title if reader.metadata else None
         return str(title or ""), reader.pages[0].extract_text()
     except DAMAGED as error:
-        raise _damaged(path, error) from None
+        raise _build_damage_error(path, error) from None
 
 
 def read_embedded_results(path: Path, reader: PdfReader) -> dict[str, Any]:
-    """The results embedded in a certificate, checked against their format.
+    """Read the results embedded in a certificate and validate their format.
 
     Raises
     ------
     InputError
-        Nothing embedded under the name, more than once, too large, not JSON, or not results of this suite.
+        The attachment is missing, repeated, too large, not JSON, or not in the format of the suite.
     """
     try:
-        found = reader.attachments.get(NAME, [])
-        content = bytes(found[0]) if len(found) == 1 else b""
+        attachments = reader.attachments.get(NAME, [])
+        content = bytes(attachments[0]) if len(attachments) == 1 else b""
     except DAMAGED as error:
-        raise _damaged(path, error) from None
-    if len(found) != 1:
-        number = "no" if not found else f"{len(found)}"
+        raise _build_damage_error(path, error) from None
+    if len(attachments) != 1:
+        number = len(attachments) or "no"
         hint = f"A certificate holds one {NAME}; other PDFs cannot be verified."
         raise InputError(str(path), f"{number} attachment named {NAME}", hint)
     where = f"{path}, attachment {NAME}"
     return parse_results(content, where).to_dict()
 
 
-def _damaged(path: Path, error: Exception) -> InputError:
+def _build_damage_error(path: Path, error: Exception) -> InputError:
     return InputError(
-        str(path), f"a damaged PDF ({clean_text(str(error)) or type(error).__name__})", "Ask for it once more."
+        str(path), f"a damaged PDF ({clean_text(str(error)) or type(error).__name__})", "Request the certificate again."
     )

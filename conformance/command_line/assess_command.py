@@ -18,7 +18,7 @@ from pantocheck.conformance.grading.profile_grading import assess_record
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.validation_messages import build_input_error
-from pantocheck.conformance.records.record_sidecar import LineTable
+from pantocheck.conformance.records.sidecar_tables import LineTable
 from pantocheck.conformance.reports.formats.report_writers import check_formats, write_all
 from pantocheck.conformance.results.results_reading import read_results
 

@@ -17,8 +17,9 @@ from pantocheck.conformance.records.measured.record_preparation import PreparedR
 from pantocheck.conformance.records.record import RecordInvalid
 from pantocheck.conformance.records.record_opening import open_record
 from pantocheck.conformance.records.record_reading import build_record_error, read_samples
-from pantocheck.conformance.records.record_sidecar import LineTable, RecordSidecar, SystemTable
+from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.record_summary import RecordSummary
+from pantocheck.conformance.records.sidecar_tables import LineTable, SystemTable
 from pantocheck.conformance.results.results_format import InputGroup
 
 ASSUMED_SPAN_M = 60.0

@@ -1,4 +1,4 @@
-"""Writing files so that nobody ever sees half of one."""
+"""Atomic writing: a file is complete or absent."""
 
 import hashlib
 import os
@@ -15,33 +15,31 @@ def write_atomically(path: Path, content: bytes) -> None:
     Parameters
     ----------
     path : Path
-        The file to write; its folder is made if need be.
+        File to write; a missing folder is created.
     content : bytes
-        All of it.
+        Complete content.
 
     Raises
     ------
     InputError
-        The folder cannot be made or written.
+        The folder cannot be created or written.
     """
     produce_atomically(path, lambda temporary: temporary.write_bytes(content))
 
 
 def produce_atomically(path: Path, produce: Callable[[Path], object]) -> None:
-    """Let `produce` write a temporary file beside `path`, then move it into place; nothing is left if it fails.
+    """Let `produce` write a temporary file beside `path`, then move it into place; a failure leaves no file.
 
     Raises
     ------
     InputError
-        The folder cannot be made or written.
+        The folder cannot be created or written.
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(prefix=".", suffix=path.suffix, dir=path.parent)
     except OSError as error:
-        raise InputError(
-            str(path), f"cannot be written ({error.strerror})", "Name a folder that you may write to, with --out."
-        ) from None
+        raise _build_write_error(path, error) from None
     os.close(handle)
     temporary = Path(name)
     try:
@@ -49,29 +47,31 @@ def produce_atomically(path: Path, produce: Callable[[Path], object]) -> None:
         temporary.chmod(0o644)
         temporary.replace(path)
     except OSError as error:
-        raise InputError(
-            str(path), f"cannot be written ({error.strerror})", "Name a folder that you may write to, with --out."
-        ) from None
+        raise _build_write_error(path, error) from None
     finally:
         temporary.unlink(missing_ok=True)
 
 
 def check_writable(folder: Path) -> None:
-    """Make a folder and a file in it, before anything is computed that could not be kept.
+    """Create a folder and a test file in it, before computing results that could not be saved.
 
     Raises
     ------
     InputError
-        The folder cannot be made or written.
+        The folder cannot be created or written.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
             pass
     except OSError as error:
-        raise InputError(
-            str(folder), f"cannot be written ({error.strerror})", "Name a folder that you may write to, with --out."
-        ) from None
+        raise _build_write_error(folder, error) from None
+
+
+def _build_write_error(path: Path, error: OSError) -> InputError:
+    return InputError(
+        str(path), f"cannot be written ({error.strerror})", "Name a folder that you may write to, with --out."
+    )
 
 
 def file_digest(path: Path) -> str:

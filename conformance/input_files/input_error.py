@@ -1,19 +1,33 @@
-"""Input errors: what a stranger's file got wrong, said once and clearly."""
+"""Input errors, and the life of an input: each step and the exception that a file of a user may raise in it.
+
+================================  ==================================  ==============================================
+step                              exception                           where it ends
+================================  ==================================  ==============================================
+open, parse and validate a file   `InputError`                        message of the command line, exit code 2
+build a record from samples       `RecordInvalid`                     `InputError` of the table (`record_reading`)
+compute a quantity                `QuantityUnavailable`               criterion with the verdict `skip`
+evaluate the rule of a profile    `BoundMissing`                      criterion with the verdict `skip`
+start an external program         `ProgramFailed`                     case with the verdict `error`
+read the answer of a program      `AnswerRefused`                     case with the verdict `error`
+read the files of a program       `DeliveryRefused`, `InputError`     case with the verdict `error`
+tune and simulate a line          `SimulationError`                   message of the command line, exit code 2
+================================  ==================================  ==============================================
+
+In a run of several cases, the first and the last end as the verdict `error` of their case.
+"""
 
 
 class InputError(ValueError):
-    """Input that cannot be used; the command line prints it and exits with code 2.
-
-    A wrong input that is not caught where it enters becomes a wrong number in a certificate.
+    """Input that cannot be used: without it, a wrong file becomes a wrong number in a certificate.
 
     Parameters
     ----------
-    where
-        The file, and the key, line or channel inside it.
-    found
-        What is there.
-    hint
-        What is expected, or what to do next.
+    where : str
+        File, and the key, line or channel inside it.
+    found : str
+        Content found there.
+    hint : str
+        Content expected there, or the next step of the user.
     """
 
     def __init__(self, where: str, found: str, hint: str) -> None:

@@ -1,4 +1,4 @@
-"""What all case files share: unknown keys are refused, numbers are finite, and every group names its source."""
+"""Base tables of input files: unknown keys are refused, numbers are finite, and sourced tables name their source."""
 
 from typing import Annotated
 
@@ -10,35 +10,34 @@ from pantocheck.conformance.input_files.trust import Trust
 Positive = Annotated[float, Field(gt=0)]
 NonNegative = Annotated[float, Field(ge=0)]
 
-# TOML knows arrays, not tuples; a frozen model holds tuples.
+# TOML has arrays, and a frozen model needs tuples.
 PositiveList = Annotated[tuple[Positive, ...], Field(strict=False, min_length=1, max_length=1000)]
 NonNegativeList = Annotated[tuple[NonNegative, ...], Field(strict=False, min_length=1, max_length=1000)]
 NumberList = Annotated[tuple[float, ...], Field(strict=False, min_length=1, max_length=1000)]
 
-
 PROVENANCE = frozenset({"trust", "source", "provisional", "note"})
-"""Keys of a sourced table that say where its numbers come from."""
+"""Keys of a sourced table that state the origin of its numbers."""
 
 
 class InputTable(BaseModel):
-    """A table of a case file: keys that are not in the schema are refused, NaN and infinity too."""
+    """Table of an input file: unknown keys, NaN and infinity are refused."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
 
 class SourcedTable(InputTable):
-    """A table whose numbers come from somewhere: one source and trust for all of them, exceptions named."""
+    """Table whose numbers have one source and one trust; exceptions are listed in `provisional`."""
 
-    trust: Annotated[Trust, Field(description="how far the numbers of this table can be trusted")]
+    trust: Annotated[Trust, Field(description="trust in the numbers of this table")]
     source: Annotated[
         str | list[str],
-        Field(description="where they were read: keys of sources.toml, or free text", max_length=500),
+        Field(description="source of the numbers: keys of sources.toml, or free text", max_length=500),
     ]
     provisional: Annotated[
         tuple[str, ...],
         Field(strict=False, description="keys of this table that could not be traced to any printed source"),
     ] = ()
-    note: Annotated[str | None, Field(description="why a number or a choice is what it is", max_length=4000)] = None
+    note: Annotated[str | None, Field(description="reason for a number or a choice", max_length=4000)] = None
 
     @model_validator(mode="after")
     def _exceptions_exist(self) -> "SourcedTable":
@@ -51,15 +50,15 @@ class SourcedTable(InputTable):
 
 
 def validation_problem(key: str, found: str, hint: str) -> PydanticCustomError:
-    """An inconsistency between keys, for a validator to raise.
+    """Build the error of an inconsistency between keys, for a validator to raise.
 
     Parameters
     ----------
     key : str
-        The key at fault, dotted, relative to the table that is validated.
+        Dotted key at fault, relative to the table that is validated.
     found : str
-        What is there.
+        Content found there.
     hint : str
-        What is expected.
+        Content expected there.
     """
     return PydanticCustomError("inconsistent", "{found}. {hint}", {"key": key, "found": found, "hint": hint})

@@ -5,11 +5,11 @@ from difflib import get_close_matches
 
 
 def suggest_names(name: str, known: Sequence[str]) -> str:
-    """A sentence that says which known name was probably meant, or which there are."""
-    # An id is often given by its last part alone.
+    """Sentence with the known names closest to an unknown one, or with all known names."""
+    # Users often write the last part of an id only.
     tails = {item.rsplit("/", 1)[-1]: item for item in known}
     lowered = {item.lower(): item for item in known}
-    # A slip of the finger is one name; only a poorer match leaves a choice.
+    # A typing error has one near match; weaker matches are offered as a choice.
     close = get_close_matches(name.lower(), list(lowered), n=1, cutoff=0.9) or get_close_matches(
         name.lower(), list(lowered), n=3, cutoff=0.5
     )

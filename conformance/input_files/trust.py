@@ -1,10 +1,10 @@
-"""How far a number can be trusted: where it was read decides whether it may carry a verdict."""
+"""Trust in a number: its source decides whether it may carry a verdict."""
 
 from typing import Literal, get_args
 
 Trust = Literal["primary", "secondary", "provisional"]
 """`primary`: read in the document that defines it; `secondary`: printed in another public source;
-`provisional`: not traced to any printed source, so informative only unless the user asks for more."""
+`provisional`: not traced to any printed source, so informative unless the user lowers the required trust."""
 
 LEVELS: tuple[Trust, ...] = get_args(Trust)
 

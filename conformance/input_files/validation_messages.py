@@ -1,4 +1,4 @@
-"""From a validation error to one message: the file, the key, what was found, and what to do."""
+"""Messages for validation errors: file, key, value found and next step."""
 
 import math
 import typing
@@ -20,7 +20,7 @@ _BOUNDS = {
 }
 
 LONGEST_KEY = 80
-"""Characters of a key that a message shows; no key of a schema has as many."""
+"""Characters of a key that a message shows; keys of the schemas are shorter."""
 
 _KINDS = {
     "float_type": "a number",
@@ -37,34 +37,34 @@ _KINDS = {
 
 
 def build_input_error(error: ValidationError, model: type[BaseModel], where: str) -> InputError:
-    """The first and most telling problem of a file as an `InputError`.
+    """Build an `InputError` from the most informative problem of a file.
 
     Parameters
     ----------
     error : ValidationError
-        What pydantic found.
-    model : type[BaseModel]
-        The model that was validated.
+        Error of pydantic.
+    model : type of BaseModel
+        Model that was validated.
     where : str
-        The file, e.g. `reference line 'my-line.toml'`.
+        Name of the file in messages, e.g. `reference line 'my-line.toml'`.
     """
-    # A key in the wrong unit is unknown and the right one missing: the unknown one tells what to do.
+    # A key in a wrong unit gives two errors, an unknown and a missing key; the unknown key leads to the better hint.
     detail = min(error.errors(include_url=False), key=lambda item: item["type"] != "extra_forbidden")
     table, field, key = _walk(model, detail["loc"])
     if detail["type"] == "inconsistent":
         context = detail["ctx"]
         return InputError(
-            _at(where, ".".join(part for part in (key, context["key"]) if part)), context["found"], context["hint"]
+            _locate(where, ".".join(part for part in (key, context["key"]) if part)), context["found"], context["hint"]
         )
-    found, hint = _explained(detail, table, field)
-    return InputError(_at(where, key), found, hint)
+    found, hint = _explain(detail, table, field)
+    return InputError(_locate(where, key), found, hint)
 
 
-def _at(where: str, key: str) -> str:
+def _locate(where: str, key: str) -> str:
     return f"{where}, key {key}" if key else where
 
 
-def _explained(detail: ErrorDetails, table: type[BaseModel], field: FieldInfo | None) -> tuple[str, str]:
+def _explain(detail: ErrorDetails, table: type[BaseModel], field: FieldInfo | None) -> tuple[str, str]:
     kind, value = detail["type"], detail["input"]
     name = str(detail["loc"][-1]) if detail["loc"] else ""
     known = list(table.model_fields)
@@ -77,15 +77,15 @@ def _explained(detail: ErrorDetails, table: type[BaseModel], field: FieldInfo | 
         return f"{value} is not a finite number", about
     if kind in _BOUNDS:
         words, bound = _BOUNDS[kind]
-        return f"{_shown(value)} {words} {detail['ctx'][bound]}", about
+        return f"{_show(value)} {words} {detail['ctx'][bound]}", about
     if kind in _KINDS:
-        return f"found {_shown(value)}, expected {_KINDS[kind]}", about
+        return f"found {_show(value)}, expected {_KINDS[kind]}", about
     if kind == "literal_error":
-        return f"found {_shown(value)}, expected {detail['ctx']['expected']}", about
-    return f"found {_shown(value)}: {detail['msg'][:1].lower()}{detail['msg'][1:]}", about
+        return f"found {_show(value)}, expected {detail['ctx']['expected']}", about
+    return f"found {_show(value)}: {detail['msg'][:1].lower()}{detail['msg'][1:]}", about
 
 
-def _shown(value: object) -> str:
+def _show(value: object) -> str:
     if isinstance(value, float) and math.isfinite(value):
         return f"{value:g}"
     text = repr(value)
@@ -93,7 +93,7 @@ def _shown(value: object) -> str:
 
 
 def _walk(model: type[BaseModel], location: tuple[int | str, ...]) -> tuple[type[BaseModel], FieldInfo | None, str]:
-    """Table that holds a location, the field there if it exists, and the location as a dotted key, lists from 1."""
+    """Table and field at a location, and the location as a dotted key with list items numbered from 1."""
     table, field, key = model, None, ""
     inner: Any = model
     for part in location:
@@ -104,7 +104,7 @@ def _walk(model: type[BaseModel], location: tuple[int | str, ...]) -> tuple[type
         holder = next(iter(_models_in(inner)), None)
         if member is not None or holder is None:
             inner = member or inner
-            continue  # the name of a member of a union, not a key
+            continue  # name of a member of a union, not a key
         table, field = holder, holder.model_fields.get(part)
         name = part if len(part) <= LONGEST_KEY else part[:LONGEST_KEY] + "..."
         key += f".{name}" if key else name
@@ -113,13 +113,13 @@ def _walk(model: type[BaseModel], location: tuple[int | str, ...]) -> tuple[type
 
 
 def _names_in_unions(model: type[BaseModel]) -> tuple[str, ...]:
-    """What a place inside a member of a union is called after: the model, or the tag in its key `kind`."""
+    """Names that pydantic gives to a member of a union: the model, or the tag in its key `kind`."""
     kind = model.model_fields.get("kind")
     return (model.__name__, *(typing.get_args(kind.annotation) if kind is not None else ()))
 
 
 def _models_in(annotation: Any) -> list[type[BaseModel]]:
-    """Models that an annotation names, in its order."""
+    """Models in an annotation, in its order."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return [annotation]
     return [model for argument in typing.get_args(annotation) for model in _models_in(argument)]

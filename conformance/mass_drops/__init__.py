@@ -1,1 +1,1 @@
-"""Records of mass drops: read and written in the formats of measuring systems."""
+"""Mass-drop records: reading and writing in the formats of measuring systems."""

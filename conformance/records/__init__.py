@@ -1,4 +1,4 @@
-"""Records on disk: a table of samples (CSV or HDF5) and a TOML sidecar of the same name that says what it is.
+"""Contact-force records: a table of samples (CSV or HDF5) and a TOML sidecar of the same name that describes it.
 
 Format `pantocheck.record/1`; pantographs are numbered from 1 in running order. docs/records.md shows it by example.
 
@@ -13,8 +13,8 @@ CSV column                    HDF5 dataset                meaning
 ``uplift_1_m`` ...            ``uplift_m`` (s, n)         uplift at the supports that the sidecar lists; may be missing
 ============================  ==========================  ==========================================================
 
-The unit stands at the end of the name: ``force_1_kN``, ``uplift_1_mm``, ``speed_km_h`` are converted. A CSV file begins
-with one line of column names; columns are separated by commas, decimals by points, ``nan`` is a missing value. The
-sidecar's keys are those of `Sidecar`; it must say whether the force was filtered before (``filter_applied_Hz``: a
-number or "none").
+The unit stands at the end of the name: ``force_1_kN`` and ``speed_km_h`` are converted. A CSV file begins with
+one line of column names; columns are separated by commas and decimals by points, or columns by semicolons and
+decimals by commas; ``nan`` is a missing value. The keys of the sidecar are those of `RecordSidecar`; it must state
+whether the force was filtered (``filter_applied_Hz``: a number or "none").
 """

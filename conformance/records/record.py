@@ -1,4 +1,4 @@
-"""Record: what a run or a measurement delivers, on one time axis, in SI units."""
+"""Record: signals of a run or a measurement on one time axis, in SI units."""
 
 from dataclasses import dataclass, field, fields
 
@@ -8,21 +8,21 @@ from numpy.typing import ArrayLike
 from pantocheck.conformance.array_types import RealArray
 
 MAX_SAMPLES = 20_000_000
-"""Numbers in one array of a record; more is a mistake in units or rate, and would exhaust the memory."""
+"""Largest count of numbers in one array; more is a mistake in units or rate and would exhaust the memory."""
 
 LARGEST_NUMBER = 1e9
-"""No force, position or time in SI units is larger; squares of such numbers are still exact enough to be graded."""
+"""Largest force, position or time in SI units; its square is still accurate enough for statistics."""
 
 
 class RecordInvalid(ValueError):
-    """An array of a record is impossible: graded, it would give a number that means nothing.
+    """Impossible array of a record, whose statistics would have no meaning.
 
     Parameters
     ----------
-    channel
+    channel : str
         Name of the array at fault.
-    found
-        What is wrong with it.
+    found : str
+        Fault.
     """
 
     def __init__(self, channel: str, found: str) -> None:
@@ -40,21 +40,21 @@ class Record:
     time : (n,) ndarray
         Uniform time axis [s].
     speed : float
-        Of the train [m/s].
+        Speed of the train [m/s].
     position : (p, n) ndarray
         Contact point along the track [m].
     force : (p, n) ndarray
         Contact force as delivered [N].
-    evaluated : tuple[float, float]
-        Start and end of the evaluated stretch of track [m].
+    evaluated : tuple of float
+        Start and end of the analysis section [m].
     filter_applied_Hz : float or None
-        Cut-off of the low-pass the force has already gone through [Hz]; None: unfiltered.
+        Cut-off of the low-pass filter already applied to the force [Hz]; None if unfiltered.
     contact_height : (p, n) ndarray or None
-        Height of the contact point above its static height or above rail [m], or None.
+        Height of the contact point above its static height or above rail [m].
     support_position : (s,) ndarray or None
-        Positions of the supports [m], or None.
+        Positions of the supports [m].
     support_uplift : (s, n) ndarray or None
-        Uplift of the contact wire at the supports [m], or None.
+        Uplift of the contact wire at the supports [m].
 
     Raises
     ------
@@ -76,14 +76,14 @@ class Record:
     def __post_init__(self) -> None:
         for item in fields(self):
             if item.name in _ARRAYS and (value := getattr(self, item.name)) is not None:
-                object.__setattr__(self, item.name, _checked(item.name, value))
+                object.__setattr__(self, item.name, _check_array(item.name, value))
         object.__setattr__(self, "rate", _rate(self.time))
         self._check_shapes()
         if not (np.isfinite(self.speed) and self.speed > 0):
             raise RecordInvalid("speed", f"{self.speed:g} m/s is not a positive speed")
         start, end = self.evaluated
         if not (np.isfinite([start, end]).all() and start < end):
-            raise RecordInvalid("evaluated", f"the stretch from {start:g} m to {end:g} m is empty")
+            raise RecordInvalid("evaluated", f"the analysis section from {start:g} m to {end:g} m is empty")
         if self.filter_applied_Hz is not None and not (
             np.isfinite(self.filter_applied_Hz) and self.filter_applied_Hz > 0
         ):
@@ -98,7 +98,7 @@ class Record:
             if value is not None and value.shape != self.force.shape:
                 raise RecordInvalid(name, f"its shape is {value.shape}, expected {self.force.shape} as the force has")
         if (self.support_position is None) != (self.support_uplift is None):
-            raise RecordInvalid("support_uplift", "uplift and positions of the supports are only useful together")
+            raise RecordInvalid("support_uplift", "uplift and positions of the supports must be given together")
         if self.support_position is not None and self.support_uplift is not None:
             expected = (self.support_position.size, n)
             if self.support_position.ndim != 1 or self.support_uplift.shape != expected:
@@ -115,7 +115,7 @@ class Record:
 _ARRAYS = frozenset({"time", "position", "force", "contact_height", "support_position", "support_uplift"})
 
 
-def _checked(name: str, value: ArrayLike) -> RealArray:
+def _check_array(name: str, value: ArrayLike) -> RealArray:
     array = np.array(value, dtype=np.float64)
     if array.size > MAX_SAMPLES:
         raise RecordInvalid(name, f"{array.size} numbers, more than {MAX_SAMPLES}")
@@ -124,10 +124,10 @@ def _checked(name: str, value: ArrayLike) -> RealArray:
         raise RecordInvalid(
             name, f"{bad.size} values are not finite, the first at sample {bad[0] % array.shape[-1] + 1}"
         )
-    absurd = np.flatnonzero(np.abs(array) > LARGEST_NUMBER)
-    if absurd.size:
+    impossible = np.flatnonzero(np.abs(array) > LARGEST_NUMBER)
+    if impossible.size:
         raise RecordInvalid(
-            name, f"{array.flat[absurd[0]]:.3g} at sample {absurd[0] % array.shape[-1] + 1} is impossible"
+            name, f"{array.flat[impossible[0]]:.3g} at sample {impossible[0] % array.shape[-1] + 1} is impossible"
         )
     array.setflags(write=False)
     return array
@@ -137,7 +137,7 @@ def _rate(time: RealArray) -> float:
     if time.ndim != 1 or time.size < 2:
         raise RecordInvalid("time", "fewer than two samples")
     step = (time[-1] - time[0]) / (time.size - 1)
-    # Files print time with few digits: a hundredth of a step is rounding, more is a gap or a changing rate.
+    # Printed times are rounded by up to a hundredth of a step; more is a gap or a changing rate.
     if step <= 0 or np.abs(time - np.linspace(time[0], time[-1], time.size)).max() > 0.01 * step:
         raise RecordInvalid("time", "samples are not evenly spaced in time")
     return float(1 / step)

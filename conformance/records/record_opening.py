@@ -1,4 +1,4 @@
-"""Both kinds of record: samples with a sidecar, and a summary. The `schema` key of the TOML file says which it is."""
+"""Opening of both kinds of record, samples with a sidecar and summaries, by the key `schema` of the TOML file."""
 
 from pathlib import Path
 
@@ -14,12 +14,12 @@ RECORD_SCHEMAS: dict[str, type[RecordSidecar] | type[RecordSummary]] = {
 
 
 def open_record(path: Path) -> RecordSidecar | RecordSummary:
-    """Read the TOML file of a record, whichever kind it is; a table may be named in place of its sidecar.
+    """Read the TOML file of a record of either kind; the path may also be that of the table.
 
     Raises
     ------
     InputError
-        It cannot be read, is wrong, or is of neither kind.
+        It cannot be read, does not fit its model, or is of neither kind.
     """
     path = path if path.suffix == ".toml" else path.with_suffix(".toml")
     schema = read_toml(path, "record").get("schema")
@@ -29,6 +29,6 @@ def open_record(path: Path) -> RecordSidecar | RecordSummary:
         raise InputError(
             f"record '{path.name}', key schema",
             "missing" if schema is None else f"found {str(schema)[:60]!r}",
-            f"A record says schema = {expected}.",
+            f"Write schema = {expected}.",
         )
     return read_model(path, model, "sidecar" if model is RecordSidecar else "summary record")

@@ -1,4 +1,4 @@
-"""Summary records: the statistics of a run as they were published or measured, without the samples behind them."""
+"""Summary records: published or measured statistics of a run whose samples are not available."""
 
 from pathlib import Path
 from typing import Annotated, Literal
@@ -12,7 +12,7 @@ from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value
 from pantocheck.conformance.quantities.force_quantities import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, statistical_extremes
-from pantocheck.conformance.records.record_sidecar import LineTable, RunTable, Speed, SystemTable
+from pantocheck.conformance.records.sidecar_tables import LineTable, RunTable, Speed, SystemTable, check_section
 
 SUMMARY_SCHEMA = "pantocheck.summary/1"
 
@@ -29,10 +29,10 @@ class RecordSummary(SourcedTable):
     case: Annotated[str | None, Field(max_length=200, description="id of the case that was run")] = None
     speed_km_h: Speed
     filter_cutoff_Hz: Annotated[
-        float, Field(gt=0, le=1000, description="cut-off of the low-pass the force statistics were taken with [Hz]")
+        float, Field(gt=0, le=1000, description="cut-off of the low-pass filter of the force statistics [Hz]")
     ]
     evaluated_m: Annotated[
-        NumberList | None, Field(min_length=2, max_length=2, description="start and end of the evaluated stretch [m]")
+        NumberList | None, Field(min_length=2, max_length=2, description="start and end of the analysis section [m]")
     ] = None
     pantograph: Annotated[
         tuple[SummaryValues, ...],
@@ -46,56 +46,55 @@ class RecordSummary(SourcedTable):
     run: RunTable = RunTable()
 
     @model_validator(mode="after")
-    def _possible(self) -> "RecordSummary":
+    def _check_values(self) -> "RecordSummary":
         for i, values in enumerate(self.pantograph, 1):
-            _check(values, f"pantograph[{i}]", [quantity.name for quantity in PANTOGRAPH_QUANTITIES])
+            _check_table(values, f"pantograph[{i}]", [quantity.name for quantity in PANTOGRAPH_QUANTITIES])
         static = [quantity.name for quantity in QUANTITIES.values() if quantity.scope == "static"]
-        _check(self.quantities, "quantities", [*(quantity.name for quantity in LINE_QUANTITIES), *static])
-        if self.evaluated_m is not None and self.evaluated_m[0] >= self.evaluated_m[1]:
-            raise validation_problem("evaluated_m", "the stretch ends before it begins", "Give its start and its end.")
+        _check_table(self.quantities, "quantities", [*(quantity.name for quantity in LINE_QUANTITIES), *static])
+        check_section(self.evaluated_m)
         return self
 
     @property
     def evaluation(self) -> Evaluation:
-        """The quantities as if they had been computed from a record; those that are not given are skipped."""
+        """Quantities as if computed from a record; missing ones are skipped."""
         values: dict[int, dict[str, Value]] = {
             LINE: {name: self.quantities[name] for name in QUANTITIES if name in self.quantities}
         }
         skipped = {LINE: {q.name: _NOT_GIVEN for q in LINE_QUANTITIES if q.name not in self.quantities}}
-        for i, given in enumerate(self.pantograph, 1):
-            values[i] = {name: given[name] for name in QUANTITIES if name in given}
-            skipped[i] = {q.name: _NOT_GIVEN for q in PANTOGRAPH_QUANTITIES if q.name not in given}
+        for i, known in enumerate(self.pantograph, 1):
+            values[i] = {name: known[name] for name in QUANTITIES if name in known}
+            skipped[i] = {q.name: _NOT_GIVEN for q in PANTOGRAPH_QUANTITIES if q.name not in known}
         return Evaluation(values, skipped)
 
     @property
     def contradictions(self) -> tuple[str, ...]:
-        """Statistics that should follow from others and do not: printed tables are at times inconsistent."""
-        found = []
-        for i, given in enumerate(self.pantograph, 1):
-            for name, expected, slack in _followed(given):
-                if name in given and abs(given[name] - expected) > slack:
-                    found.append(
-                        f"{name} of pantograph {i} is given as {given[name]:g}; {expected:.4g} follows from the mean "
+        """Statistics that contradict others of the same table, because printed tables can be inconsistent."""
+        contradictions = []
+        for i, values in enumerate(self.pantograph, 1):
+            for name, expected, rounding in _derive_statistics(values):
+                if name in values and abs(values[name] - expected) > rounding:
+                    contradictions.append(
+                        f"{name} of pantograph {i} is given as {values[name]:g}; {expected:.4g} follows from the mean "
                         "and the standard deviation"
                     )
-        return tuple(found)
+        return tuple(contradictions)
 
 
 _NOT_GIVEN = "the summary record does not give it"
 
 
-def _followed(given: dict[str, float]) -> list[tuple[str, float, float]]:
-    """Name, value and rounding of what follows from mean and standard deviation."""
-    mean, std = given.get("mean_force_N"), given.get("std_force_N")
+def _derive_statistics(values: dict[str, float]) -> list[tuple[str, float, float]]:
+    """Name, value and rounding of the statistics that follow from mean and standard deviation."""
+    mean, std = values.get("mean_force_N"), values.get("std_force_N")
     if mean is None or std is None:
         return []
     low, high = statistical_extremes(mean, std)
-    # Each number is printed to 0.1 N at best: 0.05 N on the mean and the extreme, three times that on sigma.
-    found = [("statistical_min_N", low, 0.3), ("statistical_max_N", high, 0.3)]
-    return [*found, ("cov_20", coefficient_of_variation(mean, std), 0.006)] if mean > 0 else found
+    # Numbers are printed to 0.1 N at best: 0.05 N of rounding in mean and extreme, three times 0.05 N in 3 sigma.
+    derived = [("statistical_min_N", low, 0.3), ("statistical_max_N", high, 0.3)]
+    return [*derived, ("cov_20", coefficient_of_variation(mean, std), 0.006)] if mean > 0 else derived
 
 
-def _check(values: dict[str, float], table: str, known: list[str]) -> None:
+def _check_table(values: dict[str, float], table: str, known: list[str]) -> None:
     for name, value in values.items():
         if name not in known:
             raise validation_problem(
@@ -106,7 +105,7 @@ def _check(values: dict[str, float], table: str, known: list[str]) -> None:
                 f"{table}.{name}", f"{value:g} is negative", QUANTITIES[name].definition.capitalize() + "."
             )
         if value > 100 and name.endswith("_pct"):
-            raise validation_problem(f"{table}.{name}", f"{value:g} % is more than all", "Give a share of 100 %.")
+            raise validation_problem(f"{table}.{name}", f"{value:g} % is more than 100 %", "Give 0 to 100 %.")
     low, high = values.get("min_force_N"), values.get("max_force_N")
     if low is not None and high is not None and low > high:
         raise validation_problem(f"{table}.min_force_N", f"{low:g} is above max_force_N = {high:g}", "Exchange them.")
@@ -118,6 +117,6 @@ def read_record_summary(path: Path) -> RecordSummary:
     Raises
     ------
     InputError
-        It cannot be read, or is wrong.
+        It cannot be read or does not fit the model.
     """
     return read_model(path, RecordSummary, "summary record")

@@ -1,4 +1,4 @@
-"""Samples: what a table holds, in SI units, before anything is made of it. A missing value is NaN."""
+"""Samples of a table in SI units, before correction; NaN marks a missing value."""
 
 from dataclasses import dataclass, replace
 
@@ -12,24 +12,24 @@ from pantocheck.conformance.records.record_sidecar import RecordSidecar
 
 @dataclass(frozen=True)
 class RecordSamples:
-    """Channels of p pantographs and s supports, n samples; None: not in the table.
+    """Channels of p pantographs and s supports, n samples; None stands for a channel that the table lacks.
 
     Parameters
     ----------
     force : (p, n) ndarray
         Contact force [N].
     time : (n,) ndarray or None
-        [s].
+        Time [s].
     speed : (n,) ndarray or None
-        Of the train [m/s].
+        Speed of the train [m/s].
     position : ndarray or None
-        (p, n), or (1, n) of the first pantograph, along the track [m].
+        Positions along the track [m], (p, n), or (1, n) of the first pantograph.
     contact_height : (p, n) ndarray or None
-        [m].
+        Height of the contact point [m].
     uplift : (s, n) ndarray or None
-        Of the contact wire at the supports [m].
+        Uplift of the contact wire at the supports [m].
     support_position : (s,) ndarray or None
-        [m].
+        Positions of the supports [m].
     """
 
     force: RealArray
@@ -50,12 +50,12 @@ _SAMPLED = ("force", "time", "speed", "position", "contact_height", "uplift")
 
 
 def complete_samples(samples: RecordSamples, sidecar: RecordSidecar) -> tuple[RealArray, RealArray]:
-    """Time [s] (n,) and positions [m] (p, n) of all pantographs; what the table lacks follows from the speed.
+    """Time [s], (n,), and positions [m], (p, n), of all pantographs; a missing channel follows from the speed.
 
     Raises
     ------
     RecordInvalid
-        a speed with which nothing moves.
+        There is neither time nor position, or a speed is not positive.
     """
     behind = np.array(sidecar.behind)[:, None]
     speed = np.full(samples.force.shape[1], sidecar.speed_km_h / 3.6) if samples.speed is None else samples.speed
@@ -79,7 +79,7 @@ def _integral(rate: RealArray, over: RealArray) -> RealArray:
 
 
 def build_record(samples: RecordSamples, sidecar: RecordSidecar) -> Record:
-    """The record of a table without gaps, evenly sampled.
+    """Build a record from samples that are complete and evenly spaced in time.
 
     Raises
     ------
@@ -92,13 +92,13 @@ def build_record(samples: RecordSamples, sidecar: RecordSidecar) -> Record:
             bad = np.argwhere(~np.isfinite(value.T))[:, 0]
             raise RecordInvalid(name, f"{bad.size} values are not finite, the first at sample {bad[0] + 1}")
     time, position = complete_samples(samples, sidecar)
-    whole = float(position[:, 0].max()), float(position[:, -1].min())
+    covered = float(position[:, 0].max()), float(position[:, -1].min())
     return Record(
         time=time,
         speed=sidecar.speed_km_h / 3.6,
         position=position,
         force=samples.force,
-        evaluated=whole if sidecar.evaluated_m is None else (sidecar.evaluated_m[0], sidecar.evaluated_m[1]),
+        evaluated=covered if sidecar.evaluated_m is None else (sidecar.evaluated_m[0], sidecar.evaluated_m[1]),
         filter_applied_Hz=sidecar.low_passed_Hz,
         contact_height=samples.contact_height,
         support_position=samples.support_position,

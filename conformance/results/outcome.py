@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 from pantocheck.conformance.quantities.evaluation import Evaluation, Value
 from pantocheck.conformance.records.record import Record
-from pantocheck.conformance.records.record_sidecar import RunTable
+from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.results_format import Chart, TextTable
 
 

@@ -9,8 +9,8 @@ from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import Discretisation
 from pantocheck.conformance.records.record import Record
-from pantocheck.conformance.records.record_sidecar import RunTable
 from pantocheck.conformance.records.record_signals import RecordSignals
+from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 from pantocheck.conformance.simulation.static_quantities import sample_span
 from pantocheck.conformance.simulation.uplift_tuning import tune_uplift

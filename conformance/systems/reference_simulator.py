@@ -6,7 +6,7 @@ from typing import Literal
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import Discretisation
-from pantocheck.conformance.records.record_sidecar import RunTable
+from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.simulation.case_run import run_passage
 from pantocheck.conformance.simulation.catenary_model import build_catenary

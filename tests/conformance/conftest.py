@@ -12,7 +12,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import library_folder, load_case
 from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.records.record import Record
-from pantocheck.conformance.records.record_sidecar import RunTable
+from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.outcome import Delivered, Outcome
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 

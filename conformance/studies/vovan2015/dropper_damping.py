@@ -18,7 +18,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import DropperDamping
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.quantities.evaluation import LINE, Value
-from pantocheck.conformance.records.record_sidecar import RunTable
+from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.outcome import Delivered, StudyResult
 from pantocheck.conformance.results.results_format import Chart, Mark, Series
 from pantocheck.conformance.results.traces import thin_series

@@ -7,7 +7,7 @@ import numpy as np
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.identification.identify import Identification, identify_modes
 from pantocheck.conformance.quantities.evaluation import LINE
-from pantocheck.conformance.records.record_sidecar import RunTable
+from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.outcome import Delivered, StudyResult
 from pantocheck.conformance.results.results_format import Chart, Mark, Series
 from pantocheck.conformance.results.traces import thin_series

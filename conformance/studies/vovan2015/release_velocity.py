@@ -7,7 +7,7 @@ import numpy as np
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import ReleaseVelocity
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.records.record_sidecar import RunTable
+from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.outcome import Delivered, StudyResult
 from pantocheck.conformance.results.results_format import Chart, Series, TextTable
 from pantocheck.conformance.results.traces import thin_series

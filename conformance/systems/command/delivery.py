@@ -7,7 +7,7 @@ from pantocheck.conformance.input_files.atomic_writing import file_digest
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.table_formats import MAX_TABLE_BYTES
 from pantocheck.conformance.records.record_reading import read_record
-from pantocheck.conformance.records.record_sidecar import RunTable
+from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.systems.command.protocol_messages import DeliveredAnswer, File
 

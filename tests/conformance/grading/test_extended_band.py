@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pantocheck.conformance.grading.extended_band import NOT_VALIDATED
-from pantocheck.conformance.records.record_sidecar import RunTable
+from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.runner import run_cases
 

@@ -16,7 +16,7 @@ from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
 from pantocheck.conformance.grading.profile_grading import assess_record
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.records.record_sidecar import LineTable
+from pantocheck.conformance.records.sidecar_tables import LineTable
 from pantocheck.conformance.schemas import build_schema
 
 NAMES = ("acceptance-ac", "acceptance-dc-3kv", "acceptance-dc-1500v", "line-test")

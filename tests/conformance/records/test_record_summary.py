@@ -88,7 +88,7 @@ def test_summary_of_another_case_is_an_error(old, new, message, tmp_path):
         ("std_force_N = 27.6", "std_force_N = -27.6", "-27.6 is negative"),
         ("std_force_N = 27.6", "std_force_N = nan", "not a finite number"),
         ("std_force_N = 27.6", 'std_force_N = "27.6"', "found '27.6', expected a number"),
-        ("contact_loss_pct = 0.0", "contact_loss_pct = 101.0", "101 % is more than all"),
+        ("contact_loss_pct = 0.0", "contact_loss_pct = 101.0", "101 % is more than 100 %"),
         ("min_force_N = 70.3", "min_force_N = 200.0", "200 is above max_force_N = 193.7"),
         ("max_uplift_at_support_mm", "mean_force_N", r"quantities.mean_force_N: there is no such quantity here"),
         ("[[pantograph]]", "[[pantographs]]", "key pantographs: unknown key.\n  Did you mean pantograph"),

@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.records.record import Record
-from pantocheck.conformance.records.record_sidecar import RunTable
+from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.simulation import case_run
 from pantocheck.conformance.simulation.case_run import PassageRun
 from pantocheck.conformance.simulation.uplift_tuning import MAX_RUNS, TOLERANCE, TuningFailed, tune_uplift
