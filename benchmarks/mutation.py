@@ -23,7 +23,7 @@ from json import loads
 from pathlib import Path
 from typing import Any
 
-from mutation_operators import Mutant
+from mutation_mutants import Mutant
 from mutation_processes import Run, lock, preload, run_jobs, run_tests, write_json
 from mutation_project import Settings, Sources, copy_checkout, copy_tree, link_packages, packages
 from mutation_selection import Selection, Traces, has_kernels, select_tests

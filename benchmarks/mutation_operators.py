@@ -5,10 +5,7 @@ type annotations, decorators, `__all__`, arguments of exceptions and of messages
 """
 
 import ast
-import hashlib
 import re
-import warnings
-from collections import Counter
 from dataclasses import dataclass
 
 BOUNDARY = {ast.Lt: "<=", ast.LtE: "<", ast.Gt: ">=", ast.GtE: ">"}
@@ -46,83 +43,9 @@ class Edit:
 
 
 @dataclass(frozen=True)
-class Mutant:
-    """One change of one file.
+class Change:
+    """A change of the text with its place; fields as in `Mutant`."""
 
-    `id` is made of the file, the source line without its white space, the operator and the change, so that it survives
-    line shifts. `first_line` and `last_line` are those of the statement, without the body of a compound one.
-    `compiled` is true for code that numba may compile and for values of modules and classes.
-    """
-
-    id: str
-    file: str
-    line: int
-    first_line: int
-    last_line: int
-    scope: str
-    operator: str
-    change: str
-    source: str
-    compiled: bool
-    edits: tuple[Edit, ...]
-
-    def apply(self, content: bytes) -> bytes:
-        """Content of the mutated file."""
-        for edit in sorted(self.edits, key=lambda edit: -edit.start):
-            content = content[: edit.start] + edit.text.encode() + content[edit.end :]
-        return content
-
-
-def find_mutants(file: str, content: bytes) -> list[Mutant]:
-    """Every mutant of a source file, in the order of the text; of equal mutants the first. Some may not compile."""
-    visitor = _Visitor(content)
-    visitor.visit(ast.parse(content))
-    lines = content.decode().splitlines()
-    occurrences: Counter[tuple[str, str, str]] = Counter()
-    texts = {content}
-    mutants = []
-    for change in sorted(visitor.changes, key=lambda change: (change.edits[0].start, change.operator, change.text)):
-        source = normalise(lines[change.line - 1])
-        occurrences[source, change.operator, change.text] += 1
-        key = (file, source, change.operator, change.text, str(occurrences[source, change.operator, change.text]))
-        mutant = Mutant(
-            hashlib.sha256("\0".join(key).encode()).hexdigest()[:10],
-            file,
-            change.line,
-            change.first_line,
-            change.last_line,
-            change.scope,
-            change.operator,
-            change.text,
-            source,
-            change.compiled,
-            change.edits,
-        )
-        text = mutant.apply(content)
-        if text not in texts:
-            texts.add(text)
-            mutants.append(mutant)
-    return mutants
-
-
-def compiles(mutant: Mutant, content: bytes) -> bool:
-    """Whether the mutated file is valid Python."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        try:
-            compile(mutant.apply(content), mutant.file, "exec", dont_inherit=True)
-        except (SyntaxError, ValueError):
-            return False
-    return True
-
-
-def normalise(line: str) -> str:
-    """A source line with single spaces, as it stands in the list of equivalent mutants."""
-    return " ".join(line.split())
-
-
-@dataclass(frozen=True)
-class _Change:
     line: int
     first_line: int
     last_line: int
@@ -133,7 +56,12 @@ class _Change:
     edits: tuple[Edit, ...]
 
 
-class _Visitor(ast.NodeVisitor):
+def normalise(line: str) -> str:
+    """A source line with single spaces, as it stands in the list of equivalent mutants."""
+    return " ".join(line.split())
+
+
+class ChangeCollector(ast.NodeVisitor):
     """Collects the changes of a module."""
 
     def __init__(self, content: bytes) -> None:
@@ -141,7 +69,7 @@ class _Visitor(ast.NodeVisitor):
         self.starts = [0]
         for line in content.splitlines(keepends=True):
             self.starts.append(self.starts[-1] + len(line))
-        self.changes: list[_Change] = []
+        self.changes: list[Change] = []
         self.functions: list[ast.FunctionDef | ast.AsyncFunctionDef] = []
         self.scopes: list[str] = []
         self.statement: ast.stmt | None = None
@@ -163,7 +91,7 @@ class _Visitor(ast.NodeVisitor):
         first = statement.lineno  # type: ignore[attr-defined]
         jitted = any(_is_jitted(function) for function in self.functions)
         self.changes.append(
-            _Change(
+            Change(
                 node.lineno,  # type: ignore[attr-defined]
                 first,
                 max(last, first),

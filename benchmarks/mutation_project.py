@@ -13,7 +13,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from mutation_operators import Mutant, compiles, find_mutants
+from mutation_mutants import Mutant, compiles, find_mutants
 
 NAMES = ".names"
 """Folder of a tree that holds its packages under their import names."""

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from functools import cache
 from typing import Any
 
-from mutation_operators import JIT_DECORATORS, Mutant
+from mutation_mutants import Mutant
+from mutation_operators import JIT_DECORATORS
 from mutation_project import Sources, imported_names
 
 NEAR = 0.3

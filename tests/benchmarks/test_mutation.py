@@ -60,7 +60,7 @@ def scripts(monkeypatch):
 
 
 def test_operators_change_code_and_never_texts():
-    from mutation_operators import find_mutants
+    from mutation_mutants import find_mutants
 
     mutants = find_mutants("toy.py", MODULE.encode())
     assert {(mutant.operator, mutant.change) for mutant in mutants} == EXPECTED
@@ -71,7 +71,7 @@ def test_operators_change_code_and_never_texts():
 
 
 def test_ids_survive_line_shifts():
-    from mutation_operators import find_mutants
+    from mutation_mutants import find_mutants
 
     shifted = MODULE.replace("import logging\n", "import logging\n# one line more\n\n")
     ids = [[mutant.id for mutant in find_mutants("toy.py", text.encode())] for text in (MODULE, shifted)]
@@ -90,7 +90,7 @@ def toy(tmp_path) -> Path:
     (root / "toy" / "limits.py").write_text(
         "def reaches(value, limit):\n    return value >= limit\n\n\n"
         "def unused(value):\n    return value + value\n\n\n"
-        "def count_down(value):\n    while value > 0:\n        value -= 1\n    return value\n"
+        "def count_down(value):\n    while value > 0:\n        value = value - 1\n    return value\n"
     )
     (root / "tests" / "test_limits.py").write_text(
         "from toy.limits import count_down, reaches\n\n\n"
@@ -123,7 +123,7 @@ def test_outcomes_on_a_toy_package(toy, tmp_path):
     def run(*arguments: str) -> str:
         script = [sys.executable, str(BENCHMARKS / "mutation.py"), str(tmp_path / "out"), "--root", str(toy)]
         done = subprocess.run(
-            [*script, "--settings", str(toy / "mutation.toml"), "--jobs", "2", "--start", "4", *arguments],
+            [*script, "--settings", str(toy / "mutation.toml"), "--jobs", "2", "--start", "3", *arguments],
             capture_output=True, text=True, check=False, timeout=300,
         )  # fmt: skip
         assert done.stderr == ""
@@ -140,9 +140,8 @@ def test_outcomes_on_a_toy_package(toy, tmp_path):
         ("while value > 0:", "> -> >="): "killed",
         ("while value > 0:", "> -> <="): "killed",
         ("while value > 0:", "0 -> 1"): "equivalent",
-        ("value -= 1", "-= -> +="): "timeout",
-        ("value -= 1", "value -= 1 -> pass"): "timeout",
-        ("value -= 1", "1 -> 2"): "killed",
+        ("value = value - 1", "- -> +"): "timeout",
+        ("value = value - 1", "1 -> 2"): "killed",
     }
     assert (toy / "toy" / "limits.py").read_bytes() == before
     assert "toy/limits.py:6 arithmetic: + -> -" in run("--list", "untested")
