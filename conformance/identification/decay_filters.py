@@ -1,4 +1,4 @@
-"""Filters that leave a sum of decays a sum of decays."""
+"""Finite filters: a filtered decay keeps its pole."""
 
 from typing import TypeVar
 
@@ -16,11 +16,11 @@ def low_pass_decay(rate: float, passes: float, stops: float, attenuation: float)
     Parameters
     ----------
     rate : float
-        Samples per second [Hz].
+        Sampling rate [Hz].
     passes, stops : float
-        Edges of the transition [Hz].
+        Edges of the transition band [Hz].
     attenuation : float
-        Of the stop band [dB].
+        Attenuation of the stop band [dB].
     """
     length, beta = scipy.signal.kaiserord(attenuation, (stops - passes) / (rate / 2))
     taps = scipy.signal.firwin(length | 1, (passes + stops) / 2, window=("kaiser", beta), fs=rate)
@@ -35,7 +35,7 @@ def complete_overlap(samples: SampledArray, taps: RealArray) -> SampledArray:
 def filter_gain(taps: RealArray, poles: ComplexArray, rate: float) -> ComplexArray:
     """Factor by which the filter, its delay removed, multiplies the amplitude of a decay at each pole, (m,).
 
-    The first filtered sample is taken to belong to the time of the tap in the middle.
+    The first filtered sample is assigned to the time of the middle tap.
     """
     offsets = (np.arange(taps.size) - (taps.size - 1) / 2) / rate
     return np.asarray(np.exp(-np.outer(poles, offsets)) @ taps)

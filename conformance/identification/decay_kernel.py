@@ -4,8 +4,8 @@ A decay x_n = A exp(lambda n dt) + conj., n = 0..N-1, has at the lines w_k = 2 p
 
     X_k = A (1 - exp(lambda N dt)) / (1 - q_k) + conj. part,    q_k = exp((lambda - i w_k) dt)
 
-because w_k N dt is a whole number of turns. Leakage is thus part of the model: nothing is windowed away, and white
-noise stays white from line to line.
+because w_k N dt is a multiple of 2 pi. Leakage is thus part of the model: no window is needed, and the lines of white
+noise stay uncorrelated.
 """
 
 import numpy as np
@@ -19,7 +19,7 @@ def decay_kernel(poles: ComplexArray, omega: RealArray, dt: float, n: int) -> Co
     Parameters
     ----------
     poles : (m,) complex ndarray
-        Lambda [1/s].
+        Poles lambda [1/s].
     omega : (k,) ndarray
         Angular frequencies, multiples of 2 pi / (n dt) [rad/s].
     dt : float
@@ -39,7 +39,7 @@ def decay_kernel(poles: ComplexArray, omega: RealArray, dt: float, n: int) -> Co
 def kernel_and_derivative(
     poles: ComplexArray, omega: RealArray, dt: float, n: int
 ) -> tuple[ComplexArray, ComplexArray]:
-    """The kernel and its derivative with respect to lambda [s], each (k, m); parameters as in `kernel`."""
+    """The kernel and its derivative with respect to lambda [s], each (k, m); parameters as in `decay_kernel`."""
     grown = np.exp(poles * (n * dt))
     one_minus_q = -_ratio(poles, omega, dt)
     value = (1 - grown) / one_minus_q
@@ -53,7 +53,7 @@ def _ratio(poles: ComplexArray, omega: RealArray, dt: float) -> ComplexArray:
 
 
 def real_columns(towards_pole: ComplexArray, towards_conjugate: ComplexArray) -> RealArray:
-    """RealArray least-squares columns of A K(lambda) + conj(A) K(conj lambda).
+    """Real least-squares columns of A K(lambda) + conj(A) K(conj lambda).
 
     Parameters
     ----------
@@ -76,9 +76,9 @@ def stack_real_imaginary(spectrum: ComplexArray) -> RealArray:
 
 
 def drift_columns(degree: int, n: int, lines: IntegerArray) -> RealArray:
-    """Transforms of the Legendre polynomials of degree 1..degree over the record: offset drift seen at the lines used.
+    """Transforms of the Legendre polynomials of degree 1..degree over the record, for a drift of the offset.
 
-    The offset itself (degree 0) has no transform away from line 0.
+    The offset itself (degree 0) contributes to line 0 only, which is not used.
 
     Returns
     -------
@@ -92,7 +92,7 @@ def drift_columns(degree: int, n: int, lines: IntegerArray) -> RealArray:
 
 
 def far_pole_columns(omega: RealArray, degree: int) -> RealArray:
-    """Smooth residual terms of what lies outside the band: complex polynomials over it, (2 k, 2 (degree + 1))."""
+    """Residual terms of modes outside the band: complex polynomials over it, (2 k, 2 (degree + 1))."""
     middle = (omega[0] + omega[-1]) / 2
     half = max((omega[-1] - omega[0]) / 2, 1e-12)
     polynomials = np.polynomial.legendre.legvander((omega - middle) / half, degree)

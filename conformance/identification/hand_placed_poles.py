@@ -26,30 +26,30 @@ class _Poles(BaseModel):
 
 
 def read_poles(path: Path) -> ComplexArray:
-    """Poles of a TOML file with tables `[[pole]]`, or of a modes.json.
+    """Read poles from a TOML file with tables `[[pole]]`, or from a modes.json.
 
     Parameters
     ----------
     path : Path
-        The file.
+        File with at least one pole.
 
     Returns
     -------
     (m,) ndarray
-        Lambda [1/s].
+        Poles lambda [1/s].
 
     Raises
     ------
     InputError
-        It cannot be read or is wrong.
+        The file cannot be read, or its content is invalid.
     """
     rows: list[tuple[float, float]]
     if path.suffix == ".json":
-        rows = [(row.frequency_Hz, row.damping_ratio) for row in read_modes(path)]
+        rows = [(mode.frequency_Hz, mode.damping_ratio) for mode in read_modes(path)]
         if not rows:
             raise InputError(f"modes '{path.name}'", "holds no mode", "Give at least one start pole.")
     else:
-        rows = [(row.frequency_Hz, row.damping_ratio) for row in read_model(path, _Poles, "poles").pole]
+        rows = [(pole.frequency_Hz, pole.damping_ratio) for pole in read_model(path, _Poles, "poles").pole]
     frequency, damping = np.array(rows).T
     omega = 2 * np.pi * frequency
     return np.asarray(-damping * omega + 1j * omega * np.sqrt(1 - damping**2))

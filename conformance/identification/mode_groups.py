@@ -1,9 +1,9 @@
 """Groups of span modes: the n-th bending of every span, one mode per span.
 
-The spans of a section are nearly alike, so the modes come in groups around multiples of one frequency. The groups
-grow wider with their number and almost touch from the fifth on; what stays regular is the places between them: no mode
-lies near (k + 1/2) times the first group's mean. That mean, and a slight stretch of the series by bending, are
-searched so that the places between the groups are as free as can be and no group holds more modes than there are spans.
+The spans of a section are similar, so the modes form groups around multiples of one frequency. The groups become
+wider with their number and almost touch from the fifth on. The gaps between them stay regular: no mode lies near
+(k + 1/2) times the mean of the first group. That mean, and a slight stretch of the series by bending, are searched so
+that the gaps are as empty as possible and no group holds more modes than there are spans.
 """
 
 import numpy as np
@@ -11,26 +11,29 @@ from numpy.typing import NDArray
 
 from pantocheck.conformance.array_types import IntegerArray, RealArray
 
-LAST_GROUP = 8  # beyond, bending of the spans and bending between droppers mix
-CLEARANCE = 0.06  # how near a mode may come to a place between groups, over the first group's mean
+LAST_GROUP = 8
+"""Last group that is numbered; beyond it, bending of the spans and bending between droppers mix."""
+
+CLEARANCE = 0.06
+"""Half-width of the gap between two groups, over the mean frequency of the first group [-]."""
 
 
 def number_groups(certain: RealArray, all_modes: RealArray, spans: int | None) -> IntegerArray:
-    """Number of the group of each mode, from 1; 0 beyond `LAST_GROUP`.
+    """Number the groups of the modes, from 1.
 
     Parameters
     ----------
     certain : (n,) ndarray
-        Frequencies of well identified vertical modes, from which the pattern is found [Hz].
+        Frequencies of the certain vertical modes, which determine the groups [Hz].
     all_modes : (m,) ndarray
         Frequencies to number [Hz].
     spans : int or None
-        Number of spans, None if not known.
+        Number of spans; None if unknown.
 
     Returns
     -------
     (m,) ndarray
-        IntegerArray.
+        Numbers of the groups; 0 beyond `LAST_GROUP`, and for all with fewer than three certain modes.
     """
     if certain.size < 3:
         return np.zeros(all_modes.size, dtype=np.int64)
@@ -39,13 +42,13 @@ def number_groups(certain: RealArray, all_modes: RealArray, spans: int | None) -
     used = ordered[ordered < (LAST_GROUP + 0.5) * guess]
     trials = [(mean, stretch) for mean in guess * np.linspace(0.85, 1.15, 61) for stretch in np.linspace(0, 0.02, 11)]
     mean, stretch = min(trials, key=lambda t: _misfit(used, t[0], t[1], spans) + ((t[0] / guess - 1) / 0.1) ** 2)
-    numbers = np.searchsorted(_between(mean, stretch), all_modes) + 1
+    numbers = np.searchsorted(_gaps(mean, stretch), all_modes) + 1
     numbers[numbers > LAST_GROUP] = 0
     return np.asarray(numbers, dtype=np.int64)
 
 
 def find_group_outliers(values: RealArray) -> NDArray[np.bool_]:
-    """Values beyond 1.5 quartile ranges outside the quartiles (Tukey's rule), (n,); none of fewer than four."""
+    """Mark values over 1.5 interquartile ranges outside the quartiles (Tukey's rule), (n,); none of fewer than four."""
     if values.size < 4:
         return np.zeros(values.size, dtype=np.bool_)
     low, high = np.percentile(values, [25, 75])
@@ -53,18 +56,18 @@ def find_group_outliers(values: RealArray) -> NDArray[np.bool_]:
     return np.asarray((values < low - reach) | (values > high + reach))
 
 
-def _between(mean: float, stretch: float) -> RealArray:
-    """Upper ends of groups 1..LAST_GROUP [Hz]."""
+def _gaps(mean: float, stretch: float) -> RealArray:
+    """Gaps above groups 1..LAST_GROUP [Hz]."""
     k = np.arange(1, LAST_GROUP + 1) + 0.5
     return np.asarray(k * mean * (1 + stretch * (k - 1)))
 
 
 def _misfit(frequencies: RealArray, mean: float, stretch: float, spans: int | None) -> float:
-    between = _between(mean, stretch)
-    nearest = np.abs(frequencies[:, None] - between[None, between < frequencies[-1] + mean]).min(axis=0)
+    gaps = _gaps(mean, stretch)
+    nearest = np.abs(frequencies[:, None] - gaps[None, gaps < frequencies[-1] + mean]).min(axis=0)
     crowding = float(np.sum(np.exp(-((nearest / (CLEARANCE * mean)) ** 2))))
     below = float(np.sum(frequencies < 0.5 * mean))
     if spans is None:
         return crowding + 3 * below
-    counts = np.bincount(np.searchsorted(between, frequencies), minlength=1)[:LAST_GROUP]
+    counts = np.bincount(np.searchsorted(gaps, frequencies), minlength=1)[:LAST_GROUP]
     return crowding + 3 * below + 2 * float(np.maximum(counts - spans, 0).sum())

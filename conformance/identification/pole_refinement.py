@@ -8,7 +8,8 @@ import scipy.linalg
 from pantocheck.conformance.array_types import ComplexArray, RealArray
 from pantocheck.conformance.identification.projection import DataBlock, build_normal_equations
 
-SMALLEST_DAMPING_RATIO = 1e-6  # a decay slower than this is not a decay in a record of minutes
+SMALLEST_DAMPING_RATIO = 1e-6
+"""Lower limit of a damping ratio; a record of minutes does not show a slower decay [-]."""
 
 
 @dataclass(frozen=True)
@@ -18,11 +19,11 @@ class RefinedPoles:
     Parameters
     ----------
     poles : (m,) complex ndarray
-        [1/s], by frequency.
+        Poles, by frequency [1/s].
     cost : float
-        Sum of squares.
+        Sum of squared residuals.
     covariance : (2 m, 2 m) ndarray
-        Of (decay rates [1/s], angular frequencies [rad/s]) for channels in units of their noise.
+        Covariance of decay rates [1/s] and angular frequencies [rad/s], for channels in units of their noise.
     """
 
     poles: ComplexArray
@@ -39,12 +40,12 @@ def refine_poles(
     ----------
     poles : (m,) complex ndarray
         Start values [1/s].
-    blocks : list[DataBlock]
+    blocks : list of DataBlock
         Data, each channel in units of its noise.
     iterations : int
-        At most so many steps.
+        Largest number of steps.
     tolerance : float
-        Stop when a step lowers the cost (a sum of squares in units of the noise) by less.
+        Stop when a step reduces the cost by less [-].
     """
     poles = poles[np.argsort(poles.imag)]
     if not poles.size:
@@ -75,7 +76,7 @@ def _step(poles: ComplexArray, matrix: RealArray, gradient: RealArray, damping: 
     change = np.linalg.lstsq(normalised, gradient / scale, rcond=1e-14)[0] / scale
     m = poles.size
     decay = -poles.real
-    # A decay rate may change threefold in a step, a frequency by a few bandwidths: beyond, the model is not linear.
+    # The model is about linear for a threefold decay rate and a frequency shift of a few bandwidths.
     decay_new = np.clip(decay + change[:m], decay / 3, decay * 3)
     reach = 3 * np.maximum(decay, 0.02)
     omega = np.maximum(poles.imag + np.clip(change[m:], -reach, reach), 1e-3)

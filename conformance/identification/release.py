@@ -1,4 +1,4 @@
-"""When the mass was released."""
+"""Release of the mass: the first sustained movement of a sensor."""
 
 from dataclasses import dataclass
 
@@ -7,23 +7,28 @@ import numpy as np
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.input_files.input_error import InputError
 
-TRIGGER_TOLERANCE = 0.6  # the release lies within half a second of the planned one [s]
-ONSET = 8.0  # times the noise at rest
-LEAST_REST = 1.0  # a stretch of rest to know the noise from [s]
+TRIGGER_TOLERANCE = 0.6
+"""The record counts as at rest until this time before the planned release [s]."""
+
+ONSET = 8.0
+"""Movement over noise at rest that marks the release [-]."""
+
+MIN_REST = 1.0
+"""Rest before the release that is needed to estimate the noise [s]."""
 
 
 @dataclass(frozen=True)
 class Release:
-    """The release as the sensors saw it.
+    """Release as the sensors measured it.
 
     Parameters
     ----------
     time : float
-        When the first sensor moved [s].
+        First movement of a sensor, in the time of the record [s].
     rest_end : float
         End of the rest before it [s]; 0 if the record has none.
-    warnings : tuple[str, ...]
-        What is doubtful.
+    warnings : tuple of str
+        Doubts about the release.
     """
 
     time: float
@@ -32,43 +37,43 @@ class Release:
 
 
 def find_release(signals: RealArray, rate: float, nominal: float | None, name: str) -> Release:
-    """The first sustained movement of any channel.
+    """Find the first sustained movement of any channel.
 
     Parameters
     ----------
-    signals : ndarray
-        (n, c).
+    signals : (n, c) ndarray
+        Channels.
     rate : float
-        Samples per second [Hz].
+        Sampling rate [Hz].
     nominal : float or None
-        Planned release [s]; None if not known.
+        Planned release, in the time of the record [s]; None if unknown.
     name : str
-        Of the record, for messages.
+        Name of the record, for messages.
 
     Raises
     ------
     InputError
-        Nothing moves.
+        No channel moves, the record ends too early, or it has no rest to detect the release.
     """
     n = signals.shape[0]
-    if nominal is not None and nominal - TRIGGER_TOLERANCE < LEAST_REST:
-        return Release(nominal, 0.0, (f"{name}: no rest before the release; the planned release is taken",))
+    if nominal is not None and nominal - TRIGGER_TOLERANCE < MIN_REST:
+        return Release(nominal, 0.0, (f"{name}: no rest before the release; the planned release is used",))
     rest_end = int((nominal - TRIGGER_TOLERANCE) * rate) if nominal is not None else _quiet_start(signals, rate, name)
     if n - rest_end < rate:
         raise InputError(
             name,
-            f"ends {n / rate:.2f} s after its beginning, the release is planned at {nominal or rest_end / rate:.2f} s",
+            f"ends after {n / rate:.2f} s, but the release is planned at {nominal or rest_end / rate:.2f} s",
             "Record the whole decay, or correct the trigger time.",
         )
     rest = signals[:rest_end]
-    moved = signals - np.median(rest, axis=0)
-    noise = 1.4826 * np.median(np.abs(moved[:rest_end]), axis=0)
-    quiet = np.maximum(noise, 1e-9 * np.abs(moved).max(axis=0))
-    beyond = np.any(np.abs(moved[rest_end:]) > ONSET * quiet, axis=1)
+    displaced = signals - np.median(rest, axis=0)
+    noise = 1.4826 * np.median(np.abs(displaced[:rest_end]), axis=0)
+    noise_floor = np.maximum(noise, 1e-9 * np.abs(displaced).max(axis=0))
+    beyond = np.any(np.abs(displaced[rest_end:]) > ONSET * noise_floor, axis=1)
     sustained = np.convolve(beyond, np.ones(5), mode="valid") >= 3
     if not sustained.any():
         raise InputError(
-            name, "nothing moves after the trigger", "Check the trigger time, the channels and their units."
+            name, "no channel moves after the trigger", "Check the trigger time, the channels and their units."
         )
     time = (rest_end + int(np.argmax(sustained)) + int(np.argmax(beyond[np.argmax(sustained) :]))) / rate
     late = nominal is not None and time > nominal + 1.0
@@ -81,15 +86,15 @@ def find_release(signals: RealArray, rate: float, nominal: float | None, name: s
 
 
 def _quiet_start(signals: RealArray, rate: float, name: str) -> int:
-    """Samples of rest at the beginning, where no trigger time is known: until half-second windows first leap."""
+    """Samples of rest at the beginning if no trigger time is known: until the spread of half-second windows jumps."""
     width = max(int(0.5 * rate), 4)
     spread = signals[: signals.shape[0] // width * width].reshape(-1, width, signals.shape[1]).std(axis=1)
     floor = np.maximum(spread.min(axis=0, initial=np.inf), np.finfo(float).tiny)
-    leap = np.any(spread > 4 * np.maximum(floor, 1e-6 * spread.max(axis=0, initial=0.0)), axis=1)
-    if not leap.any() or int(np.argmax(leap)) * width < LEAST_REST * rate:
+    jump = np.any(spread > 4 * np.maximum(floor, 1e-6 * spread.max(axis=0, initial=0.0)), axis=1)
+    if not jump.any() or int(np.argmax(jump)) * width < MIN_REST * rate:
         raise InputError(
             name,
-            "states no trigger time and has no rest before the release to see it by",
+            "has neither a trigger time nor a rest before the release",
             "Give trigger_nominal_s in the sidecar.",
         )
-    return int(np.argmax(leap)) * width - width // 2
+    return int(np.argmax(jump)) * width - width // 2

@@ -1,8 +1,8 @@
-"""Start poles from the record alone: subspace identification (ERA) on narrow, decimated bands.
+"""Start poles: subspace identification (eigensystem realization algorithm) in narrow, decimated bands.
 
-Each band is shifted to zero frequency, low-passed by a finite filter of which only complete overlaps are kept, and
-decimated. A sum of decays remains a sum of decays under that, with the same poles. In each band the order is the one
-with the least Bayesian information criterion of the fitted band signal; orders whose poles do not decay lose.
+Each band is shifted to zero frequency, low-passed by a finite filter and decimated. Only complete overlaps of the
+filter are kept, so every decay keeps its pole. The order of a band has the lowest Bayesian information criterion of the
+fitted signal; poles that do not decay are dropped.
 
 References
 ----------
@@ -22,44 +22,43 @@ from pantocheck.conformance.identification.decay_filters import complete_overlap
 def find_start_poles(
     records: list[RealArray], rate: float, low: float, high: float, band: float = 1.0, largest_order: int = 24
 ) -> ComplexArray:
-    """Poles of all bands between two frequencies.
+    """Find the poles of all bands between two frequencies.
 
     Parameters
     ----------
-    records : list[ndarray]
-        Each (n, c) channels over a linear stretch, in units of their noise; all share the poles.
+    records : list of (n, c) ndarray
+        Channels over the linear decay of each record, scaled to unit variance; all share the poles.
     rate : float
-        Samples per second [Hz].
+        Sampling rate [Hz].
     low, high : float
-        Edges [Hz].
+        Edges of the frequency range [Hz].
     band : float
         Width of a band [Hz].
     largest_order : int
-        Most poles in a band with its flanks.
+        Largest number of poles in a band with its flanks.
 
     Returns
     -------
     (m,) ndarray
-        Lambda [1/s], by frequency.
+        Poles, by frequency [1/s].
     """
     count = max(1, round((high - low) / band))
     edges = np.linspace(low, high, count + 1)
-    found = [_band_poles(records, rate, a, b, largest_order) for a, b in pairwise(edges)]
-    poles = np.concatenate(found)
+    poles = np.concatenate([_band_poles(records, rate, a, b, largest_order) for a, b in pairwise(edges)])
     return np.asarray(poles[np.argsort(poles.imag)])
 
 
 def _band_poles(records: list[RealArray], rate: float, low: float, high: float, largest_order: int) -> ComplexArray:
     width = high - low
-    # The flank costs filter length, and so record length: never more than a tenth of the record.
+    # A narrow flank needs a long filter, which may take at most a tenth of the record.
     flank = max(0.4 * width, 25.0 * rate / min(samples.shape[0] for samples in records))
     middle = 2 * np.pi * (low + high) / 2
     step = max(1, int(rate / (width + 2.5 * flank)))
     taps = low_pass_decay(rate, width / 2 + 0.1 * flank, width / 2 + flank, 60.0)
     signals = []
     for samples in records:
-        turned = samples * np.exp(-1j * middle * np.arange(samples.shape[0]) / rate)[:, None]
-        signals.append(complete_overlap(turned, taps)[::step])
+        shifted = samples * np.exp(-1j * middle * np.arange(samples.shape[0]) / rate)[:, None]
+        signals.append(complete_overlap(shifted, taps)[::step])
     dt = step / rate
     best_score, best = np.inf, np.zeros(0, dtype=np.complex128)
     basis = _signal_subspace(signals, largest_order)
@@ -70,7 +69,7 @@ def _band_poles(records: list[RealArray], rate: float, low: float, high: float, 
             best_score, best = score, poles
     poles = best + 1j * middle
     inside = (poles.imag >= 2 * np.pi * low) & (poles.imag < 2 * np.pi * high) & (poles.real < 0)
-    # Faster decays than this die within the filter: they are the flank of something else.
+    # Faster decays vanish within the filter: they are flanks of other modes.
     return np.asarray(poles[inside & (-poles.real < 0.1 * poles.imag)])
 
 

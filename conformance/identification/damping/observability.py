@@ -13,8 +13,7 @@ from pantocheck.conformance.identification.damping.damping_model import (
 )
 from pantocheck.conformance.identification.damping.damping_terms import MATRICES, DampingBasis, Term
 
-SHARE_NEEDED, RATIO_NEEDED = 0.05, 3.0
-THRESHOLDS = Thresholds(largest_share=SHARE_NEEDED, plausible_over_std=RATIO_NEEDED)
+THRESHOLDS = Thresholds(largest_share=0.05, plausible_over_std=3.0)
 """Lower limits for an observable coefficient."""
 
 

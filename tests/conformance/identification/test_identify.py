@@ -226,7 +226,7 @@ def test_channel_lost_at_the_release_is_named():
 def test_record_shorter_than_a_window_of_rest_is_refused():
     signals = np.random.default_rng(68).standard_normal((60, 1))
     short = DropRecord("short", "short", 200.0, signals, (DropChannel("S1_z", 1, "z"),))
-    with pytest.raises(InputError, match="has no rest before the release"):
+    with pytest.raises(InputError, match="neither a trigger time nor a rest before the release"):
         identify_modes((short,))
 
 
