@@ -1,4 +1,4 @@
-"""The workflow files: valid YAML of the shape their services want, and shell steps that gate in a scratch project."""
+"""The workflow files: valid YAML for their services, and steps that gate in a temporary project."""
 
 import os
 import shutil
@@ -22,8 +22,8 @@ STEPS = [step for step in GITHUB["jobs"]["conformance"]["steps"] if "run" in ste
 
 
 @pytest.fixture
-def project(tmp_path, monkeypatch):
-    """A repository as the page describes it; its simulator copies published results."""
+def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Repository as on the page; its simulator copies published results."""
     shutil.copy(CI / "conformance.toml", tmp_path)
     shutil.copytree(PASSING, tmp_path / "solver")
     script = tmp_path / "simulate.sh"
@@ -42,8 +42,8 @@ def project(tmp_path, monkeypatch):
     return tmp_path
 
 
-def outcome(folder):
-    """Exit code of the job: its steps in order, those that always run after a failure too."""
+def run_job(folder: Path) -> int:
+    """Run the steps of the job in order and return its exit code; some steps run after a failure, too."""
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     environment = {**os.environ, "PATH": path, "GITHUB_STEP_SUMMARY": str(folder / "page.md"), "OMP_NUM_THREADS": "1"}
     code = 0
@@ -56,24 +56,24 @@ def outcome(folder):
     return code
 
 
-def test_gate_opens_and_closes(project):
-    assert outcome(project) == 0
+def test_job_passes_and_fails_by_the_baseline(project: Path) -> None:
+    assert run_job(project) == 0
     solver = project / "solver" / "250.toml"
-    # Two per cent more sigma is inside its limits: only the baseline sees it.
+    # A standard deviation 2 % larger is within its limits, so only the baseline detects it.
     solver.write_text(solver.read_text().replace("std_force_N = 27.6", "std_force_N = 28.15"))
-    assert outcome(project) == 1
+    assert run_job(project) == 1
     assert "drift of std_force_N" in (project / "report" / "junit.xml").read_text()
     assert [line.split(":")[0] for line in (project / "page.md").read_text().splitlines() if line[:2] == "# "] == [
         "# PASS", "# FAIL",
     ]  # fmt: skip
 
 
-def test_both_services_run_the_same_commands():
+def test_both_services_run_the_same_commands() -> None:
     job = [step["run"] for step in STEPS if step.get("if") != "always()"]
     assert GITLAB["conformance"]["script"] == job
 
 
-def test_files_have_the_shape_their_services_want():
+def test_files_have_the_keys_of_their_services() -> None:
     job = GITHUB["jobs"]["conformance"]
     assert GITHUB[True] == ["push", "pull_request"]  # YAML 1.1 reads the key `on` as true; the service does not
     assert {"runs-on", "steps", "timeout-minutes"} <= set(job)

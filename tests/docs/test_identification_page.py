@@ -1,4 +1,4 @@
-"""The sidecar on the page about mass drops is one that is read."""
+"""The sidecar on the page about mass drops can be read."""
 
 import re
 import tomllib
@@ -12,7 +12,7 @@ from pantocheck.conformance.schemas import build_schema
 PAGE = Path(__file__).parents[2] / "docs" / "identification.md"
 
 
-def test_the_sidecar_is_read_and_agrees_with_its_schema(tmp_path):
+def test_sidecar_of_the_page_is_read_and_follows_its_schema(tmp_path: Path) -> None:
     text = re.search(r"```toml\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)[1]
     (tmp_path / "drop.toml").write_text(text, encoding="utf-8")
     sidecar = read_drop_sidecar(tmp_path / "drop.csv")

@@ -1,4 +1,4 @@
-"""The page on records is followed to the letter: its writer is run, its messages are those that are printed."""
+"""The page on records: its program runs, and its messages are those that are printed."""
 
 import os
 import re
@@ -12,26 +12,28 @@ from typer.testing import CliRunner
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record_reading import read_record
+from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.record_summary import read_record_summary
 
 PAGE = (Path(__file__).parents[2] / "docs" / "records.md").read_text(encoding="utf-8")
 
 
-def blocks(language):
-    found = re.findall(r"^```(\w*)\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE)
-    return [text for name, text in found if name == language]
+def blocks(language: str) -> list[str]:
+    """Code blocks of the page in a language."""
+    fenced = re.findall(r"^```(\w*)\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE)
+    return [text for name, text in fenced if name == language]
 
 
 @pytest.fixture
-def written(tmp_path, monkeypatch):
-    """The folder in which the page's writer has run."""
+def written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Folder in which the program of the page has run."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "write_record.py").write_text(blocks("python")[0])
     subprocess.run([sys.executable, "write_record.py"], check=True, env={**os.environ, "OMP_NUM_THREADS": "1"})
     return tmp_path
 
 
-def test_writer_gives_a_record_that_is_graded(written):
+def test_program_writes_a_record_that_can_be_graded(written: Path) -> None:
     record, sidecar = read_record(written / "my250.toml")
     assert sidecar.case == "en50318-2002/250"
     assert record.rate == pytest.approx(1000)
@@ -42,12 +44,12 @@ def test_writer_gives_a_record_that_is_graded(written):
     assert (written / "report" / "certificate.html").exists()
 
 
-def test_commands_of_the_page_are_those_that_were_run():
+def test_page_shows_the_command_of_the_test() -> None:
     assert "pantocheck run en50318-2002/250 --system record:. --out report" in blocks("sh")[0]
 
 
-def test_matlab_writes_the_same_sidecar(written):
-    """MATLAB is not at hand: its lines must at least print the same names and keys."""
+def test_matlab_program_writes_the_same_sidecar(written: Path) -> None:
+    """MATLAB is not available here, so the text of its program is compared."""
     (matlab,) = blocks("matlab")
     assert "time_s,position_1_m,force_1_N" in matlab
     for line in (written / "my250.toml").read_text().splitlines():
@@ -55,31 +57,29 @@ def test_matlab_writes_the_same_sidecar(written):
     assert len(matlab.splitlines()) <= 11
 
 
-def test_summary_of_the_page_is_read(tmp_path):
+def test_summary_of_the_page_is_read(tmp_path: Path) -> None:
     (tmp_path / "s.toml").write_text(blocks("toml")[0])
     assert read_record_summary(tmp_path / "s.toml").quantities == {"max_uplift_at_support_mm": 52.2}
 
 
-def test_messages_of_the_page_are_those_that_are_printed(written):
+def test_messages_of_the_page_are_those_that_are_printed(written: Path) -> None:
     (messages,) = blocks("")
     table, sidecar = written / "my250.csv", written / "my250.toml"
-    whole, said = table.read_text(), sidecar.read_text()
-    lines = whole.splitlines()
+    samples, keys = table.read_text(), sidecar.read_text()
+    lines = samples.splitlines()
     lines[4] = lines[4].rpartition(",")[0] + ",abc"
-    for content, key in (
-        ("\n".join(lines), said),
-        (whole.replace("force_1_N", "force_1_lbf"), said),
-        (whole, said.replace("speed_km_h = 250.0", "speed_m_s = 69.444444444444444")),
+    for table_text, sidecar_text in (
+        ("\n".join(lines), keys),
+        (samples.replace("force_1_N", "force_1_lbf"), keys),
+        (samples, keys.replace("speed_km_h = 250.0", "speed_m_s = 69.444444444444444")),
     ):
-        table.write_text(content)
-        sidecar.write_text(key)
+        table.write_text(table_text)
+        sidecar.write_text(sidecar_text)
         with pytest.raises(InputError) as caught:
             read_record(sidecar)
         assert str(caught.value) in messages
 
 
-def test_tables_name_every_key_of_the_sidecar():
-    from pantocheck.conformance.records.record_sidecar import RecordSidecar
-
+def test_tables_name_every_key_of_the_sidecar() -> None:
     for name, field in RecordSidecar.model_fields.items():
         assert f"`{field.alias or name}`" in PAGE or f"`[{name}]`" in PAGE

@@ -1,4 +1,4 @@
-"""The conversation shown in docs/systems.md is one that the schemas allow, with a case that is still the library's."""
+"""The conversation in docs/systems.md follows the schemas and shows the current case of the library."""
 
 import json
 from pathlib import Path
@@ -12,7 +12,7 @@ from pantocheck.conformance.systems.command.case_message import build_case_messa
 PAGE = Path(__file__).parents[2] / "docs" / "systems.md"
 
 
-def test_conversation_follows_the_schemas():
+def test_conversation_follows_the_schemas() -> None:
     shown = PAGE.read_text(encoding="utf-8").split("## A whole conversation")[1].split("```")[1].strip().splitlines()
     messages = [(line[0], json.loads(line[2:])) for line in shown]
     assert [message["message"] for _, message in messages] == ["start", "started", "run", "delivered", "stop"]
@@ -20,5 +20,5 @@ def test_conversation_follows_the_schemas():
         jsonschema.validate(message, build_schema("command-request" if side == ">" else "command-answer"))
     (case,) = select_cases(["en50318-2002/250"])
     assert messages[2][1]["case"] == build_case_message(case), (
-        "the page shows an older case: put json.dumps(given(case)) there"
+        "the page shows an older case: put json.dumps(build_case_message(case)) there"
     )

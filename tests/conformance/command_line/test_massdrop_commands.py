@@ -1,7 +1,8 @@
-"""`identify` and `fit-damping` from files to pages."""
+"""The commands `identify` and `fit-damping`, from the record to the pages."""
 
 import json
 import tomllib
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,40 +22,42 @@ SENSORS = (("contact wire", "CW", 130.0), ("contact wire", "CW", 205.5), ("messe
 RATE, RELEASE = 25.0, 4.0
 
 
-def identified(folder, name):
+def run_identify(folder: Path, name: str) -> None:
     command = ["identify", str(folder / "T.csv"), "--out", str(folder / name), "--highest", "2.2"]
-    made = CliRunner(env={"SOURCE_DATE_EPOCH": "0"}).invoke(app, command)
-    assert made.exit_code == 0, made.output
+    done = CliRunner(env={"SOURCE_DATE_EPOCH": "0"}).invoke(app, command)
+    assert done.exit_code == 0, done.output
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    """A record of the line's own modes, superposed: 24 modes hit at one place, ringing at three sensors."""
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder with a record of 24 superposed modes of the line at three sensors, and its identification."""
     folder = tmp_path_factory.mktemp("drop")
     line = discretise(build_catenary(select_cases([CASE])[0].line), 2.0, tuple(x for _, _, x in SENSORS))
     shapes = compute_modes(line, 24)
     ratio = damping_ratios(line, shapes)
-    at = np.array([deflection_at(line, shapes, line.mesh.row_of[wire, "z"], x) for wire, _, x in SENSORS])
+    amplitudes = np.array([deflection_at(line, shapes, line.mesh.row_of[wire, "z"], x) for wire, _, x in SENSORS])
     omega = 2 * np.pi * shapes.frequency
     poles = omega * (-ratio + 1j)
     t = np.arange(int(140 * RATE)) / RATE - RELEASE
     random = np.random.default_rng(0)
     signal = np.zeros((t.size, len(SENSORS)))
     for j, pole in enumerate(poles):
-        signal += np.outer(np.where(t >= 0, np.exp(pole * np.maximum(t, 0)).real, 0), at[:, j] * random.choice([-1, 1]))
+        signal += np.outer(
+            np.where(t >= 0, np.exp(pole * np.maximum(t, 0)).real, 0), amplitudes[:, j] * random.choice([-1, 1])
+        )
     signal += 1e-4 * random.standard_normal(signal.shape)
     channels = tuple(DropChannel(f"S{i}_z", i, "z", wire, x) for i, (_, wire, x) in enumerate(SENSORS, 1))
     record = DropRecord(
         "T", "T", RATE, signal, channels, drop=DropDescription(20, "CW", 150.0, RELEASE), line=DropLine((60.0,) * 10)
     )
     write_drop_csv(record, folder / "T.csv")
-    identified(folder, "out")
+    run_identify(folder, "out")
     return folder
 
 
-def test_identify_writes_what_the_contract_says(folder):
+def test_modes_json_has_the_keys_that_other_tools_read(folder: Path) -> None:
     rows = json.loads((folder / "out" / "modes.json").read_text())
-    wanted = {
+    required = {
         "frequency_Hz",
         "damping_ratio",
         "damping_ratio_std",
@@ -65,7 +68,7 @@ def test_identify_writes_what_the_contract_says(folder):
         "warnings",
     }
     assert len(rows) > 10
-    assert all(wanted <= set(row) for row in rows)
+    assert all(required <= set(row) for row in rows)
     assert [row["frequency_Hz"] for row in rows] == sorted(row["frequency_Hz"] for row in rows)
     assert (folder / "out" / "identification.pdf").read_bytes().startswith(b"%PDF")
     page = (folder / "out" / "identification.html").read_text()
@@ -73,17 +76,17 @@ def test_identify_writes_what_the_contract_says(folder):
     assert "<script" not in page
 
 
-def test_identify_is_deterministic(folder):
-    identified(folder, "again")
+def test_identify_is_deterministic(folder: Path) -> None:
+    run_identify(folder, "again")
     for file in ("modes.json", "identification.json", "identification.html", "identification.pdf"):
         assert (folder / "out" / file).read_bytes() == (folder / "again" / file).read_bytes()
 
 
-def test_fit_damping_returns_the_line_its_own_damping(folder):
+def test_fit_damping_recovers_the_damping_of_the_line(folder: Path) -> None:
     """The fitted model gives every mode its measured ratio within 1 %.
 
-    The case damps both wires alike and two groups of modes are measured, so what is due to which wire stays open; the
-    closed loop with wires that differ is tested on the numbers themselves.
+    Both wires of the case have the same damping and only two groups of modes are measured, so the share of each wire is
+    not determined. Other tests cover wires with different damping.
     """
     command = [
         "fit-damping",
@@ -95,8 +98,8 @@ def test_fit_damping_returns_the_line_its_own_damping(folder):
         "--element",
         "2",
     ]
-    made = CliRunner().invoke(app, command)
-    assert made.exit_code == 0, made.output
+    done = CliRunner().invoke(app, command)
+    assert done.exit_code == 0, done.output
     block = tomllib.loads((folder / "fit" / "damping.toml").read_text())["damping"]
     damping = Damping.model_validate(block)
     assert damping.contact_wire.mass_coefficient_1_s + damping.messenger_wire.mass_coefficient_1_s > 0.0125
@@ -119,16 +122,16 @@ def test_fit_damping_returns_the_line_its_own_damping(folder):
         (b"[]", "holds no certain mode"),
     ],
 )
-def test_bad_modes_are_refused(tmp_path, content, message):
+def test_bad_modes_are_refused(tmp_path: Path, content: bytes, message: str) -> None:
     (tmp_path / "modes.json").write_bytes(content)
-    made = CliRunner().invoke(
+    done = CliRunner().invoke(
         app, ["fit-damping", str(tmp_path / "modes.json"), "--line", CASE, "--out", str(tmp_path)]
     )
-    assert made.exit_code == 2
-    assert message in made.output
+    assert done.exit_code == 2
+    assert message in done.output
 
 
-def test_missing_record_is_refused(tmp_path):
-    made = CliRunner().invoke(app, ["identify", str(tmp_path / "none.csv"), "--out", str(tmp_path)])
-    assert made.exit_code == 2
-    assert "cannot be read" in made.output
+def test_missing_record_is_refused(tmp_path: Path) -> None:
+    done = CliRunner().invoke(app, ["identify", str(tmp_path / "none.csv"), "--out", str(tmp_path)])
+    assert done.exit_code == 2
+    assert "cannot be read" in done.output
