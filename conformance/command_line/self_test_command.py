@@ -9,8 +9,9 @@ from rich.table import Table
 
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.command_line.console import build_table, console, escape_text, style_verdict
-from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
+from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.reports.formats.report_writers import write_report
 from pantocheck.conformance.self_test.bench import Row, SelfTest, run_self_test
 from pantocheck.conformance.self_test.self_test_page import build_self_test_page
 
@@ -40,7 +41,7 @@ def self_test_command(
         self_test = run_self_test(cases, lambda name: status.update(f"testing the suite: {name}"))
     _print(self_test)
     if markdown is not None:
-        write_atomically(markdown, build_self_test_page(self_test).encode())
+        write_report(build_self_test_page(self_test), markdown)
         output.print(escape_text(str(markdown)), soft_wrap=True)
     raise typer.Exit(0 if self_test.passed else 1)
 

@@ -84,7 +84,7 @@ def _bilateral(case: Case, record: Record) -> Outcome:
 
 
 def _cut(case: Case, record: Record) -> Outcome:
-    """The record ends in the middle of the evaluated stretch."""
+    """The record ends in the middle of the analysis section."""
     n = int(np.searchsorted(record.position[0], np.mean(case.analysis_section)))
     channels = {name: getattr(record, name) for name in SAMPLE_CHANNELS}
     return Delivered(replace(record, **{k: value[..., :n] for k, value in channels.items() if value is not None}))
@@ -103,21 +103,21 @@ def _damaged(case: Case, record: Record) -> Outcome:
 MUTANTS: tuple[Mutant, ...] = (
     Mutant(
         "gain 1.05",
-        "The force is 5 % too large, as from a load cell calibrated wrongly.",
+        "The force is 5 % too large, as from a wrongly calibrated load cell.",
         _changed(force=lambda _, record: 1.05 * record.force),
         "dynamics",
     ),
     Mutant(
         "unfiltered",
-        "The force is said to be filtered as the case asks, and is not.",
+        "The record states the filter of the case, but its force is unfiltered.",
         _changed(filter_applied_Hz=lambda case, _: case.file.filter.cutoff_Hz),
         "roll-off",
     ),
-    Mutant("filter order 2", "The force was filtered with order 2 in place of 6.", _filtered(2), "roll-off"),
-    Mutant("time shift", "The force comes 0.1 s late against the other channels.", _late(0.1), "dynamics"),
+    Mutant("filter order 2", "The order of the filter is 2 instead of 6.", _filtered(2), "roll-off"),
+    Mutant("time shift", "The force lags the other channels by 0.1 s.", _late(0.1), "dynamics"),
     Mutant(
         "position shift",
-        "Positions are 10 m ahead of what was measured there.",
+        "The positions are shifted by 10 m against all other channels.",
         _changed(position=lambda _, record: record.position + 10.0),
         "support passing",
     ),
@@ -135,18 +135,18 @@ MUTANTS: tuple[Mutant, ...] = (
         "limits",
     ),
     Mutant("coarse mesh", "Elements are 4 m long.", _coarse(4.0), "limits"),
-    Mutant("truncated record", "The record ends in the middle of the evaluated stretch.", _cut, "coverage"),
-    Mutant("truncated file", "The table of samples lost its second half on the way.", _damaged, "record file"),
+    Mutant("truncated record", "The record ends in the middle of the analysis section.", _cut, "coverage"),
+    Mutant("truncated file", "The second half of the table of samples is missing.", _damaged, "record file"),
 )
 """Those that must not pass."""
 
 MILD: tuple[Mutant, ...] = (
     Mutant("gain 1.02", "The force is 2 % too large.", _changed(force=lambda _, record: 1.02 * record.force), None),
-    Mutant("filter order 4", "The force was filtered with order 4 in place of 6.", _filtered(4), None),
-    Mutant("time shift 5 ms", "The force comes 0.005 s late.", _late(0.005), None),
+    Mutant("filter order 4", "The order of the filter is 4 instead of 6.", _filtered(4), None),
+    Mutant("time shift 5 ms", "The force lags by 5 ms.", _late(0.005), None),
     Mutant(
         "time shift, force alone",
-        "The force comes 0.1 s late, and the record has no contact height.",
+        "The force lags by 0.1 s, and the record has no contact height.",
         lambda case, record: Delivered(
             replace(record, force=np.roll(record.force, round(0.1 * record.rate), axis=1), contact_height=None)
         ),

@@ -1,4 +1,4 @@
-"""The suite fails what it must: every mutant on one case, and the page that says so."""
+"""Self-test: every mutant on one case, and its page."""
 
 from pathlib import Path
 
@@ -7,7 +7,8 @@ from typer.testing import CliRunner
 
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.command_line.app import app
-from pantocheck.conformance.self_test.bench import run_self_test
+from pantocheck.conformance.reports.formats.markdown import render_markdown
+from pantocheck.conformance.self_test.bench import SelfTest, run_self_test
 from pantocheck.conformance.self_test.mutants import MILD, MUTANTS
 from pantocheck.conformance.self_test.self_test_page import build_self_test_page
 
@@ -15,11 +16,11 @@ DOCUMENT = Path(__file__).parents[2] / "docs" / "self-test.md"
 
 
 @pytest.fixture(scope="module")
-def done():
+def done() -> SelfTest:
     return run_self_test(select_cases(["en50318-2002/300"]))
 
 
-def test_right_system_passes_and_every_mutant_is_caught_for_its_reason(done):
+def test_self_test_passes_the_simulator_and_detects_every_mutant(done: SelfTest) -> None:
     assert done.right == {"en50318-2002/300": ("pass", "")}
     missed = [row.mutant.name for row in done.rows if not row.caught]
     assert missed == []
@@ -28,24 +29,24 @@ def test_right_system_passes_and_every_mutant_is_caught_for_its_reason(done):
     assert {row.verdict for row in done.rows} <= {"fail", "error"}
 
 
-def test_limits_alone_let_shifts_through(done):
-    """Why the checks of a record exist."""
+def test_limits_alone_do_not_detect_shifts(done: SelfTest) -> None:
+    """The reason for the checks of a record."""
     by_limits = {row.mutant.name: row.by_limits for row in done.rows}
     assert by_limits["time shift"] == by_limits["position shift"] == "pass"
     assert by_limits["no slackening"] == by_limits["gain 1.05"] == "fail"
 
 
-def test_document_is_of_these_mutants(done):
-    """Numbers are left out, so that the page only changes with what it tells."""
+def test_self_test_page_is_current(done: SelfTest) -> None:
+    """The committed page has the mutants and verdicts of this run."""
     text = DOCUMENT.read_text(encoding="utf-8")
     assert len(done.mild) == len(MILD)
-    assert build_self_test_page(done).splitlines() == [
+    assert render_markdown(build_self_test_page(done)).splitlines() == [
         row for row in text.splitlines() if "en50318-2002/250" not in row
     ]
 
 
-def test_missed_mutant_is_a_failed_self_test(monkeypatch, tmp_path):
-    """A mutant that is not one: the self-test must be able to fail as well."""
+def test_self_test_fails_if_a_mutant_is_not_detected(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """A mutant without a fault: the self-test itself must be able to fail."""
     from pantocheck.conformance.results.outcome import Delivered
     from pantocheck.conformance.self_test import bench
     from pantocheck.conformance.self_test.mutants import Mutant
@@ -55,6 +56,6 @@ def test_missed_mutant_is_a_failed_self_test(monkeypatch, tmp_path):
     monkeypatch.setattr(bench, "MILD", ())
     done = CliRunner().invoke(app, ["self-test", "en50318-2002/250", "--markdown", str(tmp_path / "page.md")])
     assert done.exit_code == 1
-    assert done.output.startswith("FAIL  0 of 1 mutants caught")
-    assert "MISSED, expected limits" in done.output
+    assert done.output.startswith("FAIL  0 of 1 mutants detected by the expected check")
+    assert "NOT DETECTED, expected limits" in done.output
     assert "| harmless |" in (tmp_path / "page.md").read_text()
