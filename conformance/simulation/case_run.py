@@ -76,13 +76,13 @@ def _run_once(case: Case, line: DiscretisedLine, steps: Discretisation, uplift_f
     begin = time.perf_counter()
     history = simulate_passage(line, passage)
     record = record_passage(case, passage, history)
-    run = RunTable(
-        simulated_s=passage.duration,
-        wall_s=time.perf_counter() - begin,
-        dt_s=steps.time_step_s,
-        element_m=steps.element_m,
-    )
-    return PassageRun(record, run, uplift_forces)
+    return PassageRun(record, build_run_table(steps, passage.duration, begin), uplift_forces)
+
+
+def build_run_table(steps: Discretisation, simulated_s: float, begin: float) -> RunTable:
+    """Run facts of a simulation that began at `begin` of `time.perf_counter` [s] and ends now."""
+    wall_s = time.perf_counter() - begin
+    return RunTable(simulated_s=simulated_s, wall_s=wall_s, dt_s=steps.time_step_s, element_m=steps.element_m)
 
 
 def _mean_forces(case: Case, record: Record) -> RealArray:

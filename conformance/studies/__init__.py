@@ -1,1 +1,1 @@
-"""Studies: mass drops with their identification, and comparisons of several runs."""
+"""Studies: cases that need several runs, or mass drops and their identification."""

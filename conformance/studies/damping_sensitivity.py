@@ -1,4 +1,4 @@
-"""One passage under several damping models, side by side: how much a line's contact force owes to its damping."""
+"""Damping sensitivity: the same passage of any case under several damping models, side by side."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -18,19 +18,14 @@ from pantocheck.conformance.studies.force_charts import draw_band_bars
 from pantocheck.conformance.systems.system import System
 
 MODELS = {name: f"vovan2015/damping/{name}.toml" for name in ("benchmark", "initial", "updated")}
-"""Damping files of the library that a study of any line uses."""
-SENSITIVITY_QUANTITIES = table_quantities("damping models")
-OWN = "of the case"
+"""Damping files of the library, for the damping study of any line."""
+TABLE_ROWS = table_quantities("damping models")
+CASE_DAMPING = "of the case"
+"""Column of the damping of the case."""
 
 
 def add_damping_study(case: Case) -> Case:
-    """A case that is also run with the library's damping models; what has no train, or is a study, stays as it is.
-
-    Raises
-    ------
-    InputError
-        a damping file of the library is damaged.
-    """
+    """Case that also runs with the damping models of the library; a static case or a study is returned unchanged."""
     if case.is_static or case.file.study is not None:
         return case
     dampings = {
@@ -43,21 +38,13 @@ def add_damping_study(case: Case) -> Case:
 
 
 def run_damping_sensitivity(case: Case, system: System) -> Outcome:
-    """Run a case as it is, and once more with each of its other damping models.
-
-    Parameters
-    ----------
-    case : Case
-        a passage.
-    system : System
-        Under test.
-    """
+    """Run a passage with the damping of the case and with each of its other damping models."""
     outcome = system.run(case.without_study())
     if not isinstance(outcome, Delivered) or outcome.record is None:
         return outcome
-    values, missing = {OWN: evaluate_record(outcome.record, case.file.filter.low_pass).values}, []
+    values, missing = {CASE_DAMPING: evaluate_record(outcome.record, case.file.filter.low_pass).values}, []
     for name, damping in case.dampings.items():
-        run = _once(system, case.with_damping(name, damping))
+        run = _run_unrefined(system, case.with_damping(name, damping))
         if isinstance(run, Delivered) and run.record is not None:
             values[name] = evaluate_record(run.record, case.file.filter.low_pass).values
         else:
@@ -69,23 +56,23 @@ def run_damping_sensitivity(case: Case, system: System) -> Outcome:
     )
 
 
-def _once(system: System, case: Case) -> Outcome:
-    """A run without its refinement pair, where the system can be asked for one."""
+def _run_unrefined(system: System, case: Case) -> Outcome:
+    """Run of a case, without the refinement of the reference simulator."""
     from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
 
     return system.run_unrefined(case) if isinstance(system, ReferenceSimulator) else system.run(case)
 
 
 def _table(values: Mapping[str, ValuesByOwner]) -> TextTable:
-    owners = sorted({of for found in values.values() for of in found}, key=lambda of: (of == LINE, of))
+    owners = sorted({owner for model in values.values() for owner in model}, key=lambda owner: (owner == LINE, owner))
     rows = []
-    for of in owners:
-        for quantity in SENSITIVITY_QUANTITIES:
-            cells = [found.get(of, {}).get(quantity) for found in values.values()]
+    for owner in owners:
+        for quantity in TABLE_ROWS:
+            cells = [model.get(owner, {}).get(quantity) for model in values.values()]
             if any(isinstance(cell, float) for cell in cells):
-                who = "line" if of == LINE else f"pantograph {of}"
+                name = "line" if owner == LINE else f"pantograph {owner}"
                 texts = [f"{cell:.4g}" if isinstance(cell, float) else "-" for cell in cells]
-                rows.append([quantity, who, *texts])
+                rows.append([quantity, name, *texts])
     return TextTable(
         caption="Damping sensitivity: the same run under several damping models",
         columns=["Quantity", "Of", *values],

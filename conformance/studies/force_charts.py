@@ -1,4 +1,4 @@
-"""Charts of contact forces under two damping models."""
+"""Charts of contact forces under several damping models."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -7,70 +7,76 @@ import numpy as np
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import DampingChange
-from pantocheck.conformance.quantities.evaluation import LINE, Value
+from pantocheck.conformance.quantities.evaluation import LINE, Value, ValuesByOwner
 from pantocheck.conformance.quantities.signals import EXTENDED_CUTOFF_HZ, ForceChannel
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.results.results_format import Chart, Series
 from pantocheck.conformance.results.traces import thin_series
 
+PrintedValues = Mapping[tuple[str, int], Mapping[str, float]]
+"""Values that a publication prints, by damping model and pantograph, and by name."""
+
 
 def draw_band_bars(
-    values: Mapping[str, Mapping[int, Mapping[str, Value]]],
-    printed: Mapping[tuple[str, int], Mapping[str, float]],
-    bands: Sequence[str],
+    values: Mapping[str, ValuesByOwner], printed: PrintedValues, bands: Sequence[str]
 ) -> tuple[Chart, ...]:
-    """RMS of the bands, computed and printed, one chart for each pantograph.
+    """Bar charts of the RMS of the bands, computed and printed, one for each pantograph.
 
     Parameters
     ----------
-    values : Mapping[str, Mapping[int, Mapping[str, Value]]]
-        Computed, by damping model, pantograph and name.
-    printed : Mapping[tuple[str, int], Mapping[str, float]]
-        By damping model and pantograph, and name; may be empty.
-    bands : Sequence[str]
+    values : mapping of str to ValuesByOwner
+        Computed values by damping model.
+    printed : PrintedValues
+        Printed values; may be empty.
+    bands : sequence of str
         Names of the quantities.
     """
-    how = "computed on the assumed line and printed" if printed else "computed under each damping model"
+    origin = "computed on the assumed line and printed" if printed else "computed under each damping model"
     table = "computed beside printed values" if printed else "the same run under several damping models"
     charts = []
-    for p in sorted({p for of in values.values() for p in of if p != LINE}):
-        series = [_bars(f"computed, {model}", of.get(p, {}), bands) for model, of in values.items()]
+    pantographs = sorted({number for model_values in values.values() for number in model_values if number != LINE})
+    for p in pantographs:
+        series = [_bars(f"computed, {model}", computed.get(p, {}), bands) for model, computed in values.items()]
         series += [_bars(f"printed, {model}", printed[model, p], bands) for model in values if (model, p) in printed]
         charts.append(
             Chart(
-                caption=f"Pantograph {p}: RMS of the contact force by band, {how}.",
+                caption=f"Pantograph {p}: RMS of the contact force by band, {origin}.",
                 alternative=f"Bars of the numbers in the table of {table}.",
                 x_label="band [Hz]",
                 y_label="RMS [N]",
                 ticks=[band.removeprefix("rms_").removesuffix("_N").replace("_", "–") for band in bands],
-                series=[one for one in series if one.x],
+                series=[bars for bars in series if bars.x],
             )
         )
     return tuple(charts)
 
 
 def _bars(label: str, values: Mapping[str, Value], bands: Sequence[str]) -> Series:
-    there = [(float(i), value) for i, band in enumerate(bands) if isinstance(value := values.get(band), float)]
-    return Series(label=label, style="bars", x=[i for i, _ in there], y=[value for _, value in there])
+    known = [(float(i), value) for i, band in enumerate(bands) if isinstance(value := values.get(band), float)]
+    return Series(label=label, style="bars", x=[i for i, _ in known], y=[value for _, value in known])
 
 
-def trailing_force(case: Case, study: DampingChange, runs: Mapping[str, Delivered]) -> tuple[Chart, ...]:
-    """Contact force of the last pantograph over one span, low-passed at 20 and at 50 Hz (the study's Figure 11).
+def draw_trailing_force(case: Case, study: DampingChange, runs: Mapping[str, Delivered]) -> tuple[Chart, ...]:
+    """Charts of the contact force of the last pantograph over one span, low-passed at 20 Hz and at 50 Hz.
+
+    As Figure 11 of Vo Van, Balmes and Lorang (2015).
 
     Parameters
     ----------
-    case, study : Case or DampingChange
-        Which span.
-    runs : Mapping[str, Delivered]
-        Outcome by damping model.
+    case : Case
+        Passage of a train.
+    study : DampingChange
+        Number of the span.
+    runs : mapping of str to Delivered
+        Runs by damping model.
     """
     start, end = case.line.geometry.span(study.span)
     charts = []
     for cutoff in (case.file.filter.cutoff_Hz, EXTENDED_CUTOFF_HZ):
         series = []
-        for name, outcome in runs.items():
-            record = outcome.record
+        for name, run in runs.items():
+            record = run.record
             if record is None:
                 continue
             try:
@@ -79,11 +85,8 @@ def trailing_force(case: Case, study: DampingChange, runs: Mapping[str, Delivere
             except QuantityUnavailable:
                 continue
             inside = np.flatnonzero((record.position[-1] >= start) & (record.position[-1] <= end))
-            series.append(
-                Series(
-                    label=name, style="line", x=thin_series(record.position[-1][inside]), y=thin_series(force[inside])
-                )
-            )  # fmt: skip
+            x, y = thin_series(record.position[-1][inside]), thin_series(force[inside])
+            series.append(Series(label=name, style="line", x=x, y=y))
         if series:
             charts.append(
                 Chart(

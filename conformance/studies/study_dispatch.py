@@ -1,4 +1,4 @@
-"""Which runs a case needs: one of the system under test, or those of a study. Heavy imports wait until then."""
+"""Dispatch of a case to one run of the system under test or to its study; a study is imported on use."""
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import (
@@ -11,18 +11,18 @@ from pantocheck.conformance.cases.study_tables import (
 from pantocheck.conformance.results.outcome import Outcome, Skipped
 from pantocheck.conformance.systems.system import System
 
-ONLY_BUILTIN = "this study drives the reference simulator itself; other systems deliver no such runs"
+ONLY_BUILTIN = "this study needs the reference simulator; other systems deliver no such runs"
 
 
 def run_study(case: Case, system: System) -> Outcome:
-    """Run a case on a system: a study with all its runs, a mass drop with its identification, else the plain case.
+    """Run a case on a system: a single run, a study with all its runs, or a mass drop with its identification.
 
     Parameters
     ----------
     case : Case
-        What is asked.
+        Case to run.
     system : System
-        Under test; changes of damping are asked of any system, the other studies of the reference simulator only.
+        System under test. Any system runs the studies of changed damping, the reference simulator alone the others.
     """
     match case.file.study:
         case None if case.file.mass_drop is None or system.kind != "builtin":

@@ -1,1 +1,1 @@
-"""The studies of Vo Van, Balmes and Lorang (2015)."""
+"""Studies of Vo Van, Balmes and Lorang (2015), "Damping characterization of a high speed train catenary"."""

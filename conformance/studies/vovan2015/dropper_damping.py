@@ -1,10 +1,11 @@
-"""Largest compensation force of a dropper against its stiffness coefficient (the study's Figure 8).
+"""Largest compensation force of a dropper against its stiffness coefficient.
 
-A dropper stays taut in the system's matrix; a force compensates it while it should be slack. Two laws are compared:
+Vo Van, Balmes and Lorang (2015), Figure 8. A dropper stays taut in the matrix of the system; a force compensates it
+while it is slack. Two laws are compared:
 
-* the slack dropper carries nothing: elastic and viscous force are both compensated, as the reference simulator does;
-* only the elastic force is compensated: the viscous part stays in the constant damping matrix. A large coefficient then
-  locks the dropper, because its dashpot holds it both ways.
+* The slack dropper carries no force: its elastic and viscous forces are compensated, as in the reference simulator.
+* Only the elastic force is compensated: the viscous part stays in the constant damping matrix. A large coefficient
+  then locks the dropper, because its dashpot also resists compression.
 """
 
 import time
@@ -18,11 +19,10 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import DropperDamping
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.quantities.evaluation import LINE, Value
-from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.outcome import Delivered, StudyResult
 from pantocheck.conformance.results.results_format import Chart, Mark, Series
 from pantocheck.conformance.results.traces import thin_series
-from pantocheck.conformance.simulation.case_run import build_passage, record_passage
+from pantocheck.conformance.simulation.case_run import build_passage, build_run_table, record_passage
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.studies.vovan2015.findings_table import build_findings_table
 from pantocheck.conformance.studies.vovan2015.provenance_table import build_provenance_table
@@ -30,22 +30,22 @@ from pantocheck.model import Catenary, DiscretisedLine, Kind, Passage, Rayleigh,
 from pantocheck.model.discretised_line import with_damping
 from pantocheck.model.fem.dropper_laws import with_viscous_part_kept
 
-OFF = 0.1
-"""Relative change of the force at which the transition begins, and share of it at which it has ended."""
-LEAST_DRAWN_FORCE = 1.0
-"""Force at which smaller ones are drawn on a logarithmic scale [N]."""
+TRANSITION_SHARE = 0.1
+"""Relative change of the force at the onset of the transition, and remaining share of the force at its end."""
+SMALLEST_DRAWN_FORCE = 1.0
+"""Smaller forces are drawn at this value on the logarithmic scale [N]."""
 
 
 @dataclass(frozen=True)
 class Law:
-    """How a slack dropper is treated.
+    """Compensation law of a slack dropper.
 
     Parameters
     ----------
-    line : Callable[[DiscretisedLine], DiscretisedLine]
-        The line with that law.
+    line : callable
+        Function that gives a discretised line this law.
     viscous_share : float
-        Share of the viscous force that is compensated with the elastic one.
+        Share of the viscous force that is compensated in addition to the elastic force.
     """
 
     line: Callable[[DiscretisedLine], DiscretisedLine]
@@ -60,87 +60,81 @@ GRADED = "only the elastic force is compensated"
 
 
 def run_dropper_damping(case: Case, study: DropperDamping) -> Delivered:
-    """Run the case's passage once for every coefficient and law.
+    """Run the passage of a case once for every coefficient and compensation law.
 
     Parameters
     ----------
     case : Case
-        a passage with given uplift forces.
+        Passage with given uplift forces.
     study : DropperDamping
-        The dropper and its coefficients.
+        Dropper and its stiffness coefficients.
 
     Raises
     ------
     InputError
-        There is no dropper at that place, or an uplift force is to be tuned.
+        There is no dropper at this position, or an uplift force has to be tuned.
     """
     begin = time.perf_counter()
     steps, line = case.file.discretisation, build_catenary(case.line)
-    at = _dropper(line, study, case.id)
+    dropper = _find_dropper(line, study, case.id)
     forces = tuple(use.uplift_force_N or 0.0 for use in case.file.pantograph)
     if not all(forces):
-        raise InputError(f"case '{case.id}', key pantograph", "no uplift_force_N", "This study tunes no forces.")
+        raise InputError(f"case '{case.id}', key pantograph", "no uplift_force_N", "This study does not tune forces.")
     mesh = discretise(line, steps.element_m)
     passage = build_passage(case, mesh, steps, forces)
     at_rest = simulate_passage(mesh, passage)
     coefficients = np.array(study.coefficients_s)
     force = {
-        name: np.array([_largest(mesh, passage, at, value, law) for value in coefficients])
+        name: np.array([_largest_force(mesh, passage, dropper, value, law) for value in coefficients])
         for name, law in LAWS.items()
     }
     findings = {LINE: find_transition(coefficients, force[GRADED])}
     runs = 1 + len(LAWS) * coefficients.size
     return Delivered(
         record=record_passage(case, passage, at_rest),
-        run=RunTable(
-            simulated_s=runs * passage.duration,
-            wall_s=time.perf_counter() - begin,
-            dt_s=steps.time_step_s,
-            element_m=steps.element_m,
-        ),
+        run=build_run_table(steps, runs * passage.duration, begin),
         study=StudyResult(
             findings=findings,
             charts=(_chart(case, study, force),),
             tables=(build_findings_table(case.limits, findings, {}), build_provenance_table(case)),
         ),
         notes=(
-            "Which force the study compensates is not printed. Graded is the law that compensates the elastic force "
-            "only: it locks the dropper as the study describes; the law of the reference simulator does not lock it.",
+            "The paper does not print which force it compensates. The graded law compensates the elastic force only: "
+            "it locks the dropper as the paper describes. The law of the reference simulator does not lock it.",
         ),
     )
 
 
 def find_transition(coefficient: RealArray, force: RealArray) -> dict[str, Value]:
-    """Where the largest compensation force leaves the value it has without damping, and what is left of it.
+    """Transition of the largest compensation force from its undamped value, and the share that remains.
 
     Parameters
     ----------
     coefficient : (n,) ndarray
-        Ascending [s].
+        Stiffness coefficients in ascending order [s].
     force : (n,) ndarray
-        Largest compensation force [N].
+        Largest compensation force at each coefficient [N].
 
     Returns
     -------
-    dict[str, Value]
-        Values by name of quantity; a level that is never reached is left out, and all of them if there is no force at
-        first.
+    dict of str to Value
+        Values by name of quantity, without the levels that are not reached; empty if the first force is zero.
     """
     if force[0] == 0:
         return {}
     share = force / force[0]
-    found: dict[str, Value] = {"dropper_locked_force_pct": float(100 * share[-1])}
-    off = np.abs(share - 1)
-    levels = (("start", off, OFF, 1), ("middle", share, 0.5, -1), ("end", share, OFF, -1))
+    findings: dict[str, Value] = {"dropper_locked_force_pct": float(100 * share[-1])}
+    change = np.abs(share - 1)
+    levels = (("start", change, TRANSITION_SHARE, 1), ("middle", share, 0.5, -1), ("end", share, TRANSITION_SHARE, -1))
     for name, curve, level, sign in levels:
         crossed = _crossing(np.log(coefficient), sign * curve, sign * level)
         if crossed is not None:
-            found[f"dropper_transition_{name}_s"] = float(np.exp(crossed))
-    return found
+            findings[f"dropper_transition_{name}_s"] = float(np.exp(crossed))
+    return findings
 
 
 def _crossing(x: RealArray, y: RealArray, level: float) -> float | None:
-    """First place where a curve rises through a level, between two points on a straight line; None if it never does."""
+    """Abscissa where a curve first rises through a level, by linear interpolation; None if it never does."""
     above = np.flatnonzero(y >= level)
     if not above.size:
         return None
@@ -150,23 +144,25 @@ def _crossing(x: RealArray, y: RealArray, level: float) -> float | None:
     return float(x[i - 1] + (level - y[i - 1]) / (y[i] - y[i - 1]) * (x[i] - x[i - 1]))
 
 
-def _dropper(line: Catenary, study: DropperDamping, name: str) -> int:
+def _find_dropper(line: Catenary, study: DropperDamping, name: str) -> int:
     for i, dropper in enumerate(line.droppers):
         if abs(dropper.position - study.x_m) < 1e-3:
             return i
-    raise InputError(f"case '{name}', key study.x_m", f"no dropper at {study.x_m:g} m", "Name a dropper's place.")
+    raise InputError(
+        f"case '{name}', key study.x_m", f"no dropper at {study.x_m:g} m", "Give the position of a dropper."
+    )
 
 
-def _largest(mesh: DiscretisedLine, passage: Passage, at: int, coefficient: float, law: Law) -> float:
+def _largest_force(mesh: DiscretisedLine, passage: Passage, number: int, coefficient: float, law: Law) -> float:
     """Largest force that compensates the taut dropper while it is slack [N]."""
     damping = dict(mesh.catenary.damping) | {Kind.DROPPER: Rayleigh(stiffness_coefficient=coefficient)}
     line = with_damping(mesh, damping)
-    dropper, bars = mesh.catenary.droppers[at], line.connectors
+    dropper, bars = mesh.catenary.droppers[number], line.connectors
     watched = ((dropper.upper, dropper.position), (dropper.lower, dropper.position))
     history = simulate_passage(law.line(line), replace(passage, watched=watched))
     change = history.motion[0] - history.motion[1]
-    taut = bars.preload[at] + bars.stiffness[at] * change[:, 0]
-    taut += law.viscous_share * bars.damping[at] * change[:, 1]
+    taut = bars.preload[number] + bars.stiffness[number] * change[:, 0]
+    taut += law.viscous_share * bars.damping[number] * change[:, 1]
     return float(max(0.0, -taut.min()))
 
 
@@ -178,10 +174,10 @@ def _chart(case: Case, study: DropperDamping, force: dict[str, RealArray]) -> Ch
     ]
     chosen = case.line.damping.droppers.stiffness_coefficient_s
     if chosen > 0:
-        marks.append(Mark(label="chosen by the study", axis="x", low=chosen))
+        marks.append(Mark(label="chosen in the paper", axis="x", low=chosen))
     return Chart(
         caption=f"Largest compensation force of the dropper at {study.x_m:g} m against its stiffness coefficient; "
-        f"what is below {LEAST_DRAWN_FORCE:g} N is drawn there.",
+        f"values below {SMALLEST_DRAWN_FORCE:g} N are drawn at this value.",
         alternative="; ".join(f"{name}: {v[0]:.4g} N to {v[-1]:.4g} N" for name, v in force.items()),
         x_label="stiffness coefficient [s]",
         y_label="largest compensation force [N]",
@@ -192,7 +188,7 @@ def _chart(case: Case, study: DropperDamping, force: dict[str, RealArray]) -> Ch
                 label=name,
                 style="line",
                 x=thin_series(np.array(study.coefficients_s)),
-                y=thin_series(np.maximum(values, LEAST_DRAWN_FORCE)),
+                y=thin_series(np.maximum(values, SMALLEST_DRAWN_FORCE)),
             )
             for name, values in force.items()
         ],

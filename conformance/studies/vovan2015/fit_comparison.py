@@ -1,4 +1,7 @@
-"""What a damping model fitted to identified modes says beside the one that was put into the simulation."""
+"""Damping model fitted to identified modes, compared with the one of the simulation.
+
+Observability as in Vo Van, Balmes and Lorang (2015), Figure 6.
+"""
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.identification.damping.damping_format import DampingResults
@@ -10,54 +13,52 @@ from pantocheck.conformance.results.results_format import Chart, Mark, Series, T
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.model import Catenary, Kind
 
-LEAST_DRAWN_SHARE = 1e-3
-"""Ratio at which smaller ones, nought among them, are drawn on a logarithmic scale [-]."""
+SMALLEST_DRAWN_RATIO = 1e-3
+"""Smaller ratios, and zero, are drawn at this value on the logarithmic scale [-]."""
 
 
-def build_fit_report(case: Case, found: Identification) -> tuple[tuple[TextTable, ...], tuple[Chart, ...]]:
-    """Table of the coefficients put in and fitted, and the observability of every coefficient (the study's Figure 6).
+def build_fit_report(case: Case, identification: Identification) -> tuple[tuple[TextTable, ...], tuple[Chart, ...]]:
+    """Table of simulated and fitted coefficients, and chart of their observability.
 
     Parameters
     ----------
     case : Case
-        Whose line was simulated.
-    found : Identification
-        Modes identified from its drops.
+        Case whose drops were simulated.
+    identification : Identification
+        Modes identified from the drops.
     """
     line = build_catenary(case.line)
     try:
-        results = fit_identified_damping(case, found)
+        results = fit_identified_damping(case, identification)
     except InputError as error:
-        return (TextTable(caption="Fitted damping", columns=["Why there is none"], rows=[[str(error)]]),), ()
+        return (TextTable(caption="Fitted damping", columns=["Reason why there is none"], rows=[[str(error)]]),), ()
     return (_coefficients(results, line),), (_observability(results),)
 
 
-def fit_identified_damping(case: Case, found: Identification) -> DampingResults:
-    """Damping model fitted to the modes identified from a case's drops, as `pantocheck fit-damping` has it.
+def fit_identified_damping(case: Case, identification: Identification) -> DampingResults:
+    """Damping model fitted to the modes identified from the drops of a case, as by `pantocheck fit-damping`.
 
     Raises
     ------
     InputError
-        Too few modes.
+        There are too few modes.
     """
     element = case.file.discretisation.element_m
-    return build_damping_results(found.modes, build_catenary(case.line), element, f"the modes of {case.id}")
+    return build_damping_results(identification.modes, build_catenary(case.line), element, f"the modes of {case.id}")
 
 
 def _coefficients(results: DampingResults, line: Catenary) -> TextTable:
     rows = []
     for c in results.coefficients:
         rayleigh = line.damping.get(Kind(c.kind))
-        put_in = 0.0 if rayleigh is None else getattr(rayleigh, f"{c.matrix}_coefficient")
-        difference = f"{100 * (c.value / put_in - 1):+.1f} %" if put_in else "-"
+        simulated = 0.0 if rayleigh is None else getattr(rayleigh, f"{c.matrix}_coefficient")
+        difference = f"{100 * (c.value / simulated - 1):+.1f} %" if simulated else "-"
         name = f"{c.kind.replace('_', ' ')}, {c.matrix} [{MATRICES[c.matrix].unit}]"
-        rows.append([name, f"{put_in:.4g}", f"{c.value:.4g}", f"{c.low_95:.3g} to {c.high_95:.3g}", difference])
-    modal = (
-        " Modal bands of the case are not Rayleigh damping: the fit takes them for it." if line.modal_damping else ""
-    )
+        rows.append([name, f"{simulated:.4g}", f"{c.value:.4g}", f"{c.low_95:.3g} to {c.high_95:.3g}", difference])
+    modal = " The case has modal damping, which the fit takes for Rayleigh damping." if line.modal_damping else ""
     return TextTable(
-        caption="Rayleigh damping of the wires: put into the simulation, and fitted to the identified modes." + modal,
-        columns=["Coefficient", "Put in", "Fitted", "95 % interval", "Off by"],
+        caption="Rayleigh damping of the wires: of the simulation, and fitted to the identified modes." + modal,
+        columns=["Coefficient", "Simulated", "Fitted", "95 % interval", "Difference"],
         rows=rows,
     )
 
@@ -68,7 +69,8 @@ def _observability(results: DampingResults) -> Chart:
         caption="Observability of every coefficient: its plausible value over the standard deviation with which the "
         "modes determine it. An observable coefficient reaches the dashed line and makes up at least "
         f"{100 * results.thresholds.largest_share:g} % of the damping of some mode. "
-        f"Values below {LEAST_DRAWN_SHARE:g} are drawn at {LEAST_DRAWN_SHARE:g}.",
+        f"Values below {SMALLEST_DRAWN_RATIO:g} are "
+        f"drawn at {SMALLEST_DRAWN_RATIO:g}.",
         alternative="; ".join(
             f"{row.kind} {row.matrix}: {row.plausible_over_std:.3g}, "
             f"{'observable' if row.observable else 'not observable'}"
@@ -83,7 +85,7 @@ def _observability(results: DampingResults) -> Chart:
                 label="all modes together",
                 style="bars",
                 x=[float(i) for i in range(len(rows))],
-                y=[max(row.plausible_over_std, LEAST_DRAWN_SHARE) for row in rows],
+                y=[max(row.plausible_over_std, SMALLEST_DRAWN_RATIO) for row in rows],
             )
         ],
         marks=[Mark(label="needed", axis="y", low=results.thresholds.plausible_over_std)],

@@ -1,4 +1,4 @@
-"""What the study measured of groups of span modes, computed from identified modes."""
+"""Quantities of groups of span modes (Vo Van, Balmes and Lorang 2015), computed from identified modes."""
 
 from collections.abc import Sequence
 
@@ -8,41 +8,41 @@ from pantocheck.conformance.identification.mode import Mode
 from pantocheck.conformance.quantities.evaluation import Value
 
 HIGHEST_HZ = 6.0
-"""Up to here the study sees no variation of damping after the third group."""
+"""Up to this frequency the paper finds no variation of damping after the third group."""
 
 
 def compute_group_findings(modes: Sequence[Mode]) -> dict[str, Value]:
-    """Quantities of the groups of identified modes; what too few modes cannot tell is left out.
+    """Quantities of the groups of identified modes; those that need more modes are left out.
 
     Parameters
     ----------
-    modes : Sequence[Mode]
-        Identified.
+    modes : sequence of Mode
+        Identified modes.
 
     Returns
     -------
-    dict[str, Value]
+    dict of str to Value
         Values by name of quantity; lists count groups from 1.
     """
-    upward = [mode for mode in modes if not mode.lateral]
-    certain = [mode for mode in upward if mode.certain]
+    vertical = [mode for mode in modes if not mode.lateral]
+    certain = [mode for mode in vertical if mode.certain]
     counts, frequency, damping = [], [], []
     number = 1
     while members := [mode for mode in certain if mode.group == number]:
-        counts.append(float(sum(mode.group == number for mode in upward)))
+        counts.append(float(sum(mode.group == number for mode in vertical)))
         frequency.append(float(np.median([mode.frequency_Hz for mode in members])))
         damping.append(float(np.median([mode.damping_ratio for mode in members])))
         number += 1
-    found: dict[str, Value] = {
+    findings: dict[str, Value] = {
         "modes_in_group": tuple(counts),
         "mode_frequency_Hz": tuple(frequency),
         "damping_ratio": tuple(damping),
     }
     if certain:
-        found["largest_damping_ratio"] = max(mode.damping_ratio for mode in certain)
+        findings["largest_damping_ratio"] = max(mode.damping_ratio for mode in certain)
     if len(damping) >= 3:
-        found["damping_decrease_pct"] = 100 * min(1 - damping[1] / damping[0], 1 - damping[2] / damping[1])
+        findings["damping_decrease_pct"] = 100 * min(1 - damping[1] / damping[0], 1 - damping[2] / damping[1])
         later = [z for f, z in zip(frequency[3:], damping[3:], strict=True) if f <= HIGHEST_HZ]
         if later:
-            found["damping_rise_pct"] = 100 * (max(later) / damping[2] - 1)
-    return found
+            findings["damping_rise_pct"] = 100 * (max(later) / damping[2] - 1)
+    return findings

@@ -1,4 +1,4 @@
-"""Line by line: what the study's paper prints, what is assumed, and what is computed."""
+"""Origin of every input and limit of a case: printed by Vo Van, Balmes and Lorang (2015), assumed, or computed."""
 
 from collections.abc import Sequence
 
@@ -9,31 +9,25 @@ from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results.results_format import TextTable
 
 PAPER = "vovan2015"
-"""Key of the study's paper in the bibliography."""
+"""Key of Vo Van, Balmes and Lorang (2015) in the bibliography."""
 FITTED = "fitted"
-"""Begin of the source of a damping model that was fitted to identified modes."""
+"""Prefix of the source of a damping model that was fitted to identified modes."""
 
 
 def build_provenance_table(case: Case) -> TextTable:
-    """Where every group of inputs and every limit of a study comes from.
-
-    Parameters
-    ----------
-    case : Case
-        Of a study.
-    """
+    """Table of the origin of every group of inputs and every limit of a case."""
     rows = []
-    for given in case.inputs:
-        fitted = any(source.startswith(FITTED) for source in given.source)
-        whose = "computed" if fitted else _whose(given.trust, given.source)
-        rows.append([f"input {given.group}", whose, source_text(given.source)])
+    for provenance in case.inputs:
+        fitted = any(source.startswith(FITTED) for source in provenance.source)
+        origin = "computed" if fitted else _origin(provenance.trust, provenance.source)
+        rows.append([f"input {provenance.group}", origin, source_text(provenance.source)])
     for limit in case.limits:
         item = f" {limit.item}" if limit.item else ""
         text = limit.note or source_text(limit.source)
         keys = [limit.source] if isinstance(limit.source, str) else limit.source
-        rows.append([f"limit of {limit.quantity}{item}", _whose(limit.trust, keys), text])
-    named = dict.fromkeys(limit.quantity for limit in case.limits)
-    rows += [[name, "computed", QUANTITIES[name].definition] for name in named]
+        rows.append([f"limit of {limit.quantity}{item}", _origin(limit.trust, keys), text])
+    quantities = dict.fromkeys(limit.quantity for limit in case.limits)
+    rows += [[name, "computed", QUANTITIES[name].definition] for name in quantities]
     return TextTable(
         caption="What is the paper's, what is assumed, what is computed",
         columns=["What", "Origin", "Source"],
@@ -41,7 +35,7 @@ def build_provenance_table(case: Case) -> TextTable:
     )
 
 
-def _whose(trust: Trust, keys: Sequence[str]) -> str:
+def _origin(trust: Trust, keys: Sequence[str]) -> str:
     if trust == "provisional":
         return "assumed"
     return "the paper's" if PAPER in keys else "published elsewhere"

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.results.outcome import Delivered, Skipped
 from pantocheck.conformance.runner import run_cases
-from pantocheck.conformance.studies.damping_sensitivity import MODELS, OWN, add_damping_study
+from pantocheck.conformance.studies.damping_sensitivity import CASE_DAMPING, MODELS, add_damping_study
 
 
 def told_apart(wave):
@@ -24,7 +24,7 @@ def test_every_model_has_a_column_of_its_own(case_250, wave):
     studied = add_damping_study(case_250)
     (result,) = run_cases([studied], told_apart(wave)).cases
     (table,) = result.tables
-    assert table.columns == ["Quantity", "Of", OWN, *MODELS]
+    assert table.columns == ["Quantity", "Of", CASE_DAMPING, *MODELS]
     rows = {(row[0], row[1]): row[2:] for row in table.rows}
     # The case and the benchmark have 1e-4 s, the initial model 2.35e-4 s.
     updated = studied.dampings["updated"].contact_wire.stiffness_coefficient_s
@@ -49,7 +49,7 @@ def test_a_system_that_cannot_run_a_model_is_named_in_a_warning(case_250, wave):
     assert [w for w in result.warnings if w.startswith("damping '")] == [
         f"damping '{name}': there is no record of this case" for name in MODELS
     ]
-    assert result.tables[0].columns == ["Quantity", "Of", OWN]
+    assert result.tables[0].columns == ["Quantity", "Of", CASE_DAMPING]
 
 
 def test_static_cases_and_studies_stay_as_they_are():

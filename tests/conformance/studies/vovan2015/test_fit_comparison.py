@@ -62,5 +62,5 @@ def test_drawn_threshold_is_that_of_the_fit(chart):
 
 def test_floor_of_the_logarithmic_scale_is_said(chart):
     (bars,) = chart.series
-    assert bars.y == [40.0, 10.0, fitted.LEAST_DRAWN_SHARE]
-    assert f"Values below {fitted.LEAST_DRAWN_SHARE:g} are drawn at {fitted.LEAST_DRAWN_SHARE:g}" in chart.caption
+    assert bars.y == [40.0, 10.0, fitted.SMALLEST_DRAWN_RATIO]
+    assert f"Values below {fitted.SMALLEST_DRAWN_RATIO:g} are drawn at {fitted.SMALLEST_DRAWN_RATIO:g}" in chart.caption
