@@ -1,7 +1,7 @@
-"""The dynamics once more, explicitly: central differences on assembled matrices, forces taken where things are.
+"""Independent explicit time integration: central differences with assembled matrices.
 
-Nothing of the production kernel is used beyond the assembled matrices: no Newmark, no effective matrix, no low-rank
-correction, no iteration. Damping is taken with the velocity of the last half step.
+It shares only the assembled matrices with the kernel: no Newmark method, no effective matrix, no low-rank correction,
+no iteration. Damping forces use the velocity of the last half step.
 """
 
 import numpy as np
@@ -21,19 +21,19 @@ from pantocheck.model.statics.static_solver import StaticSolver
 
 
 def contact_force(line: DiscretisedLine, passage: Passage) -> Array:
-    """Contact force of one pantograph of two masses, both started at rest as the production run is.
+    """Contact force of one pantograph of two masses; the simulation starts at rest like `simulate_passage`.
 
     Parameters
     ----------
     line : DiscretisedLine
-        The discretised line, in the vertical plane.
+        Discretised line in the vertical plane.
     passage : Passage
-        Its time step is the explicit one, below 2 / w_max.
+        Passage with an explicit time step below 2 / w_max.
 
     Returns
     -------
     (T,) ndarray
-        [N].
+        Contact force [N].
     """
     (model,) = passage.pantographs
     matrices = assemble_matrices(without_connectors(line))

@@ -1,4 +1,4 @@
-"""Small lines that the tests of the simulator share."""
+"""Small lines for the tests of the simulator."""
 
 from dataclasses import replace
 
@@ -19,13 +19,13 @@ from pantocheck.model import (
 Array = NDArray[np.float64]
 
 DROPPERS_2002 = (5.0, 10.5, 17.0, 23.5, 30.0, 36.5, 43.0, 49.5, 55.0)
-"""Places of the droppers in a span of the EN 50318:2002 reference model [m]."""
+"""Positions of the droppers in a span of the EN 50318:2002 reference model [m]."""
 
 
 def bare_wire(
     length: float, tension: float = 20e3, mass_per_length: float = 1.35, bending_stiffness: float = 195.0
 ) -> Catenary:
-    """A contact wire pinned at both ends, with nothing hung on it."""
+    """A contact wire pinned at both ends, without any connector."""
     return Catenary((Wire("contact", Kind.CONTACT_WIRE, 0.0, length, tension, mass_per_length, bending_stiffness),))
 
 
@@ -37,9 +37,9 @@ def simple_line(
     carries_share: bool = True,
     dropper_stiffness: float = 1e5,
 ) -> Catenary:
-    """Contact and messenger wire of the EN 50318:2002 reference model, over as many spans as asked for.
+    """Contact and messenger wire of the EN 50318:2002 reference model over a number of spans.
 
-    The supports at the anchors only say how high the messenger is anchored.
+    The supports at the anchors only define the height of the messenger anchors.
     """
     end = spans * span
     masts = [number * span for number in range(1, spans)]
@@ -62,9 +62,9 @@ def simple_line(
 
 
 def without_connectors(line: DiscretisedLine) -> DiscretisedLine:
-    """The same rows of beams with every dropper and clamp taken out of the matrices."""
-    nothing = np.zeros_like(line.connectors.stiffness)
-    return replace(line, connectors=line.connectors._replace(stiffness=nothing, damping=nothing))
+    """Remove the stiffness and damping of all connectors from a line."""
+    zeros = np.zeros_like(line.connectors.stiffness)
+    return replace(line, connectors=line.connectors._replace(stiffness=zeros, damping=zeros))
 
 
 DAMPED = {
@@ -74,4 +74,4 @@ DAMPED = {
     Kind.STEADY_ARM: Rayleigh(0.4, 2e-3),
     Kind.MESSENGER_SUPPORT: Rayleigh(0.0, 5e-4),
 }
-"""A different damping for every kind of component, so that none can be taken for another."""
+"""A different damping for every kind of component, so that an exchange is noticed."""

@@ -1,9 +1,8 @@
-"""The time step written out plainly: full matrices, solved anew for every guess of what is slack or open.
+"""Independent implementation of the time step: full matrices, solved for every set of slack droppers and lost contacts.
 
-Newmark average acceleration with the mass that keeps waves from running late. Unknown are the accelerations a of the
-whole line and of the pantographs; displacement and velocity follow from them. The balance of forces is smooth but for
-the kinks where a dropper goes slack or a head leaves the wire, so Newton's method with the active set of the last guess
-ends exactly after a few solves.
+Average acceleration with the corrected mass. The unknowns are the accelerations a of the line and of the pantographs;
+displacement and velocity follow from them. The balance of forces is piecewise linear, with kinks where a dropper
+slackens or a head loses the wire, so that Newton's method on the active set is exact after a few solutions.
 """
 
 from dataclasses import dataclass
@@ -29,7 +28,7 @@ from pantocheck.model.fem.assembly import (
 
 @dataclass
 class State:
-    """Displacement, velocity and acceleration of line and pantographs stacked, and the forces; changed by `advance`."""
+    """Stacked displacement, velocity and acceleration of line and pantographs, and the forces; changed by `advance`."""
 
     q: Array
     v: Array
@@ -44,10 +43,10 @@ class PlainNewmark:
 
     Parameters
     ----------
-    line
-        The discretised line.
-    passage
-        Pantographs and their journey.
+    line : DiscretisedLine
+        Discretised line.
+    passage : Passage
+        Pantographs, speed and time step.
     """
 
     def __init__(self, line: DiscretisedLine, passage: Passage) -> None:
@@ -57,22 +56,22 @@ class PlainNewmark:
         pantographs = passage.pantographs
         sizes = [p.head.size for p in pantographs]
         at = self.free.size + np.concatenate([[0], np.cumsum(sizes)]).astype(int)
-        self.of_pantograph = [slice(first, last) for first, last in pairwise(at)]
+        self.pantograph_slices = [slice(first, last) for first, last in pairwise(at)]
         self.M, self.C, self.K = (np.zeros((at[-1], at[-1])) for _ in range(3))
         inner = slice(0, self.free.size)
         self.M[inner, inner] = stepping_mass(line, passage.time_step).toarray()
         self.C[inner, inner] = matrices.damping.toarray()
         self.K[inner, inner] = matrices.stiffness.toarray()
         self.force = np.zeros(at[-1])
-        for own, p in zip(self.of_pantograph, pantographs, strict=True):
-            self.M[own, own], self.C[own, own], self.K[own, own] = p.mass, p.damping, p.stiffness
-            self.force[own] = p.force
+        for block, p in zip(self.pantograph_slices, pantographs, strict=True):
+            self.M[block, block], self.C[block, block], self.K[block, block] = p.mass, p.damping, p.stiffness
+            self.force[block] = p.force
         self.elongation = np.zeros((at[-1], line.connectors.station.size))
         self.elongation[inner] = connector_directions(line)[self.free].toarray()
         self.rest = line.state.deflection.ravel()[bandwidth_order(line)]
 
-    def take(self, motion: Motion, train: Train) -> State:
-        """The state that the kernel starts from."""
+    def copy_state(self, motion: Motion, train: Train) -> State:
+        """Copy the initial state of the kernel."""
         place = bandwidth_order(self.line)[self.free]
         fields = [
             np.concatenate(
@@ -86,7 +85,7 @@ class PlainNewmark:
         return State(*fields, motion.tension.copy(), train.contact.ravel())
 
     def advance(self, state: State) -> None:
-        """One time step, in place."""
+        """Advance by one time step, in place."""
         dt, line = self.passage.time_step, self.line.connectors
         state.time += dt
         q0 = state.q + dt * state.v + dt**2 / 4 * state.a
@@ -107,7 +106,7 @@ class PlainNewmark:
             k, c, kc = line.stiffness * taut, line.damping * taut, stiff * touching
             K = self.K + (bars * k) @ bars.T + (closing * kc) @ closing.T
             C = self.C + (bars * c) @ bars.T
-            # A taut dropper changes its tension from the preload; a slack one takes its whole preload away.
+            # The tension of a taut dropper changes from the preload; a slack dropper removes its whole preload.
             constant = self.force + bars @ (line.preload * ~taut) + closing @ (kc * rest_height)
             a = solve(self.M + dt / 2 * C + dt**2 / 4 * K, constant - K @ q0 - C @ v0, assume_a="pos")
             q, v = q0 + dt**2 / 4 * a, v0 + dt / 2 * a
@@ -122,12 +121,12 @@ class PlainNewmark:
         raise ArithmeticError("the active set does not settle")
 
     def _closing(self, time: float) -> tuple[Array, Array]:
-        """Overlap of each head and each wire per unknown, and the height of the wire at rest, at a time."""
-        pairs = [(p, row) for p in range(len(self.of_pantograph)) for row in self.line.contact_rows]
+        """Overlap of each head and wire per unknown, and the height of the wire at rest, at a time."""
+        pairs = [(p, row) for p in range(len(self.pantograph_slices)) for row in self.line.contact_rows]
         closing, height = np.zeros((self.M.shape[0], len(pairs))), np.zeros(len(pairs))
         for n, (p, row) in enumerate(pairs):
             share = point_load(self.line, row, self.passage.start[p] + self.passage.speed * time)
             closing[: self.free.size, n] = -share[self.free]
-            closing[self.of_pantograph[p], n] = self.passage.pantographs[p].head
+            closing[self.pantograph_slices[p], n] = self.passage.pantographs[p].head
             height[n] = share @ self.rest
         return closing, height

@@ -1,4 +1,4 @@
-"""What cannot be computed is refused by name; nothing fails in silence."""
+"""Failures of the simulator: every impossible input raises a named failure, none passes silently."""
 
 from dataclasses import replace
 
@@ -17,8 +17,8 @@ PANTOGRAPH = chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.array([90
 PASSAGE = Passage((PANTOGRAPH,), (20.0,), 50.0, 0.05, 1e-3)
 
 
-def test_dropper_that_would_have_to_push_is_named() -> None:
-    """A dropper asked to hold the wire 10 cm below its neighbours."""
+def test_discretise_names_a_dropper_that_would_have_to_push() -> None:
+    """A dropper that holds the wire 10 cm below its neighbours."""
     line = simple_line()
     droppers = list(line.droppers)
     droppers[4] = replace(droppers[4], contact_wire_height=-0.1)
@@ -26,7 +26,7 @@ def test_dropper_that_would_have_to_push_is_named() -> None:
         discretise(replace(line, droppers=tuple(droppers)), 1.0)
 
 
-def test_wires_that_cross_are_refused() -> None:
+def test_discretise_rejects_wires_that_cross() -> None:
     """An encumbrance of 0.2 m is less than the messenger's sag."""
     line = simple_line()
     low = tuple(replace(support, height=0.2) for support in line.messenger_supports)
@@ -43,8 +43,8 @@ def test_wires_that_cross_are_refused() -> None:
     ],
     ids=["dropper", "steady arm", "messenger support"],
 )
-def test_unknown_wire_is_named(part: dict[str, tuple[object, ...]]) -> None:
-    """A connector on a wire that does not exist is not left out quietly."""
+def test_discretise_names_an_unknown_wire(part: dict[str, tuple[object, ...]]) -> None:
+    """A connector on a wire that does not exist is an error."""
     line = simple_line()
     more = {name: getattr(line, name) + added for name, added in part.items()}
     with pytest.raises(KeyError, match="nowhere"):
@@ -52,27 +52,27 @@ def test_unknown_wire_is_named(part: dict[str, tuple[object, ...]]) -> None:
 
 
 @pytest.mark.parametrize("where", ["uplift", "mass", "contact"])
-def test_nan_in_a_pantograph_does_not_pass_in_silence(where: str) -> None:
-    """A run ends with DidNotConverge, or a matrix is refused before; never with a history of NaN."""
-    given = {"uplift": 120.0, "mass": 7.2, "contact": 50e3} | {where: np.nan}
+def test_simulate_passage_fails_for_nan_in_a_pantograph(where: str) -> None:
+    """The simulation raises DidNotConverge or rejects a matrix before; it never returns a history of NaN."""
+    values = {"uplift": 120.0, "mass": 7.2, "contact": 50e3} | {where: np.nan}
     pantograph = chain(
-        np.array([15.0, given["mass"]]),
+        np.array([15.0, values["mass"]]),
         np.array([50.0, 4200.0]),
         np.array([90.0, 10.0]),
-        given["uplift"],
+        values["uplift"],
         0,
-        given["contact"],
+        values["contact"],
     )
     with pytest.raises((DidNotConverge, ValueError, np.linalg.LinAlgError)):
         simulate_passage(discretise(simple_line(), 1.0), replace(PASSAGE, pantographs=(pantograph,)))
 
 
 @pytest.mark.parametrize("where", ["w", "r", "tension", "z", "contact", "far away"])
-def test_step_reports_a_state_that_is_not_a_number(where: str) -> None:
-    """The kernel returns no turns, wherever the NaN stands."""
+def test_step_reports_nan_in_the_state(where: str) -> None:
+    """The kernel returns zero sweeps for NaN at any place of the state."""
     line = discretise(simple_line(), 1.0)
-    stepping = build_kernel_arrays(line, 1e-3)
-    motion, train = start_motion(line, stepping, PASSAGE)
+    kernel = build_kernel_arrays(line, 1e-3)
+    motion, train = start_motion(line, kernel, PASSAGE)
     spot = {
         "w": motion.w[0, 0, 20:21],
         "r": motion.r[1, 1, 20:21],
@@ -82,5 +82,5 @@ def test_step_reports_a_state_that_is_not_a_number(where: str) -> None:
         "far away": motion.w[0, 0, -3:-2],
     }
     spot[where][:] = np.nan
-    work = build_workspace(stepping, train)
-    assert step(stepping, motion, train, work) == 0
+    work = build_workspace(kernel, train)
+    assert step(kernel, motion, train, work) == 0

@@ -1,4 +1,4 @@
-"""The production kernel against formulations that share nothing with it but the line."""
+"""Simulator against independent formulations that share only the line with it."""
 
 from dataclasses import replace
 
@@ -10,39 +10,43 @@ from helpers.lines import Array, simple_line
 from pantocheck.model import Catenary, Kind, Passage, Rayleigh, Wire, chain, discretise, simulate_passage
 from pantocheck.model.fem.beam import pinned_frequencies
 from pantocheck.model.modal.modes import compute_modes
+from pantocheck.model.pantograph import preload_springs
 
-PANTOGRAPH = chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.array([90.0, 10.0]), 120.0, 0, 50e3, 0.06)
+PANTOGRAPH = preload_springs(
+    chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.array([90.0, 10.0]), 120.0, 0, 50e3), np.full(2, 0.06)
+)
 RATE = 500.0
 BANDS = ((0.0, 5.0), (5.0, 20.0), (20.0, 50.0))
 
 
 def band_rms(force: Array) -> list[float]:
+    """Root mean square in each band [N]."""
     power = 2 * np.abs(np.fft.rfft(force - force.mean()) / force.size) ** 2
     frequency = np.fft.rfftfreq(force.size, 1 / RATE)
     return [float(np.sqrt(power[(frequency > low) & (frequency <= high)].sum())) for low, high in BANDS]
 
 
-def test_explicit_integration_gives_the_same_force_in_every_band() -> None:
-    """Central differences at 0.2 ms, their error of second order far below 1 %; the kernel at 0.25 ms."""
+def test_passage_and_explicit_integration_agree_in_every_band() -> None:
+    """Central differences at 0.2 ms, with a second-order error far below 1 %; the kernel at 0.25 ms."""
     damping = {kind: Rayleigh(0.0125, 1e-4) for kind in Kind}
     line = discretise(simple_line(3, damping=damping), 0.5)
     explicit = Passage((PANTOGRAPH,), (60.0,), 250 / 3.6, 1.1, 2e-4)
-    theirs = contact_force(line, explicit)[:: round(1 / (RATE * 2e-4))]
-    ours = simulate_passage(line, replace(explicit, time_step=2.5e-4)).force[0][:: round(1 / (RATE * 2.5e-4))]
+    explicit_force = contact_force(line, explicit)[:: round(1 / (RATE * 2e-4))]
+    kernel_force = simulate_passage(line, replace(explicit, time_step=2.5e-4)).force[0][:: round(1 / (RATE * 2.5e-4))]
     settled = slice(round(0.1 * RATE), None)
-    assert band_rms(ours[settled]) == pytest.approx(band_rms(theirs[settled]), rel=0.01)
-    assert np.abs(ours[settled]).max() == pytest.approx(np.abs(theirs[settled]).max(), rel=0.01)
+    assert band_rms(kernel_force[settled]) == pytest.approx(band_rms(explicit_force[settled]), rel=0.01)
+    assert np.abs(kernel_force[settled]).max() == pytest.approx(np.abs(explicit_force[settled]).max(), rel=0.01)
 
 
-def test_frequencies_of_a_tensioned_beam_are_the_closed_form() -> None:
+def test_compute_modes_gives_the_closed_form_of_a_tensioned_beam() -> None:
     """Hermite elements of 0.2 m on 30 m converge with h^4: the first 20 modes within 1e-6."""
     wire = Wire("contact", Kind.CONTACT_WIRE, 0.0, 30.0, 22e3, 1.35, 195.0)
     found = compute_modes(discretise(Catenary((wire,)), 0.2), 20).frequency
     assert found == pytest.approx(pinned_frequencies(20, 30.0, 22e3, 195.0, 1.35), rel=1e-6)
 
 
-def test_frequencies_of_a_whole_line_by_general_assembly() -> None:
-    """scikit-fem assembles the same two beams, springs added by hand: within 1e-6, solvers apart."""
+def test_compute_modes_agrees_with_scikit_fem_on_a_whole_line() -> None:
+    """scikit-fem assembles the same two beams, springs are added by hand: 1e-6 for two eigenvalue solvers."""
     skfem = pytest.importorskip("skfem", reason="scikit-fem comes with the extra 'peers'")
     from scipy.sparse.linalg import eigsh
     from skfem.helpers import d, dd
@@ -75,19 +79,19 @@ def test_frequencies_of_a_whole_line_by_general_assembly() -> None:
         node = int(np.argmin(np.abs(basis.mesh.p[0] - x)))
         return wire * size + int(basis.nodal_dofs[0, node])
 
-    def spring(one: int, other: int | None, k: float) -> None:
-        K[one, one] += k
-        if other is not None:
-            K[other, other] += k
-            K[one, other] -= k
-            K[other, one] -= k
+    def add_spring(lower: int, upper: int | None, k: float) -> None:
+        K[lower, lower] += k
+        if upper is not None:
+            K[upper, upper] += k
+            K[lower, upper] -= k
+            K[upper, lower] -= k
 
     for dropper in catenary.droppers:
-        spring(dof(0, dropper.position), dof(1, dropper.position), dropper.stiffness or 0.0)
+        add_spring(dof(0, dropper.position), dof(1, dropper.position), dropper.stiffness or 0.0)
     for arm in catenary.steady_arms:
-        spring(dof(0, arm.position), None, arm.vertical_stiffness or 0.0)
+        add_spring(dof(0, arm.position), None, arm.vertical_stiffness or 0.0)
     for support in catenary.messenger_supports:
-        spring(dof(1, support.position), None, support.stiffness)
+        add_spring(dof(1, support.position), None, support.stiffness)
     ends = [dof(wire, x) for wire in (0, 1) for x in (0.0, 180.0)]
     keep = np.setdiff1d(np.arange(K.shape[0]), ends)
     reduced = sp.csc_matrix(K)[keep][:, keep]

@@ -1,4 +1,4 @@
-"""Pantographs by themselves: natural frequencies, apparent mass, modes against chain."""
+"""Pantographs: natural frequencies, apparent mass, modes against chain."""
 
 import numpy as np
 import pytest
@@ -10,18 +10,18 @@ MASSES, STIFFNESS, DAMPING = (np.array(v) for v in ([6.0, 9.0, 7.5], [160.0, 155
 
 
 def pantograph(damping: float = 1.0) -> Pantograph:
-    """The EN 50318:2018 chain, its damping multiplied."""
+    """The EN 50318:2018 chain, with its damping multiplied."""
     return chain(MASSES, STIFFNESS, damping * DAMPING, 169.0, 0, 50e3)
 
 
-def test_published_frequencies_of_the_undamped_chain() -> None:
+def test_frequencies_of_the_undamped_chain_are_the_published_ones() -> None:
     """Base fixed, head free: 0.4227, 5.687, 10.980 Hz, to half a unit of the fourth digit."""
     found = frequencies(pantograph())
     assert found == pytest.approx([0.4227, 5.687, 10.980], rel=1.2e-4)
 
 
 def test_frequencies_are_the_roots_of_the_characteristic_polynomial() -> None:
-    """Written out by hand for masses a, b, c on springs p, q, r: an assembly of its own."""
+    """Polynomial for masses a, b, c on springs p, q, r, without the assembly of the package."""
     (a, b, c), (p, q, r) = MASSES, STIFFNESS
     one, two, three = np.poly1d([-a, p + q]), np.poly1d([-b, q + r]), np.poly1d([-c, r])
     roots = np.sort((one * two * three - r**2 * one - q**2 * three).roots)
@@ -41,13 +41,13 @@ def test_apparent_mass_far_below_the_resonances_is_the_static_stiffness() -> Non
 
 
 def test_apparent_mass_vanishes_at_the_frequencies() -> None:
-    """Without damping the head answers without bound at a natural frequency."""
+    """Without damping the response of the head is unbounded at a natural frequency."""
     undamped = pantograph(damping=0.0)
     assert np.abs(apparent_mass(undamped, frequencies(undamped))).max() < 1e-6
 
 
-def test_modes_repeat_the_chain() -> None:
-    """The same system by its modes, damped in proportion to its stiffness: same apparent mass, same rest."""
+def test_from_modes_gives_the_apparent_mass_of_the_chain() -> None:
+    """One system as a chain and by its modes, with stiffness-proportional damping: equal apparent mass and rest."""
     beta = 1e-3
     by_chain = preload_springs(chain(MASSES, STIFFNESS, beta * STIFFNESS, 169.0, 0, 50e3), np.full(3, 0.055))
     w2, shapes = eigh(by_chain.stiffness, by_chain.mass)
@@ -68,8 +68,8 @@ def test_preload_springs_leaves_the_chain_at_rest_at_the_unstretched_height() ->
     np.testing.assert_allclose(np.linalg.solve(at_rest.stiffness, at_rest.force), 0.055, rtol=1e-9)
 
 
-def test_uplift_acts_on_the_mass_it_is_given_to() -> None:
-    """On the head every spring is stretched by it, on the lowest mass only the first."""
+def test_uplift_force_acts_on_the_chosen_mass() -> None:
+    """On the head it stretches every spring, on the lowest mass only the first."""
     low, high = (chain(MASSES, STIFFNESS, DAMPING, 100.0, mass, 50e3) for mass in (0, 2))
     np.testing.assert_allclose(np.linalg.solve(low.stiffness, low.force), 100.0 / STIFFNESS[0], rtol=1e-9)
     np.testing.assert_allclose(np.linalg.solve(high.stiffness, high.force), np.cumsum(100.0 / STIFFNESS), rtol=1e-9)

@@ -1,4 +1,4 @@
-"""The EN 50318:2002 reference model as a whole, against the range that published codes agree on."""
+"""EN 50318:2002 reference model against the range of published codes."""
 
 from functools import cache
 
@@ -18,14 +18,14 @@ DAMPING = {kind: Rayleigh(0.0125, 1e-4) for kind in Kind}
 
 @cache
 def passage(speed_km_h: float, element_length: float = 0.5, time_step: float = 1e-3, reach: float = np.inf) -> History:
-    """A run from the first span to the end of the seventh."""
+    """Passage from the first span to the end of the seventh."""
     speed = speed_km_h / 3.6
     supports = tuple(("contact", x) for x in (240.0, 300.0, 360.0))
-    journey = Passage((PANTOGRAPH,), (20.0,), speed, 400.0 / speed, time_step, supports, reach)
-    return simulate_passage(discretise(simple_line(spans=10, damping=DAMPING), element_length), journey)
+    task = Passage((PANTOGRAPH,), (20.0,), speed, 400.0 / speed, time_step, supports, reach)
+    return simulate_passage(discretise(simple_line(spans=10, damping=DAMPING), element_length), task)
 
 
-def evaluated(history: History) -> Array:
+def filtered_force(history: History) -> Array:
     """Contact force below 20 Hz over spans five and six, zero phase, -3 dB at 20 Hz in all (twice third order) [N]."""
     rate = 1 / history.time[0]
     sos = butter(3, 20.0 / (np.sqrt(2) - 1) ** (1 / 6), fs=rate, output="sos")
@@ -37,51 +37,51 @@ def evaluated(history: History) -> Array:
     ("speed", "deviation", "uplift"),
     [(250.0, (26.0, 31.0), (0.048, 0.055)), (300.0, (32.0, 40.0), (0.055, 0.065))],
 )
-def test_force_and_uplift_lie_where_published_codes_agree(
+def test_force_and_uplift_lie_in_the_range_of_published_codes(
     speed: float, deviation: tuple[float, float], uplift: tuple[float, float]
 ) -> None:
-    """Mean, standard deviation, uplift at the supports, contact kept: the ranges of Wang et al. 2016, Table III."""
+    """Mean, standard deviation, uplift at the supports, no contact loss: ranges of Wang et al. 2016, Table III."""
     history = passage(speed)
-    force = evaluated(history)
+    force = filtered_force(history)
     assert 110.0 < force.mean() < 120.0
     assert deviation[0] < force.std() < deviation[1]
     assert uplift[0] < history.motion[:, :, 0].max() < uplift[1]
     assert history.force.min() > 0
 
 
-def test_standard_deviation_settles_under_refinement() -> None:
-    """Element and step halved: less than 1 % of sigma, as the reference case promises."""
-    coarse, fine = (evaluated(passage(250.0, h, dt)).std() for h, dt in ((0.5, 1e-3), (0.25, 5e-4)))
+def test_standard_deviation_converges_under_refinement() -> None:
+    """Element and time step halved: less than 1 % of sigma, as the reference case states."""
+    coarse, fine = (filtered_force(passage(250.0, h, dt)).std() for h, dt in ((0.5, 1e-3), (0.25, 5e-4)))
     assert coarse == pytest.approx(fine, rel=0.01)
 
 
-def test_far_field_left_standing_changes_nothing_that_is_printed() -> None:
-    """Beyond four spans waves have not come back by the time they could matter: sigma to 1e-4, each sample to 0.1 N."""
+def test_active_window_of_four_spans_changes_no_printed_digit() -> None:
+    """Waves from beyond four spans return too late to matter: sigma to 1e-4, each sample to 0.1 N."""
     whole, near = passage(250.0), passage(250.0, reach=240.0)
-    assert evaluated(near).std() == pytest.approx(evaluated(whole).std(), rel=1e-4)
+    assert filtered_force(near).std() == pytest.approx(filtered_force(whole).std(), rel=1e-4)
     np.testing.assert_allclose(near.force, whole.force, rtol=0, atol=0.1)
 
 
-def test_what_no_wave_can_have_come_to_or_back_from_changes_nothing() -> None:
-    """Rounding alone: 1e-9 N of 100 N, and as much of the largest uplift at supports, which the pantograph makes."""
+def test_causal_reach_changes_the_forces_by_rounding_only() -> None:
+    """1e-9 N of 100 N, and the same share of the largest uplift at the supports, caused by the pantograph."""
     line = discretise(simple_line(spans=10, damping=DAMPING), 0.5)
     reach = causal_reach(line, 250.0 / 3.6, 400.0 / (250.0 / 3.6))
-    assert 200.0 < reach < 500.0  # part of the 600 m stands still, else nothing is tested
+    assert 200.0 < reach < 500.0  # otherwise the whole line of 600 m is active, and nothing is tested
     whole, near = passage(250.0), passage(250.0, reach=reach)
     np.testing.assert_allclose(near.force, whole.force, rtol=0, atol=1e-9)
     largest, expected = (history.motion[:, :, 0].max(axis=1) for history in (near, whole))
     np.testing.assert_allclose(largest, expected, rtol=0, atol=1e-12)
 
 
-def test_same_run_twice_is_the_same_to_the_last_bit() -> None:
-    """No state is carried from run to run."""
+def test_simulate_passage_is_reproducible_to_the_last_bit() -> None:
+    """A simulation leaves no state behind."""
     first = passage(300.0)
     passage.cache_clear()
     np.testing.assert_array_equal(passage(300.0).force, first.force)
 
 
-def test_resting_pantograph_stays_at_rest() -> None:
-    """At speed zero and without a base spring the start is an equilibrium: the force stays 120 N, the line still."""
+def test_simulate_passage_at_speed_zero_stays_at_rest() -> None:
+    """Without a base spring the start is an equilibrium: the force stays 120 N, the line at rest."""
     free = chain(np.array([15.0, 7.2]), np.array([0.0, 4200.0]), np.array([90.0, 10.0]), 120.0, 0, 50e3)
     line = discretise(simple_line(spans=3, damping=DAMPING), 0.5)
     history = simulate_passage(line, Passage((free,), (83.7,), 0.0, 0.5, 1e-3, (("contact", 60.0),)))

@@ -1,4 +1,4 @@
-"""The factored matrix of a step, and the local columns of its inverse, against the assembled matrix."""
+"""Block elimination and local columns of the inverse against the assembled effective matrix."""
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ def line_and_step(request: pytest.FixtureRequest) -> tuple[DiscretisedLine, floa
 
 
 def inverse_of_assembled(line: DiscretisedLine, time_step: float) -> Array:
-    """Inverse of M + dt/2 C + dt^2/4 K of the rows alone, over (rows, stations, 2) twice; zero for what is held."""
+    """Inverse of M + dt/2 C + dt^2/4 K of the rows, indexed by (rows, stations, 2) twice; zero for fixed unknowns."""
     matrices = assemble_matrices(without_connectors(line))
     effective = (
         stepping_mass(line, time_step) + time_step / 2 * matrices.damping + time_step**2 / 4 * matrices.stiffness
@@ -31,8 +31,8 @@ def inverse_of_assembled(line: DiscretisedLine, time_step: float) -> Array:
     return inverse.reshape(line.beams.free.shape * 2)
 
 
-def test_local_columns_are_the_columns_of_the_assembled_inverse(line_and_step: tuple[DiscretisedLine, float]) -> None:
-    """To 1e-12 of each column's peak: below it a column is left out, the rest is rounding."""
+def test_inverse_columns_are_the_columns_of_the_assembled_inverse(line_and_step: tuple[DiscretisedLine, float]) -> None:
+    """To 1e-12 of the peak of each column, where it is cut; the rest is rounding."""
     line, time_step = line_and_step
     inverse, factor, stations = (
         inverse_of_assembled(line, time_step),
@@ -41,7 +41,7 @@ def test_local_columns_are_the_columns_of_the_assembled_inverse(line_and_step: t
     )
     loads = [(row, s, slope) for row in range(2) for s in range(0, stations, 3) for slope in range(2)]
     width = column_half_width(factor, [(row, s) for row, s, _ in loads])
-    assert width < stations / 2  # else nothing is local, and nothing is tested
+    assert width < stations / 2  # otherwise no column is local, and nothing is tested
     columns = inverse_columns(factor, *(np.array(part) for part in zip(*loads, strict=True)), width)
     for (row, s, slope), column in zip(loads, columns, strict=True):
         expected = np.zeros((2, stations + 2 * width))
@@ -51,8 +51,8 @@ def test_local_columns_are_the_columns_of_the_assembled_inverse(line_and_step: t
         np.testing.assert_allclose(whole, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
 
 
-def test_solve_is_a_sparse_solve(line_and_step: tuple[DiscretisedLine, float]) -> None:
-    """A random load everywhere: 1e-12 of the peak allows for the growth of rounding along the row."""
+def test_solve_line_agrees_with_a_sparse_solver(line_and_step: tuple[DiscretisedLine, float]) -> None:
+    """A random load on the whole line: 1e-12 of the peak allows for the growth of rounding along a row."""
     line, time_step = line_and_step
     inverse, factor = inverse_of_assembled(line, time_step), factorise(line.beams, time_step)
     load = np.random.default_rng(1).normal(size=line.beams.free.shape)

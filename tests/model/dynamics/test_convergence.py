@@ -1,4 +1,4 @@
-"""Order in time of the whole run."""
+"""Convergence of the time integration with the time step."""
 
 from itertools import pairwise
 
@@ -16,11 +16,11 @@ from pantocheck.model.dynamics.train import empty_train
 from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order
 
 
-def test_free_vibration_converges_with_the_second_order() -> None:
-    """A taut line (no dropper slack) in its own modes 3, 7 and 12, against their exact cosines.
+def test_free_vibration_converges_with_second_order() -> None:
+    """A line with taut droppers in its modes 3, 7 and 12, against their exact cosines.
 
-    Order 2 within 0.15: the waves themselves are of order 4, bending and what hangs between the wires is of order 2.
-    Average acceleration with the plain mass would be late by w t (w dt)^2 / 12; a twentieth of that is left.
+    Order 2 within 0.15: the error of waves on a string is of order 4, that of bending and of connectors of order 2.
+    Average acceleration with the plain mass lags by w t (w dt)^2 / 12; a twentieth of that remains.
     """
     line = discretise(simple_line(spans=2), 2.0)
     matrices = assemble_matrices(line)
@@ -36,12 +36,12 @@ def test_free_vibration_converges_with_the_second_order() -> None:
         return shaped[..., 0].copy(), shaped[..., 1].copy()
 
     for time_step in (4e-3, 2e-3, 1e-3):
-        stepping, train = build_kernel_arrays(line, time_step), empty_train(1)
+        kernel, train = build_kernel_arrays(line, time_step), empty_train(1)
         initial = np.array([amplitude.sum(axis=1), np.zeros(place.size), -amplitude @ omega**2])
         motion = Motion(*spread(initial), line.connectors.preload.copy(), np.zeros(0), np.zeros(1))
-        work = build_workspace(stepping, train)
+        work = build_workspace(kernel, train)
         for _ in range(round(duration / time_step)):
-            assert step(stepping, motion, train, work)
+            assert step(kernel, motion, train, work)
             assert (motion.tension > 0).all()
         exact, _ = spread(np.array([amplitude @ np.cos(omega * duration)] * 3))
         errors.append(np.abs(motion.w[0] - exact[0]).max())
@@ -52,25 +52,25 @@ def test_free_vibration_converges_with_the_second_order() -> None:
     assert errors[-1] < np.abs(plain[0]).max() / 20
 
 
-# Without a base spring the pantograph rests at any height with exactly its uplift: the start is an equilibrium.
+# Without a base spring the pantograph rests at any height with its uplift force: the start is an equilibrium.
 PANTOGRAPH = chain(np.array([15.0, 7.2]), np.array([0.0, 4200.0]), np.zeros(2), 120.0, 0, 5e3)
 
 
-def test_contact_force_converges_with_the_second_order() -> None:
-    """A standing pantograph, its uplift swelling by 30 N over half a second: a smooth coupled problem, contact kept.
+def test_contact_force_converges_with_second_order() -> None:
+    """A standing pantograph with an uplift force that rises by 30 N in half a second: a smooth problem.
 
-    The swell 30 sin^4 starts and ends with three vanishing derivatives, so that nothing but the step errs; order 2
-    within 0.1. (A running pantograph converges more slowly: it sets off at once, and crosses elements.)
+    The pulse 30 sin^4 starts and ends with three vanishing derivatives, so that only the time step causes errors;
+    order 2 within 0.1. (A running pantograph converges more slowly: it starts abruptly and crosses elements.)
     """
     line, duration, forces = discretise(bare_wire(60.0), 1.0), 0.5, []
     for halvings in range(4):
         time_step = 4e-3 / 2**halvings
-        stepping = build_kernel_arrays(line, time_step)
-        motion, train = start_motion(line, stepping, Passage((PANTOGRAPH,), (27.3,), 0.0, duration, time_step))
-        work, force = build_workspace(stepping, train), []
+        kernel = build_kernel_arrays(line, time_step)
+        motion, train = start_motion(line, kernel, Passage((PANTOGRAPH,), (27.3,), 0.0, duration, time_step))
+        work, force = build_workspace(kernel, train), []
         for n in range(1, round(duration / time_step) + 1):
             train.force[0, 0] = 120.0 + 30.0 * np.sin(np.pi * n * time_step / duration) ** 4
-            assert step(stepping, motion, train, work)
+            assert step(kernel, motion, train, work)
             force.append(train.contact[0, 0])
         assert min(force) > 0
         forces.append(np.array(force[2**halvings - 1 :: 2**halvings]))

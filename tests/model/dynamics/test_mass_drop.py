@@ -1,4 +1,4 @@
-"""Mass drop against the closed form of a linear line, and with droppers that go slack."""
+"""Mass drop: closed form of a linear line, and slack droppers."""
 
 import numpy as np
 
@@ -12,11 +12,10 @@ DAMPING = dict.fromkeys(Kind, Rayleigh(0.1, 1e-4))
 LINE = simple_line(spans=2, damping=DAMPING)
 
 
-def test_a_light_mass_leaves_a_sum_of_decaying_modes() -> None:
+def test_mass_drop_of_a_light_mass_is_a_sum_of_decaying_modes() -> None:
     """The first 140 modes, phi (phi' f) / omega^2 cos omega t, while every dropper is taut.
 
-    What the sum leaves out and the period error of the steps ((omega dt)^2 / 12) are below 1 % of the largest
-    displacement.
+    Higher modes and the period error (omega dt)^2 / 12 are below 1 % of the largest displacement.
     """
     test = MassDropSetup(2.0, "contact", 33.0, 0.0, 0.05, 3.0, 1e-3, (("contact", 21.0), ("messenger", 45.0)))
     decay = simulate_mass_drop(LINE, 1.0, test)
@@ -39,8 +38,8 @@ def test_a_light_mass_leaves_a_sum_of_decaying_modes() -> None:
         assert np.abs(difference).max() < 0.01 * np.abs(expected).max()
 
 
-def test_nothing_moves_before_the_release_and_a_slow_release_excites_less() -> None:
-    """At rest to the tolerance of the forces, 1e-9 N; a release over 0.2 s is no step force any more."""
+def test_mass_drop_is_at_rest_before_the_release_and_weaker_after_a_slow_release() -> None:
+    """At rest to the tolerance of the forces, 1e-9 N; a release over 0.2 s excites fewer waves than a step force."""
     at_once, slowly = (
         simulate_mass_drop(
             LINE, 1.0, MassDropSetup(30.0, "contact", 33.0, duration, 0.2, 1.0, 1e-3, (("contact", 21.0),))
@@ -53,7 +52,8 @@ def test_nothing_moves_before_the_release_and_a_slow_release_excites_less() -> N
     assert slow < 0.5 * fast
 
 
-def test_a_heavy_mass_on_the_messenger_slackens_droppers() -> None:
+def test_mass_drop_of_a_heavy_mass_on_the_messenger_wire_slackens_droppers() -> None:
+    """A mass of 60 kg pulls the messenger wire down to the contact wire."""
     decay = simulate_mass_drop(
         LINE, 1.0, MassDropSetup(60.0, "messenger", 30.0, 0.0, 0.02, 1.0, 1e-3, (("contact", 30.0),))
     )

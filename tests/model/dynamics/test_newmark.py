@@ -1,4 +1,4 @@
-"""The kernel's step against the same step written out plainly with full matrices."""
+"""Time step of the kernel against an independent implementation with full matrices."""
 
 from dataclasses import replace
 
@@ -27,7 +27,7 @@ THREE_MASSES = chain(
 def largest_differences(
     line: DiscretisedLine, passage: Passage, steps: int, drop: float
 ) -> tuple[dict[str, float], Array, Array]:
-    """March the kernel and its twin side by side, the heads thrown down with the speed `drop` [m/s] to begin with.
+    """Advance kernel and plain implementation side by side; the heads start with the speed `drop` downwards [m/s].
 
     Returns the largest difference of each quantity as a share of its largest value, the tensions, the contact forces.
     """
@@ -36,7 +36,11 @@ def largest_differences(
     for p, pantograph in enumerate(passage.pantographs):
         train.z[1, p, : pantograph.head.size] = -drop * pantograph.head
     twin = PlainNewmark(line, passage)
-    state, work, place = twin.take(motion, train), build_workspace(stepping, train), bandwidth_order(line)[twin.free]
+    state, work, place = (
+        twin.copy_state(motion, train),
+        build_workspace(stepping, train),
+        bandwidth_order(line)[twin.free],
+    )
     ours: dict[str, list[Array]] = {name: [] for name in ("q", "v", "a", "tension", "contact")}
     theirs: dict[str, list[Array]] = {name: [] for name in ours}
     for _ in range(steps):
@@ -58,11 +62,11 @@ def largest_differences(
     return difference, np.array(ours["tension"]), np.array(ours["contact"])
 
 
-def test_kernel_repeats_the_plain_step_through_slack_droppers_and_lost_contact() -> None:
-    """To 1e-9 over 400 steps of 2 ms: the kernel stops at changes of 1e-9 N of some 300 N, which 400 steps may sum up.
+def test_step_equals_the_plain_implementation_through_slack_droppers_and_lost_contact() -> None:
+    """To 1e-9 over 400 steps of 2 ms: sweeps stop at changes of 1e-9 N of about 300 N, which 400 steps may add up.
 
-    The run is made rough on purpose: heads thrown down at 1.5 m/s, two different pantographs close together at 110 m/s,
-    every component damped, dampers at the claws and supports, masses at clamps and claws.
+    The motion is violent on purpose: heads start downwards at 1.5 m/s, two different pantographs close together at
+    110 m/s, every component damped, dampers at arms and supports, masses at clamps and arms.
     """
     catenary = simple_line(spans=2, span=50.0, droppers=(5.0, 15.0, 25.0, 35.0, 45.0), damping=DAMPED)
     catenary = replace(
@@ -74,21 +78,21 @@ def test_kernel_repeats_the_plain_step_through_slack_droppers_and_lost_contact()
     passage = Passage((TWO_MASSES, THREE_MASSES), (12.0, 4.0), 100.0, 0.8, 2e-3)
     difference, tension, contact = largest_differences(discretise(catenary, 2.5), passage, 400, drop=1.5)
     slack, open_ = tension == 0.0, contact == 0.0
-    assert (slack.any(axis=0) & ~slack.all(axis=0)).sum() >= 5  # the droppers come and go
+    assert (slack.any(axis=0) & ~slack.all(axis=0)).sum() >= 5  # droppers slacken and tighten
     assert (np.diff(open_.astype(int), axis=0) == 1).any(axis=0).all()  # each pantograph loses contact
-    assert (np.diff(open_.astype(int), axis=0) == -1).any(axis=0).all()  # and finds it again
+    assert (np.diff(open_.astype(int), axis=0) == -1).any(axis=0).all()  # and regains it
     assert max(difference.values()) < 1e-9, difference
 
 
-def test_kernel_repeats_the_plain_step_without_connectors() -> None:
-    """A bare wire under one pantograph: no connector at all is a shape of array that must work, too."""
+def test_step_equals_the_plain_implementation_without_connectors() -> None:
+    """A bare wire under one pantograph: the arrays of the connectors are empty."""
     passage = Passage((TWO_MASSES,), (10.0,), 60.0, 0.2, 1e-3)
     difference, _, _ = largest_differences(discretise(bare_wire(40.0), 1.0), passage, 200, drop=0.5)
     assert max(difference.values()) < 1e-9, difference
 
 
-def test_kernel_repeats_the_plain_step_with_a_lateral_field() -> None:
-    """A zigzag of 0.2 m on hinged arms: leaning droppers and arms couple the fields; rigid bars leave 1e-8."""
+def test_step_equals_the_plain_implementation_with_a_lateral_field() -> None:
+    """A zigzag of 0.2 m on hinged arms: inclined droppers and arms couple the fields; rigid bars: 1e-8."""
     catenary = simple_line(spans=3, span=40.0, droppers=(5.0, 15.0, 25.0, 35.0), damping=DAMPED)
     contact, messenger = catenary.wires
     zigzag = ((0.0, 0.2), (40.0, -0.2), (80.0, 0.2), (120.0, -0.2))
@@ -105,8 +109,8 @@ def test_kernel_repeats_the_plain_step_with_a_lateral_field() -> None:
     assert max(difference.values()) < 1e-8, difference
 
 
-def test_kernel_repeats_the_plain_step_under_two_contact_wires() -> None:
-    """Parallel contact wires of different tension: each head presses on both, and may leave either."""
+def test_step_equals_the_plain_implementation_under_two_contact_wires() -> None:
+    """Parallel contact wires of different tension: each head presses on both and may lose either."""
     catenary = simple_line(spans=2, span=40.0, droppers=(5.0, 15.0, 25.0, 35.0), damping=DAMPED)
     contact, messenger = catenary.wires
     second = replace(contact, name="second", tension=12e3)
@@ -129,7 +133,7 @@ damping_coefficients = st.builds(Rayleigh, st.floats(0.0, 0.5), st.floats(0.0, 2
 
 @st.composite
 def small_lines(draw: st.DrawFn) -> Catenary:
-    """One or two spans with droppers anywhere, stiff and soft, heavy and light, and any damping."""
+    """One or two spans with droppers at any position, stiff and soft, heavy and light, with any damping."""
     spans = draw(st.integers(1, 2))
     places = sorted(draw(st.sets(st.integers(2, 28), min_size=1, max_size=4)))
     damping = {kind: draw(damping_coefficients) for kind in Kind}
@@ -158,10 +162,10 @@ def pantographs(draw: st.DrawFn) -> Pantograph:
 
 @settings(max_examples=15, deadline=None, derandomize=True)
 @given(small_lines(), st.lists(pantographs(), min_size=1, max_size=2), st.floats(10.0, 110.0), st.floats(0.0, 2.0))
-def test_kernel_repeats_the_plain_step_on_any_small_line(
+def test_step_equals_the_plain_implementation_on_any_small_line(
     catenary: Catenary, several: list[Pantograph], speed: float, drop: float
 ) -> None:
-    """As above for random lines, over 60 steps; a force that the kernel leaves 1e-9 N off is divided by small peaks."""
+    """Random lines over 60 steps; a remaining force error of 1e-9 N is divided by small peaks."""
     passage = Passage(tuple(several), (12.0, 4.0)[: len(several)], speed, 0.12, 2e-3)
     difference, _, _ = largest_differences(discretise(catenary, 2.0), passage, 60, drop)
     assert max(difference.values()) < 1e-9, difference

@@ -1,4 +1,4 @@
-"""The time step on a long wire: travelling pulses and a moving load, against d'Alembert and the exact dispersion."""
+"""Waves on a long wire: travelling pulses and a moving load against d'Alembert and the exact dispersion relation."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ SPEED_OF_WAVES = beam.wave_speed(TENSION, MASS)
 
 
 def travelled(line: DiscretisedLine, bending_stiffness: float, width: float, centre: float, times: Array) -> Array:
-    """Deflection, velocity and acceleration of a pulse that runs to the right, each wave at its own speed.
+    """Deflection, velocity and acceleration of a pulse that travels to the right, each wave with its own speed.
 
     Returns (times, 3, 2, stations): value and slope.
     """
@@ -42,22 +42,22 @@ def travelled(line: DiscretisedLine, bending_stiffness: float, width: float, cen
 
 
 @pytest.mark.parametrize(("bending_stiffness", "distorted"), [(0.0, 0.0), (195.0, 0.005), (2e3, 0.05)])
-def test_pulse_travels_with_the_speed_of_each_of_its_waves(bending_stiffness: float, distorted: float) -> None:
-    """A pulse 3 m wide runs 40 m; bending distorts it by more than `distorted`, so it cannot be left out unnoticed.
+def test_pulse_follows_the_exact_dispersion_relation(bending_stiffness: float, distorted: float) -> None:
+    """A pulse 3 m wide travels 40 m; bending distorts it by more than `distorted`, so that the test notices it.
 
-    Tolerance: Newmark's waves lag by (w dt)^2 / 12 of their phase w t. A pulse of width b = 3 m holds waves up to
-    w = 2 c / b = 80 rad/s; over t = 0.33 s at dt = 0.25 ms that is 9e-4 of the few waves at that end, 3e-4 of the peak.
+    Tolerance: average acceleration lags by (w dt)^2 / 12 of the phase w t. A pulse of width b = 3 m contains waves up
+    to w = 2 c / b = 80 rad/s; over t = 0.33 s at dt = 0.25 ms this is 9e-4 of these few waves, 3e-4 of the peak.
     """
     length, width, centre, dt = 120.0, 3.0, 40.0, 2.5e-4
     line = discretise(bare_wire(length, TENSION, MASS, bending_stiffness), 0.25)
-    stepping = build_kernel_arrays(line, dt)
+    kernel = build_kernel_arrays(line, dt)
     steps = round(40.0 / SPEED_OF_WAVES / dt)
     at_start, at_end = travelled(line, bending_stiffness, width, centre, np.array([0.0, steps * dt]))
     motion = Motion(at_start[:, :1].copy(), at_start[:, 1:].copy(), np.zeros(0), np.zeros(0), np.zeros(1))
     train = empty_train(1)
-    work = build_workspace(stepping, train)
+    work = build_workspace(kernel, train)
     for _ in range(steps):
-        assert step(stepping, motion, train, work)
+        assert step(kernel, motion, train, work)
     error = np.abs(motion.w[0, 0] - at_end[0, 0]).max() / 0.01
     assert error < 3e-4
     string = travelled(line, 0.0, width, centre, np.array([steps * dt]))[0, 0, 0]
@@ -65,7 +65,7 @@ def test_pulse_travels_with_the_speed_of_each_of_its_waves(bending_stiffness: fl
 
 
 def ramp(t: float | Array) -> Array:
-    """Force of the moving load: 100 N after a smooth rise over 40 ms, which keeps the wave front resolvable [N]."""
+    """Force of the moving load: 100 N after a smooth rise in 40 ms, so that the elements resolve the wave front [N]."""
     return np.asarray(100.0 * np.sin(np.pi / 2 * np.clip(t / 0.04, 0.0, 1.0)) ** 2)
 
 
@@ -78,31 +78,31 @@ def impulse(t: Array) -> Array:
 
 
 @pytest.mark.parametrize(("share", "tolerance"), [(0.3, 5e-4), (0.57, 5e-4), (0.8, 3e-3)])
-def test_moving_load_on_a_long_string(share: float, tolerance: float) -> None:
-    """Before reflections return, the string is d'Alembert's: w = I(tau) / 2mc, tau the last moment that is heard.
+def test_moving_load_on_a_long_string_follows_dalembert(share: float, tolerance: float) -> None:
+    """Before reflections return, w = I(tau) / 2mc (d'Alembert) with the retarded time tau.
 
-    A load F at speed v < c leaves the slopes F / 2mc(c+v) behind and -F / 2mc(c-v) ahead, hence the kink
-    F / T(1 - v^2/c^2). The kernel presses through a spring of 1e-6 N/m squeezed by F / k: as the wire is at most 1.2 m
-    from height zero, the force is the prescribed one within 2e-6 N. Tolerance: at v = 0.8 c the rise of the force is
-    squeezed into (c - v) 40 ms = 1 m ahead, four elements; at lower speeds into 3 m and more, where it is a few 1e-4.
+    A load F at speed v < c leaves the slopes F / 2mc(c+v) behind and -F / 2mc(c-v) ahead, hence the kink F / T(1 -
+    v^2/c^2). The kernel presses through a spring of 1e-6 N/m compressed by F / k: as the wire is at most 1.2 m from
+    height zero, the force has its prescribed value within 2e-6 N. Tolerance: at v = 0.8 c the rise of the force
+    covers (c - v) 40 ms = 1 m ahead, four elements; at lower speeds 3 m and more, with an error of a few 1e-4.
     """
     length, origin, dt, duration, soft = 120.0, 45.0, 2.5e-4, 0.3, 1e-6
     speed = share * SPEED_OF_WAVES
     line = discretise(bare_wire(length, TENSION, MASS, 0.0), 0.25)
     heavy = Pantograph(np.array([[1e9]]), np.zeros((1, 1)), np.zeros((1, 1)), np.ones(1), np.zeros(1), 0.0, soft)
     passage = Passage((heavy,), (origin,), speed, duration, dt)
-    stepping = build_kernel_arrays(line, dt)
-    motion, train = start_motion(line, stepping, passage)
-    work = build_workspace(stepping, train)
+    kernel = build_kernel_arrays(line, dt)
+    motion, train = start_motion(line, kernel, passage)
+    work = build_workspace(kernel, train)
     steps = round(duration / dt)
     for n in range(1, steps + 1):
         train.z[:] = 0.0
         train.z[0, 0, 0] = ramp(n * dt) / soft
-        assert step(stepping, motion, train, work)
+        assert step(kernel, motion, train, work)
         assert train.contact[0, 0] == pytest.approx(float(ramp(n * dt)), rel=0, abs=2e-6)
     t, c, place = steps * dt, SPEED_OF_WAVES, line.mesh.position - origin
-    heard = np.where(place < speed * t, (c * t + place) / (c + speed), (c * t - place) / (c - speed))
-    exact = impulse(np.clip(heard, 0.0, None)) / (2 * MASS * c)
+    retarded = np.where(place < speed * t, (c * t + place) / (c + speed), (c * t - place) / (c - speed))
+    exact = impulse(np.clip(retarded, 0.0, None)) / (2 * MASS * c)
     error = np.abs(motion.w[0, 0] - exact)
     assert error.max() < tolerance * exact.max()
     near = (np.abs(place - speed * t) > 2.0) & (np.abs(place - speed * t) < 6.0)

@@ -1,4 +1,4 @@
-"""What a point force bends an element between its stations."""
+"""Residual flexibility of an element under a point force."""
 
 import numpy as np
 import pytest
@@ -8,8 +8,8 @@ from pantocheck.model.fem import beam
 from pantocheck.model.fem.residual_flexibility import condensed_bubbles, local_flexibility
 
 
-def finely(h: float, tension: float, bending_stiffness: float, s: float, elements: int = 64) -> float:
-    """Deflection per force of the same element held at both ends, cut into many."""
+def fine_mesh_flexibility(h: float, tension: float, bending_stiffness: float, s: float, elements: int = 64) -> float:
+    """Deflection per force of an element with clamped ends, divided into many elements."""
     piece = h / elements
     stiffness = np.zeros((2 * elements + 2,) * 2)
     for e in range(elements):
@@ -22,9 +22,9 @@ def finely(h: float, tension: float, bending_stiffness: float, s: float, element
 
 
 @pytest.mark.parametrize("s", [0.25, 0.5, 0.625, 0.875])
-def test_without_tension_it_is_nearly_that_of_a_clamped_beam(s: float) -> None:
-    """s^3 (1 - s)^3 h^3 / 3 EI; three smooth functions leave out part of the bend under the force, up to a quarter
-    where the force is near an end and the deflection small.
+def test_residual_flexibility_without_tension_approaches_a_clamped_beam(s: float) -> None:
+    """s^3 (1 - s)^3 h^3 / 3 EI; three smooth functions miss a part of it, up to a quarter
+    for a force near an end, where the deflection is small.
     """
     exact = (s * (1 - s)) ** 3 * 0.5**3 / (3 * 195.0)
     found = local_flexibility(condensed_bubbles(0.5, 0.0, 195.0), s)
@@ -32,14 +32,14 @@ def test_without_tension_it_is_nearly_that_of_a_clamped_beam(s: float) -> None:
 
 
 @pytest.mark.parametrize("s", [0.25, 0.5, 0.75])
-def test_with_tension_it_is_nearly_that_of_a_fine_mesh(s: float) -> None:
-    """Ritz comes from below; 12 % short would be a hundredth of the contact's whole flexibility."""
-    exact = finely(0.5, 22e3, 195.0, s)
+def test_residual_flexibility_with_tension_approaches_a_fine_mesh(s: float) -> None:
+    """Ritz's method converges from below; 12 % is a hundredth of the total flexibility of the contact."""
+    exact = fine_mesh_flexibility(0.5, 22e3, 195.0, s)
     found = local_flexibility(condensed_bubbles(0.5, 22e3, 195.0), s)
     assert 0.88 * exact < found <= exact * (1 + 1e-9)
 
 
-def test_a_string_and_a_station_have_none() -> None:
+def test_residual_flexibility_vanishes_for_strings_and_at_stations() -> None:
     """Zero by definition at the ends of an element."""
     bubble = condensed_bubbles(0.5, 22e3, 195.0)
     assert local_flexibility(bubble, 0.0) == 0.0

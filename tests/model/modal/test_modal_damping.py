@@ -1,4 +1,4 @@
-"""Modal damping: the chosen modes get exactly their ratios, the others keep what Rayleigh gives them."""
+"""Modal damping: selected modes have exactly their damping ratios, the others their Rayleigh damping."""
 
 from dataclasses import replace
 
@@ -25,13 +25,13 @@ def damped_line() -> DiscretisedLine:
 
 
 def full_damping(line: DiscretisedLine) -> Array:
-    """The matrix that the simulator never forms."""
+    """Damping matrix that the simulator never forms."""
     matrices, terms = assemble_matrices(line), build_modal_terms(line)
     weight = terms.weight.reshape(len(terms.damping), -1)[:, bandwidth_order(line)[matrices.free]]
     return np.asarray(matrices.damping.toarray() + weight.T @ np.diag(terms.damping) @ weight)
 
 
-def test_complex_eigenvalues_have_the_ratios_asked_for_and_rayleigh_elsewhere() -> None:
+def test_complex_eigenvalues_have_the_modal_ratios_and_rayleigh_ratios_elsewhere() -> None:
     """Uniform Rayleigh damping couples no modes, so both hold exactly; dense eigenvalues carry about ten digits."""
     line = damped_line()
     found = compute_modes(line, 12)
@@ -49,10 +49,10 @@ def test_complex_eigenvalues_have_the_ratios_asked_for_and_rayleigh_elsewhere() 
     np.testing.assert_allclose(-roots.real / np.abs(roots), expected, rtol=1e-5)
 
 
-def test_the_step_equals_one_with_the_full_matrix() -> None:
-    """300 steps from a bent state against the average-acceleration rule with dense matrices; droppers stay taut.
+def test_step_with_modal_damping_equals_the_full_matrix() -> None:
+    """300 steps from a deflected state against average acceleration with dense matrices; droppers stay taut.
 
-    The forces of a step settle to 1e-9 N of about 100 N, and 300 steps add up what is left: 1e-8 of the motion.
+    The forces of a step settle to 1e-9 N of about 100 N, and 300 steps accumulate the rest: 1e-8 of the motion.
     """
     line, dt = damped_line(), 2e-3
     matrices, damping = assemble_matrices(line), full_damping(line)
@@ -65,16 +65,16 @@ def test_the_step_equals_one_with_the_full_matrix() -> None:
     spread = np.zeros((3, line.beams.free.size))
     spread[0, place], spread[2, place] = q, a
     w, r = (np.ascontiguousarray(spread.reshape(3, *line.beams.free.shape)[..., i]) for i in range(2))
-    stepping = build_kernel_arrays(line, dt)
+    kernel = build_kernel_arrays(line, dt)
     tension = line.connectors.preload + line.connectors.stiffness * np.einsum(
         "nb,nb->n", line.connectors.coefficient, w[0].T[line.connectors.station]
     )
-    motion = Motion(w, r, tension, np.zeros(stepping.modal.damping.size), np.zeros(1))
+    motion = Motion(w, r, tension, np.zeros(kernel.modal.damping.size), np.zeros(1))
     train = empty_train(1)
-    work = build_workspace(stepping, train)
+    work = build_workspace(kernel, train)
     effective = mass + dt / 2 * damping + dt**2 / 4 * stiffness
     for _ in range(300):
-        assert step(stepping, motion, train, work) > 0
+        assert step(kernel, motion, train, work) > 0
         predicted, rate = q + dt * v + dt**2 / 4 * a, v + dt / 2 * a
         a = np.linalg.solve(effective, -stiffness @ predicted - damping @ rate)
         q, v = predicted + dt**2 / 4 * a, rate + dt / 2 * a

@@ -1,4 +1,4 @@
-"""Modes and what each kind of component contributes to them."""
+"""Modes and the energy shares of the kinds of component."""
 
 import numpy as np
 import pytest
@@ -12,13 +12,13 @@ from pantocheck.model.fem.beam import pinned_frequencies
 from pantocheck.model.modal.modes import component_energies, compute_modes, damping_ratios
 
 
-def test_a_bare_wire_has_its_closed_form_frequencies() -> None:
+def test_compute_modes_of_a_bare_wire_are_the_closed_form() -> None:
     """Elements of 1 m on a wave of 12 m and more: the measured error is 2e-7."""
     found = compute_modes(discretise(bare_wire(60.0), 1.0), 10)
     np.testing.assert_allclose(found.frequency, pinned_frequencies(10, 60.0, 20e3, 195.0, 1.35), rtol=1e-6)
 
 
-def test_shapes_are_mass_normalised_and_energies_add_up() -> None:
+def test_component_energies_of_mass_normalised_modes_add_up() -> None:
     """Sums of 7 kinds of component against 1 and omega squared: rounding, magnified by the condition of K."""
     line = discretise(simple_line(damping=DAMPED), 1.0)
     found = compute_modes(line, 12)
@@ -29,7 +29,7 @@ def test_shapes_are_mass_normalised_and_energies_add_up() -> None:
     assert energies.stiffness.min() > -1e-6
 
 
-def test_energies_give_the_damping_ratios_of_any_coefficients() -> None:
+def test_damping_ratios_follow_from_component_energies() -> None:
     """zeta = sum (a k + b m) / 2 omega, the two sides computed by different sums: rounding."""
     line = discretise(simple_line(damping=DAMPED), 1.0)
     found = compute_modes(line, 12)
@@ -43,7 +43,7 @@ def test_energies_give_the_damping_ratios_of_any_coefficients() -> None:
 
 
 @pytest.mark.parametrize("coefficients", [Rayleigh(0.05, 0.0), Rayleigh(0.0, 1e-4)])
-def test_uniform_rayleigh_damping_is_what_complex_eigenvalues_say(coefficients: Rayleigh) -> None:
+def test_damping_ratios_of_uniform_rayleigh_damping_equal_complex_eigenvalues(coefficients: Rayleigh) -> None:
     """Proportional damping: ratio of mode j is exactly its energy sum; dense eigenvalues carry about ten digits."""
     line = with_damping(discretise(simple_line(spans=1), 2.0), dict.fromkeys(Kind, coefficients))
     found = compute_modes(line, 6)

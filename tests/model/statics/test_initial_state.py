@@ -1,4 +1,4 @@
-"""The line at rest: balance of forces wire by wire, symmetry, and the published dropper lengths."""
+"""Initial state: balance of forces of each wire, symmetry, published dropper lengths."""
 
 from dataclasses import replace
 
@@ -19,11 +19,11 @@ LENGTHS_2018 = np.array([1.017, 0.896, 0.810, 0.758, 0.741, 0.758, 0.810, 0.896,
 PLACES_2018 = np.array([4.5, 10.25, 16.0, 21.75, 27.5, 33.25, 39.0, 44.75, 50.5])
 PRINTED_HEIGHTS = -np.array([0.0, 0.024, 0.041, 0.052, 0.055, 0.052, 0.041, 0.024, 0.0])
 PARABOLA = -0.055 * (1 - ((PLACES_2018 - 27.5) / 23.0) ** 2)
-"""Pre-sag of 1/1000 of the span, of which the printed heights are the rounded values [m]."""
+"""Pre-sag of 1/1000 of the span; the printed heights are its rounded values [m]."""
 
 
 def simple_line_2018(spans: int, heights: Array, bending: float) -> Catenary:
-    """The EN 50318:2018 simple line as published, its bending stiffnesses multiplied; the arms carry nothing."""
+    """The EN 50318:2018 simple line as published, with multiplied bending stiffnesses; the arms carry no share."""
     span, end = 55.0, 55.0 * spans
     droppers = tuple(
         Dropper(
@@ -51,9 +51,9 @@ def simple_line_2018(spans: int, heights: Array, bending: float) -> Catenary:
 
 
 def end_pull(line: DiscretisedLine, name: str) -> float:
-    """Vertical force with which the anchors and, for a messenger, the supports hold a wire up, from its slopes [N].
+    """Vertical force of anchors and messenger supports on a wire, from its slopes [N].
 
-    Read from the shape alone: T times the jump of the slope, less the shear of bending, by the shape functions' ends.
+    It follows from the shape alone: T times the jump of the slope minus the shear of bending.
     """
     row = line.mesh.row_of[name, "z"]
     stiffness = wire_stiffness(line.beams, row)
@@ -65,7 +65,7 @@ def end_pull(line: DiscretisedLine, name: str) -> float:
 
 
 @pytest.mark.parametrize("carries_share", [True, False])
-def test_forces_on_each_wire_balance(carries_share: bool) -> None:
+def test_initial_state_balances_the_forces_on_each_wire(carries_share: bool) -> None:
     """Weight of wire, clamps and half droppers against droppers, arms, anchors and supports: to rounding, 1e-9."""
     catenary = simple_line(spans=3, carries_share=carries_share)
     heavy = tuple(replace(d, mass=0.3, upper_clamp_mass=0.2, lower_clamp_mass=0.1) for d in catenary.droppers)
@@ -77,8 +77,8 @@ def test_forces_on_each_wire_balance(carries_share: bool) -> None:
     assert end_pull(line, "messenger") == pytest.approx(messenger_weight + tension, rel=1e-9)
 
 
-def test_equilibrium_holds_for_every_unknown() -> None:
-    """Of the whole line in global order: wires, dropper tensions and arm forces, to 1e-9 of the weights (2.4 kN)."""
+def test_initial_state_is_in_equilibrium_at_every_unknown() -> None:
+    """Whole line in global order: wires, dropper tensions and arm forces, to 1e-9 of the weights (2.4 kN)."""
     line = discretise(simple_line(spans=3), 0.5)
     place = bandwidth_order(line)
     wires = np.concatenate([wire_stiffness(line.beams, row) @ line.state.deflection[row].ravel() for row in range(2)])
@@ -91,8 +91,8 @@ def test_equilibrium_holds_for_every_unknown() -> None:
     np.testing.assert_allclose(residual[free], 0.0, atol=2.4e-6)
 
 
-def test_a_regular_span_is_symmetrical() -> None:
-    """The middle span of three: tensions and lengths read the same from both ends, all but for rounding."""
+def test_initial_state_of_a_regular_span_is_symmetrical() -> None:
+    """The middle span of three: equal tensions and lengths from both ends, to rounding."""
     line = discretise(simple_line(spans=3), 0.5)
     for values in (line.state.dropper_tension[9:18], line.state.dropper_length[9:18]):
         np.testing.assert_allclose(values, values[::-1], rtol=1e-9)
@@ -101,8 +101,8 @@ def test_a_regular_span_is_symmetrical() -> None:
 def test_tensions_of_a_level_string_are_the_weights_of_its_fields() -> None:
     """Without bending, a dropper of a level wire carries half the wire on either side of it: closed form.
 
-    Elements of continuous slope round the kink at a dropper off over their length, an error of order h: extrapolated
-    from h = 0.2 and 0.1 m, 0.02 % are left of 0.2 %.
+    Elements with continuous slope round the kink at a dropper over their length, an error of order h: extrapolation
+    from h = 0.2 and 0.1 m leaves 0.02 % of 0.2 %.
     """
     catenary = simple_line(spans=2)
     strings = tuple(replace(wire, bending_stiffness=0.0) for wire in catenary.wires)
@@ -115,7 +115,7 @@ def test_tensions_of_a_level_string_are_the_weights_of_its_fields() -> None:
 
 
 def test_wire_is_level_at_an_arm_that_carries_its_share_and_sags_at_one_that_does_not() -> None:
-    """An arm without a share leaves 10 m of wire between the droppers: m g l^2 / 8T = 8.3 mm, less its bending."""
+    """An arm without a share leaves 10 m of wire between the droppers: m g l^2 / 8T = 8.3 mm, minus bending."""
     at_arm = []
     for carries_share in (True, False):
         line = discretise(simple_line(spans=3, carries_share=carries_share), 0.5)
@@ -126,7 +126,7 @@ def test_wire_is_level_at_an_arm_that_carries_its_share_and_sags_at_one_that_doe
 
 
 def string_statics(heights: Array) -> Array:
-    """Dropper lengths of one span of many alike, by the statics of loaded strings, nothing else [m]."""
+    """Dropper lengths of one of many equal spans, by the statics of loaded strings [m]."""
     x, span = PLACES_2018, 55.0
     around = np.concatenate([[x[-1] - span], x, [x[0] + span]])
     slope = np.diff(np.concatenate([heights[-1:], heights, heights[:1]])) / np.diff(around)
@@ -144,26 +144,26 @@ def lengths_of_middle_span(heights: Array, bending: float, element_length: float
 
 @pytest.mark.parametrize("heights", [PRINTED_HEIGHTS, PARABOLA], ids=["printed", "parabola"])
 def test_dropper_lengths_without_bending_are_those_of_strings(heights: Array) -> None:
-    """Extrapolated from h = 0.1 and 0.05 m (kinks cost order h), to 0.02 mm; at h = 0.05 m it is 0.3 mm off."""
+    """Extrapolated from h = 0.1 and 0.05 m (kinks: error of order h), to 0.02 mm; at h = 0.05 m the error is 0.3 mm."""
     coarse, fine = (lengths_of_middle_span(heights, 0.0, h) for h in (0.1, 0.05))
     np.testing.assert_allclose(2 * fine - coarse, string_statics(heights), rtol=0, atol=2e-5)
 
 
 def test_published_dropper_lengths_follow_from_string_statics() -> None:
-    """All nine of the 2018 simple line within the printed millimetre, arms carrying nothing, pre-sag a parabola.
+    """All nine of the 2018 simple line to the printed millimetre; arms without a share, parabolic pre-sag.
 
-    The printed heights are that parabola rounded to the millimetre, which shakes the dropper forces by 4 N and the
-    lengths by 0.7 mm: taken literally, they give every length within 1.2 mm.
+    The printed heights are this parabola rounded to the millimetre, which changes the dropper forces by 4 N and the
+    lengths by 0.7 mm: used as printed, they give every length within 1.2 mm.
     """
     np.testing.assert_allclose(string_statics(PARABOLA), LENGTHS_2018, rtol=0, atol=0.6e-3)
     np.testing.assert_allclose(string_statics(PRINTED_HEIGHTS), LENGTHS_2018, rtol=0, atol=1.2e-3)
 
 
 def test_bending_makes_every_published_dropper_four_millimetres_longer() -> None:
-    """Bending rounds the messenger off at its supports: it hangs higher by its slope there times sqrt(EI / T).
+    """Bending rounds the messenger wire at its supports: it hangs higher by its slope there times sqrt(EI / T).
 
-    The slope is half the load of a span over T, 0.042; sqrt(131.7 / 16000) = 91 mm: 3.8 mm all along the span. The
-    rest comes from the contact wire's bending, which shifts 1.2 N from each second dropper to the first, 5.75 m nearer
+    The slope is half the load of a span over T, 0.042; sqrt(131.7 / 16000) = 91 mm: 3.8 mm along the whole span. The
+    rest is due to the contact wire's bending, which shifts 1.2 N from each second dropper to the first, 5.75 m nearer
     to the support: 1.2 * 5.75 / 16e3 = 0.4 mm. Against the printed lengths that is 5 mm at most.
     """
     stiff = lengths_of_middle_span(PARABOLA, 1.0, 0.125)
@@ -174,8 +174,8 @@ def test_bending_makes_every_published_dropper_four_millimetres_longer() -> None
     assert np.ptp(shift) < 0.1e-3
 
 
-def test_clamped_wires_meet_and_balance() -> None:
-    """A stitch wire on the messenger: clamps hold both at one height, and carry its weight."""
+def test_clamps_join_wires_at_one_height_and_balance_them() -> None:
+    """A stitch wire on the messenger: clamps hold both at one height and carry its weight."""
     catenary = simple_line(spans=2)
     stitch = Wire("stitch", Kind.STITCH_WIRE, 52.0, 68.0, 3500.0, 0.31, 0.0)
     clamps = tuple(Clamp(x, "messenger", "stitch", 0.38) for x in (52.0, 68.0))

@@ -1,4 +1,4 @@
-"""The lateral plane against closed forms and against the vertical plane."""
+"""Lateral state: closed forms, and the vertical plane as a limit."""
 
 from dataclasses import replace
 
@@ -30,7 +30,7 @@ PANTOGRAPH = preload_springs(
 
 
 def with_stagger(catenary: Catenary, contact: float, spans: int) -> Catenary:
-    """The line with a zigzag of the contact wire and a straight messenger; arms a metre long, stiff by their force."""
+    """Line with a zigzag contact wire and a straight messenger wire; arms of 1 m with the stiffness of their force."""
     plans = {
         Kind.CONTACT_WIRE: tuple((SPAN * n, contact if n % 2 else -contact) for n in range(spans + 1)),
         Kind.MESSENGER_WIRE: tuple((SPAN * n, 0.0) for n in range(spans + 1)),
@@ -54,8 +54,8 @@ def passage(speed: float = 70.0, duration: float = 0.6) -> Passage:
     return Passage((PANTOGRAPH,), (70.0,), speed, duration, 1e-3)
 
 
-def test_zero_stagger_is_the_vertical_plane() -> None:
-    """The same forces, but for the rounding that 600 steps of forces of 1e2 N gather: 1e-7 N."""
+def test_zero_stagger_gives_the_forces_of_the_vertical_plane() -> None:
+    """Rounding of 600 steps with forces of 1e2 N: 1e-7 N."""
     spans = 4
     plane = simple_line(spans)
     plane = replace(plane, steady_arms=tuple(replace(arm, vertical_stiffness=None) for arm in plane.steady_arms))
@@ -70,7 +70,7 @@ def test_zero_stagger_is_the_vertical_plane() -> None:
 
 
 def test_steady_arm_carries_the_change_of_direction_of_the_wire() -> None:
-    """T times the kink, 4 a T / L; bending rounds the corner over sqrt(EI / T) = 0.1 m of 60 m: under 1 % more."""
+    """T times the kink, 4 a T / L; bending rounds the corner over sqrt(EI / T) = 0.1 m of 60 m: less than 1 % more."""
     line = zigzag()
     by_hand = 4 * STAGGER * TENSION / SPAN
     inner = line.state.arm_force[1:-1, 0]
@@ -81,7 +81,7 @@ def test_steady_arm_carries_the_change_of_direction_of_the_wire() -> None:
 
 @pytest.mark.parametrize(("acts", "sign"), [("pull", 1.0), ("push", -1.0)])
 def test_arm_is_a_pendulum_under_its_axial_force(acts: str, sign: float) -> None:
-    """Sideways as stiff as its force over its length, negative for one that pushes; along itself rigid."""
+    """Transverse stiffness force over length, negative for a pushing arm; rigid along its length."""
     line = zigzag(acts, length=1.2)
     force = np.abs(line.state.arm_force[:, 0])
     stiffness, vertical = line.connectors.stiffness, line.mesh.row_of["contact", "z"]
@@ -90,8 +90,8 @@ def test_arm_is_a_pendulum_under_its_axial_force(acts: str, sign: float) -> None
     assert stiffness[~across].tolist() == [RIGID] * 4
 
 
-def test_arm_that_pushes_makes_the_wire_softer_at_the_support() -> None:
-    """With one arm in the middle of a wire: 4 T / L of the wire, and the arm's force over its length added or taken."""
+def test_pushing_arm_makes_the_wire_softer_at_the_support() -> None:
+    """One arm in the middle of a wire: 4 T / L of the wire, plus or minus the force of the arm over its length."""
     lines = [zigzag(acts, spans=2) for acts in ("pull", "push")]
     pull, push = (1 / static_uplift(line, np.array([SPAN]), 1.0)[0] for line in lines)
     force = abs(lines[0].state.arm_force[0, 0])
@@ -101,7 +101,7 @@ def test_arm_that_pushes_makes_the_wire_softer_at_the_support() -> None:
 
 
 def test_lateral_forces_balance_on_every_station() -> None:
-    """Wires' tension against the slanting droppers: nothing is left where nothing else holds, to rounding."""
+    """Tension of the wires against the inclined droppers: zero, to rounding, where no arm or support acts."""
     spans = 4
     line = discretise(with_stagger(simple_line(spans), STAGGER, spans), 0.5)
     for name, side in (("contact", 1.0), ("messenger", -1.0)):
@@ -141,15 +141,15 @@ def _between(line: DiscretisedLine) -> Array:
 
 
 def test_mirrored_stagger_gives_the_same_forces() -> None:
-    """Left and right are alike: the vertical motion cannot tell them apart, to rounding."""
+    """The vertical motion does not depend on the side of the stagger, to rounding."""
     spans = 4
     lines = [discretise(with_stagger(simple_line(spans), side * STAGGER, spans), 0.5) for side in (1.0, -1.0)]
     one, other = (simulate_passage(line, passage(duration=0.3)).force for line in lines)
     assert np.abs(one - other).max() < 1e-7
 
 
-def test_two_wires_side_by_side_are_one_of_twice_everything() -> None:
-    """Two contact wires share the force: a pantograph cannot tell them from one of twice the tension, mass and EI."""
+def test_two_contact_wires_equal_one_of_double_tension_mass_and_stiffness() -> None:
+    """Two contact wires share the contact force equally, so that they act as one."""
     single = simple_line(3, dropper_stiffness=2e5)
     contact = next(wire for wire in single.wires if wire.kind is Kind.CONTACT_WIRE)
     messenger = next(wire for wire in single.wires if wire.kind is Kind.MESSENGER_WIRE)

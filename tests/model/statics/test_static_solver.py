@@ -1,4 +1,4 @@
-"""Static deflections: superposition while taut, slack droppers against a convex minimisation, elasticity."""
+"""Static solver: superposition with taut droppers, slack droppers against a convex minimisation, elasticity."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ def tensions_by_minimisation(load: Array) -> tuple[Array, Array]:
     """Displacement and dropper tensions by the principle of least complementary energy, a convex problem.
 
     With the rows' compliance S = K^-1, the tensions N >= 0 minimise N'(B'SB + 1/k)N / 2 - N'(N0/k + B'S(f + B N0)):
-    a non-negative least-squares problem once the matrix is split by Cholesky. No active set is guessed here.
+    a non-negative least-squares problem after a Cholesky decomposition, without a guess of the active set.
     """
     stiffness, preload = LINE.connectors.stiffness, LINE.connectors.preload
     pulled = COMPLIANCE @ (load[FREE] + BARS @ preload)
@@ -34,8 +34,8 @@ def tensions_by_minimisation(load: Array) -> tuple[Array, Array]:
     return full.reshape(LINE.beams.free.shape), tension
 
 
-def test_taut_deflections_add_up() -> None:
-    """Small loads slacken nothing: the deflection of the sum is the sum of the deflections, to rounding."""
+def test_deflections_with_taut_droppers_superpose() -> None:
+    """Small loads slacken no dropper: the deflection of the sum is the sum of the deflections, to rounding."""
     one, two = 10.0 * point_load(LINE, 0, 73.3), -25.0 * point_load(LINE, 1, 111.0)
     found = [STATICS.deflection(load) for load in (one, two, one + two)]
     assert not any(f.slack.any() for f in found)
@@ -43,8 +43,8 @@ def test_taut_deflections_add_up() -> None:
     np.testing.assert_allclose(found[2].displacement, summed, rtol=0, atol=1e-12)
 
 
-def test_load_that_slackens_droppers_lifts_more_than_in_proportion() -> None:
-    """800 N take the contact wire off several droppers: it moves by a tenth more than eighty times what 10 N do."""
+def test_deflection_grows_more_than_proportionally_with_slack_droppers() -> None:
+    """800 N slacken several droppers: the uplift is a tenth larger than eighty times that of 10 N."""
     lift = [STATICS.deflection(force * point_load(LINE, 0, 90.0)) for force in (10.0, 800.0)]
     at = LINE.mesh.station(90.0)
     assert not lift[0].slack.any()
@@ -57,7 +57,7 @@ def test_load_that_slackens_droppers_lifts_more_than_in_proportion() -> None:
 def test_slack_droppers_are_those_of_the_convex_minimum(loads: list[tuple[float, float, int]]) -> None:
     """Any loads, up and down, on either wire: tensions to 1e-6 N of 100 N, displacements to 1e-9 m of 1 m.
 
-    What limits it is the complementary problem's own conditioning: droppers of 1e5 N/m beside wires of 1e3 N/m.
+    The conditioning of the complementary problem limits the accuracy: droppers of 1e5 N/m beside wires of 1e3 N/m.
     """
     load = np.sum([force * point_load(LINE, row, x) for x, force, row in loads], axis=0)
     found = STATICS.deflection(load)
@@ -67,10 +67,10 @@ def test_slack_droppers_are_those_of_the_convex_minimum(loads: list[tuple[float,
 
 
 def test_elasticity_is_positive_and_symmetrical() -> None:
-    """Lift under 100 N along the middle span of three, per newton: the span reads the same from both its ends.
+    """Uplift per newton under 100 N along the middle span of three: equal from both ends of the span.
 
-    At mid-span both wires act as one string on rigid supports would, L / 4(T + T') = 0.417 mm/N, and the give of
-    supports, neighbouring spans and droppers adds a tenth; near the supports it is about half of that.
+    At mid-span both wires act as one string on rigid supports, L / 4(T + T') = 0.417 mm/N; the flexibility of supports,
+    neighbouring spans and droppers adds a tenth. Near the supports the elasticity is about half.
     """
     loads = [100.0 * point_load(LINE, 0, x) for x in np.linspace(60.0, 120.0, 61)]
     moved = [STATICS.deflection(load).displacement.ravel()[bandwidth_order(LINE)] @ load for load in loads]
@@ -81,8 +81,8 @@ def test_elasticity_is_positive_and_symmetrical() -> None:
     assert elasticity.min() > 0.4 * string
 
 
-def test_a_unit_load_is_answered_reciprocally() -> None:
-    """Maxwell: what a force at A moves at B, the same force at B moves at A, whichever wires A and B are on."""
+def test_static_solver_satisfies_maxwells_reciprocity() -> None:
+    """A force at A displaces B as much as the same force at B displaces A, on any wires."""
     a, b = 10.0 * point_load(LINE, 0, 51.2), 10.0 * point_load(LINE, 1, 97.9)
     place = bandwidth_order(LINE)
     moved = [STATICS.deflection(load).displacement.ravel()[place] for load in (a, b)]

@@ -1,4 +1,4 @@
-"""String statics against closed forms and against beams that hardly bend."""
+"""String statics: closed forms, and beams of very small bending stiffness."""
 
 from dataclasses import replace
 
@@ -11,7 +11,7 @@ from pantocheck.model.catenary import GRAVITY
 from pantocheck.model.statics.string_statics import string_state
 
 
-def test_messenger_with_one_dropper_hangs_as_by_hand() -> None:
+def test_string_state_of_a_messenger_with_one_dropper_is_the_closed_form() -> None:
     """A parabola of its own weight and a triangle of the dropper's force: w = (m g L^2 / 8 + N L / 4) / T, exactly."""
     length, upper, lower = 60.0, 16e3, 20e3
     line = Catenary(
@@ -29,8 +29,8 @@ def test_messenger_with_one_dropper_hangs_as_by_hand() -> None:
     assert state.dropper_length == pytest.approx([1.2 - sag], rel=1e-12)
 
 
-def test_beams_that_hardly_bend_hang_like_strings() -> None:
-    """With EI = 1e-3 N m2 every kink is rounded over an element: what is left of the difference halves with it."""
+def test_beams_of_small_bending_stiffness_approach_strings() -> None:
+    """With EI = 1e-3 N m2 every kink is rounded over an element: the difference halves with its length."""
     catenary = simple_line(3)
     limp = replace(catenary, wires=tuple(replace(wire, bending_stiffness=1e-3) for wire in catenary.wires))
     strings = string_state(catenary).dropper_length
@@ -40,7 +40,7 @@ def test_beams_that_hardly_bend_hang_like_strings() -> None:
     assert error[2] < 4e-4
 
 
-def test_stitched_messenger_balances_where_it_is_clamped() -> None:
+def test_string_state_balances_a_stitched_messenger_at_its_clamps() -> None:
     """The two clamps of a stitch wire hold it and its droppers; between them the messenger has less tension."""
     half, span = 9.0, 60.0
     supports, end = (span, 2 * span), 3 * span

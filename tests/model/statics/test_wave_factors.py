@@ -1,4 +1,4 @@
-"""Wave factors at places where they are known."""
+"""Wave factors: limits with known values."""
 
 import pytest
 
@@ -14,19 +14,19 @@ CONTACT = Wire("contact", Kind.CONTACT_WIRE, 0.0, 60.0, 22e3, 1.35, 195.0)
 MESSENGER = Wire("messenger", Kind.MESSENGER_WIRE, 0.0, 60.0, 16e3, 1.08, 131.7)
 
 
-def test_impedance_by_hand() -> None:
+def test_impedance_of_two_wires_is_the_sum_by_hand() -> None:
     assert impedance([CONTACT]) == pytest.approx(172.3369, rel=1e-6)  # sqrt(22000 x 1.35)
     assert impedance([CONTACT, CONTACT]) == pytest.approx(2 * impedance([CONTACT]))
 
 
-def test_equal_wires_reflect_half_and_an_infinite_messenger_all() -> None:
+def test_reflection_is_half_for_equal_wires_and_one_for_an_infinite_messenger() -> None:
     assert reflection_coefficient([CONTACT], [CONTACT]) == pytest.approx(0.5)
     heavy = Wire("messenger", Kind.MESSENGER_WIRE, 0.0, 60.0, 1e30, 1.0, 0.0)
     assert reflection_coefficient([CONTACT], [heavy]) == pytest.approx(1.0)
     assert reflection_coefficient([CONTACT], [MESSENGER]) == pytest.approx(131.4534 / (131.4534 + 172.3369), rel=1e-6)
 
 
-def test_doppler_factor_is_one_at_rest_and_nought_at_the_wave_speed() -> None:
+def test_doppler_factor_is_one_at_rest_and_zero_at_the_wave_speed() -> None:
     assert doppler_factor(0.0, 127.0) == 1.0
     assert doppler_factor(127.0, 127.0) == 0.0
     assert doppler_factor(127.0 / 2, 127.0) == pytest.approx(1 / 3)
