@@ -1,4 +1,4 @@
-"""Score the identification on records with known truth, side by side with pyOMA-2's SSI where it is installed.
+"""Score the identification on records with known modes, beside the SSI of pyOMA-2 if it is installed.
 
     python benchmarks/identification.py FOLDER            # records and truth.json of the mass-drop records
     python benchmarks/identification.py --made-up 20      # random records of the tests' generator
@@ -35,19 +35,19 @@ def main() -> None:
     parser.add_argument("folder", type=Path, nargs="?", help="folder with records and truth.json")
     parser.add_argument("--made-up", type=int, default=0, help="number of random records")
     parser.add_argument("--no-peers", action="store_true", help="leave pyOMA-2 out")
-    chosen = parser.parse_args()
-    peers = not chosen.no_peers and importlib.util.find_spec("pyoma2") is not None
+    options = parser.parse_args()
+    peers = not options.no_peers and importlib.util.find_spec("pyoma2") is not None
     heads = f"{'record':<12}{'method':<12}{'found':>6}{'inside':>10}"
     print(heads + f"{'90 % [%]':>10}{'worst [%]':>10}{'x bound':>9}{'time [s]':>9}")
-    if chosen.folder:
-        tests = json.loads((chosen.folder / "truth.json").read_text())["tests"]
-        for path in sorted(p for p in chosen.folder.iterdir() if p.suffix in (".h5", ".csv", ".uff")):
+    if options.folder:
+        tests = json.loads((options.folder / "truth.json").read_text())["tests"]
+        for path in sorted(p for p in options.folder.iterdir() if p.suffix in (".h5", ".csv", ".uff")):
             modes = [mode for mode in tests[path.stem]["vertical_modes"] if mode["observable"]]
             records = read_drop_records(path)
             bound = np.array([mode["crlb_zeta_rel"] for mode in modes]) / np.sqrt(len(records))
             truth = np.array([(mode["f_record_hz"], mode["zeta"], mode["group"]) for mode in modes])
             score(path.stem, records, truth, bound, peers)
-    for seed in range(chosen.made_up):
+    for seed in range(options.made_up):
         made_up(seed, peers)
 
 
@@ -72,7 +72,7 @@ def made_up(seed: int, peers: bool) -> None:
         line=DropLine((60.0,) * 6),
     )
     (found,) = identify_modes((record,))
-    # Modes in the fitted band that are not reported enter the bound, or their leakage would pass for excitation.
+    # The bound includes the modes in the fitted band that are not reported, or their leakage would count as signal.
     poles = poles[poles.imag < 2 * np.pi * found.fit.band.fitted]
     bound = bounds(found, poles)
     seen = (bound < 0.005) & (poles.imag < 2 * np.pi * 9.9)
@@ -121,8 +121,8 @@ def line(name: str, method: str, found: Real, truth: Real, bound: Real, seconds:
 def subspace(found: Identification) -> Real:
     """Modes of pyOMA-2's covariance-driven SSI on the same stretch: stable poles of the largest order, (n, 2).
 
-    It is given what a user would give it: decimated, the linear stretch, an order of twice the modes and a half. The
-    poles of the largest order that also appear (0.5 % in frequency, 10 % in damping) five orders below are taken.
+    Input as a user would choose it: the decimated linear decay, and an order of 2.5 times the number of modes. Stable
+    poles of the largest order also appear (0.5 % in frequency, 10 % in damping) five orders below.
     """
     from pyoma2.algorithms import SSI
     from pyoma2.setup import SingleSetup

@@ -1,4 +1,4 @@
-"""Computed modes in the clothes of identified ones: what an error-free identification would find, in a second."""
+"""Computed modes in place of identified ones: the result of an identification without errors, in a second."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Free decays with known poles, made with numpy alone: what the identification is tried on blind."""
+"""Synthetic mass-drop records with known poles, made with numpy alone."""
 
 from dataclasses import dataclass
 
@@ -8,9 +8,22 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True)
 class SyntheticDrop:
-    """A record and its truth.
+    """Record with its exact poles.
 
-    samples (n, c) [m/s2] from `release` [s] on preceded by rest; poles (m,) [1/s]; residues (m, c) at the release.
+    Parameters
+    ----------
+    samples : (n, c) ndarray
+        Accelerations [m/s2], at rest before the release.
+    rate : float
+        Sampling rate [Hz].
+    release : float
+        Time of the release [s].
+    poles : (m,) complex ndarray
+        Poles [1/s].
+    residues : (m, c) complex ndarray
+        Residues at the release [m/s2].
+    noise : float
+        Standard deviation of the noise [m/s2].
     """
 
     samples: NDArray[np.float64]
@@ -32,7 +45,7 @@ class SyntheticDrop:
 def span_modes(
     rng: np.random.Generator, modes: int, spans: int = 6, pairs: int = 0, pair_damping: float = 0.001
 ) -> NDArray[np.complex128]:
-    """Poles in groups of one mode per span up to the wanted number, some of them split into pairs 3 to 10 mHz apart."""
+    """Poles in groups of one mode per span, some of them split into pairs 3 to 10 mHz apart."""
     first = rng.uniform(0.8, 1.1)
     spread = rng.uniform(0.15, 0.25)
     frequency, damping = [], []
@@ -64,9 +77,9 @@ def drop(
     nonlinear: float = 0.6,
     weak: float = 0.15,
 ) -> SyntheticDrop:
-    """A record: rest, release after about 5 s, other residues while droppers are slack, then a free decay; plus noise.
+    """Record: rest, release after about 5 s, other residues while droppers are slack, then a free decay; with noise.
 
-    A share `weak` of the modes is hardly excited.
+    A share `weak` of the modes is weakly excited.
     """
     m = poles.size
     strength = 10 ** rng.uniform(-1.3, 0.2, m)

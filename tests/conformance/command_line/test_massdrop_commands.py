@@ -4,6 +4,7 @@ import json
 import tomllib
 from pathlib import Path
 
+import jsonschema
 import numpy as np
 import pytest
 from typer.testing import CliRunner
@@ -13,6 +14,7 @@ from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
 from pantocheck.conformance.mass_drops.drop_writing import write_drop_csv
+from pantocheck.conformance.schemas import build_schema
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.model import discretise
 from pantocheck.model.modal.modes import compute_modes, damping_ratios, deflection_at
@@ -70,6 +72,9 @@ def test_modes_json_has_the_keys_that_other_tools_read(folder: Path) -> None:
     assert len(rows) > 10
     assert all(required <= set(row) for row in rows)
     assert [row["frequency_Hz"] for row in rows] == sorted(row["frequency_Hz"] for row in rows)
+    jsonschema.validate(rows, build_schema("modes"))
+    identification = json.loads((folder / "out" / "identification.json").read_text())
+    jsonschema.validate(identification, build_schema("identification"))
     assert (folder / "out" / "identification.pdf").read_bytes().startswith(b"%PDF")
     page = (folder / "out" / "identification.html").read_text()
     assert "Groups of span modes" in page
@@ -105,6 +110,7 @@ def test_fit_damping_recovers_the_damping_of_the_line(folder: Path) -> None:
     assert damping.contact_wire.mass_coefficient_1_s + damping.messenger_wire.mass_coefficient_1_s > 0.0125
     results = json.loads((folder / "fit" / "damping.json").read_text())
     assert results["schema"] == "pantocheck.damping/1"
+    jsonschema.validate(results, build_schema("damping-fit"))
     for row in results["pairs"]:
         assert row["fitted"] == pytest.approx(row["measured"], rel=0.01)
         assert row["mac"] > 0.99

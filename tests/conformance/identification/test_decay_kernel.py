@@ -1,4 +1,4 @@
-"""The exact transform of a truncated decay."""
+"""Transform of a truncated decay, which is exact."""
 
 import numpy as np
 import pytest
@@ -32,7 +32,7 @@ def test_model_is_the_transform_of_the_decay(frequency, damping_ratio, amplitude
 
 
 def test_derivative_is_that_of_the_kernel():
-    """Central differences of step h err by h^2: 1e-5 relative for h = 1e-4 of a pole whose kernel bends at 0.05."""
+    """Central differences of step h have an error of order h^2: here h = 1e-4, and the kernel varies over 0.05 1/s."""
     poles = np.array([-0.05 + 6.0j, -0.2 + 11.3j])
     omega = 2 * np.pi * np.arange(5, 60) / (N * DT)
     h = 1e-4
@@ -51,7 +51,7 @@ def test_real_columns_carry_residues_as_real_numbers():
 
 
 def test_drift_columns_absorb_a_slow_drift():
-    """A cubic drift is a combination of the first three Legendre polynomials: nothing of it is left but rounding."""
+    """A cubic drift is a combination of the first three Legendre polynomials: the residual is rounding."""
     t = np.linspace(0, 1, N)
     lines = np.arange(1, 60)
     drift = np.fft.rfft(3 - 2 * t + t**2 - 4 * t**3)[lines]

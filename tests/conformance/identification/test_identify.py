@@ -1,4 +1,4 @@
-"""Blind identification of made-up records: accuracy against the Cramer-Rao bound, honest doubt, clear refusals."""
+"""Identification of synthetic records: accuracy against the Cramer-Rao bound, stated uncertainty, refused records."""
 
 from dataclasses import replace
 
@@ -65,8 +65,8 @@ def test_blind_identification_reaches_the_bound(seed):
     assert found.fit.misfit == pytest.approx(1, abs=0.15)
 
 
-def test_weak_mode_comes_out_as_uncertain_or_not_at_all():
-    """A mode thirty times below the others in strong noise: never a confident wrong damping ratio."""
+def test_weak_mode_is_uncertain_or_not_identified():
+    """A mode thirty times below the others in strong noise: it never has a certain damping ratio."""
     random = np.random.default_rng(8)
     true = span_modes(random, 6)
     made = drop(random, true, duration=60.0, rate=50.0, noise=0.02, weak=0.0)
@@ -81,7 +81,7 @@ def test_weak_mode_comes_out_as_uncertain_or_not_at_all():
             assert abs(mode.damping_ratio - 0.003) < 4 * mode.damping_ratio_std
 
 
-def test_disturbance_ends_the_stretch_and_slack_droppers_begin_it():
+def test_linear_decay_lies_between_slack_droppers_and_a_disturbance():
     random = np.random.default_rng(21)
     true = span_modes(random, 12)
     made = drop(random, true, duration=120.0, rate=50.0, noise=0.002, nonlinear=1.5, weak=0.0)
@@ -89,12 +89,12 @@ def test_disturbance_ends_the_stretch_and_slack_droppers_begin_it():
     made.samples[wind] += 0.02 * random.standard_normal((int(wind.sum()), 4))
     (found,) = identify_modes((record_of(made),), highest=4.0)
     stretch = found.fit.records[0].decay.linear
-    assert 60 < stretch.end < 81.5  # a window of four seconds decides, a little of the wind may enter
+    assert 60 < stretch.end < 81.5  # the windows have four seconds: a little of the wind may enter
     assert stretch.start > made.release + 1.3
     assert any("the rest is not a free decay" in text for text in found.warnings)
 
 
-def test_lateral_modes_are_told_by_the_lateral_channel():
+def test_lateral_channel_identifies_lateral_modes():
     random = np.random.default_rng(30)
     true = span_modes(random, 6)
     made = drop(random, true, duration=80.0, rate=50.0, noise=0.002, weak=0.0)
@@ -108,7 +108,7 @@ def test_lateral_modes_are_told_by_the_lateral_channel():
     assert mode.group is None
 
 
-def test_repeats_of_different_length_are_used_together_and_said():
+def test_repeats_of_different_length_are_used_together_with_a_warning():
     random = np.random.default_rng(40)
     true = span_modes(random, 6)
     made = [drop(random, true, duration=length, rate=50.0, noise=0.003, weak=0.0) for length in (60.0, 90.0)]
@@ -121,8 +121,8 @@ def test_repeats_of_different_length_are_used_together_and_said():
 
 
 @pytest.mark.parametrize("sensors", [2, 4])
-def test_drops_of_one_name_keep_their_own_sensors(sensors):
-    """Ten times the noise and half the sensors or other places in the first: every mode is seen best in the second."""
+def test_records_of_one_name_keep_their_sensors(sensors):
+    """The second record shows all modes best: the first has ten times the noise and other sensors."""
     random = np.random.default_rng(41)
     true = span_modes(random, 6)
     noisy = drop(random, true, sensors=sensors, duration=60.0, rate=50.0, noise=0.03, weak=0.0)
@@ -135,11 +135,11 @@ def test_drops_of_one_name_keep_their_own_sensors(sensors):
         assert [part.position_m for part in row.sensor_shape] == [220.0, 240.0, 260.0, 280.0]
 
 
-def test_amplitude_at_release_is_that_of_one_record_where_stretches_begin_apart():
-    """A gust in the quieter repeat's first 8 s: it shows the modes best, the noisier one has the largest residues.
+def test_amplitude_at_release_does_not_depend_on_the_start_of_the_linear_decay():
+    """The quieter repeat, with a gust in its first 8 s, shows the modes best; the noisier one has the largest residues.
 
-    The noisier one alone gives amplitudes to some parts in a thousand; residues carried back from the wrong start would
-    be wrong by the decay over the gust, more than 10 %.
+    The noisier one alone gives amplitudes to some parts in a thousand. Residues extrapolated from the wrong start would
+    have an error of more than 10 %, the decay during the gust.
     """
     random = np.random.default_rng(43)
     true = span_modes(random, 6)
@@ -160,7 +160,7 @@ def test_amplitude_at_release_is_that_of_one_record_where_stretches_begin_apart(
         assert mode.amplitude_at_release == pytest.approx(expected[nearest], rel=0.01)
 
 
-def test_files_of_one_name_that_do_not_tell_their_line_are_of_two(tmp_path):
+def test_files_of_one_name_without_line_data_belong_to_two_lines(tmp_path):
     random = np.random.default_rng(42)
     records = []
     for folder in ("a", "b"):
@@ -172,7 +172,7 @@ def test_files_of_one_name_that_do_not_tell_their_line_are_of_two(tmp_path):
     assert len(identify_modes(tuple(records), highest=4.0)) == 2
 
 
-def test_hand_placed_poles_are_refined_and_kept():
+def test_hand_placed_poles_are_refined_and_none_is_removed():
     random = np.random.default_rng(50)
     true = span_modes(random, 6)
     made = drop(random, true, duration=60.0, rate=50.0, noise=0.002, weak=0.0)
@@ -192,14 +192,14 @@ def test_short_records_are_refused(duration, message):
 
 
 def test_sampling_rate_too_low_for_any_mode_is_refused():
-    """At 1 Hz nothing above 0.32 Hz is left after the filters, and a band begins at 0.3 Hz."""
+    """At 1 Hz the filters pass nothing above 0.32 Hz, and the band begins at 0.3 Hz."""
     made = record_of(drop(np.random.default_rng(64), span_modes(np.random.default_rng(64), 6), rate=50.0))
     for rate in (0.5, 1.0):
         with pytest.raises(InputError, match=r"sampling rate of .* is too low"):
             identify_modes((replace(made, rate=rate),))
 
 
-def test_low_wanted_frequency_is_no_fault_of_the_rate():
+def test_low_highest_frequency_does_not_blame_the_sampling_rate():
     random = np.random.default_rng(65)
     made = drop(random, 2 * np.pi * np.array([0.4 * (-0.004 + 1j), 0.8 * (-0.004 + 1j)]), rate=50.0, weak=0.0)
     (found,) = identify_modes((record_of(made),), highest=0.5)
@@ -207,7 +207,7 @@ def test_low_wanted_frequency_is_no_fault_of_the_rate():
 
 
 def test_repeats_at_a_low_rate_are_compared():
-    """At 12 Hz the usual low-pass of 6 Hz would lie on half the rate."""
+    """At 12 Hz the usual low-pass at 6 Hz would be at half the sampling rate."""
     random = np.random.default_rng(66)
     made = drop(random, span_modes(random, 6), duration=60.0, rate=12.0, weak=0.0)
     (found,) = identify_modes((record_of(made, "first"), record_of(made, "second")), highest=2.0)
@@ -230,7 +230,7 @@ def test_record_shorter_than_a_window_of_rest_is_refused():
         identify_modes((short,))
 
 
-def test_list_of_no_modes_places_no_poles(tmp_path):
+def test_empty_modes_file_gives_no_start_poles(tmp_path):
     (tmp_path / "modes.json").write_text("[]")
     with pytest.raises(InputError, match="holds no mode"):
         read_poles(tmp_path / "modes.json")
@@ -257,8 +257,8 @@ def test_clipped_start_is_left_out():
     assert found.fit.misfit < 1.3
 
 
-def test_stretch_begins_after_the_last_clipped_sample():
-    """A clean decay, of which only the clipping told to the search is wrong: without it the stretch begins at 1-2 s."""
+def test_linear_decay_begins_after_the_last_clipped_sample():
+    """A clean decay with a false clipping time: without it the linear decay begins at 1-2 s."""
     random = np.random.default_rng(62)
     made = record_of(drop(random, span_modes(random, 6), duration=60.0, rate=50.0, weak=0.0))
     band = FrequencyBand.up_to(4.0, made.rate)
@@ -278,8 +278,8 @@ def test_single_sensor_is_marked():
     assert all(mode.phase_collinearity is None for mode in found.modes)
 
 
-def test_groups_hold_one_mode_per_span_even_where_they_touch():
-    """Groups of the six-span line of the study's kind; from the fifth on they are nearer than their own modes."""
+def test_groups_hold_one_mode_per_span_where_they_touch():
+    """Groups of a six-span line; from the fifth on their distance is smaller than that of the modes in a group."""
     first = np.array([0.836, 0.857, 0.897, 0.923, 0.966, 1.031])
     frequencies = np.concatenate(
         [k * np.mean(first) * (1 + (first / np.mean(first) - 1) * 1.1 / k**0.3) for k in range(1, 7)]

@@ -1,4 +1,4 @@
-"""Refinement by output error: gradient, resolution, and honest uncertainty."""
+"""Refinement by output error: gradient, resolution and uncertainty."""
 
 import numpy as np
 import pytest
@@ -25,7 +25,7 @@ def decays(random, poles, duration, channels, noise):
 
 
 def test_gradient_is_that_of_the_cost():
-    """Half the cost's central difference; the residual is orthogonal to the model, so Kaufman's gradient is exact."""
+    """Kaufman's gradient is half the central difference of the cost: the residual is orthogonal to the model."""
     random = np.random.default_rng(1)
     true = poles_of((0.9, 0.005), (0.95, 0.004), (1.7, 0.003))
     data = [build_block(decays(random, true, 60, 2, 0.01), DT, 0.3, 6.0)]

@@ -1,4 +1,4 @@
-"""Damping models: coefficients put into a small finite-element line come out of its modes."""
+"""Damping fit: it returns the coefficients of a small finite-element line from its modes."""
 
 from itertools import pairwise
 from typing import NamedTuple
@@ -65,7 +65,7 @@ def line():
     }
     frequency, energies = np.sqrt(w2) / (2 * np.pi), ComponentEnergies(kinds, energy["K"], energy["M"])
     damping = sum(b * M[kind] + a * K[kind] for kind, (_, _, b, a) in WIRES.items()) + 1e-5 * K["dropper"]
-    # The truth comes from the complex eigenvalues, not from the modal formula that is fitted.
+    # The exact ratios come from the complex eigenvalues, not from the modal formula that is fitted.
     mass_inverse = np.linalg.inv(sum(M.values())[cut])
     zero, one = np.zeros_like(mass_inverse), np.eye(len(mass_inverse))
     state = np.block([[zero, one], [-mass_inverse @ sum(K.values())[cut], -mass_inverse @ damping[cut]]])
@@ -85,8 +85,8 @@ def test_energies_of_the_kinds_add_up(line):
     assert line.energies.stiffness.sum(axis=1) == pytest.approx((2 * np.pi * line.frequency) ** 2, rel=1e-8)
 
 
-def test_coefficients_come_back(line):
-    """Both wires within 5 % from ratios known to 0.3 %; the droppers' own 1e-5 s, not fitted, biases by less."""
+def test_fit_returns_the_coefficients(line):
+    """Both wires within 5 % from ratios known to 0.3 %; the bias by the droppers (1e-5 s, not fitted) is smaller."""
     fit = fit_damping_model(line.basis, measured_of(line, 0.003, np.random.default_rng(1)))
     for kind, (_, _, mass, stiffness) in WIRES.items():
         assert fit.values[kind, "mass"] == pytest.approx(mass, rel=0.05)
@@ -114,7 +114,7 @@ def test_outlier_of_a_group_is_left_out(line):
     assert fit.values["contact_wire", "stiffness"] == pytest.approx(5e-5, rel=0.06)
 
 
-def test_only_the_wires_are_observable(line):
+def test_wires_alone_are_observable(line):
     measured = measured_of(line, 0.003, np.random.default_rng(3))
     fit = fit_damping_model(line.basis, measured)
     seen = {(one.kind, one.matrix) for one in compute_observability(line.basis, measured, fit) if one.observable}
@@ -124,9 +124,9 @@ def test_only_the_wires_are_observable(line):
 
 
 def test_coefficients_are_those_of_the_modes_used(line):
-    """Outliers of all sizes, some of which show only once larger ones are gone: the last to go must leave no trace.
+    """Outliers of all sizes, some of which stand out only after larger ones are removed, leave no trace.
 
-    Fitted anew to the modes used alone, each with its group's weight, the coefficients are the same to rounding.
+    A fit of the used modes alone, with the weights of their groups, gives the same coefficients to rounding.
     """
     for seed in range(10):
         random = np.random.default_rng(seed)
@@ -144,8 +144,8 @@ def test_coefficients_are_those_of_the_modes_used(line):
         assert [c.value for c in fit.coefficients] == pytest.approx(anew[0] / scale, rel=1e-8, abs=1e-15)
 
 
-def test_leaving_out_what_the_fit_puts_to_zero_changes_nothing(line):
-    """A negative coefficient cannot be fitted and becomes 0; groups of unlike certainty make the weights matter."""
+def test_a_coefficient_fitted_as_zero_can_be_left_out(line):
+    """A negative coefficient is fitted as 0; groups of different uncertainty make the weights matter."""
     true = {("contact_wire", "stiffness"): 5e-5, ("contact_wire", "mass"): -0.01, ("messenger_wire", "mass"): 0.1}
     ratio = line.basis.ratios @ [true.get(term, 0.0) for term in line.basis.terms]
     random = np.random.default_rng(6)
@@ -175,7 +175,7 @@ def test_too_few_modes_are_refused(line):
 
 
 def test_pairs_by_frequency_and_shape():
-    """All computed frequencies 2 % low and two neighbours exchanged in order: the shapes tell."""
+    """All computed frequencies are 2 % low and two neighbours have exchanged their order: the shapes decide."""
     random = np.random.default_rng(5)
     shapes = random.standard_normal((6, 4))
     measured = np.array([1.0, 1.1, 1.2, 1.21, 1.4, 1.5])
