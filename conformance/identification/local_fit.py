@@ -13,7 +13,7 @@ from pantocheck.conformance.array_types import ComplexArray, RealArray
 from pantocheck.conformance.identification.decay_kernel import decay_kernel, far_pole_columns, stack_real_imaginary
 from pantocheck.conformance.identification.projection import DataBlock, ProjectionFit, pole_columns
 
-MIN_LINES = 8
+MIN_LOCAL_LINES = 8
 """Spectral lines of a block that a local fit needs."""
 
 DAMPING_TRIALS = (0.3, 1.0, 3.0)
@@ -63,7 +63,7 @@ def restrict_fit(
     local = []
     for data, fit in zip(blocks, fits, strict=True):
         window = np.abs(data.omega - centre) < half + 6 * resolution
-        if window.sum() < MIN_LINES:
+        if window.sum() < MIN_LOCAL_LINES:
             continue
         omega = data.omega[window]
         residues = fit.residues[near]
