@@ -60,6 +60,9 @@ def main() -> int:
         settings = replace(settings, seed=arguments.seed)
     sources = Sources(snapshot, settings)
     preload(["coverage", *settings.preload])
+    for pattern in (pattern for area in settings.areas.values() for pattern in area["files"]):
+        if not sources.files([pattern]):
+            print(f"{arguments.settings.name}: no file matches {pattern}")
     areas = arguments.areas.split(",") if arguments.areas else list(settings.areas)
     traces = _trace(sources, arguments, out)
     results = (
@@ -70,7 +73,7 @@ def main() -> int:
     sample = _sample(sources, areas, arguments)
     jobs = partial(_jobs, sample, sources, traces, results, arguments)
     known = {mutant.id: (area, mutant) for area, mutant in sample}
-    for identity, answer in run_jobs(jobs(), out, arguments.jobs):
+    for identity, answer in run_jobs(jobs(), out, 1 if arguments.mutant else arguments.jobs):
         area, mutant = known[identity]
         results["reliable"] = sorted({*results["reliable"], *answer.pop("reliable")})
         results["mutants"][identity] = {"area": area, **_facts(mutant), **answer}
@@ -150,6 +153,8 @@ def _trace(sources: Sources, arguments: argparse.Namespace, out: Path) -> Traces
     traces = Traces()
     for path in stored.values():
         traces.add(loads(path.read_text(encoding="utf-8")))
+    if not traces.lines:
+        sys.exit("the tests execute no line of the snapshot; do they import the project from another place?")
     return traces
 
 
