@@ -1,0 +1,25 @@
+"""Formats of measured tables: the format follows from the suffix, and messages list the formats of the table."""
+
+from pathlib import Path
+
+import pytest
+
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.table_formats import CSV, HDF5, TABLE_FORMATS, find_table_format, list_suffixes
+
+
+def test_messages_list_all_formats() -> None:
+    assert list_suffixes(TABLE_FORMATS) == ".csv, .uff, .mat, .h5, .tdms or .mf4"
+    assert list_suffixes((CSV,)) == ".csv"
+    with pytest.raises(InputError, match=r"format '\.xls' is not known\.\n  Known formats are \.csv or \.h5\."):
+        find_table_format(Path("a.xls"), (CSV, HDF5))
+
+
+def test_suffixes_are_unique_and_in_lower_case() -> None:
+    suffixes = [suffix for table_format in TABLE_FORMATS for suffix in table_format.suffixes]
+    assert sorted(set(suffixes)) == sorted(suffixes)
+    assert all(suffix == suffix.lower() for suffix in suffixes)
+
+
+def test_upper_case_suffix_is_read() -> None:
+    assert find_table_format(Path("A.HDF5")) is HDF5

@@ -1,0 +1,28 @@
+"""HDF5 records of mass drops: round trip of several runs, damaged files."""
+
+from pathlib import Path
+
+import h5py
+import pytest
+
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
+from pantocheck.conformance.mass_drops.drop_record import DropRecord
+from pantocheck.conformance.mass_drops.drop_writing import write_drop_hdf5
+from tests.helpers.drop_records import assert_same_record
+
+
+def test_hdf5_reads_back(tmp_path: Path, record: DropRecord) -> None:
+    write_drop_hdf5((record, record), tmp_path / "r.h5")
+    runs = read_drop_records(tmp_path / "r.h5")
+    assert [run.name for run in runs] == ["T run 1", "T run 2"]
+    assert_same_record(runs[1], record, 0.0)
+
+
+def test_hdf5_group_in_place_of_a_table_is_refused(tmp_path: Path, record: DropRecord) -> None:
+    write_drop_hdf5((record,), tmp_path / "r.h5")
+    with h5py.File(tmp_path / "r.h5", "r+") as file:
+        del file["run_1/acceleration"]
+        file.create_group("run_1/acceleration")
+    with pytest.raises(InputError, match="holds no table of samples"):
+        read_drop_records(tmp_path / "r.h5")

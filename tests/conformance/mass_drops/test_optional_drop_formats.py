@@ -1,0 +1,100 @@
+"""TDMS and MDF records of mass drops, whose libraries are extras."""
+
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from helpers.drop_records import RATE
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
+from pantocheck.conformance.mass_drops.drop_record import DropRecord
+from pantocheck.conformance.mass_drops.drop_writing import write_drop_csv
+from tests.helpers.drop_records import assert_same_record
+
+
+def test_tdms(tmp_path: Path, record: DropRecord) -> None:
+    nptdms = pytest.importorskip("nptdms", reason="extra tdms")
+    write_drop_csv(record, tmp_path / "r.csv")
+    with nptdms.TdmsWriter(str(tmp_path / "r.tdms")) as writer:
+        writer.write_segment(
+            [
+                nptdms.ChannelObject("group", channel.name, record.signals[:, c], {"wf_increment": 1 / RATE})
+                for c, channel in enumerate(record.channels)
+            ]
+        )
+    assert_same_record(read_drop_records(tmp_path / "r.tdms")[0], record, 0.0)
+
+
+def test_mdf(tmp_path: Path, record: DropRecord) -> None:
+    asammdf = pytest.importorskip("asammdf", reason="extra mdf")
+    write_drop_csv(record, tmp_path / "r.csv")
+    file = asammdf.MDF(version="4.10")
+    signals = [
+        asammdf.Signal(record.signals[:, c], record.time, name=channel.name, unit="m/s2")
+        for c, channel in enumerate(record.channels)
+    ]
+    file.append(signals)
+    file.save(tmp_path / "r.mf4", overwrite=True)
+    file.close()
+    assert_same_record(read_drop_records(tmp_path / "r.mf4")[0], record, 0.0)
+
+
+def test_tdms_with_channels_of_two_rates_is_refused(tmp_path: Path, record: DropRecord) -> None:
+    nptdms = pytest.importorskip("nptdms", reason="extra tdms")
+    write_drop_csv(record, tmp_path / "r.csv")
+    with nptdms.TdmsWriter(str(tmp_path / "r.tdms")) as writer:
+        writer.write_segment(
+            [
+                nptdms.ChannelObject("group", one.name, record.signals[:, c], {"wf_increment": (1 + (c == 2)) / RATE})
+                for c, one in enumerate(record.channels)
+            ]
+        )
+    with pytest.raises(InputError, match="differ in sampling interval"):
+        read_drop_records(tmp_path / "r.tdms")
+
+
+def test_mdf_with_channels_of_two_rates_is_refused(
+    tmp_path: Path, record: DropRecord, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A substitute for the package: the check belongs to the suite and must not need the extra."""
+    signals = {
+        channel.name: SimpleNamespace(
+            name=channel.name, unit="m/s2", samples=record.signals[:, c], timestamps=(1 + (c == 2)) * record.time
+        )
+        for c, channel in enumerate(record.channels)
+    }
+
+    class File:
+        channels_db = signals
+
+        def __init__(self, path: Path) -> None:
+            self.get = signals.__getitem__
+
+        def __enter__(self) -> "File":
+            return self
+
+        def __exit__(self, *error: object) -> None:
+            pass
+
+    monkeypatch.setitem(sys.modules, "asammdf", SimpleNamespace(MDF=File))
+    monkeypatch.setitem(sys.modules, "asammdf.blocks", SimpleNamespace())
+    monkeypatch.setitem(sys.modules, "asammdf.blocks.utils", SimpleNamespace(MdfException=RuntimeError))
+    write_drop_csv(record, tmp_path / "r.csv")
+    (tmp_path / "r.mf4").write_bytes(b"x")
+    with pytest.raises(InputError, match="differ in sampling interval"):
+        read_drop_records(tmp_path / "r.mf4")
+    signals[record.channels[2].name].timestamps = record.time
+    assert_same_record(read_drop_records(tmp_path / "r.mf4")[0], record, 0.0)
+
+
+@pytest.mark.parametrize(("suffix", "package", "extra"), [(".tdms", "nptdms", "tdms"), (".mf4", "asammdf", "mdf")])
+def test_missing_extra_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, suffix: str, package: str, extra: str
+) -> None:
+    path = tmp_path / f"r{suffix}"
+    path.write_bytes(b"x")
+    monkeypatch.setitem(sys.modules, package, None)
+    with pytest.raises(InputError, match=rf"pantocheck\[{extra}\]"):
+        read_drop_records(path)
