@@ -1,4 +1,4 @@
-"""Byte-level fuzz of every reader: damaged files are refused with one message, or read; nothing else may happen.
+"""Byte-level fuzz of every reader: damaged files are refused with one message, or read; any other outcome is a failure.
 
     python benchmarks/fuzz.py --seconds 600 [--seed 1] [--keep FOLDER]
 
@@ -65,11 +65,11 @@ TOKENS = tuple(
 
 
 class Falsehood(AssertionError):
-    """A verdict passed that does not follow from what was read: the one defect a conformance suite must not have."""
+    """A passing verdict that does not follow from the file: the one defect that a conformance suite must not have."""
 
 
 class Target(NamedTuple):
-    """A reader under fuzz: the files it starts from, which of them is damaged, and what is done with it."""
+    """Reader under fuzz: its sound files, the name of the damaged one, and the use of the folder that holds them."""
 
     name: str
     files: dict[str, bytes]
@@ -78,7 +78,7 @@ class Target(NamedTuple):
 
 
 def damaged(content: bytes, chance: random.Random) -> bytes:
-    """A file with a few things wrong with it."""
+    """Damage a file at one or more random places."""
     data = bytearray(content)
     for _ in range(chance.choice((1, 1, 1, 2, 4, 16))):
         at = chance.randrange(len(data) + 1)
@@ -104,7 +104,7 @@ def damaged(content: bytes, chance: random.Random) -> bytes:
 
 
 def _number_replaced(data: bytearray, chance: random.Random) -> bytearray:
-    """Another number where one stands, which a change of bytes seldom leaves."""
+    """Replace a number by another one, which random bytes seldom do."""
     found = list(re.finditer(rb"-?\d+(\.\d+)?([eE][-+]?\d+)?", data))
     if not found:
         return data
@@ -121,7 +121,7 @@ def _lines_swapped(data: bytearray, chance: random.Random) -> bytearray:
 
 
 def targets(folder: Path) -> list[Target]:
-    """Every reader with a small file that it likes."""
+    """Every reader with a small sound file."""
     tables: dict[str, dict[str, bytes]] = {}
     for suffix in ("csv", "h5"):
         home = folder / suffix
@@ -169,7 +169,7 @@ def targets(folder: Path) -> list[Target]:
 
 
 def _record() -> Record:
-    """A short record of the case, by hand; its sine fails on the extremes."""
+    """Short synthetic record of the case; its sine fails on the extremes."""
     rate, speed = 200.0, 250 / 3.6
     time_s = np.arange(int(5.2 * rate)) / rate
     position = 60 + speed * time_s
@@ -186,7 +186,7 @@ def use_record(folder: Path) -> None:
     except InputError:
         pass
     else:
-        # What the record itself raises while it runs is told by `record_folder(...).run`: the runner would hide it.
+        # `run` is called directly because the runner would hide an unexpected exception.
         (case,) = select_cases([CASE])
         with suppress(InputError):
             system.run(case)
@@ -196,7 +196,7 @@ def use_record(folder: Path) -> None:
 
 
 def use_digested(folder: Path) -> None:
-    """A table whose bytes are not those of its digest must be refused."""
+    """Require that a table which contradicts its digest is refused."""
     use_record(folder)
     raise Falsehood("a table that contradicts its digest was read")
 
@@ -224,7 +224,7 @@ def use_baseline(results: Results) -> Callable[[Path], None]:
 
 
 def check(results: Results) -> None:
-    """Whatever was graded is consistent in itself, and a case in `error` says why in the words of the suite."""
+    """Require consistent results, and for a case in `error` a reason that the suite formulated."""
     found = find_discrepancies(results.to_dict())
     if found and results.verdict in {"pass", "info"}:
         raise Falsehood(f"{results.verdict}: {found[0]}")
@@ -237,7 +237,7 @@ def check(results: Results) -> None:
 
 
 def one_round(target: Target, folder: Path, chance: random.Random) -> str:
-    """Give a damaged file to its reader: `read` or `refused`; anything else is raised."""
+    """Give a damaged file to its reader; the outcome is `read`, `refused` or an exception."""
     content = damaged(target.files[target.damaged], chance)
     for name, original in target.files.items():
         (folder / name).write_bytes(content if name == target.damaged else original)
@@ -247,13 +247,13 @@ def one_round(target: Target, folder: Path, chance: random.Random) -> str:
         target.use(folder)
     except InputError as error:
         if "\n  " not in str(error) or not error.found or len(str(error)) > 3000:
-            raise Falsehood(f"a message that helps nobody: {str(error)[:200]!r}") from None
+            raise Falsehood(f"a message without place, fault or hint: {str(error)[:200]!r}") from None
         return "refused"
     return "read"
 
 
 class Hang(BaseException):
-    """A reader takes longer than a person would wait."""
+    """A reader exceeds the time limit."""
 
 
 def _hang(*_: object) -> None:
@@ -261,7 +261,7 @@ def _hang(*_: object) -> None:
 
 
 def campaign(seconds: float, seed: int, keep: Path) -> int:
-    """Fuzz all readers in turn until the time is over; gives how many failures there were."""
+    """Fuzz all readers in turn until the time is over, and return the number of failures."""
     chance, outcomes, failures = random.Random(seed), Counter[tuple[str, str]](), 0
     signal.signal(signal.SIGALRM, _hang)
     with tempfile.TemporaryDirectory() as name:
@@ -300,7 +300,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--keep", type=Path, default=Path("fuzz-failures"))
     options = parser.parse_args()
-    logging.getLogger("pypdf").setLevel(logging.CRITICAL)  # it tells of every object of a damaged file
+    logging.getLogger("pypdf").setLevel(logging.CRITICAL)  # it warns of every object of a damaged file
     sys.exit(bool(campaign(options.seconds, options.seed, options.keep)))
 
 
