@@ -1,9 +1,12 @@
-"""Baselines: a value that drifts fails though its limits hold, and one that vanishes is skipped."""
+"""Baseline: a drifted value fails even within its limits, and a missing value is skipped."""
 
 import json
+from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
+from click.testing import Result
 from typer.testing import CliRunner
 
 from pantocheck.conformance.authenticity.recomputation import find_discrepancies
@@ -12,6 +15,7 @@ from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.grading.baseline import compare_with_baseline
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.reports.formats.junit import render_junit
+from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.results.results_reading import read_results
 from pantocheck.conformance.runner import run_cases
 from pantocheck.conformance.systems.system_choice import choose_system
@@ -20,11 +24,11 @@ PASSING = "record:en50318-2002/known-passing-code"
 
 
 @pytest.fixture
-def results():
+def results() -> Results:
     return run_cases(select_cases(["en50318-2002/*"]), choose_system(PASSING))
 
 
-def changed(results, name, value):
+def changed(results: Results, name: str, value: float) -> Results:
     """Baseline in which one quantity of the first case had another value."""
     first = results.cases[0]
     quantities = {**first.quantities, "1": {**first.quantities["1"], name: value}}
@@ -33,7 +37,7 @@ def changed(results, name, value):
     )
 
 
-def test_same_values_do_not_drift(results):
+def test_same_values_do_not_drift(results: Results) -> None:
     compared = compare_with_baseline(results, results, 0.1, "b.json")
     assert compared.verdict == "pass"
     assert [len(case.criteria) for case in compared.cases] == [8, 8]
@@ -41,7 +45,7 @@ def test_same_values_do_not_drift(results):
 
 
 @pytest.mark.parametrize(("was", "drifts"), [(27.6 / 1.019, False), (27.6 / 1.021, True), (27.6 / 0.979, True)])
-def test_value_that_drifts_fails_within_its_limits(results, was, drifts):
+def test_value_that_drifts_fails_within_its_limits(results: Results, was: float, drifts: bool) -> None:
     compared = compare_with_baseline(results, changed(results, "std_force_N", was), 2.0, "b.json")
     assert compared.verdict == ("fail" if drifts else "pass")
     if drifts:
@@ -55,14 +59,14 @@ def test_value_that_drifts_fails_within_its_limits(results, was, drifts):
         assert compared.cases[1].verdict == "pass"
 
 
-def test_value_near_zero_drifts_by_its_unit(results):
+def test_value_near_zero_drifts_by_its_unit(results: Results) -> None:
     """No contact loss in the baseline: 1 % of one percent is allowed."""
     lossy = changed(results, "contact_loss_pct", 0.02)
     assert compare_with_baseline(results, lossy, 1.0, "b").verdict == "fail"
     assert compare_with_baseline(results, lossy, 3.0, "b").verdict == "pass"
 
 
-def test_value_that_vanished_is_skipped(results):
+def test_missing_value_is_skipped(results: Results) -> None:
     compared = compare_with_baseline(results, changed(results, "rms_20_50_N", 20.0), 1.0, "b.json")
     (finding,) = (row for row in compared.cases[0].criteria if row.verdict == "skip")
     assert finding.reason == "the baseline has 20 N; now: the summary record does not give it"
@@ -70,7 +74,7 @@ def test_value_that_vanished_is_skipped(results):
     assert find_discrepancies(compared.to_dict()) == []
 
 
-def test_other_cases_and_other_inputs_are_warned_of(results):
+def test_other_cases_and_changed_inputs_give_warnings(results: Results) -> None:
     first = results.cases[0]
     other = results.model_copy(update={"cases": [first.model_copy(update={"input_digest": "sha256:0"})]})
     compared = compare_with_baseline(results, other, 1.0, "b.json")
@@ -78,18 +82,18 @@ def test_other_cases_and_other_inputs_are_warned_of(results):
     assert any("baseline b.json has no case en50318-2002/300" in text for text in compared.cases[1].warnings)
 
 
-def test_ungraded_case_stays_what_it_is(results):
+def test_ungraded_case_keeps_its_verdict(results: Results) -> None:
     case = replace(select_cases(["en50318-2002/250"])[0], limits=())
     unknown = replace(case, file=case.file.model_copy(update={"id": "none"}))
     skipped = run_cases([unknown], choose_system(PASSING))
     assert compare_with_baseline(skipped, results, 1.0, "b").verdict == "skip"
 
 
-def pantocheck(*arguments):
+def pantocheck(*arguments: str | Path) -> Result:
     return CliRunner().invoke(app, [str(argument) for argument in arguments])
 
 
-def test_gate_on_the_command_line_and_in_a_plan(results, tmp_path):
+def test_baseline_on_the_command_line_and_in_a_plan(results: Results, tmp_path: Path) -> None:
     base = tmp_path / "baseline.json"
     base.write_bytes(changed(results, "std_force_N", 27.0).to_json())
     command = ["run", "en50318-2002/*", "--system", PASSING, "--out", tmp_path / "out", "--formats", "json,badge"]
@@ -119,21 +123,23 @@ def test_gate_on_the_command_line_and_in_a_plan(results, tmp_path):
         (lambda text: text.replace('"1": {', '"front": {', 1), "should match pattern"),
     ],
 )
-def test_wrong_baseline_is_refused(results, tmp_path, change, message):
+def test_wrong_baseline_is_rejected(
+    results: Results, tmp_path: Path, change: Callable[[str], str], message: str
+) -> None:
     path = tmp_path / "b.json"
     path.write_text(change(results.to_json().decode()))
     with pytest.raises(InputError, match=message):
         read_results(path)
 
 
-def test_baseline_is_read_before_anything_is_computed(tmp_path):
+def test_baseline_is_read_before_anything_is_computed(tmp_path: Path) -> None:
     done = pantocheck("run", "--system", PASSING, "--baseline", tmp_path / "none.json", "--out", tmp_path / "out")
     assert done.exit_code == 2
     assert "results 'none.json': cannot be read" in done.stderr
     assert not (tmp_path / "out").exists()
 
 
-def test_results_round_trip(results, tmp_path):
+def test_results_round_trip(results: Results, tmp_path: Path) -> None:
     (tmp_path / "r.json").write_bytes(results.to_json())
     assert read_results(tmp_path / "r.json") == results
     assert json.loads(results.to_json())["cases"][0]["criteria"][0]["baseline"] is None

@@ -1,11 +1,15 @@
-"""Profiles: the rules as published, what they do with a record that breaks one of them, and `pantocheck assess`."""
+"""Profiles: published rules, records that break one of them, and the command `pantocheck assess`."""
 
 import json
 import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import jsonschema
 import numpy as np
 import pytest
+from click.testing import Result
 from typer.testing import CliRunner
 
 from pantocheck.conformance.authenticity.recomputation import find_discrepancies
@@ -17,6 +21,7 @@ from pantocheck.conformance.grading.assessed_record import load_assessed_record
 from pantocheck.conformance.grading.profile_grading import assess_record
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.sidecar_tables import LineTable
+from pantocheck.conformance.results.results_format import Criterion, Results
 from pantocheck.conformance.schemas import build_schema
 
 NAMES = ("acceptance-ac", "acceptance-dc-3kv", "acceptance-dc-1500v", "line-test")
@@ -32,11 +37,22 @@ line = {{ span_m = 60.0, wave_speed_m_s = {wave}, uplift_space_mm = {space} }}
 """
 
 
-@pytest.fixture
-def train(tmp_path):
-    """A record by distance: mean and sigma as asked, 40 spans; gives its path."""
+Train = Callable[..., Path]
+"""Writes a record with the given mean, sigma, speed, wave speed, uplift space and number of spans."""
 
-    def write(mean=125.0, sigma=30.0, speed=250.0, wave=120.0, space=80.0, spans=40):
+
+@pytest.fixture
+def train(tmp_path: Path) -> Train:
+    """Writes a record sampled by distance with known mean and sigma, and returns its path."""
+
+    def write(
+        mean: float = 125.0,
+        sigma: float = 30.0,
+        speed: float = 250.0,
+        wave: float = 120.0,
+        space: float = 80.0,
+        spans: int = 40,
+    ) -> Path:
         random = np.random.default_rng(11)
         position = np.arange(0, 60.0 * spans, 0.2)
         amplitude = np.repeat(1 + 0.05 * random.standard_normal(spans), position.size // spans)
@@ -52,17 +68,17 @@ def train(tmp_path):
     return write
 
 
-def graded(path, name="acceptance-ac", **keys):
+def graded(path: Path, name: str = "acceptance-ac", **keys: Any) -> Results:
     profile = load_profile(name)
     return assess_record(load_assessed_record(path, profile, LineTable()), profile, **keys)
 
 
-def by_quantity(results):
-    return {row.quantity: row for row in results.cases[0].criteria}
+def by_quantity(results: Results) -> dict[str, Criterion]:
+    return {criterion.quantity: criterion for criterion in results.cases[0].criteria}
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_shipped_profiles_follow_their_schema(name):
+def test_shipped_profiles_follow_their_schema(name: str) -> None:
     import tomllib
 
     text = (library_folder() / "profiles" / f"{name}.toml").read_text()
@@ -74,14 +90,14 @@ def test_shipped_profiles_follow_their_schema(name):
     ("name", "speed", "limit"),
     [("acceptance-ac", 300.0, 157.3), ("acceptance-dc-3kv", 200.0, 148.8), ("acceptance-dc-1500v", 250.0, 200.625)],
 )
-def test_mean_force_follows_the_speed(train, name, speed, limit):
+def test_mean_force_follows_the_speed(train: Train, name: str, speed: float, limit: float) -> None:
     """0.00097 v^2 + 70, 110 and 140 N, by hand."""
     row = by_quantity(graded(train(speed=speed), name))["mean_force_N"]
     assert row.upper == pytest.approx(limit)
     assert row.lower is None
 
 
-def test_good_line_is_accepted_with_its_uncertainty(train):
+def test_good_line_is_accepted_with_its_uncertainty(train: Train) -> None:
     results = graded(train())
     assert results.verdict == "pass"
     rows = by_quantity(results)
@@ -105,18 +121,18 @@ def test_good_line_is_accepted_with_its_uncertainty(train):
         ({"space": 54.0}, "max_uplift_at_support_mm"),
     ],
 )
-def test_line_that_breaks_one_rule_fails_by_it_alone(train, change, quantity):
+def test_line_that_breaks_one_rule_fails_only_that_rule(train: Train, change: dict[str, float], quantity: str) -> None:
     results = graded(train(**change))
     assert results.verdict == "fail"
     assert [row.quantity for row in results.cases[0].criteria if row.verdict == "fail"] == [quantity]
 
 
-def test_negative_statistical_minimum_fails(train):
+def test_negative_statistical_minimum_fails(train: Train) -> None:
     rows = by_quantity(graded(train(sigma=45.0)))
     assert rows["statistical_min_N"].verdict == "fail"
 
 
-def test_negative_force_never_passes(train):
+def test_negative_force_never_passes(train: Train) -> None:
     """A wrong sign makes the mean small and its variation negative: neither may be taken for a good line."""
     rows = by_quantity(graded(train(mean=-125.0)))
     assert rows["cov_20"].verdict == "skip"
@@ -124,14 +140,14 @@ def test_negative_force_never_passes(train):
     assert rows["statistical_min_N"].verdict == "fail"
 
 
-def test_rule_outside_its_range_is_skipped_and_opens_no_gate(train):
+def test_rule_outside_its_speed_range_is_skipped(train: Train) -> None:
     results = graded(train(speed=180.0))
     assert results.verdict == "skip"
     assert by_quantity(results)["mean_force_N"].reason == "the rule holds above 200 km/h, the record is of 180 km/h"
     assert find_discrepancies(results.to_dict()) == []
 
 
-def test_what_is_not_known_of_the_line_is_left_out_and_said(train):
+def test_unknown_fact_of_the_line_omits_the_rule_with_a_warning(train: Train) -> None:
     path = train()
     path.write_text("\n".join(text for text in path.read_text().splitlines() if not text.startswith("line =")))
     results = graded(path)
@@ -140,14 +156,14 @@ def test_what_is_not_known_of_the_line_is_left_out_and_said(train):
     assert len(left_out) == 2
 
 
-def test_space_for_uplift_without_an_uplift_is_skipped(train):
+def test_uplift_rule_without_an_uplift_is_skipped(train: Train) -> None:
     path = train()
     table = path.with_suffix(".csv")
     table.write_text("\n".join(line.rsplit(",", 1)[0] for line in table.read_text().splitlines()))
     assert by_quantity(graded(path))["max_uplift_at_support_mm"].verdict == "skip"
 
 
-def test_verdict_within_the_uncertainty_is_warned_of(train):
+def test_value_closer_to_a_limit_than_its_uncertainty_is_marked(train: Train) -> None:
     value = by_quantity(graded(train()))["cov_20"]
     reach = value.uncertainty
     for upper, warned in ((value.value + 0.5 * reach, True), (value.value + 2 * reach, False)):
@@ -158,7 +174,7 @@ def test_verdict_within_the_uncertainty_is_warned_of(train):
         assert criterion.source == "own"
 
 
-def test_line_test_compares_with_the_measured_record(train, tmp_path):
+def test_line_test_compares_with_the_measured_record(train: Train, tmp_path: Path) -> None:
     profile = load_profile("line-test")
     measured = load_assessed_record(PASSING / "250.toml", profile, LineTable())
     simulated = load_assessed_record(train(mean=119.0, sigma=28.0), profile, LineTable())
@@ -175,7 +191,7 @@ def test_line_test_compares_with_the_measured_record(train, tmp_path):
     assert assess_record(worse, profile, "provisional", measured).verdict == "fail"
 
 
-def test_rule_without_a_bound_for_this_speed_goes_with_a_comparison(train):
+def test_rule_without_a_bound_for_this_speed_is_omitted(train: Train) -> None:
     """One rule compares, so that the measured record's uncertainty is there; the other holds above 260 km/h only."""
     profile = load_profile("line-test")
     rule = next(rule for rule in load_profile("acceptance-ac").rule if isinstance(rule.upper, SpeedFormula))
@@ -186,13 +202,13 @@ def test_rule_without_a_bound_for_this_speed_goes_with_a_comparison(train):
     assert any(row.verdict == "skip" and "above 260 km/h" in (row.reason or "") for row in rows)
 
 
-def test_bounds_in_the_wrong_order_are_no_bounds():
+def test_bounds_in_the_wrong_order_are_rejected() -> None:
     rule = load_profile("acceptance-ac").rule[0].model_copy(update={"lower": 10.0, "upper": 5.0})
     with pytest.raises(BoundMissing, match="its lower bound of 10 lies above its upper bound of 5"):
         resolve_bounds(rule, 250.0, {}, None)
 
 
-def test_line_test_needs_a_fitting_pair(train):
+def test_line_test_needs_two_comparable_records(train: Train) -> None:
     profile = load_profile("line-test")
     simulated = load_assessed_record(train(), profile, LineTable())
     with pytest.raises(InputError, match="compares with a measured record, but none is given"):
@@ -204,12 +220,12 @@ def test_line_test_needs_a_fitting_pair(train):
         assess_record(simulated, load_profile("acceptance-ac"), measured=simulated)
 
 
-def test_same_record_same_results(train):
+def test_same_record_gives_the_same_results(train: Train) -> None:
     first, second = graded(train()), graded(train())
     assert first.model_copy(update={"started": None}) == second.model_copy(update={"started": None})
 
 
-def test_peak_of_a_long_record_is_drawn(train):
+def test_peak_of_a_long_record_is_drawn(train: Train) -> None:
     """One sample of 60 000: thinned evenly, the figure would not show what the warning and the maximum are about."""
     path = train(spans=200)
     lines = path.with_suffix(".csv").read_text().splitlines()
@@ -221,11 +237,11 @@ def test_peak_of_a_long_record_is_drawn(train):
     assert np.all(np.diff(trace.position_m) > 0)
 
 
-def pantocheck(*arguments):
+def pantocheck(*arguments: str | Path) -> Result:
     return CliRunner().invoke(app, [str(argument) for argument in arguments])
 
 
-def test_assess_writes_what_run_writes(train, tmp_path):
+def test_assess_writes_the_same_files_as_run(train: Train, tmp_path: Path) -> None:
     out = tmp_path / "out"
     done = pantocheck(
         "assess", train(), "--profile", "acceptance-ac", "--out", out, "--formats", "html,json,junit,md,badge"
@@ -252,7 +268,9 @@ def test_assess_writes_what_run_writes(train, tmp_path):
         (["--profile", "acceptance-ac", "--baseline", "none.json"], "results 'none.json': cannot be read"),
     ],
 )
-def test_bad_options_end_with_one_message_and_exit_code_2(train, tmp_path, arguments, message):
+def test_bad_options_end_with_one_message_and_exit_code_2(
+    train: Train, tmp_path: Path, arguments: list[str], message: str
+) -> None:
     done = pantocheck("assess", train(), *arguments, "--out", tmp_path / "out")
     assert done.exit_code == 2
     assert message in done.stderr
@@ -269,7 +287,7 @@ def test_bad_options_end_with_one_message_and_exit_code_2(train, tmp_path, argum
         ('given = "uplift_space_mm"', 'given = "luck"', "found 'luck', expected 'uplift_space_mm'"),
     ],
 )
-def test_wrong_profile_names_its_key(tmp_path, old, new, message):
+def test_wrong_profile_names_its_key(tmp_path: Path, old: str, new: str, message: str) -> None:
     text = (library_folder() / "profiles" / "acceptance-ac.toml").read_text()
     assert old in text
     (tmp_path / "own.toml").write_text(text.replace(old, new))

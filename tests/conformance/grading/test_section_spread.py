@@ -1,27 +1,30 @@
-"""Spread over stretches: known for a force that is known, and graded beside the value."""
+"""Section spread: known for a known force, and stored beside the value."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.grading.section_spread import section_spread
+from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals, evaluate_record
 from pantocheck.conformance.reports.certificate.criteria_table import remark_shift
 from pantocheck.conformance.results.outcome import Delivered
+from tests.conformance.conftest import Wave
 
 
 @pytest.fixture
-def growing(case_250, wave):
-    """The case with shifted stretches, and a record whose mean force grows by 1 N a span."""
+def growing(case_250: Case, wave: type[Wave]) -> tuple[Case, Record]:
+    """The case with shifted analysis sections, and a record whose mean force grows by 1 N per span."""
     case = replace(case_250, file=case_250.file.model_copy(update={"compared_spans": (3, 8)}))
     record = wave().record(case)
     return case, replace(record, force=record.force + record.position / case.line.geometry.span_m)
 
 
-def test_stretches_are_shifted_span_by_span(growing):
+def test_sections_are_shifted_span_by_span(growing: tuple[Case, Record]) -> None:
     case, _ = growing
     assert case.analysis_section == (240.0, 360.0)
     assert case.shifted_sections == tuple((60.0 * n, 60.0 * (n + 2)) for n in (2, 3, 4, 5, 6))
@@ -29,7 +32,7 @@ def test_stretches_are_shifted_span_by_span(growing):
     assert case.end >= 480.0
 
 
-def test_spread_is_the_largest_departure(growing):
+def test_spread_is_the_largest_difference(growing: tuple[Case, Record]) -> None:
     """Spans 3-4 to 7-8 about 5-6: two spans, 2 N, either way; a sample of 0.07 m more or less gives 1e-3 N."""
     case, record = growing
     found = section_spread(RecordSignals(record, case.file.filter.low_pass), case.shifted_sections)
@@ -37,7 +40,7 @@ def test_spread_is_the_largest_departure(growing):
     assert found[1]["contact_loss_pct"] == 0.0
 
 
-def test_record_that_covers_too_few_stretches_has_no_spread(growing):
+def test_record_that_covers_too_few_sections_has_no_spread(growing: tuple[Case, Record]) -> None:
     case, record = growing
     inside = (record.position[0] >= 200) & (record.position[0] < 400)
     short = replace(
@@ -52,7 +55,7 @@ def test_record_that_covers_too_few_stretches_has_no_spread(growing):
     assert section_spread(RecordSignals(short, case.file.filter.low_pass), case.shifted_sections) == {}
 
 
-def test_verdict_that_another_stretch_could_turn_is_named(growing):
+def test_value_closer_to_a_limit_than_its_spread_is_marked(growing: tuple[Case, Record]) -> None:
     case, record = growing
     value = evaluate_record(record, case.file.filter.low_pass).values[1]["mean_force_N"]
     assert isinstance(value, float)
@@ -66,7 +69,7 @@ def test_verdict_that_another_stretch_could_turn_is_named(growing):
     assert remark.startswith("changes by up to 2.0 N when the analysis section")
 
 
-def test_case_that_does_not_ask_has_none(case_250, wave):
+def test_case_without_compared_spans_has_no_spread(case_250: Case, wave: type[Wave]) -> None:
     result = grade_case(case_250, Delivered(wave().record(case_250)), "secondary")
     assert result.spread == {}
     assert all(row.spread is None for row in result.criteria)

@@ -1,4 +1,4 @@
-"""Verdicts and margins: signs, units, and the published results of a code that passes."""
+"""Verdicts and margins: sign, scale, and the published results of a code that passes."""
 
 import pytest
 from hypothesis import given
@@ -19,14 +19,14 @@ bounds = st.floats(-1e4, 1e4)
 
 
 @given(value=bounds, a=bounds, b=bounds)
-def test_margin_is_negative_exactly_where_the_verdict_is_fail(value, a, b):
+def test_margin_is_negative_exactly_where_the_verdict_is_fail(value: float, a: float, b: float) -> None:
     lower, upper = min(a, b), max(a, b)
     for low, high in ((lower, upper), (lower, None), (None, upper), (lower, lower)):
         assert (margin(value, low, high) < 0) == (judge(value, low, high) == "fail")
 
 
 @given(a=bounds, width=st.floats(1e-3, 1e3), share=st.floats(0, 1))
-def test_margin_of_two_limits_lies_between_nought_and_one(a, width, share):
+def test_margin_between_two_limits_is_from_zero_to_one(a: float, width: float, share: float) -> None:
     # Rounding of the bounds relative to their distance: 1e4 / 1e-3 * 1e-16.
     assert -1e-8 <= margin(a + share * width, a, a + width) <= 1 + 1e-8
 
@@ -35,7 +35,7 @@ def test_margin_of_two_limits_lies_between_nought_and_one(a, width, share):
     ("value", "lower", "upper", "expected"),
     [
         (28.5, 26, 31, 1.0),
-        (0.0, 0, 5e-324, 0.0),  # half of the smallest distance there is would be nought
+        (0.0, 0, 5e-324, 0.0),  # half of the smallest distance would be zero
         (5e-324, 0, 5e-324, 0.0),
         (-1e308, 0, 1e12, -2e296),  # twice the value would not be finite
         (26.0, 26, 31, 0.0),
@@ -49,17 +49,17 @@ def test_margin_of_two_limits_lies_between_nought_and_one(a, width, share):
         (2.0, 0, None, 2.0),
     ],
 )
-def test_margin_by_hand(value, lower, upper, expected):
+def test_margin_by_hand(value: float, lower: float | None, upper: float | None, expected: float) -> None:
     assert margin(value, lower, upper) == pytest.approx(expected, abs=1e-12)
 
 
-def test_margin_needs_a_limit():
+def test_margin_needs_a_limit() -> None:
     with pytest.raises(ValueError, match="at least one"):
         margin(1.0, None, None)
 
 
 @pytest.mark.parametrize("speed", ["250", "300"])
-def test_published_passing_code_passes_and_each_value_pushed_outside_fails_alone(speed):
+def test_published_passing_code_passes_and_each_value_pushed_outside_fails_alone(speed: str) -> None:
     limits = {limit.quantity: limit for limit in load_case(library_folder() / "en50318-2002" / f"{speed}.toml").limits}
     known = dict(zip(NAMES.split(), KNOWN_PASSING_CODE[speed], strict=True))
     assert set(limits) == set(known)
@@ -73,7 +73,7 @@ def test_published_passing_code_passes_and_each_value_pushed_outside_fails_alone
         assert failing(known | {name: limit.lower - 0.01}) == [name]
 
 
-def test_worst_verdict_decides():
+def test_worst_verdict_decides() -> None:
     assert worst_verdict(["pass", "info", "pass"]) == "pass"
     assert worst_verdict(["info", "info"]) == "info"
     assert worst_verdict(["pass", "skip"]) == "skip"
@@ -82,7 +82,7 @@ def test_worst_verdict_decides():
     assert worst_verdict([]) == "info"
 
 
-def test_trust_counts_from_its_level_up():
+def test_limits_count_from_the_lowest_trust_up() -> None:
     assert limit_counts("primary", "secondary")
     assert limit_counts("secondary", "secondary")
     assert not limit_counts("provisional", "secondary")

@@ -1,4 +1,4 @@
-"""Bands share out the variance: Parseval holds, sines fall into their band, and what is unknown is refused."""
+"""Bands partition the variance: Parseval holds, sines fall into their band, unknown bands are rejected."""
 
 import numpy as np
 import pytest
@@ -19,15 +19,15 @@ def noise(seed: int, n: int = 2000) -> np.ndarray:
 
 @settings(max_examples=30, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), n=st.integers(1000, 1999), edge=st.floats(2.0, 190.0))
-def test_two_bands_add_up_to_their_union(seed, n, edge):
+def test_two_bands_add_up_to_their_union(seed: int, n: int, edge: float) -> None:
     force = noise(seed, n)
     parts = [band_rms(force, RATE, low, high) for low, high in ((0, edge), (edge, 200))]
     assert_allclose(np.hypot(*parts), band_rms(force, RATE, 0, 200), rtol=1e-12)
 
 
 @pytest.mark.parametrize("n", [2000, 2001])
-def test_all_bands_add_up_to_the_variance(n):
-    """Of a force without content above 0.4 of the rate, where bands end."""
+def test_all_bands_add_up_to_the_variance(n: int) -> None:
+    """The force has no content above 0.4 of the rate, where the highest band ends."""
     spectrum = np.fft.rfft(noise(3, n))
     spectrum[np.fft.rfftfreq(n, 1 / RATE) > 200] = 0
     force = np.fft.irfft(spectrum, n)
@@ -36,7 +36,7 @@ def test_all_bands_add_up_to_the_variance(n):
 
 
 @pytest.mark.parametrize(("frequency", "band"), [(1.0, 0), (5.0, 0), (5.5, 1), (20.0, 1), (20.5, 2), (50.0, 2)])
-def test_sine_falls_into_its_band_with_its_rms(frequency, band):
+def test_sine_falls_into_its_band_with_its_rms(frequency: float, band: int) -> None:
     """Whole periods in 4 s: no leakage. An edge belongs to the band below it."""
     time = np.arange(2000) / RATE
     force = 120 + 10 * np.sin(2 * np.pi * frequency * time + 0.3)
@@ -46,7 +46,7 @@ def test_sine_falls_into_its_band_with_its_rms(frequency, band):
     assert_allclose(values, expected, atol=1e-10)
 
 
-def test_bands_differ_from_the_filtered_deviation_by_its_roll_off_only():
+def test_bands_differ_from_the_filtered_deviation_by_its_roll_off_only() -> None:
     """White noise through |H|^2 = 1/(1 + W^6)^2-like skirts: within 5 %, and equal without content near the cut-off."""
     force = noise(5, 20_000)
     brick = band_rms(force, RATE, 0, 20)
@@ -59,28 +59,28 @@ def test_bands_differ_from_the_filtered_deviation_by_its_roll_off_only():
 
 @settings(max_examples=20, deadline=None)
 @given(seed=st.integers(0, 1000), scale=st.floats(0.01, 100), shift=st.floats(-1000, 1000))
-def test_band_scales_with_the_force_and_ignores_its_mean(seed, scale, shift):
+def test_band_scales_with_the_force_and_ignores_its_mean(seed: int, scale: float, shift: float) -> None:
     force = noise(seed)
     assert_allclose(band_rms(scale * force + shift, RATE, 5, 20), scale * band_rms(force, RATE, 5, 20), rtol=1e-6)
 
 
-def test_rate_too_low_for_the_band():
+def test_band_needs_a_sufficient_rate() -> None:
     with pytest.raises(BandNotObservable, match="at least 125 samples per second; the record has 100"):
         band_rms(noise(1), 100.0, 20, 50)
 
 
-def test_stretch_too_short_for_the_band():
+def test_band_needs_a_sufficient_section() -> None:
     with pytest.raises(BandNotObservable, match=r"needs at least 0\.8 s; the analysis section lasts 0\.6 s"):
         band_rms(noise(1, 300), RATE, 0, 5)
 
 
-def test_band_above_a_filter_is_gone():
+def test_band_above_a_filter_is_not_available() -> None:
     with pytest.raises(AlreadyFiltered, match="20-50 Hz was removed"):
         band_rms(noise(1), RATE, 20, 50, filter_applied_Hz=20.0)
     assert band_rms(noise(1), RATE, 5, 20, filter_applied_Hz=20.0) > 0
 
 
-def test_spectrum_gives_the_amplitude_of_a_sine():
+def test_spectrum_gives_the_amplitude_of_a_sine() -> None:
     time = np.arange(2000) / RATE
     frequency, amplitude = amplitude_spectrum(120 + 10 * np.sin(2 * np.pi * 12.5 * time), RATE, 50.0)
     assert frequency[0] > 0

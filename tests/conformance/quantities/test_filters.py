@@ -1,4 +1,6 @@
-"""The low-pass: its -3 dB point, slope, phase and stability are those of its definition."""
+"""Low-pass filter: -3 dB point, slope, phase and stability follow from its definition."""
+
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -23,7 +25,7 @@ def measured_gain(low_pass: LowPass, frequency: float, rate: float = RATE) -> fl
 @pytest.mark.parametrize("phase", ["zero", "causal"])
 @pytest.mark.parametrize("order", [2, 4, 6, 8])
 @pytest.mark.parametrize("cutoff", [20.0, 50.0])
-def test_whole_filter_has_half_power_at_its_cutoff(phase, order, cutoff):
+def test_whole_filter_has_half_power_at_its_cutoff(phase: Literal["zero", "causal"], order: int, cutoff: float) -> None:
     low_pass = LowPass("butterworth", order, cutoff, phase)
     # The bilinear transform is pre-warped at the cut-off, so only rounding is left.
     assert_allclose(low_pass.gain(np.array([cutoff]), RATE), np.sqrt(0.5), rtol=1e-9)
@@ -33,13 +35,13 @@ def test_whole_filter_has_half_power_at_its_cutoff(phase, order, cutoff):
 
 @pytest.mark.parametrize("phase", ["zero", "causal"])
 @pytest.mark.parametrize("order", [4, 6])
-def test_slope_is_the_total_order(phase, order):
+def test_slope_is_the_total_order(phase: Literal["zero", "causal"], order: int) -> None:
     """Six decibels per octave and order; at 10 kHz, 80 to 160 Hz is far from the bilinear transform's warping (1 %)."""
     low, high = LowPass("butterworth", order, 20.0, phase).gain(np.array([80.0, 160.0]), 10_000.0)
     assert_allclose(np.log2(low / high), order, rtol=0.01)
 
 
-def test_zero_phase_leaves_a_symmetric_pulse_where_it_is():
+def test_zero_phase_leaves_a_symmetric_pulse_where_it_is() -> None:
     time = np.arange(4000) / RATE - 2.0
     filtered = LowPass()(np.exp(-((time / 0.02) ** 2)), RATE)
     # sosfiltfilt is symmetric up to the transients of the padded ends, 2 s away.
@@ -47,7 +49,7 @@ def test_zero_phase_leaves_a_symmetric_pulse_where_it_is():
     assert abs(time[np.argmax(filtered)]) < 1e-9
 
 
-def test_causal_filter_delays():
+def test_causal_filter_delays() -> None:
     """Group delay of a Butterworth filter at low frequency: sum of 2 sin(..) / w_c = 3.8637 / w_c for order 6."""
     time = np.arange(10_000) / RATE
     filtered = LowPass(phase="causal")(np.sin(2 * np.pi * 0.5 * time), RATE)
@@ -56,7 +58,7 @@ def test_causal_filter_delays():
     assert_allclose(lag, 3.8637 / (2 * np.pi * 20.0), rtol=2e-3)
 
 
-def test_sections_stay_stable_where_a_polynomial_does_not():
+def test_sections_stay_stable_where_a_polynomial_does_not() -> None:
     """5 Hz at 10 kHz, order 12: the transfer function's gain at 0 Hz is nonsense, the sections' is 1."""
     low_pass = LowPass("butterworth", 12, 5.0, "causal")
     rate = 10_000.0
@@ -69,23 +71,23 @@ def test_sections_stay_stable_where_a_polynomial_does_not():
 
 
 @pytest.mark.parametrize("phase", ["zero", "causal"])
-def test_constant_force_passes_unchanged_from_the_first_sample(phase):
+def test_constant_force_passes_unchanged_from_the_first_sample(phase: Literal["zero", "causal"]) -> None:
     filtered = LowPass(phase=phase)(np.full(500, 120.0), RATE)
     assert_allclose(filtered, 120.0, rtol=1e-9)
 
 
-def test_record_that_begins_and_ends_on_a_slope_has_little_transient():
+def test_record_that_begins_and_ends_on_a_slope_has_little_transient() -> None:
     """A slope of 50 N/s continued at both ends: 2e-4 N are left of the transient (0.69 N without padding)."""
     slope = 120 + 50 * np.arange(2000) / RATE
     assert_allclose(LowPass()(slope, RATE), slope, atol=1e-3)
 
 
-def test_odd_order_has_no_zero_phase_filter():
+def test_odd_order_has_no_zero_phase_filter() -> None:
     with pytest.raises(ValueError, match="even order"):
         LowPass(order=5)
 
 
-def test_rate_too_low_is_refused():
+def test_rate_too_low_for_the_cutoff_is_rejected() -> None:
     with pytest.raises(BandNotObservable, match="at least 50 samples"):
         LowPass()(np.ones(100), 40.0)
 

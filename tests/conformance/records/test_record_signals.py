@@ -1,4 +1,4 @@
-"""From a record to its quantities: the numbers by hand, and a reason for each that is not there."""
+"""Quantities of a record: values computed by hand, and a reason for each quantity that is not available."""
 
 from dataclasses import replace
 
@@ -37,7 +37,7 @@ def values(item: Record, **filter_settings) -> dict[str, float]:
     return evaluate_record(item, LowPass(**filter_settings)).values[1]
 
 
-def test_every_quantity_of_a_known_force():
+def test_every_quantity_of_a_known_force() -> None:
     found = values(record(contact_height=5.3 + 0.02 * np.sin(2 * np.pi * np.arange(12_000) / 12_000 * 12)[None]))
     # Gain of the default filter at 2, 10 and 30 Hz, and of the 50 Hz one: 1 / (1 + (sqrt(2) - 1) W^6) by definition.
     gain = LowPass().gain(np.array([2.0, 10.0, 30.0]), RATE)
@@ -65,22 +65,22 @@ def test_every_quantity_of_a_known_force():
     assert set(found) == {quantity.name for quantity in PANTOGRAPH_QUANTITIES}
 
 
-def test_extremes_are_those_of_the_filtered_force():
+def test_extremes_are_those_of_the_filtered_force() -> None:
     """A spike of one sample: 500 N in the unfiltered force, below 20 N after 20 Hz (2 f_c / rate of its height)."""
     force = np.full(12_000, 100.0)
     force[6000] += 500
     assert 100 < values(record(force))["max_force_N"] < 125
 
 
-def test_filter_runs_over_the_whole_record_before_the_stretch_is_cut():
-    """A step 20 ms before the stretch still rings inside it; filtering the stretch alone would not know of it."""
+def test_whole_record_is_filtered_before_the_section_is_cut() -> None:
+    """A step 20 ms before the analysis section still rings inside it; filtering the section alone would miss it."""
     force = np.full(12_000, 100.0)
     force[: int(RATE * 200 / SPEED) - 20] = 200.0
     assert values(record(force))["max_force_N"] > 101
 
 
-def test_two_pantographs_are_evaluated_where_each_of_them_is():
-    """The second runs 100 m behind: it is over the stretch 2 s later, where the force is another."""
+def test_each_pantograph_is_evaluated_at_its_own_position() -> None:
+    """The second pantograph runs 100 m behind: it crosses the section 2 s later, at another force."""
     time = np.arange(12_000) / RATE
     position = np.array([SPEED * time, SPEED * time - 100])
     force = np.where(position < 200, 500.0, np.where(position < 400, [[110.0], [130.0]], 900.0))
@@ -88,7 +88,7 @@ def test_two_pantographs_are_evaluated_where_each_of_them_is():
     assert_allclose([found[1]["mean_force_N"], found[2]["mean_force_N"]], [110, 130], rtol=1e-12)
 
 
-def test_uplift_is_the_largest_at_the_evaluated_supports():
+def test_uplift_is_the_largest_at_the_evaluated_supports() -> None:
     supports = np.array([150.0, 200.0, 300.0, 400.0, 450.0])
     uplift = np.zeros((5, 12_000))
     uplift[:, 7000] = [0.9, 0.04, 0.05, 0.06, 0.9]
@@ -96,7 +96,7 @@ def test_uplift_is_the_largest_at_the_evaluated_supports():
     assert_allclose(found.values[LINE]["max_uplift_at_support_mm"], 60.0)
 
 
-def test_force_filtered_at_20_hz_yields_nothing_above_and_no_contact_loss():
+def test_force_filtered_at_20_hz_has_no_values_above_and_no_contact_loss() -> None:
     evaluation = evaluate_record(record(filter_applied_Hz=20.0), LowPass())
     assert set(evaluation.skipped[1]) == {
         "std_force_50_N",
@@ -110,7 +110,7 @@ def test_force_filtered_at_20_hz_yields_nothing_above_and_no_contact_loss():
     assert "mean_force_N" in evaluation.values[1]
 
 
-def test_low_rate_yields_nothing_up_to_50_hz():
+def test_low_rate_has_no_values_up_to_50_hz() -> None:
     evaluation = evaluate_record(record(rate=100.0), LowPass())
     assert {"rms_20_50_N", "std_force_50_N", "cov_50"} < set(evaluation.skipped[1])
     assert "needs at least 125 samples per second; the record has 100" in evaluation.skipped[1]["rms_20_50_N"]
@@ -118,13 +118,13 @@ def test_low_rate_yields_nothing_up_to_50_hz():
 
 
 @pytest.mark.parametrize("length", [190.0, 390.0])
-def test_truncated_record_yields_no_number_at_all(length):
+def test_truncated_record_has_no_values(length: float) -> None:
     evaluation = evaluate_record(record(length=length), LowPass())
     assert evaluation.values[1] == {}
     assert "the analysis section is 200 m to 400 m" in evaluation.skipped[1]["mean_force_N"]
 
 
-def test_short_stretch_yields_no_slow_band():
+def test_short_section_has_no_low_band() -> None:
     evaluation = evaluate_record(record(evaluated=(200.0, 220.0)), LowPass())
     assert "lasts 0.4 s" in evaluation.skipped[1]["rms_0_5_N"]
     assert evaluation.values[1]["std_force_N"] > 0
@@ -132,14 +132,14 @@ def test_short_stretch_yields_no_slow_band():
     assert "need at least 0.2 s" in shorter.skipped[1]["std_force_N"]
 
 
-def test_record_without_uplift_or_height_says_so():
+def test_record_without_uplift_or_height_states_the_reason() -> None:
     evaluation = evaluate_record(record(), LowPass())
     assert evaluation.skipped[1]["contact_height_range_mm"] == "the record has no contact height"
     assert evaluation.skipped[LINE]["max_uplift_at_support_mm"] == "the record has no uplift at supports"
 
 
-def test_gain_and_offset_of_the_force_go_through():
-    """Statistics are linear in the force: gain 1.05 shows as 1.05, an offset only in mean and extremes."""
+def test_statistics_are_linear_in_the_force() -> None:
+    """A gain of 1.05 scales all statistics; an offset changes only mean and extremes."""
     plain, louder = values(record()), values(record(1.05 * record().force))
     for name in ("mean_force_N", "std_force_N", "rms_5_20_N", "max_force_N", "statistical_min_N"):
         assert_allclose(louder[name], 1.05 * plain[name], rtol=1e-9)
@@ -148,7 +148,7 @@ def test_gain_and_offset_of_the_force_go_through():
     assert_allclose(moved["min_force_N"], plain["min_force_N"] + 7, rtol=1e-9)
 
 
-def test_registry_has_every_name_of_the_contract():
+def test_registry_has_every_name_of_the_contract() -> None:
     names = """mean_force_N std_force_N std_force_50_N cov_20 cov_50 rms_0_5_N rms_5_20_N rms_20_50_N statistical_max_N
     statistical_min_N max_force_N min_force_N contact_loss_pct max_uplift_at_support_mm contact_height_range_mm
     presag_mm dropper_length_m elasticity_mm_N elasticity_non_uniformity_pct wave_speed_m_s speed_over_wave_speed
@@ -160,7 +160,7 @@ def test_registry_has_every_name_of_the_contract():
     )
 
 
-def test_record_refuses_what_is_impossible():
+def test_impossible_record_is_rejected() -> None:
     good = record()
     bad = good.force.copy()
     bad[0, 17] = np.nan

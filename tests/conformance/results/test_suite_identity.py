@@ -1,6 +1,7 @@
-"""The commit of the suite is only claimed when the suite runs from its own repository."""
+"""Suite identity: a commit is stated only if the suite runs from its own repository."""
 
 import subprocess
+from pathlib import Path
 
 import pytest
 
@@ -8,7 +9,7 @@ from pantocheck.conformance.results import suite_identity
 
 
 @pytest.fixture
-def repository(tmp_path, monkeypatch):
+def repository(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A repository with a folder `conformance` from which the suite seems to run."""
     (tmp_path / "conformance").mkdir()
     (tmp_path / "conformance" / "x.py").write_text("x = 1\n")
@@ -19,7 +20,7 @@ def repository(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_own_repository_gives_its_commit_and_says_if_files_were_changed(repository):
+def test_commit_of_the_repository_marks_changed_files(repository: Path) -> None:
     head = subprocess.run(
         ["git", "-C", str(repository), "rev-parse", "HEAD"], capture_output=True, text=True, check=True
     )
@@ -30,7 +31,9 @@ def test_own_repository_gives_its_commit_and_says_if_files_were_changed(reposito
     assert suite_identity.find_suite_commit.__wrapped__() == f"{commit}-dirty"
 
 
-def test_foreign_repository_or_none_gives_no_commit(repository, monkeypatch, tmp_path_factory):
+def test_other_repository_or_none_has_no_commit(
+    repository: Path, monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFactory
+) -> None:
     inner = repository / "site-packages" / "conformance"
     inner.mkdir(parents=True)
     monkeypatch.setattr(suite_identity, "files", lambda name: inner)

@@ -1,4 +1,4 @@
-"""The block bootstrap: its intervals cover the truth as often as they say, and a short record has none."""
+"""Block bootstrap: its intervals have the stated coverage, and a short record has none."""
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ def pooled(force: RealArray, filter_applied_Hz: float | None = None) -> PooledSi
     return PooledSignals((part,), "")
 
 
-def spans(random, count):
+def spans(random: np.random.Generator, count: int) -> RealArray:
     """A sine per span whose amplitude varies from span to span, and slow noise: mean 120, sigma known."""
     amplitude = 30 * (1 + 0.3 * random.standard_normal(count))
     phase = np.arange(count * 100) / 100
@@ -32,9 +32,9 @@ SIGMA = np.sqrt(30**2 * (1 + 0.3**2) / 2 + 8**2)
 
 
 @pytest.mark.parametrize("count", [20, 60])
-def test_intervals_of_95_percent_cover_the_truth(count):
-    """400 records tell a share to 2.2 % (two standard deviations). A block bootstrap of few blocks is known to fall
-    short of its 95 % by some percent, because sigma is skewed: its users can live with 90 %, less is a defect."""
+def test_intervals_of_95_percent_cover_the_truth(count: int) -> None:
+    """400 records give the coverage within 2.2 % (two standard deviations). A block bootstrap of few blocks is known to
+    stay some percent below 95 %, because the distribution of sigma is skewed: 90 % is acceptable, less is a defect."""
     random = np.random.default_rng(4)
     hits = np.zeros(2)
     for i in range(400):
@@ -48,7 +48,7 @@ def test_intervals_of_95_percent_cover_the_truth(count):
     assert np.all(hits / 400 < 0.985)
 
 
-def test_longer_record_is_more_certain_by_the_root_of_its_length():
+def test_uncertainty_decreases_with_the_root_of_the_length() -> None:
     random = np.random.default_rng(5)
     short, long = (
         bootstrap_uncertainties(pooled(spans(random, count), filter_applied_Hz=20.0), 1.0, DIGEST)
@@ -58,7 +58,7 @@ def test_longer_record_is_more_certain_by_the_root_of_its_length():
         assert short[name] / long[name] == pytest.approx(4, rel=0.35)  # an estimate from 40 blocks is off by a fifth
 
 
-def test_same_record_has_the_same_uncertainty_and_another_digest_another():
+def test_same_record_has_the_same_uncertainty_and_another_digest_another() -> None:
     signals = pooled(spans(np.random.default_rng(6), 50))
     first = bootstrap_uncertainties(signals, 1.0, DIGEST)
     assert first == bootstrap_uncertainties(signals, 1.0, DIGEST)
@@ -66,12 +66,12 @@ def test_same_record_has_the_same_uncertainty_and_another_digest_another():
     assert set(first) >= {"max_force_N", "min_force_N", "contact_loss_pct", "cov_20"}
 
 
-def test_short_record_has_none():
+def test_short_record_has_no_uncertainty() -> None:
     assert bootstrap_uncertainties(pooled(spans(np.random.default_rng(7), 4)), 1.0, DIGEST) == {}
     assert bootstrap_uncertainties(PooledSignals((), "gone"), 1.0, DIGEST) == {}
 
 
-def test_blocks_do_not_reach_across_a_gap():
+def test_blocks_do_not_cross_a_gap() -> None:
     """Two halves with means 100 and 140: every block has one of them, so the mean of 2 n blocks is binomial."""
     halves = [np.full(10_000, level) for level in (100.0, 140.0)]
     parts = tuple(pooled(half, filter_applied_Hz=20.0).parts[0] for half in halves)
@@ -82,7 +82,7 @@ def test_blocks_do_not_reach_across_a_gap():
     assert found["max_force_N"] == pytest.approx(0, abs=1e-9)
 
 
-def test_bands_of_several_stretches_still_partition_the_variance():
+def test_bands_of_several_sections_partition_the_variance() -> None:
     """Two halves with means 100 and 140 N and 7 N rms at 10 Hz: 20 N belong to the lowest band, 7 N to the next."""
     time = np.arange(10_000) / RATE
     halves = [level + 7 * np.sqrt(2) * np.sin(2 * np.pi * 10 * time) for level in (100.0, 140.0)]

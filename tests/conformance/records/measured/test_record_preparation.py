@@ -1,14 +1,18 @@
-"""Preparation of measured records: what is cut, resampled and recognised, against signals known in closed form."""
+"""Preparation of measured records: cuts, resampling and filter detection, against signals in closed form."""
+
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from pantocheck.conformance.quantities.evaluation import evaluate_signals
+from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.quantities.evaluation import Value, evaluate_signals
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.quantities.signals import LineSignals
 from pantocheck.conformance.records.measured.outliers import find_outliers
-from pantocheck.conformance.records.measured.record_preparation import prepare_record
+from pantocheck.conformance.records.measured.record_preparation import PreparedRecord, prepare_record
 from pantocheck.conformance.records.record import RecordInvalid
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.record_signals import evaluate_record
@@ -17,32 +21,32 @@ from pantocheck.conformance.records.samples import RecordSamples, build_record
 SPEED, SPAN, MEAN, SIGMA = 250 / 3.6, 60.0, 120.0, 24.0
 
 
-def force_at(position):
+def force_at(position: RealArray) -> RealArray:
     """One sine per span: sigma is known over whole spans. A little at 12 Hz and 35 Hz, as a real force has."""
     time = position / SPEED
     rest = 6.0 * np.sin(2 * np.pi * 12 * time) + 3.0 * np.sin(2 * np.pi * 35 * time)
     return MEAN + np.sqrt(2) * SIGMA * np.sin(2 * np.pi * position / SPAN) + rest
 
 
-def sidecar(**keys):
+def sidecar(**keys: Any) -> RecordSidecar:
     base = {"schema": "pantocheck.record/1", "file": "a.csv", "speed_km_h": 250.0, "pantographs": 1}
     return RecordSidecar.model_validate({**base, "filter_applied_Hz": "none", **keys})
 
 
-def ready(samples, tolerance=5.0, **keys):
+def ready(samples: RecordSamples, tolerance: float = 5.0, **keys: Any) -> PreparedRecord:
     return prepare_record(samples, sidecar(**keys), LowPass(), tolerance)
 
 
-def by_time(seconds=30.0, rate=500.0):
+def by_time(seconds: float = 30.0, rate: float = 500.0) -> RecordSamples:
     time = np.arange(int(seconds * rate)) / rate
     return RecordSamples(force=force_at(SPEED * time)[None], time=time, position=SPEED * time[None])
 
 
-def values(found):
+def values(found: PreparedRecord) -> dict[str, Value]:
     return evaluate_signals(found.pantographs, LineSignals(found.section)).values[1]
 
 
-def test_simulated_record_goes_through_unchanged():
+def test_simulated_record_is_unchanged() -> None:
     """Even samples, a run-in and a run-out: the quantities are those of the record itself, to the last bit."""
     samples = by_time()
     keys = {"evaluated_m": [300.0, 1500.0]}
@@ -50,14 +54,14 @@ def test_simulated_record_goes_through_unchanged():
     assert values(ready(samples, **keys)) == expected
 
 
-def test_whole_record_is_evaluated_away_from_its_ends():
-    """Two periods of the cut-off, 0.1 s or 6.94 m, are left out at each end."""
+def test_whole_record_is_evaluated_away_from_its_ends() -> None:
+    """Two periods of the cut-off, 0.1 s or 6.94 m, are cut at each end."""
     part = ready(by_time()).pantographs[1].parts[0]
     assert part.section == pytest.approx((6.94, SPEED * 30 - 6.94), abs=0.2)
 
 
 @pytest.mark.parametrize("step", [0.1, 0.25])
-def test_sampling_by_distance_gives_the_statistics_of_time(step):
+def test_sampling_by_distance_gives_the_statistics_of_time(step: float) -> None:
     position = np.arange(0, 2000, step)
     found = ready(RecordSamples(force=force_at(position)[None], position=position[None]), evaluated_m=[60.0, 1860.0])
     assert found.rate == pytest.approx(SPEED / step, rel=1e-5)
@@ -69,7 +73,7 @@ def test_sampling_by_distance_gives_the_statistics_of_time(step):
     assert any("sampled by distance" in note for note in found.notes)
 
 
-def test_speed_channel_makes_time_from_distance():
+def test_speed_channel_makes_time_from_distance() -> None:
     """At a speed that rises by 4 %, 12 Hz stays 12 Hz only if time is integrated with that speed."""
     position = np.arange(0, 3000, 0.1)
     speed = SPEED * (1 + 0.04 * position / 3000)
@@ -80,7 +84,7 @@ def test_speed_channel_makes_time_from_distance():
     assert np.fft.rfftfreq(part.delivered.size, 1 / part.force.rate)[spectrum.argmax()] == pytest.approx(12, abs=0.03)
 
 
-def test_gap_in_time_is_cut_and_both_sides_are_pooled():
+def test_gap_in_time_is_cut_and_both_sides_are_pooled() -> None:
     samples = by_time()
     kept = (samples.time < 10) | (samples.time > 11)
     found = ready(samples.at(kept))
@@ -90,7 +94,7 @@ def test_gap_in_time_is_cut_and_both_sides_are_pooled():
     assert any("2 sections between gaps" in text for text in found.warnings)
 
 
-def test_missing_values_are_a_gap_and_two_of_them_are_bridged():
+def test_missing_values_are_a_gap_and_two_of_them_are_bridged() -> None:
     samples = by_time()
     force = samples.force.copy()
     force[0, 5000:5003] = np.nan  # 6 ms
@@ -103,8 +107,8 @@ def test_missing_values_are_a_gap_and_two_of_them_are_bridged():
     assert np.isfinite(values(cut)["std_force_N"])
 
 
-def test_change_of_speed_is_cut():
-    """Half of the record runs 10 % too slow: it is left out, and said."""
+def test_change_of_speed_is_cut() -> None:
+    """Half of the record runs 10 % too slow: it is cut, with a warning."""
     time = np.arange(0, 60, 0.002)
     position = np.where(time < 30, SPEED * time, SPEED * 30 + 0.9 * SPEED * (time - 30))
     samples = RecordSamples(force=force_at(position)[None], time=time, position=position[None])
@@ -118,7 +122,7 @@ def test_change_of_speed_is_cut():
 
 
 @pytest.mark.parametrize("stated", [True, False])
-def test_chain_filtered_at_20_Hz_gives_nothing_above(stated):
+def test_measuring_chain_filtered_at_20_Hz_has_no_values_above(stated: bool) -> None:
     samples = by_time()
     filtered = RecordSamples(LowPass(order=8)(samples.force[0], 500.0)[None], samples.time, position=samples.position)
     found = ready(filtered, filter_applied_Hz=20.0) if stated else ready(filtered)
@@ -130,7 +134,7 @@ def test_chain_filtered_at_20_Hz_gives_nothing_above(stated):
     assert any("by the measuring chain" in text for text in found.warnings) == (not stated)
 
 
-def test_outliers_are_marked_and_graded():
+def test_outliers_are_reported_and_graded() -> None:
     samples = by_time()
     force = samples.force.copy()
     force[0, 6000] = 900.0
@@ -141,11 +145,11 @@ def test_outliers_are_marked_and_graded():
     assert list(find_outliers(force[0])) == [6000]
 
 
-def test_noise_of_a_million_samples_has_no_outlier():
+def test_noise_of_a_million_samples_has_no_outlier() -> None:
     assert find_outliers(np.random.default_rng(1).normal(120, 25, 1_000_000)).size == 0
 
 
-def test_rear_pantograph_is_placed_by_its_spacing():
+def test_rear_pantograph_is_placed_by_its_spacing() -> None:
     samples = by_time()
     two = RecordSamples(
         np.vstack([samples.force, force_at(samples.position - 200.0)]), samples.time, None, samples.position
@@ -171,12 +175,12 @@ def test_rear_pantograph_is_placed_by_its_spacing():
         (lambda s: RecordSamples(s.force, np.r_[s.time[:-1], 1e8], position=s.position), "are more than"),
     ],
 )
-def test_impossible_axes_are_refused(change, message):
+def test_impossible_axes_are_rejected(change: Callable[[RecordSamples], RecordSamples], message: str) -> None:
     with pytest.raises(RecordInvalid, match=message):
         ready(change(by_time()))
 
 
-def test_odometer_that_moves_in_steps_is_smoothed():
+def test_odometer_that_moves_in_steps_is_smoothed() -> None:
     """A counter of 0.5 m steps, sampled every 0.14 m: the position grows evenly in between, the statistics stay."""
     samples = by_time()
     stepped = np.floor(samples.position * 2) / 2
@@ -185,8 +189,8 @@ def test_odometer_that_moves_in_steps_is_smoothed():
     assert_allclose(values(found)["std_force_N"], values(ready(samples))["std_force_N"], rtol=1e-3)
 
 
-def test_record_that_covers_little_of_its_stretch_gives_no_number():
-    """A truncated record must not stand for the line: 30 s are 2083 m."""
+def test_record_that_covers_too_little_has_no_values() -> None:
+    """A truncated record does not represent the line: 30 s are 2083 m."""
     for asked, share in ((3000.0, "69"), (2083.0, None), (10_000.0, "only 21")):
         found = ready(by_time(), evaluated_m=[10.0, asked])
         texts = [*found.warnings, *evaluate_signals(found.pantographs, found.line).skipped[1].values()]
@@ -194,7 +198,7 @@ def test_record_that_covers_little_of_its_stretch_gives_no_number():
         assert any(f"{share} % of" in text or f"{share}" in text for text in texts) == (share is not None)
 
 
-def test_uplift_ignores_missing_values():
+def test_uplift_ignores_missing_values() -> None:
     samples = by_time()
     uplift = np.full((2, samples.time.size), np.nan)
     uplift[0, 100:200] = 0.03
