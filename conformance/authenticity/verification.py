@@ -1,4 +1,4 @@
-"""Verifying a certificate: its results are taken out of it and graded once more."""
+"""Verification of a certificate: its embedded results are extracted and graded again."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,16 +17,16 @@ from pantocheck.conformance.reports.words import read_words
 
 @dataclass(frozen=True)
 class Verification:
-    """What came out of verifying a certificate.
+    """Result of the verification of a certificate.
 
     Parameters
     ----------
     verdict : Verdict
-        As the embedded results state it.
+        Verdict stated in the embedded results.
     cases, criteria : int
-        How many there are.
+        Numbers of cases and criteria.
     discrepancies : tuple[str, ...]
-        One line each; none if the certificate is consistent.
+        Discrepancies, one line each; none if the certificate is consistent.
     """
 
     verdict: Verdict
@@ -41,15 +41,15 @@ class Verification:
 
 
 def verify_certificate(path: Path) -> Verification:
-    """Grade the results embedded in a certificate once more and compare.
+    """Grade the results embedded in a certificate again and compare.
 
-    This shows that the verdicts follow from the numbers; that the numbers come from the system they name, only a new
-    run shows.
+    A consistent certificate has verdicts that follow from its numbers. Only a new run shows that the numbers come from
+    the named system.
 
     Parameters
     ----------
     path : Path
-        a certificate.pdf.
+        Certificate as PDF.
 
     Raises
     ------

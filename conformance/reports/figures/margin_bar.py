@@ -4,27 +4,31 @@
     ------------|========+---O-----|------------
               lower    middle    upper
 
-Inside is a filled disc, outside a cross, a limit that does not count an open ring: told apart without colour. A value
-beyond the drawing is an arrow at its edge. The whisker is the discretisation error.
+A filled disc is inside the limits, a cross is outside, an open ring does not count; the shapes differ without colour. A
+value beyond the drawing is an arrow at its edge. The whisker is the error of the value.
 """
 
 WIDTH, HEIGHT = 100.0, 18.0
 MIDDLE = HEIGHT / 2
-# The band between two limits takes this share of half the width; a single limit stands this far from the middle.
+# Distance of a limit from the middle, as a share of half the width.
 BAR_REACH = 0.56
-# Closer to an edge than this, a value is drawn as an arrow.
+# A value closer to an edge is drawn as an arrow.
 EDGE = 6.0
 
 
 def draw_margin_bar(value: float, lower: float | None, upper: float | None, error: float | None, verdict: str) -> str:
-    """An SVG picture without text, size `WIDTH` by `HEIGHT`.
+    """SVG of the bar without text, size `WIDTH` by `HEIGHT`.
 
     Parameters
     ----------
-    value, lower, upper, error : float or float or None
-        In the unit of the quantity; no limit, no band on that side.
+    value : float
+        Graded value.
+    lower, upper : float or None
+        Limits; None: no limit on that side.
+    error : float or None
+        Half-length of the whisker; None: no whisker.
     verdict : str
-        Chooses the marker.
+        Verdict of the criterion, which selects the marker.
     """
     centre, half = _scale(lower, upper)
 

@@ -1,4 +1,4 @@
-"""The results as they are embedded in a certificate: everything but the times."""
+"""Results embedded in a certificate: all but the times."""
 
 import json
 from typing import Any
@@ -18,5 +18,5 @@ def strip_times(results: dict[str, Any]) -> dict[str, Any]:
 
 
 def encode_attachment(results: dict[str, Any]) -> bytes:
-    """JSON text in ASCII with sorted keys: one dictionary, one byte string."""
+    """JSON text in ASCII with sorted keys: equal results give equal bytes."""
     return (json.dumps(results, indent=1, sort_keys=True, allow_nan=False) + "\n").encode("ascii")
