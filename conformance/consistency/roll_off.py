@@ -10,7 +10,7 @@ from pantocheck.conformance.records.record_signals import RecordSignals
 STOP_BAND = (2.0, 2.5)
 """Edges of the compared band, in cut-offs: high enough for orders to differ, low enough to stay above rounding."""
 
-MIN_LINES = 10
+MIN_ROLL_OFF_LINES = 10
 """Smallest number of spectral lines in the band; with fewer, one peak decides."""
 
 CONTRADICTION, DOUBT = 1.0, 0.5
@@ -31,7 +31,7 @@ def _check_roll_off(case: Case, signals: RecordSignals) -> Finding | None:
         return None  # delivered unfiltered, or filtered again by the suite
     if STOP_BAND[1] * cutoff > HIGHEST_SHARE_OF_RATE * record.rate:
         return Finding("unchecked", f"the stated filter: a rate of {record.rate:g} Hz is too low")
-    if (STOP_BAND[1] - STOP_BAND[0]) * cutoff * (record.time[-1] - record.time[0]) < MIN_LINES:
+    if (STOP_BAND[1] - STOP_BAND[0]) * cutoff * (record.time[-1] - record.time[0]) < MIN_ROLL_OFF_LINES:
         return Finding("unchecked", "the stated filter: the record is too short")
     frequency = np.asarray(np.fft.rfftfreq(record.time.size, 1 / record.rate), dtype=np.float64)
     below = (frequency > 0) & (frequency <= cutoff)
