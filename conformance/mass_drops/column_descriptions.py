@@ -22,37 +22,34 @@ def describe_columns(table: MeasuredTable, sidecar: DropSidecar | None) -> list[
                 "Put NAME.toml beside it, with [record] sampling_rate_hz and one [[channel]] per column.",
             )
         return list(enumerate(table.columns, 1))
-    _check_count(table, sidecar)
+    _check_numbers(table, sidecar)
     for channel in sidecar.channel:
-        if channel.column <= len(table.columns):
-            _check_agreement(channel, table.columns[channel.column - 1], table.where)
+        _check_agreement(channel, table.columns[channel.column - 1], table.where)
     return [(channel.column, channel.description) for channel in sidecar.channel]
 
 
-def _check_count(table: MeasuredTable, sidecar: DropSidecar) -> None:
+def _check_numbers(table: MeasuredTable, sidecar: DropSidecar) -> None:
+    """Refuse a sidecar that repeats or miscounts columns, or describes a column that the table lacks."""
     declared, width = sidecar.record.n_channels, len(table.columns)
-    if declared is not None and declared != len(sidecar.channel):
-        raise InputError(
-            f"sidecar of {table.where}",
-            f"n_channels = {declared}, but {len(sidecar.channel)} channels are described",
-            "Describe every column once.",
-        )
-    if declared is not None and width < declared:
-        missing = [channel.name for channel in sidecar.channel if channel.column > width]
+    columns = [channel.column for channel in sidecar.channel]
+    fault = None
+    if declared is not None and declared != len(columns):
+        fault = f"n_channels = {declared}, but {len(columns)} channels are described"
+    elif repeated := [column for column in columns if columns.count(column) > 1]:
+        fault = f"column {repeated[0]} is described twice"
+    if fault is not None:
+        raise InputError(f"sidecar of {table.where}", fault, "Describe every column once.")
+    missing = [channel.name for channel in sidecar.channel if channel.column > width]
+    if missing:
         raise InputError(
             table.where,
-            f"{width} columns, the sidecar describes {declared} (missing: {', '.join(missing[:6]) or 'unknown'})",
+            f"{width} columns, the sidecar describes columns up to {max(columns)} (missing: {', '.join(missing[:6])})",
             "A channel is missing from the export, or the sidecar belongs to another file.",
-        )
-    columns = [channel.column for channel in sidecar.channel]
-    repeated = [column for column in columns if columns.count(column) > 1]
-    if repeated:
-        raise InputError(
-            f"sidecar of {table.where}", f"column {repeated[0]} is described twice", "Describe every column once."
         )
 
 
 def _check_agreement(channel: DropChannelTable, column: TableColumn, where: str) -> None:
+    """Refuse a name or unit in the file that differs from the sidecar."""
     if column.name and column.name.strip() != channel.name.strip():
         raise InputError(
             where,

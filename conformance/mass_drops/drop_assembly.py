@@ -8,7 +8,7 @@ from pantocheck.conformance.input_files.measured_table import MeasuredTable, par
 from pantocheck.conformance.input_files.units import MotionQuantity, convert_unit
 from pantocheck.conformance.mass_drops.clipping import find_clipping
 from pantocheck.conformance.mass_drops.column_descriptions import describe_columns
-from pantocheck.conformance.mass_drops.drop_facts import build_drop, build_line, merge_attributes
+from pantocheck.conformance.mass_drops.drop_facts import build_drop, build_line
 from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropRecord
 from pantocheck.conformance.mass_drops.drop_sidecar import DropSidecar
 from pantocheck.conformance.mass_drops.sampling_rate import find_sampling_rate
@@ -32,7 +32,7 @@ def assemble_drop_record(table: MeasuredTable, sidecar: DropSidecar | None) -> D
     InputError
         A contradiction, gap or unknown unit that would become a wrong number.
     """
-    n, width = table.values.shape
+    n = table.values.shape[0]
     if n < LEAST_SAMPLES:
         raise InputError(
             table.where, f"only {n} samples", "Export the whole record, from rest to the end of the decay."
@@ -43,12 +43,6 @@ def assemble_drop_record(table: MeasuredTable, sidecar: DropSidecar | None) -> D
     channels, quantities, warnings = [], set[MotionQuantity](), list[str]()
     for c, (number, column) in enumerate(described):
         where = f"{table.where}, channel '{column.name}'"
-        if number > width:
-            raise InputError(
-                where,
-                f"is column {number}, but the file has {width}",
-                "A channel is missing from the export, or the sidecar belongs to another file.",
-            )
         values = table.values[:, number - 1]
         _check_finite(values, rate, where)
         quantity, factor = convert_unit(column.unit or "", where)
@@ -57,7 +51,7 @@ def assemble_drop_record(table: MeasuredTable, sidecar: DropSidecar | None) -> D
         quantities.add(quantity)
         channels.append(DropChannel(column.name or "", column.sensor or 0, axis, column.wire.upper(), column.position))
         warnings += _check_signal(signals[:, c], quantity, rate, where)
-    attributes = merge_attributes(table, sidecar)
+    attributes = table.attributes | (sidecar.attributes if sidecar else {})
     name = str(attributes.get("test", "")) or table.source
     return DropRecord(
         name=f"{name} run {table.run}" if table.run else name,
@@ -73,6 +67,7 @@ def assemble_drop_record(table: MeasuredTable, sidecar: DropSidecar | None) -> D
 
 
 def _check_finite(values: RealArray, rate: float, where: str) -> None:
+    """Refuse missing values, which no identification can bridge."""
     bad = np.flatnonzero(~np.isfinite(values))
     if bad.size:
         raise InputError(

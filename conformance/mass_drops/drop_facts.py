@@ -5,16 +5,10 @@ from typing import Any
 import numpy as np
 
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.measured_table import MeasuredTable
-from pantocheck.conformance.mass_drops.drop_record import DropDescription, DropLine, DropRecord
-from pantocheck.conformance.mass_drops.drop_sidecar import DropSidecar
+from pantocheck.conformance.mass_drops.drop_record import DropDescription, DropLine
 
 Attributes = dict[str, Any]
-
-
-def merge_attributes(table: MeasuredTable, sidecar: DropSidecar | None) -> Attributes:
-    """Attributes of the file, replaced by those of the sidecar where it has them."""
-    return table.attributes | (sidecar.attributes if sidecar else {})
+"""Facts by the names of `MeasuredTable.attributes`."""
 
 
 def build_drop(attributes: Attributes, where: str, duration: float) -> DropDescription:
@@ -54,23 +48,6 @@ def build_line(attributes: Attributes, where: str) -> DropLine:
         _read_number(attributes, "cw_tension_n", where),
         _read_number(attributes, "mw_tension_n", where),
     )
-
-
-def list_attributes(record: DropRecord) -> Attributes:
-    """Attributes of a record, those that are known."""
-    attributes = {
-        "test": record.name,
-        "quantity": record.quantity,
-        "sampling_rate_hz": record.rate,
-        "drop_mass_kg": record.drop.mass,
-        "drop_wire": record.drop.wire,
-        "drop_position_m": record.drop.position,
-        "trigger_nominal_s": record.drop.trigger_nominal,
-        "spans_m": list(record.line.spans) or None,
-        "cw_tension_n": record.line.contact_wire_tension,
-        "mw_tension_n": record.line.messenger_wire_tension,
-    }
-    return {name: value for name, value in attributes.items() if value is not None}
 
 
 def _read_number(attributes: Attributes, name: str, where: str) -> float | None:

@@ -99,18 +99,13 @@ class DropSidecar(_OpenTable):
         return {name: value for name, value in attributes.items() if value not in (None, "", ())}
 
 
-def find_drop_sidecar(record: Path) -> Path:
-    """Path of the sidecar of a record: beside it, with the same stem."""
-    return record.with_suffix(".toml")
-
-
 def read_drop_sidecar(record: Path) -> DropSidecar | None:
-    """Read the sidecar of a record; None if there is none.
+    """Read the sidecar beside a record, with the same stem; None if there is none.
 
     Raises
     ------
     InputError
         It cannot be read or does not fit the model.
     """
-    path = find_drop_sidecar(record)
+    path = record.with_suffix(".toml")
     return read_model(path, DropSidecar, "sidecar") if path.is_file() else None

@@ -11,9 +11,7 @@ from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
 from pantocheck.conformance.input_files.formats.hdf5_table import write_hdf5_table
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.units import SI_UNITS
-from pantocheck.conformance.mass_drops.drop_facts import list_attributes
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
-from pantocheck.conformance.mass_drops.drop_sidecar import find_drop_sidecar
 
 UNWRITABLE = ",;\t\"'"
 """Characters that the head line of a CSV file cannot hold, because it is read without quoting."""
@@ -60,17 +58,23 @@ def write_drop_hdf5(records: tuple[DropRecord, ...], path: Path) -> None:
         same = (other.channels, other.rate, other.drop) == (first.channels, first.rate, first.drop)
         if not same or other.quantity != first.quantity:
             raise InputError(str(path), "the runs are of different tests", "Write one file per test.")
-    channels = first.channels
-    datasets: dict[str, Any] = {
-        "channels/name": [channel.name for channel in channels],
-        "channels/sensor": [channel.sensor for channel in channels],
-        "channels/wire": [channel.wire for channel in channels],
-        "channels/position_m": [np.nan if channel.position is None else channel.position for channel in channels],
-        "channels/direction": [f"+{channel.axis}" for channel in channels],
-        "channels/unit": [SI_UNITS[first.quantity]] * len(channels),
+    attributes = {
+        "test": first.name,
+        "quantity": first.quantity,
+        "sampling_rate_hz": first.rate,
+        "drop_mass_kg": first.drop.mass,
+        "drop_wire": first.drop.wire,
+        "drop_position_m": first.drop.position,
+        "trigger_nominal_s": first.drop.trigger_nominal,
+        "spans_m": list(first.line.spans) or None,
+        "cw_tension_n": first.line.contact_wire_tension,
+        "mw_tension_n": first.line.messenger_wire_tension,
     }
+    channels = _list_channels(first)
+    datasets: dict[str, Any] = {f"channels/{key}": [channel[key] for channel in channels] for key in channels[0]}
+    datasets["channels/position_m"] = [np.nan if x is None else x for x in datasets["channels/position_m"]]
     datasets |= {f"run_{k}/{record.quantity}": record.signals.T for k, record in enumerate(records, 1)}
-    produce_atomically(path, lambda temporary: write_hdf5_table(temporary, list_attributes(first), datasets))
+    produce_atomically(path, lambda temporary: write_hdf5_table(temporary, _select_known(attributes), datasets))
 
 
 def write_drop_sidecar(record: DropRecord, path: Path) -> None:
@@ -90,9 +94,15 @@ def write_drop_sidecar(record: DropRecord, path: Path) -> None:
             "quantity": record.quantity,
         },
     }
-    channels: list[dict[str, Any]] = [
+    known: dict[str, Any] = {name: _select_known(table) for name, table in tables.items()}
+    known["channel"] = [{"column": c} | _select_known(table) for c, table in enumerate(_list_channels(record), 1)]
+    write_atomically(path.with_suffix(".toml"), tomli_w.dumps(known).encode())
+
+
+def _list_channels(record: DropRecord) -> list[dict[str, Any]]:
+    """Description of each channel by the names of the files."""
+    return [
         {
-            "column": c,
             "name": channel.name,
             "sensor": channel.sensor,
             "wire": channel.wire,
@@ -100,13 +110,10 @@ def write_drop_sidecar(record: DropRecord, path: Path) -> None:
             "direction": f"+{channel.axis}",
             "unit": SI_UNITS[record.quantity],
         }
-        for c, channel in enumerate(record.channels, 1)
+        for channel in record.channels
     ]
-    known: dict[str, Any] = {name: _select_known(table) for name, table in tables.items()}
-    known["channel"] = [_select_known(channel) for channel in channels]
-    write_atomically(find_drop_sidecar(path), tomli_w.dumps(known).encode())
 
 
 def _select_known(table: dict[str, Any]) -> dict[str, Any]:
-    """Table without the facts that are None, which TOML cannot hold."""
+    """Table without the facts that are None, which neither TOML nor HDF5 can hold."""
     return {key: value for key, value in table.items() if value is not None}
