@@ -3,7 +3,8 @@
 import hashlib
 import os
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from pantocheck.conformance.input_files.input_error import InputError
@@ -35,21 +36,17 @@ def produce_atomically(path: Path, produce: Callable[[Path], object]) -> None:
     InputError
         The folder cannot be created or written.
     """
-    try:
+    with _convert_write_errors(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(prefix=".", suffix=path.suffix, dir=path.parent)
-    except OSError as error:
-        raise _build_write_error(path, error) from None
-    os.close(handle)
-    temporary = Path(name)
-    try:
-        produce(temporary)
-        temporary.chmod(0o644)
-        temporary.replace(path)
-    except OSError as error:
-        raise _build_write_error(path, error) from None
-    finally:
-        temporary.unlink(missing_ok=True)
+        os.close(handle)
+        temporary = Path(name)
+        try:
+            produce(temporary)
+            temporary.chmod(0o644)
+            temporary.replace(path)
+        finally:
+            temporary.unlink(missing_ok=True)
 
 
 def check_writable(folder: Path) -> None:
@@ -60,18 +57,21 @@ def check_writable(folder: Path) -> None:
     InputError
         The folder cannot be created or written.
     """
-    try:
+    with _convert_write_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
             pass
+
+
+@contextmanager
+def _convert_write_errors(path: Path) -> Iterator[None]:
+    """Convert errors of the file system into `InputError`."""
+    try:
+        yield
     except OSError as error:
-        raise _build_write_error(folder, error) from None
-
-
-def _build_write_error(path: Path, error: OSError) -> InputError:
-    return InputError(
-        str(path), f"cannot be written ({error.strerror})", "Name a folder that you may write to, with --out."
-    )
+        raise InputError(
+            str(path), f"cannot be written ({error.strerror})", "Name a folder that you may write to, with --out."
+        ) from None
 
 
 def file_digest(path: Path) -> str:

@@ -1,5 +1,7 @@
 """Bounded reading: the size of a file is known before its content enters the memory."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from pantocheck.conformance.input_files.input_error import InputError
@@ -22,10 +24,8 @@ def check_file(path: Path, where: str, largest: int) -> None:
     InputError
         The file must not be read. A pipe or device is refused because it may never end.
     """
-    try:
+    with convert_read_errors(path, where):
         size = path.stat().st_size
-    except OSError as error:
-        raise InputError(where, f"cannot be read from {path} ({error.strerror})", "Check the path.") from None
     if not path.is_file():
         raise InputError(where, f"cannot be read from {path} (not a regular file)", "Name a file.")
     if size > largest:
@@ -35,15 +35,22 @@ def check_file(path: Path, where: str, largest: int) -> None:
 def read_bytes(path: Path, where: str, largest: int) -> bytes:
     """Read a file as bytes; parameters and errors as in `check_file`."""
     check_file(path, where, largest)
-    try:
+    with convert_read_errors(path, where):
         return path.read_bytes()
-    except OSError as error:
-        raise InputError(where, f"cannot be read from {path} ({error.strerror})", "Check the path.") from None
 
 
 def read_text(path: Path, where: str, largest: int) -> str:
     """Read a file of UTF-8 text, with or without byte order mark; parameters and errors as in `check_file`."""
-    try:
+    with convert_read_errors(path, where):
         return read_bytes(path, where, largest).decode("utf-8-sig")
+
+
+@contextmanager
+def convert_read_errors(path: Path, where: str) -> Iterator[None]:
+    """Convert errors of the file system, and bytes that are not UTF-8 text, into `InputError`."""
+    try:
+        yield
+    except OSError as error:
+        raise InputError(where, f"cannot be read from {path} ({error.strerror or error})", "Check the path.") from None
     except UnicodeDecodeError as error:
         raise InputError(where, f"byte {error.start + 1} is not UTF-8 text", "Save the file as UTF-8.") from None

@@ -1,5 +1,9 @@
 """Measured table: columns of numbers as a file holds them, with the description of each column that the file gives."""
 
+import struct
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal, get_args
 
@@ -10,6 +14,13 @@ from pantocheck.conformance.input_files.input_error import InputError
 
 Axis = Literal["x", "y", "z"]
 
+LIBRARY_ERRORS = (
+    *(OSError, EOFError, LookupError, TypeError, ValueError, AttributeError, RuntimeError, OverflowError, MemoryError),
+    *(struct.error, zlib.error),
+)
+"""Exceptions that the libraries of the file formats raise for damaged files."""
+
+SAMPLED_TOGETHER = "The channels of a record must be sampled together."
 
 TIME_NAMES = ("time", "time_s", "t", "t_s", "zeit", "temps")
 """Names of a time column, in lower case."""
@@ -96,6 +107,28 @@ class MeasuredTable:
         return replace(self, values=self.values[:, 1:], columns=self.columns[1:], time=self.values[:, 0])
 
 
+@contextmanager
+def refuse_damage(where: str, kind: str, *others: type[Exception]) -> Iterator[None]:
+    """Convert exceptions that a library raises for a damaged file into `InputError`.
+
+    Parameters
+    ----------
+    where : str
+        Name of the file in messages.
+    kind : str
+        Kind of file, e.g. `HDF5`.
+    *others : type
+        Exceptions of this library beside `LIBRARY_ERRORS`.
+    """
+    try:
+        yield
+    except InputError:
+        raise
+    except (*LIBRARY_ERRORS, *others) as error:
+        message = " ".join(str(error).split())[:120]
+        raise InputError(where, f"is damaged or not {kind} ({message})", "Export the record again.") from None
+
+
 def parse_direction(text: str, where: str) -> tuple[Axis, float]:
     """Axis and sign of a direction such as `+z` or `-x`.
 
@@ -120,7 +153,7 @@ def stack_channels(channels: list[RealArray], where: str, largest: int) -> RealA
         The channels differ in length, or hold more than `largest` numbers together.
     """
     if len({channel.size for channel in channels}) > 1:
-        raise InputError(where, "its channels differ in length", "The channels of a record must be sampled together.")
+        raise InputError(where, "its channels differ in length", SAMPLED_TOGETHER)
     if sum(channel.size for channel in channels) > largest:
         raise InputError(where, f"more than {largest} numbers", "Cut the record, or leave channels out.")
     return np.column_stack(channels)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 
-from pantocheck.conformance.input_files.bounded_file import check_file
+from pantocheck.conformance.input_files.bounded_file import check_file, convert_read_errors
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.measured_table import MeasuredTable
 
@@ -109,6 +109,7 @@ def read_tables(
     table_format = find_table_format(path, formats)
     where = f"record '{path.name}'"
     check_file(path, where, MAX_TABLE_BYTES)
-    if path.stat().st_size == 0:
-        raise InputError(where, "is empty", "Export the record again.")
+    with convert_read_errors(path, where), path.open("rb") as file:
+        if not file.read(1):
+            raise InputError(where, "is empty", "Export the record again.")
     return table_format.read(path, names, largest)

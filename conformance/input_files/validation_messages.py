@@ -53,18 +53,14 @@ def build_input_error(error: ValidationError, model: type[BaseModel], where: str
     table, field, key = _walk(model, detail["loc"])
     if detail["type"] == "inconsistent":
         context = detail["ctx"]
-        return InputError(
-            _locate(where, ".".join(part for part in (key, context["key"]) if part)), context["found"], context["hint"]
-        )
-    found, hint = _explain(detail, table, field)
-    return InputError(_locate(where, key), found, hint)
-
-
-def _locate(where: str, key: str) -> str:
-    return f"{where}, key {key}" if key else where
+        key, found, hint = f"{key}.{context['key']}".strip("."), context["found"], context["hint"]
+    else:
+        found, hint = _explain(detail, table, field)
+    return InputError(f"{where}, key {key}" if key else where, found, hint)
 
 
 def _explain(detail: ErrorDetails, table: type[BaseModel], field: FieldInfo | None) -> tuple[str, str]:
+    """Content that was found, and the hint, for one error of pydantic."""
     kind, value = detail["type"], detail["input"]
     name = str(detail["loc"][-1]) if detail["loc"] else ""
     known = list(table.model_fields)
@@ -78,14 +74,13 @@ def _explain(detail: ErrorDetails, table: type[BaseModel], field: FieldInfo | No
     if kind in _BOUNDS:
         words, bound = _BOUNDS[kind]
         return f"{_show(value)} {words} {detail['ctx'][bound]}", about
-    if kind in _KINDS:
-        return f"found {_show(value)}, expected {_KINDS[kind]}", about
-    if kind == "literal_error":
-        return f"found {_show(value)}, expected {detail['ctx']['expected']}", about
+    if expected := _KINDS.get(kind) or detail.get("ctx", {}).get("expected"):
+        return f"found {_show(value)}, expected {expected}", about
     return f"found {_show(value)}: {detail['msg'][:1].lower()}{detail['msg'][1:]}", about
 
 
 def _show(value: object) -> str:
+    """Value as text of at most 60 characters."""
     if isinstance(value, float) and math.isfinite(value):
         return f"{value:g}"
     text = repr(value)

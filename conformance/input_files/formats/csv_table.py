@@ -9,6 +9,7 @@ from typing import TextIO
 import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.input_files.bounded_file import convert_read_errors
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.measured_table import MeasuredTable, TableColumn
 
@@ -25,28 +26,21 @@ def read_csv_table(path: Path, names: tuple[str, ...], largest: int) -> list[Mea
     """
     del names  # a CSV file is read the same way with and without a sidecar
     where = f"record '{path.name}'"
-    try:
-        with path.open(encoding="utf-8-sig") as file:
-            start = list(islice(_numbered(file, where), 3))
-            if not start:
-                raise InputError(where, "holds no data", "Export the record again.")
-            delimiter, decimal = _dialect([line for _, line in start])
-            head = [cell.strip().strip('"') for cell in start[0][1].split(delimiter)]
-            named = not all(_is_number(cell, decimal) for cell in head)
-            body = (line.replace(decimal, ".") for _, line in chain(start[named:], _numbered(file, where)))
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore", UserWarning)  # numpy's warning of a table without rows
-                values = np.loadtxt(
-                    body, delimiter=delimiter, ndmin=2, comments=None, max_rows=largest // len(head) + 1
-                )
-    except UnicodeDecodeError as error:
-        raise InputError(where, f"byte {error.start + 1} is not UTF-8 text", "Save the file as UTF-8.") from None
-    except OSError as error:
-        raise InputError(where, f"cannot be read ({error.strerror})", "Check the path.") from None
-    except ValueError as error:
-        if isinstance(error, InputError):
+    with convert_read_errors(path, where), path.open(encoding="utf-8-sig") as file, warnings.catch_warnings():
+        start = list(islice(_numbered(file, where), 3))
+        if not start:
+            raise InputError(where, "holds no data", "Export the record again.")
+        delimiter, decimal = _find_dialect([line for _, line in start])
+        head = [cell.strip().strip('"') for cell in start[0][1].split(delimiter)]
+        named = not all(_is_number(cell, decimal) for cell in head)
+        body = (line.replace(decimal, ".") for _, line in chain(start[named:], _numbered(file, where)))
+        warnings.simplefilter("ignore", UserWarning)  # numpy's warning of a table without rows
+        try:
+            values = np.loadtxt(body, delimiter=delimiter, ndmin=2, comments=None, max_rows=largest // len(head) + 1)
+        except (InputError, UnicodeDecodeError):
             raise
-        raise _find_fault(path, where, named) from None
+        except ValueError:
+            raise _find_fault(path, where, named) from None
     if values.size > largest:
         raise InputError(where, f"more than {largest} numbers", "Cut the record, or leave channels out.")
     if values.size == 0:
@@ -85,7 +79,7 @@ def _numbered(file: TextIO, where: str) -> Lines:
             yield number, line
 
 
-def _dialect(lines: list[str]) -> tuple[str, str]:
+def _find_dialect(lines: list[str]) -> tuple[str, str]:
     """Delimiter and decimal mark of the first lines."""
     for delimiter in (";", "\t"):
         if all(delimiter in line for line in lines):
@@ -105,7 +99,7 @@ def _find_fault(path: Path, where: str, named: bool) -> InputError:
     """First line of a damaged table whose width or numbers are wrong."""
     with path.open(encoding="utf-8-sig") as file:
         lines = list(_numbered(file, where))
-    delimiter, decimal = _dialect([line for _, line in lines[:3]])
+    delimiter, decimal = _find_dialect([line for _, line in lines[:3]])
     width = lines[0][1].count(delimiter) + 1
     for number, line in lines[named:]:
         cells = [cell.strip() for cell in line.split(delimiter)]

@@ -11,10 +11,7 @@ from numpy.typing import ArrayLike
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.measured_table import MeasuredTable, TableColumn
-
-HDF5_DAMAGE = (OSError, LookupError, TypeError, ValueError, RuntimeError, OverflowError, MemoryError, AttributeError)
-"""Exceptions that h5py raises for damaged files."""
+from pantocheck.conformance.input_files.measured_table import MeasuredTable, TableColumn, refuse_damage
 
 MOTION_QUANTITIES = ("acceleration", "velocity", "displacement")
 
@@ -39,16 +36,8 @@ def read_hdf5_table(path: Path, names: tuple[str, ...], largest: int) -> list[Me
 @contextmanager
 def open_hdf5(path: Path) -> Iterator[h5py.File]:
     """Open an HDF5 file for reading; failures of the library inside the block become `InputError`."""
-    try:
-        with h5py.File(path, "r") as file:
-            yield file
-    except InputError:
-        raise
-    except HDF5_DAMAGE as error:
-        message = " ".join(str(error).split())[:120]
-        raise InputError(
-            f"record '{path.name}'", f"is damaged or not HDF5 ({message})", "Export the record again."
-        ) from None
+    with refuse_damage(f"record '{path.name}'", "HDF5"), h5py.File(path, "r") as file:
+        yield file
 
 
 def read_numbers(item: object, where: str, largest: int) -> RealArray:

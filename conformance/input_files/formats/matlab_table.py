@@ -1,7 +1,5 @@
 """MATLAB tables, version 5 (scipy) and 7.3 (HDF5): a matrix of samples or one vector per channel, with a sidecar."""
 
-import struct
-import zlib
 from pathlib import Path
 
 import h5py
@@ -12,23 +10,10 @@ from scipy.io.matlab import MatReadError
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.input_files.formats.hdf5_table import open_hdf5, read_numbers
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.measured_table import MeasuredTable, TableColumn, stack_channels
+from pantocheck.conformance.input_files.measured_table import MeasuredTable, TableColumn, refuse_damage, stack_channels
 
 MATLAB_TIME_NAMES = ("time", "time_s", "t")
 RATE_NAMES = ("sampling_rate_hz", "fs", "rate")
-MATLAB_DAMAGE = (
-    ValueError,
-    TypeError,
-    KeyError,
-    IndexError,
-    EOFError,
-    OSError,
-    NotImplementedError,
-    MatReadError,
-    struct.error,
-    zlib.error,
-)
-"""Exceptions that scipy raises for damaged files."""
 
 
 def read_matlab_table(path: Path, names: tuple[str, ...], largest: int) -> list[MeasuredTable]:
@@ -76,10 +61,8 @@ def _find_largest_matrix(data: dict[str, RealArray], where: str) -> RealArray:
 
 
 def _read_version_5(path: Path, where: str) -> dict[str, RealArray]:
-    try:
+    with refuse_damage(where, "a MATLAB file", MatReadError):
         content = scipy.io.loadmat(path, struct_as_record=True)
-    except MATLAB_DAMAGE as error:
-        raise InputError(where, f"is damaged or not a MATLAB file ({str(error)[:100]})", "Export it again.") from None
     return {
         name: np.asarray(value, dtype=np.float64)
         for name, value in content.items()

@@ -5,7 +5,13 @@ from pathlib import Path
 import numpy as np
 
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.measured_table import MeasuredTable, TableColumn, stack_channels
+from pantocheck.conformance.input_files.measured_table import (
+    SAMPLED_TOGETHER,
+    MeasuredTable,
+    TableColumn,
+    refuse_damage,
+    stack_channels,
+)
 
 SAME_TIME = 1e-6  # tolerance between the times of two channels [s]; a hundredth of an interval at 10 kHz
 
@@ -18,25 +24,18 @@ def read_mdf_table(path: Path, names: tuple[str, ...], largest: int) -> list[Mea
     where = f"record '{path.name}'"
     if not names:
         raise InputError(where, "has no sidecar", "Name its channels in a TOML file of the same name beside it.")
-    try:
-        with MDF(path) as file:
-            missing = [name for name in names if name not in file.channels_db]
-            if missing:
-                raise InputError(
-                    where,
-                    f"channel '{missing[0]}' of the sidecar is missing",
-                    f"The file holds: {', '.join(sorted(file.channels_db)[:12])}",
-                )
-            signals = [file.get(name) for name in names]
-    except InputError:
-        raise
-    except (MdfException, ValueError, KeyError, TypeError, OSError, IndexError) as error:
-        raise InputError(where, f"is damaged or not MDF ({str(error)[:100]})", "Export it again.") from None
+    with refuse_damage(where, "MDF", MdfException), MDF(path) as file:
+        missing = [name for name in names if name not in file.channels_db]
+        if missing:
+            raise InputError(
+                where,
+                f"channel '{missing[0]}' of the sidecar is missing",
+                f"The file holds: {', '.join(sorted(file.channels_db)[:12])}",
+            )
+        signals = [file.get(name) for name in names]
     values = stack_channels([np.asarray(signal.samples, dtype=np.float64) for signal in signals], where, largest)
     time = np.asarray(signals[0].timestamps, dtype=np.float64)
     if any(not np.allclose(signal.timestamps, time, rtol=0, atol=SAME_TIME) for signal in signals[1:]):
-        raise InputError(
-            where, "its channels differ in sampling interval", "The channels of a record must be sampled together."
-        )
+        raise InputError(where, "its channels differ in sampling interval", SAMPLED_TOGETHER)
     columns = tuple(TableColumn(signal.name, unit=str(signal.unit) or None) for signal in signals)
     return [MeasuredTable(path.name, values, columns, time=time)]

@@ -1,15 +1,17 @@
 """TDMS tables (LabVIEW), with a sidecar; needs the extra `tdms`."""
 
-import struct
 from pathlib import Path
 
 import numpy as np
 
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.measured_table import MeasuredTable, TableColumn, stack_channels
-
-TDMS_DAMAGE = (ValueError, KeyError, TypeError, EOFError, OSError, IndexError, NotImplementedError, struct.error)
-"""Exceptions that nptdms raises for damaged files."""
+from pantocheck.conformance.input_files.measured_table import (
+    SAMPLED_TOGETHER,
+    MeasuredTable,
+    TableColumn,
+    refuse_damage,
+    stack_channels,
+)
 
 
 def read_tdms_table(path: Path, names: tuple[str, ...], largest: int) -> list[MeasuredTable]:
@@ -18,20 +20,16 @@ def read_tdms_table(path: Path, names: tuple[str, ...], largest: int) -> list[Me
     from nptdms import TdmsFile
 
     where = f"record '{path.name}'"
-    try:
+    with refuse_damage(where, "TDMS"):
         channels = [channel for group in TdmsFile.read(path).groups() for channel in group.channels()]
         vectors = [np.asarray(channel[:], dtype=np.float64) for channel in channels]
-    except TDMS_DAMAGE as error:
-        raise InputError(where, f"is damaged or not TDMS ({str(error)[:100]})", "Export it again.") from None
     kept = [(channel, vector) for channel, vector in zip(channels, vectors, strict=True) if vector.size]
     if not kept:
         raise InputError(where, "holds no samples", "Export the record again.")
     values = stack_channels([vector for _, vector in kept], where, largest)
     steps = {channel.properties.get("wf_increment") for channel, _ in kept}
     if len(steps) > 1:
-        raise InputError(
-            where, "its channels differ in sampling interval", "The channels of a record must be sampled together."
-        )
+        raise InputError(where, "its channels differ in sampling interval", SAMPLED_TOGETHER)
     (step,) = steps
     columns = tuple(
         TableColumn(channel.name, unit=str(channel.properties.get("unit_string") or "") or None) for channel, _ in kept

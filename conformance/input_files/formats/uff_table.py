@@ -1,7 +1,6 @@
 """Universal files, data set 58 (ASCII) and 58b (binary): one function of time per channel."""
 
 import re
-import struct
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +8,13 @@ import numpy as np
 import pyuff
 
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.measured_table import MeasuredTable, TableColumn, stack_channels
+from pantocheck.conformance.input_files.measured_table import (
+    SAMPLED_TOGETHER,
+    MeasuredTable,
+    TableColumn,
+    refuse_damage,
+    stack_channels,
+)
 from pantocheck.conformance.input_files.units import SI_UNITS, MotionQuantity
 
 TIME_RESPONSE = 1  # function type of the format
@@ -32,11 +37,7 @@ def read_uff_table(path: Path, names: tuple[str, ...], largest: int) -> list[Mea
     steps = {round(float(data_set["abscissa_inc"]), 12) for data_set in sets}
     if len(steps) > 1:
         found = ", ".join(f"{step:g}" for step in sorted(steps)[:4])
-        raise InputError(
-            where,
-            f"its channels differ in sampling interval ({found} s)",
-            "The channels of a record must be sampled together; export them again.",
-        )
+        raise InputError(where, f"its channels differ in sampling interval ({found} s)", SAMPLED_TOGETHER)
     (step,) = steps
     if not step > 0:
         raise InputError(where, f"sampling interval {step:g} s", "Export evenly spaced time histories.")
@@ -49,21 +50,11 @@ def read_uff_table(path: Path, names: tuple[str, ...], largest: int) -> list[Mea
 
 def _read_sets(path: Path, where: str) -> list[dict[str, Any]]:
     """All data sets 58 of a file."""
-    try:
+    # pyuff raises plain `Exception` for some files that it cannot read.
+    with refuse_damage(where, "a universal file", Exception):
         universal = pyuff.UFF(str(path))
         kinds = [int(kind) for kind in universal.get_set_types()]
         sets = [universal.read_sets(i) for i, kind in enumerate(kinds) if kind == 58]
-    except OSError as error:
-        raise InputError(where, f"cannot be read ({error.strerror or error})", "Check the path.") from None
-    except (ValueError, IndexError, KeyError, TypeError, struct.error, UnicodeDecodeError, OverflowError, MemoryError):
-        raise InputError(
-            where, "is damaged or not a universal file", "Export the record again as data set 58 or 58b."
-        ) from None
-    except Exception as error:
-        # pyuff raises plain `Exception` for files it cannot read; any other type is a defect of the suite.
-        if type(error) is not Exception:
-            raise
-        raise InputError(where, f"is not a readable universal file ({str(error)[:100]})", "Export it again.") from None
     for number, data_set in enumerate(sets, 1):
         if len(data_set["data"]) != int(data_set["num_pts"]):
             raise InputError(
