@@ -14,7 +14,7 @@ from pantocheck.conformance.input_files.input_error import InputError
 
 Axis = Literal["x", "y", "z"]
 
-LIBRARY_ERRORS = (
+LIBRARY_ERRORS: tuple[type[Exception], ...] = (
     *(OSError, EOFError, LookupError, TypeError, ValueError, AttributeError, RuntimeError, OverflowError, MemoryError),
     *(struct.error, zlib.error),
 )
