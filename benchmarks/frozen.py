@@ -5,8 +5,10 @@
 
 `--drops` names the folder of the mass-drop records T1.h5, T2.csv and T3.uff; without it their identification is left
 out. Every id, number and verdict of the frozen file must stand in the new one at the same place; a new file may hold
-more keys. Texts may differ. Exit code 1 if a number differs by more than 1e-12 of its size, an id or a verdict differs,
-or something is missing; numbers that differ by less are counted and the largest difference is printed.
+more keys. Texts may differ. The lists `warnings` and `notes` are not compared: a remark may move to another key, as the
+near-limit remark moved from `warnings` to `close` of its criterion. Exit code 1 if a number differs by more than 1e-12
+of its size, an id or a verdict differs, or something is missing; numbers that differ by less are counted and the
+largest difference is printed.
 """
 
 import argparse
@@ -44,7 +46,7 @@ IDENTIFIERS = {"id", "verdict", "quantity", "trust", "unit", "name", "kind", "ma
 """Keys whose text must not change."""
 
 TEXT_LISTS = {"warnings", "notes"}
-"""Lists of remarks: a remark may move to another key, as the near-limit remark did from `warnings` to `close`."""
+"""Lists of remarks, which are not compared (see above)."""
 
 TOLERANCE = 1e-12
 """Largest relative difference that a reordering of sums by the compiler may cause."""

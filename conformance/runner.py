@@ -1,4 +1,4 @@
-"""Running cases on a system: side by side, in the order their requirements allow, one failure at a time."""
+"""Runner: cases on a system, in sequence or in parallel; an exception ends the case that raised it, not the run."""
 
 import multiprocessing
 import os
@@ -17,15 +17,16 @@ from pantocheck.conformance.studies.study_dispatch import run_study
 from pantocheck.conformance.systems.system import System
 
 Progress = Callable[[CaseResult], None]
+"""Callback that receives each result as soon as its case is finished."""
 
 
 class RunInterrupted(Exception):
-    """The user stopped a run: what was finished is kept, or the minutes spent on it would be lost.
+    """The user stopped a run; the results of the finished cases are kept.
 
     Parameters
     ----------
-    results
-        Of all cases; those that were not finished are skipped with this reason.
+    results : Results
+        Results of all cases; unfinished cases are skipped with this reason.
     """
 
     def __init__(self, results: Results) -> None:
@@ -40,26 +41,26 @@ def run_cases(
 
     Parameters
     ----------
-    cases : Sequence[Case]
-        With unique ids.
+    cases : sequence of Case
+        Cases with unique ids.
     system : System
-        Under test.
+        System under test.
     trust : Trust
-        Lowest trust of the limits that carry a verdict.
+        Lowest trust of the limits that count.
     jobs : int
-        Processes at work side by side; with 1, all is done in this process.
+        Number of parallel processes; 1 runs all cases in this process.
     progress : Progress or None
-        Called with each result as it is finished.
+        Callback for each result.
 
     Returns
     -------
     Results
-        Results in the order of `cases`, whatever was finished first.
+        Results in the order of `cases`.
 
     Raises
     ------
     RunInterrupted
-        On KeyboardInterrupt, with what was finished.
+        The user pressed Ctrl-C; the exception holds the results.
     """
     started = utc_now()
     finished: dict[str, CaseResult] = {}
@@ -69,24 +70,27 @@ def run_cases(
         if progress is not None:
             progress(result)
 
+    def combine() -> Results:
+        identity = SystemIdentity(name=system.name, version=system.version, kind=system.kind)
+        return build_results([finished[case.id] for case in cases], identity, trust, started)
+
     try:
         if jobs == 1:
-            for case in _ordered(cases):
+            for case in _order_cases(cases):
                 keep(run_when_ready(case, system, trust, finished, cases))
         else:
-            _run_side_by_side(cases, system, trust, jobs, finished, keep)
+            _run_in_parallel(cases, system, trust, jobs, finished, keep)
     except KeyboardInterrupt:
         for case in cases:
             if case.id not in finished:
-                finished[case.id] = build_ungraded(
-                    case, "skip", "the run was interrupted before this case was finished"
-                )
-        raise RunInterrupted(_results(cases, system, trust, started, finished)) from None
-    return _results(cases, system, trust, started, finished)
+                reason = "the run was interrupted before this case was finished"
+                finished[case.id] = build_ungraded(case, "skip", reason)
+        raise RunInterrupted(combine()) from None
+    return combine()
 
 
 def run_case(case: Case, system: System, trust: Trust) -> CaseResult:
-    """Run one case and grade it; what its system raises ends as `error` with one line, so that the others go on."""
+    """Run one case and grade it; an exception in the system becomes the verdict `error` of this case only."""
     try:
         return grade_case(case, run_study(case, system), trust)
     except Exception as error:
@@ -97,12 +101,12 @@ def run_case(case: Case, system: System, trust: Trust) -> CaseResult:
 def run_when_ready(
     case: Case, system: System, trust: Trust, finished: dict[str, CaseResult], cases: Sequence[Case]
 ) -> CaseResult:
-    """Run one of several cases if those it requires have not failed; else it is skipped."""
-    return _after_requirements(case, finished, cases) or run_case(case, system, trust)
+    """Run one of several cases; skip it if a case that it requires failed or was not run."""
+    return _check_requirements(case, finished, cases) or run_case(case, system, trust)
 
 
-def _ordered(cases: Sequence[Case]) -> list[Case]:
-    """Cases with those they require before them; the order asked otherwise."""
+def _order_cases(cases: Sequence[Case]) -> list[Case]:
+    """Cases in the given order, except that a required case precedes the cases that require it."""
     by_id = {case.id: case for case in cases}
     ordered: dict[str, Case] = {}
 
@@ -117,97 +121,80 @@ def _ordered(cases: Sequence[Case]) -> list[Case]:
     return list(ordered.values())
 
 
-def _after_requirements(case: Case, finished: dict[str, CaseResult], cases: Sequence[Case]) -> CaseResult | None:
-    """The result of a case whose requirements are not met; None if it can run.
+def _check_requirements(case: Case, finished: dict[str, CaseResult], cases: Sequence[Case]) -> CaseResult | None:
+    """Result of a case whose requirements are not met; None if it can run.
 
-    A requirement that the system under test does not offer is no obstacle: a record of a run says nothing of the line
-    at rest, and is graded all the same.
+    A required case that the system skips does not block: a record of a run has no quantities of the line at rest.
     """
-    by_id = {one.id: one for one in cases}
-    seen: set[str] = set()
-    waiting = list(case.file.requires)
-    while waiting:
-        required = waiting.pop(0)
-        if required in seen:
-            continue
-        seen.add(required)
-        if required not in finished:
-            return build_ungraded(case, "skip", f"requires {required}, which was not run")
-        if finished[required].verdict in {"fail", "error"}:
-            return build_ungraded(case, "skip", f"requires {required}, which ended in {finished[required].verdict}")
-        waiting += by_id[required].file.requires if required in by_id else ()
+    by_id = {other.id: other for other in cases}
+    required = list(case.file.requires)
+    for name in required:  # grows by the requirements of the required cases
+        if name not in finished:
+            return build_ungraded(case, "skip", f"requires {name}, which was not run")
+        if finished[name].verdict in {"fail", "error"}:
+            return build_ungraded(case, "skip", f"requires {name}, which ended in {finished[name].verdict}")
+        if name in by_id:
+            required += [other for other in by_id[name].file.requires if other not in required]
     return None
 
 
-def _run_side_by_side(
+def _run_in_parallel(
     cases: Sequence[Case], system: System, trust: Trust, jobs: int, finished: dict[str, CaseResult], keep: Progress
 ) -> None:
-    waiting = _ordered(cases)
+    waiting = _order_cases(cases)
     running: dict[Future[CaseResult], Case] = {}
-    pool = _pool(jobs)
+    pool = _start_pool(jobs)
     try:
         while waiting or running:
             unfinished = {case.id for case in (*waiting, *running.values())}
             ready = [case for case in waiting if not unfinished & set(case.file.requires)]
             if not (ready or running):
                 ready = waiting[:1]  # cases that require each other: none of them can run
-            # No more cases than processes are handed over, so that a dying process takes only its neighbours along.
+            # At most one case per process is submitted: a process that dies loses only the cases that are running.
             for case in ready[: jobs - len(running)]:
                 waiting.remove(case)
-                if (blocked := _after_requirements(case, finished, cases)) is not None:
-                    keep(blocked)
+                if (skipped := _check_requirements(case, finished, cases)) is not None:
+                    keep(skipped)
                 else:
                     running[pool.submit(run_case, case, system, trust)] = case
-            if running:
-                done, _ = wait(running, return_when=FIRST_COMPLETED)
-                broken = [case for future in done for case in [running.pop(future)] if not _kept(future, keep)]
-                if broken:
-                    for case in (*broken, *running.values()):
-                        keep(build_ungraded(case, "error", "the process of this case, or one beside it, died"))
-                    running.clear()
-                    pool.shutdown(wait=False)
-                    pool = _pool(jobs)
+            if running and (lost := _keep_finished(running, keep)):
+                for case in (*lost, *running.values()):
+                    keep(build_ungraded(case, "error", "the process of this case, or a parallel one, died"))
+                running.clear()
+                pool.shutdown(wait=False)
+                pool = _start_pool(jobs)
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _kept(future: Future[CaseResult], keep: Progress) -> bool:
-    """Keep the result of a process; False if the process died."""
-    try:
-        keep(future.result())
-    except BrokenProcessPool:
-        return False
-    return True
+def _keep_finished(running: dict[Future[CaseResult], Case], keep: Progress) -> list[Case]:
+    """Wait for a result and keep every finished one; returns the cases whose process died."""
+    lost = []
+    for future in wait(running, return_when=FIRST_COMPLETED).done:
+        case = running.pop(future)
+        try:
+            keep(future.result())
+        except BrokenProcessPool:
+            lost.append(case)
+    return lost
 
 
-def _one_thread_each() -> None:
-    """Processes side by side that each let linear algebra use every core slow each other down more than twofold.
+def _start_pool(jobs: int) -> Executor:
+    """Start processes with one thread of linear algebra each; more threads would slow them down more than twofold.
 
-    The libraries read this when they are loaded, so that it holds for the processes started from now on; what a user
-    has set stays.
+    The libraries read these variables when they are loaded. A value set by the user is kept.
     """
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")
+    # Fresh interpreters: threads of a compiled kernel do not survive a fork.
+    return ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn"), _handle_interrupt)
 
 
-def _pool(jobs: int) -> Executor:
-    # A fresh interpreter each: threads of a compiled kernel do not survive a fork.
-    _one_thread_each()
-    return ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn"), _die_quietly)
+def _handle_interrupt() -> None:
+    """In a worker: Ctrl-C reaches all processes; only the parent process reports it."""
+    signal.signal(signal.SIGINT, _exit_on_signal)
 
 
-def _die_quietly() -> None:
-    """In a worker: Ctrl-C reaches all processes at once, and only the first of them has something to say."""
-    signal.signal(signal.SIGINT, _leave)
-
-
-def _leave(number: int, frame: FrameType | None) -> None:
-    # An exception, so that a system can end what it started before this process ends.
+def _exit_on_signal(number: int, frame: FrameType | None) -> None:
+    # An exception, so that a system can stop its own processes before this process ends.
     raise SystemExit(128 + number)
-
-
-def _results(
-    cases: Sequence[Case], system: System, trust: Trust, started: str, finished: dict[str, CaseResult]
-) -> Results:
-    identity = SystemIdentity(name=system.name, version=system.version, kind=system.kind)
-    return build_results([finished[case.id] for case in cases], identity, trust, started)

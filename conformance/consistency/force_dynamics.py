@@ -76,7 +76,7 @@ def _check_force_dynamics(case: Case, signals: RecordSignals) -> Finding | None:
     step = max(1, int(record.rate / (SAMPLES_PER_PERIOD * low_pass.cutoff_Hz)))
     for number, (file, pantograph) in enumerate(zip(case.pantographs, signals.pantographs.values(), strict=True), 1):
         window = _compared_samples(pantograph)
-        force = pantograph.force.low_passed[window][::step]
+        force = low_pass(pantograph.force.delivered, record.rate)[window][::step]
         height = low_pass(record.contact_height[number - 1], record.rate)[window][::step]
         fit = fit_motion(file, force, height, step / record.rate)
         still = still or fit is None

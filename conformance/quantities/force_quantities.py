@@ -3,7 +3,7 @@
 To add a statistic, add its definition here; value, uncertainty, label and tables follow from it.
 """
 
-from collections.abc import Callable
+from functools import partial
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.bands import BANDS, Band
@@ -14,6 +14,11 @@ from pantocheck.conformance.quantities.statistics import coefficient_of_variatio
 
 FORCE, UNFILTERED_TO_50_HZ = "contact force", "contact force not filtered below 50 Hz"
 EN50318, VOVAN2015 = "EN 50318", "Vo Van et al. 2015, Table 1"
+
+_en50318 = partial(PantographQuantity, source=EN50318, needs=FORCE, unit="N")
+_vovan2015 = partial(PantographQuantity, source=VOVAN2015, tables=("bands", "damping models"))
+_vovan2015_20 = partial(_vovan2015, needs=FORCE)
+_vovan2015_50 = partial(_vovan2015, needs=UNFILTERED_TO_50_HZ)
 
 
 def _mean(signals: ForceSignals, sampling: Sampling) -> RealArray:
@@ -28,139 +33,104 @@ def _std_50(signals: ForceSignals, sampling: Sampling) -> RealArray:
     return sampling.std(signals.extended)
 
 
-def _statistical_extreme(side: int) -> Callable[[ForceSignals, Sampling], RealArray]:
-    return lambda signals, sampling: statistical_extremes(_mean(signals, sampling), _std_20(signals, sampling))[side]
+def _extremes(signals: ForceSignals, sampling: Sampling) -> tuple[RealArray, RealArray]:
+    return statistical_extremes(_mean(signals, sampling), _std_20(signals, sampling))
 
 
 def _band_quantity(band: Band) -> PantographQuantity:
     low, high, name = band
-    return PantographQuantity(
+    define = _vovan2015_20 if high <= 20 else _vovan2015_50
+    return define(
         name=name,
         label=f"RMS, {low:g}–{high:g} Hz",
         unit="N",
         definition=f"RMS of the contact force in the band ]{low:g}, {high:g}] Hz",
-        needs=FORCE if high <= 20 else UNFILTERED_TO_50_HZ,
-        source=VOVAN2015,
         never_negative=True,
-        tables=("bands", "damping models"),
         compute=lambda signals, sampling: sampling.band_rms(signals, band),
     )
 
 
 PANTOGRAPH_QUANTITIES: tuple[PantographQuantity, ...] = (
-    PantographQuantity(
+    _en50318(
         name="mean_force_N",
         label="Mean contact force",
-        unit="N",
         definition="mean contact force over the analysis section",
-        needs=FORCE,
-        source=EN50318,
         tables=("damping models",),
         compute=_mean,
     ),
-    PantographQuantity(
+    _en50318(
         name="std_force_N",
         label="Standard deviation, 0–20 Hz",
-        unit="N",
         definition="standard deviation of the contact force, 0-20 Hz",
-        needs=FORCE,
-        source=EN50318,
         never_negative=True,
         tables=("bands", "damping models"),
         compute=_std_20,
     ),
-    PantographQuantity(
+    _vovan2015_50(
         name="std_force_50_N",
         label="Standard deviation, 0–50 Hz",
         unit="N",
         definition="standard deviation of the contact force, 0-50 Hz",
-        needs=UNFILTERED_TO_50_HZ,
-        source=VOVAN2015,
         never_negative=True,
-        tables=("bands", "damping models"),
         compute=_std_50,
     ),
-    PantographQuantity(
+    _vovan2015_20(
         name="cov_20",
         label="Coefficient of variation, 0–20 Hz",
         unit="",
         definition="coefficient of variation: std_force_N over mean_force_N",
-        needs=FORCE,
-        source=VOVAN2015,
-        tables=("bands", "damping models"),
-        compute=lambda signals, sampling: coefficient_of_variation(
-            _mean(signals, sampling), _std_20(signals, sampling)
-        ),
+        compute=lambda *arguments: coefficient_of_variation(_mean(*arguments), _std_20(*arguments)),
     ),
-    PantographQuantity(
+    _vovan2015_50(
         name="cov_50",
         label="Coefficient of variation, 0–50 Hz",
         unit="",
         definition="coefficient of variation: std_force_50_N over mean_force_N",
-        needs=UNFILTERED_TO_50_HZ,
-        source=VOVAN2015,
-        tables=("bands", "damping models"),
-        compute=lambda signals, sampling: coefficient_of_variation(
-            _mean(signals, sampling), _std_50(signals, sampling)
-        ),
+        compute=lambda *arguments: coefficient_of_variation(_mean(*arguments), _std_50(*arguments)),
     ),
     *map(_band_quantity, BANDS),
-    PantographQuantity(
+    _en50318(
         name="statistical_max_N",
         label="Statistical maximum, mean + 3 σ",
-        unit="N",
         definition="mean_force_N plus three times std_force_N",
-        needs=FORCE,
-        source=EN50318,
-        compute=_statistical_extreme(1),
+        compute=lambda *arguments: _extremes(*arguments)[1],
     ),
-    PantographQuantity(
+    _en50318(
         name="statistical_min_N",
         label="Statistical minimum, mean − 3 σ",
-        unit="N",
         definition="mean_force_N minus three times std_force_N",
-        needs=FORCE,
-        source=EN50318,
-        compute=_statistical_extreme(0),
+        compute=lambda *arguments: _extremes(*arguments)[0],
     ),
-    PantographQuantity(
+    _en50318(
         name="max_force_N",
         label="Maximum of the 20 Hz force",
-        unit="N",
         definition="largest contact force, 0-20 Hz",
-        needs=FORCE,
-        source=EN50318,
         tables=("damping models",),
         compute=lambda signals, sampling: sampling.largest(signals.graded),
     ),
-    PantographQuantity(
+    _en50318(
         name="min_force_N",
         label="Minimum of the 20 Hz force",
-        unit="N",
         definition="smallest contact force, 0-20 Hz",
-        needs=FORCE,
-        source=EN50318,
         tables=("damping models",),
         compute=lambda signals, sampling: sampling.smallest(signals.graded),
     ),
-    PantographQuantity(
+    _en50318(
         name="contact_loss_pct",
         label="Contact loss",
         unit="%",
         definition="share of the samples of the unfiltered force without contact",
         needs="unfiltered contact force",
-        source=EN50318,
         never_negative=True,
         tables=("damping models",),
         compute=lambda signals, sampling: contact_loss(signals.delivered, signals.filter_applied_Hz, sampling),
     ),
-    PantographQuantity(
+    _en50318(
         name="contact_height_range_mm",
         label="Range of the contact point's height",
         unit="mm",
         definition="highest minus lowest contact point over the analysis section",
         needs="contact height",
-        source=EN50318,
         never_negative=True,
         compute=lambda signals, sampling: sampling.extent(signals.height, 1e3),
     ),

@@ -1,4 +1,4 @@
-"""Quantity: a number that can be graded, with everything that is said about it."""
+"""Quantity: definition of a number that can be graded."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,6 +10,9 @@ from pantocheck.conformance.quantities.signals import ForceSignals, LineSignals
 
 QuantityTable = Literal["bands", "damping models"]
 """Tables that show a fixed set of quantities: frequency bands of the certificate, and the damping sensitivity study."""
+
+Scope = Literal["pantograph", "line", "static", "mass_drop", "study"]
+"""One value per pantograph; one value of a run; the line at rest; identified modes; a comparison of several runs."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,9 +31,8 @@ class Quantity:
         Definition in one sentence.
     needs : str
         Channel of a record, or result of a static check, that the quantity is computed from.
-    scope : {'pantograph', 'line', 'static', 'mass_drop', 'study'}
-        `pantograph` (one value each), `line` (one value of a run), `static` (the line at rest), `mass_drop`
-        (identified modes), `study` (comparison of several runs).
+    scope : Scope
+        Object or computation that the value belongs to.
     source : str
         Document that defines the quantity.
     never_negative : bool
@@ -44,7 +46,7 @@ class Quantity:
     unit: str
     definition: str
     needs: str
-    scope: Literal["pantograph", "line", "static", "mass_drop", "study"]
+    scope: Scope
     source: str = "pantocheck"
     never_negative: bool = False
     tables: tuple[QuantityTable, ...] = ()

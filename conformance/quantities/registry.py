@@ -1,13 +1,11 @@
 """Registry of all quantities by name. A criterion is one of these names with limits."""
 
+from pantocheck.conformance.quantities.delivered_quantities import DELIVERED_QUANTITIES
 from pantocheck.conformance.quantities.force_quantities import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES
-from pantocheck.conformance.quantities.line_state_quantities import LINE_STATE_QUANTITIES
-from pantocheck.conformance.quantities.paper_quantities import PAPER_QUANTITIES
 from pantocheck.conformance.quantities.quantity import Quantity, QuantityTable
 
 QUANTITIES: dict[str, Quantity] = {
-    quantity.name: quantity
-    for quantity in (*PANTOGRAPH_QUANTITIES, *LINE_QUANTITIES, *LINE_STATE_QUANTITIES, *PAPER_QUANTITIES)
+    quantity.name: quantity for quantity in (*PANTOGRAPH_QUANTITIES, *LINE_QUANTITIES, *DELIVERED_QUANTITIES)
 }
 """All quantities, in the order of reports."""
 

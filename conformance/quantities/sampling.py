@@ -1,7 +1,5 @@
 """Sampling: elementary statistics of a series, for a whole record or for each replicate of a bootstrap."""
 
-from typing import Protocol
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,36 +8,11 @@ from pantocheck.conformance.quantities.bands import Band
 from pantocheck.conformance.quantities.signals import ForceSignals
 
 
-class Sampling(Protocol):
-    """Statistics of a series; each result has one number per sample of the population.
+class Sampling:
+    """Statistics of all samples of the analysis section, as arrays of shape ().
 
-    The whole record gives arrays of shape (), a bootstrap gives arrays of shape (replicates,).
+    A subclass for a bootstrap returns one number per replicate, as arrays of shape (replicates,).
     """
-
-    def mean(self, series: RealArray) -> RealArray:
-        """Mean value."""
-
-    def std(self, series: RealArray) -> RealArray:
-        """Standard deviation."""
-
-    def largest(self, series: RealArray) -> RealArray:
-        """Largest value."""
-
-    def smallest(self, series: RealArray) -> RealArray:
-        """Smallest value."""
-
-    def extent(self, series: RealArray, scale: float) -> RealArray:
-        """Largest minus smallest value, times a scale that converts its unit."""
-
-    def percentage(self, condition: NDArray[np.bool_]) -> RealArray:
-        """Share of the samples that meet a condition [%]."""
-
-    def band_rms(self, signals: ForceSignals, band: Band) -> RealArray:
-        """RMS of the contact force in a frequency band [N]."""
-
-
-class WholeRecord:
-    """Statistics of all samples of the analysis section."""
 
     def mean(self, series: RealArray) -> RealArray:
         """Mean value."""
@@ -70,4 +43,4 @@ class WholeRecord:
         return np.asarray(signals.band(band.low, band.high))
 
 
-WHOLE_RECORD = WholeRecord()
+WHOLE_RECORD = Sampling()

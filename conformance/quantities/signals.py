@@ -72,19 +72,16 @@ class ForceChannel:
     filter_applied_Hz: float | None = None
 
     @cached_property
-    def low_passed(self) -> RealArray:
-        """Delivered force after the filter of the case, also if it was filtered before [N]."""
-        return self.low_pass(self.delivered, self.rate)
-
-    @cached_property
     def graded(self) -> RealArray:
         """Force filtered once by the filter of the case [N]."""
-        return self.low_passed if needs_filter(self.low_pass, self.filter_applied_Hz) else self.delivered
+        return self._filter_once(self.low_pass)
 
     @cached_property
     def extended(self) -> RealArray:
         """Force filtered once by the same kind of filter at 50 Hz [N]."""
-        low_pass = replace(self.low_pass, cutoff_Hz=EXTENDED_CUTOFF_HZ)
+        return self._filter_once(replace(self.low_pass, cutoff_Hz=EXTENDED_CUTOFF_HZ))
+
+    def _filter_once(self, low_pass: LowPass) -> RealArray:
         return low_pass(self.delivered, self.rate) if needs_filter(low_pass, self.filter_applied_Hz) else self.delivered
 
 

@@ -1,4 +1,4 @@
-"""The runner: verdicts of cases and suite, what one failure does to the others, and the same bytes every time."""
+"""Runner: verdicts of cases and suite, isolation of failures, reproducible results."""
 
 import json
 import re
@@ -12,6 +12,7 @@ from numpy.testing import assert_allclose
 
 from pantocheck.conformance.cases.library import select_cases, source_text
 from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.grading.criterion_grading import criterion_name
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.results.outcome import Delivered, Errored, Skipped
 from pantocheck.conformance.results.results_format import Results
@@ -22,7 +23,7 @@ from pantocheck.conformance.systems.record_folder import open_record_folder
 
 @dataclass(frozen=True)
 class Scripted:
-    """Does for each case what it is told: deliver an outcome, or raise."""
+    """System that delivers the scripted outcome of each case, or raises the scripted exception."""
 
     script: dict[str, object]
     name: str = "scripted"
@@ -42,7 +43,7 @@ def cases():
 
 
 def limited(case, *bounds, trust="secondary"):
-    """The case with limits of its own only: (quantity, lower, upper) each."""
+    """Case with the given limits only, each as (quantity, lower, upper)."""
     limits = tuple(
         Limit(quantity=name, lower=lower, upper=upper, trust=trust, source="test") for name, lower, upper in bounds
     )
@@ -85,26 +86,26 @@ def test_results_follow_their_schema_and_hold_the_numbers(cases, wave):
     assert Results.model_validate(content).to_json() == results.to_json()
 
 
-def test_same_input_gives_the_same_bytes_but_for_times(cases, wave):
+def test_results_are_reproducible_apart_from_times(cases, wave):
     first, second = (re.sub(rb'"started": "[^"]*"', b"", run_cases(cases, wave()).to_json()) for _ in "ab")
     assert first == second
 
 
 def test_verdicts_of_cases(case_250, wave):
     inside, outside = ("mean_force_N", 110.0, 120.0), ("std_force_N", 40.0, 50.0)
-    given = {
+    by_verdict = {
         "pass": limited(case_250, inside),
         "fail": limited(case_250, inside, outside),
         "info": limited(case_250, outside, trust="provisional"),
         "skip": limited(case_250, inside, ("elasticity_mm_N", None, 0.5)),
     }
-    for verdict, case in given.items():
+    for verdict, case in by_verdict.items():
         results = run_cases([case], wave())
         assert (results.cases[0].verdict, results.verdict) == (verdict, verdict)
     assert run_cases([limited(case_250)], wave()).verdict == "info"
 
 
-def test_provisional_limit_says_what_it_would_have_been_and_counts_when_asked(case_250, wave):
+def test_provisional_limit_counts_only_on_request(case_250, wave):
     case = limited(case_250, ("std_force_N", 40.0, 50.0), trust="provisional")
     (criterion,) = run_cases([case], wave()).cases[0].criteria
     assert criterion.verdict == "info"
@@ -113,7 +114,7 @@ def test_provisional_limit_says_what_it_would_have_been_and_counts_when_asked(ca
     assert run_cases([limited(case_250, ("std_force_N", 40.0, 50.0))], wave(), trust="primary").verdict == "info"
 
 
-def test_one_broken_case_leaves_the_others(cases, wave):
+def test_exception_in_one_case_leaves_the_other_cases(cases, wave):
     good = Delivered(wave().record(cases[1]))
     results = run_cases(cases, Scripted({cases[0].id: ZeroDivisionError("no mass\n at all"), cases[1].id: good}))
     assert [case.verdict for case in results.cases] == ["error", "fail"]
@@ -155,7 +156,7 @@ def test_truncated_record_never_passes(case_250, wave):
     )
 
 
-def test_short_run_out_is_warned_of(case_250, wave):
+def test_short_run_out_gives_a_warning(case_250, wave):
     record = wave().record(case_250)
     n = int(np.searchsorted(record.position[0], 362.0))
     cut = replace(
@@ -167,12 +168,13 @@ def test_short_run_out_is_warned_of(case_250, wave):
     assert not any("run-out" in warning for warning in run_cases([case_250], wave()).cases[0].warnings)
 
 
-def test_value_nearer_to_its_limit_than_its_discretisation_error_is_warned_of(case_250, wave):
-    """Sigma is 28 with an error of 0.28."""
-    for upper, warned in ((28.2, True), (28.4, False)):
+def test_value_closer_to_a_limit_than_its_discretisation_error_is_marked(case_250, wave):
+    """The standard deviation is 28 N with an error of 0.28 N; the remark is in one place only."""
+    for upper, marked in ((28.2, True), (28.4, False)):
         (result,) = run_cases([limited(case_250, ("std_force_N", None, upper))], wave()).cases
         assert result.verdict == "pass"
-        assert any("discretisation error" in warning for warning in result.warnings) == warned
+        assert any("discretisation error" in remark for remark in result.criteria[0].close) == marked
+        assert not any("discretisation error" in warning for warning in result.warnings)
 
 
 def test_list_valued_static_quantity_is_graded_item_by_item(case_250, wave):
@@ -188,14 +190,14 @@ def test_list_valued_static_quantity_is_graded_item_by_item(case_250, wave):
 
 
 def test_unknown_quantity_of_a_line_at_rest_is_an_error():
-    """Passed over, a misspelt name would end as a case without values, which is skipped."""
+    """If it were ignored, a case with a misspelt name would be skipped for lack of values."""
     (case,) = select_cases(["en50318-2018/ac-simple/static"])
     (result,) = run_cases([case], Scripted({case.id: Delivered(static={"dropper_lenght_m": (1.0,)})})).cases
     assert (result.verdict, result.reason) == ("error", "the system delivered an unknown quantity 'dropper_lenght_m'")
 
 
-def test_close_call_of_the_line_is_not_called_a_pantograph(case_250, wave):
-    """A dropper 0.4 mm from its limit with a discretisation error of 1 mm: which one, and whose."""
+def test_item_of_the_line_close_to_its_limit_is_marked(case_250, wave):
+    """A dropper 0.4 mm from its limit with a discretisation error of 1 mm; the criterion names dropper and owner."""
     limit = Limit(quantity="dropper_length_m", item=2, lower=0.8956, upper=1.0, trust="secondary", source="test")
     outcome = Delivered(
         wave().record(case_250),
@@ -203,10 +205,12 @@ def test_close_call_of_the_line_is_not_called_a_pantograph(case_250, wave):
         refined=Delivered(wave().record(case_250), {"dropper_length_m": (1.017, 0.897)}),
     )
     (result,) = run_cases([replace(case_250, limits=(limit,))], Scripted({case_250.id: outcome})).cases
-    assert any(text.startswith("dropper_length_m[2] of the line lies 0.0004 m") for text in result.warnings)
+    (criterion,) = result.criteria
+    assert criterion_name(criterion) == "dropper_length_m[2] of the line"
+    assert [remark.split(",")[0] for remark in criterion.close] == ["lies 0.0004 m from a limit"]
 
 
-def test_failed_precondition_skips_what_builds_on_it(cases, wave):
+def test_case_is_skipped_if_a_required_case_failed_or_was_not_run(cases, wave):
     first = limited(cases[0], ("mean_force_N", 0.0, 1.0))
     second = replace(cases[1], file=cases[1].file.model_copy(update={"requires": (first.id,)}))
     results = run_cases([second, first], wave())
@@ -217,7 +221,7 @@ def test_failed_precondition_skips_what_builds_on_it(cases, wave):
     assert run_cases([second], wave()).cases[0].reason == f"requires {first.id}, which was not run"
 
 
-def test_interrupted_run_keeps_what_was_finished(cases, wave):
+def test_interrupted_run_keeps_the_finished_cases(cases, wave):
     system = Scripted({cases[0].id: Delivered(wave().record(cases[0])), cases[1].id: KeyboardInterrupt()})
     seen = []
     with pytest.raises(RunInterrupted) as caught:
@@ -240,16 +244,16 @@ def recorded(cases, wave, tmp_path):
     return open_record_folder(tmp_path)
 
 
-def test_side_by_side_gives_what_one_after_the_other_gives(cases, recorded):
+def test_parallel_run_gives_the_same_results(cases, recorded):
     after = replace(cases[0], file=cases[0].file.model_copy(update={"id": "after", "requires": (cases[1].id,)}))
-    given = [after, *cases]
-    alone, together = run_cases(given, recorded), run_cases(given, recorded, jobs=2)
-    assert together.model_copy(update={"started": None}) == alone.model_copy(update={"started": None})
-    assert alone.cases[0].reason == f"requires {cases[1].id}, which ended in fail"
-    assert alone.system.name == "w"
+    ordered = [after, *cases]
+    sequential, parallel = run_cases(ordered, recorded), run_cases(ordered, recorded, jobs=2)
+    assert parallel.model_copy(update={"started": None}) == sequential.model_copy(update={"started": None})
+    assert sequential.cases[0].reason == f"requires {cases[1].id}, which ended in fail"
+    assert sequential.system.name == "w"
 
 
-def test_cases_that_require_each_other_end(cases, recorded):
+def test_cases_that_require_each_other_are_skipped(cases, recorded):
     loop = [
         replace(case, file=case.file.model_copy(update={"requires": (other.id,)}))
         for case, other in zip(cases, cases[::-1], strict=True)

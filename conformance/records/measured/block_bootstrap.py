@@ -14,6 +14,7 @@ from scipy.ndimage import maximum_filter1d
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.bands import Band
 from pantocheck.conformance.quantities.force_quantities import PANTOGRAPH_QUANTITIES
+from pantocheck.conformance.quantities.sampling import Sampling
 from pantocheck.conformance.quantities.signals import ForceSignals
 from pantocheck.conformance.quantities.unavailable import NotResampled, QuantityUnavailable
 from pantocheck.conformance.records.measured.pooled_signals import PooledSignals
@@ -27,8 +28,8 @@ NORMAL_QUANTILE = 1.96
 
 
 @dataclass(frozen=True)
-class BlockReplicates:
-    """Statistics of each bootstrap replicate; an implementation of `Sampling`.
+class BlockReplicates(Sampling):
+    """Statistics of each bootstrap replicate.
 
     Parameters
     ----------

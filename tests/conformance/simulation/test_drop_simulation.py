@@ -109,19 +109,19 @@ def test_command_writes_every_drop_to_a_file_of_its_own(own_case, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
-        (("en50318-2002/250", "--out", "x.uff"), "none with a [mass_drop] table"),
-        (("vovan2015/mass-drop/*", "--out", "x.uff"), "one case is simulated at a time"),
+        (("en50318-2002/250", "--out", "x.uff"), "expected one case with a [mass_drop] table, found none"),
+        (("vovan2015/mass-drop/*", "--out", "x.uff"), "found vovan2015/mass-drop/initial, vovan2015/mass-drop/printed"),
         (("vovan2015/mass-drop/updated", "--out", "x.mat"), "format '.mat' cannot be written"),
         (("vovan2015/mass-drop/updated", "--drop", "4", "--out", "x.uff"), "there is no drop 4"),
     ],
 )
-def test_command_names_what_is_wrong(arguments, said, tmp_path, monkeypatch):
+def test_command_reports_wrong_input(arguments, message, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     done = pantocheck("drop", *arguments)
     assert done.exit_code == 2
-    assert said in done.output
+    assert message in done.output
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,125 @@
+"""Quantities of the line at rest, of identified modes and of studies after Vo Van, Balmes and Lorang (2015).
+
+A static check, an identification or a study delivers them; none is computed from a record.
+"""
+
+from pantocheck.conformance.quantities.bands import BANDS
+from pantocheck.conformance.quantities.quantity import Quantity, Scope
+
+_NEVER_NEGATIVE = {"elasticity_mm_N", "wave_speed_m_s"}
+
+
+def _define(scope: Scope, needs: str, *rows: tuple[str, str, str, str]) -> list[Quantity]:
+    """Quantities of one scope that need the same data, from rows of name, label, unit and definition."""
+    return [
+        Quantity(
+            name=name,
+            label=label,
+            unit=unit,
+            definition=definition,
+            needs=needs,
+            scope=scope,
+            never_negative=name in _NEVER_NEGATIVE,
+        )
+        for name, label, unit, definition in rows
+    ]
+
+
+# fmt: off
+DELIVERED_QUANTITIES: tuple[Quantity, ...] = (
+    *_define(
+        "static", "initial state",
+        ("presag_mm", "Pre-sag", "mm", "sag of the contact wire at each dropper"),
+        ("dropper_length_m", "Dropper length, string statics", "m",
+         "length of each dropper of a span by string statics in the vertical plane"),
+        ("dropper_length_bending_m", "Dropper length with bending", "m",
+         "length of each dropper of a span, with the bending stiffness of the wires"),
+    ),
+    *_define(
+        "static", "initial state of a line with stagger",
+        ("dropper_length_stagger_m", "Dropper length with bending and stagger", "m",
+         "length of each inclined dropper of a span, with bending stiffness and stagger"),
+    ),
+    *_define(
+        "static", "static check",
+        ("elasticity_mm_N", "Elasticity, largest", "mm/N",
+         "largest uplift per force along a span, for a force at which all droppers stay taut"),
+        ("elasticity_non_uniformity_pct", "Non-uniformity of the elasticity", "%",
+         "(largest - smallest) / (largest + smallest) elasticity along a span"),
+        ("elasticity_along_span_mm_N", "Elasticity along a span", "mm/N",
+         "uplift per force at equal distances along a span, for a force at which all droppers stay taut"),
+        ("elasticity_200_N_mm_N", "Elasticity at 200 N, largest", "mm/N",
+         "largest uplift per force along a span for 200 N, with slackening of droppers"),
+        ("elasticity_200_N_non_uniformity_pct", "Non-uniformity of the elasticity at 200 N", "%",
+         "(largest - smallest) / (largest + smallest) elasticity along a span for 200 N, droppers slackening"),
+        ("elasticity_200_N_along_span_mm_N", "Elasticity at 200 N along a span", "mm/N",
+         "uplift per force at equal distances along a span for 200 N, with slackening of droppers"),
+        ("wave_speed_m_s", "Wave speed of the contact wire", "m/s", "speed of transverse waves on the contact wire"),
+        ("reflection_coefficient", "Reflection coefficient of a dropper", "",
+         "share of a contact-wire wave that a dropper reflects: sqrt(T m) of the messenger over that of both"),
+        ("doppler_factor", "Doppler factor", "", "(c - v) / (c + v) with the wave speed c and the train speed v"),
+        ("amplification_coefficient", "Amplification coefficient", "", "reflection coefficient over Doppler factor"),
+        ("natural_frequency_Hz", "First natural frequencies", "Hz",
+         "first natural frequencies of up to ten spans of the line, for modes of mainly vertical motion"),
+    ),
+    *_define(
+        "static", "pantograph model",
+        ("apparent_mass_kg", "Apparent mass at the pantograph's head", "kg",
+         "magnitude of the apparent mass (force over acceleration) at the head of each pantograph, "
+         "at the frequencies of the case"),
+    ),
+    *_define(
+        "static", "wave speed",
+        ("speed_over_wave_speed", "Speed over wave speed", "",
+         "train speed over the speed of transverse waves on the contact wire"),
+    ),
+    *_define(
+        "mass_drop", "mass-drop record",
+        ("mode_frequency_Hz", "Mode frequency", "Hz", "frequency of a mode, or of a group of modes"),
+        ("damping_ratio", "Damping ratio", "", "damping ratio of a mode, or of a group of modes"),
+    ),
+    *_define(
+        "mass_drop", "modes identified from mass drops",
+        ("modes_in_group", "Modes in a group", "", "number of identified modes in a group of span modes"),
+        ("largest_damping_ratio", "Largest damping ratio", "",
+         "largest damping ratio of the modes identified with certainty"),
+        ("damping_decrease_pct", "Decrease of damping over the first three groups", "%",
+         "decrease of the median damping ratio between groups: the smaller of groups 1 to 2 and 2 to 3"),
+        ("damping_rise_pct", "Rise of damping from the third group to 6 Hz", "%",
+         "rise of the highest median damping ratio between group 4 and 6 Hz over the median of group 3"),
+    ),
+    *_define(
+        "study", "modes identified from mass drops",
+        ("damping_gain_pct", "Gain of damping by a damper at the steady arms", "%",
+         "gain of the median damping ratio by dampers at the steady-arm clamps, one value per frequency band"),
+        ("damping_gain_fading_pct", "Fading of that gain with frequency", "%",
+         "gain of damping in the second group minus the gain in the last band"),
+    ),
+    *_define(
+        "pantograph", "two runs of a train",
+        *(
+            (f"change_{band.quantity.removesuffix('_N')}_pct", f"Change of RMS, {band.low:g}–{band.high:g} Hz", "%",
+             f"change of the RMS of the contact force in {band.low:g}-{band.high:g} Hz "
+             "from the previous damping model to the damping of the case")
+            for band in BANDS
+        ),
+    ),
+    *_define(
+        "study", "two runs of a train",
+        ("rear_over_front_change_20_50_pct", "Change of RMS, 20–50 Hz, rear less front", "%",
+         "change of the RMS in 20-50 Hz of the last pantograph minus the change of the first [points]"),
+    ),
+    *_define(
+        "study", "runs with several coefficients",
+        ("dropper_transition_start_s", "Onset of the dropper transition", "s",
+         "smallest stiffness coefficient that changes the largest compensation force of a dropper by 10 %"),
+        ("dropper_transition_middle_s", "Middle of the dropper transition", "s",
+         "stiffness coefficient above which half of the largest compensation force of a dropper remains"),
+        ("dropper_transition_end_s", "End of the dropper transition", "s",
+         "stiffness coefficient above which 10 % of the largest compensation force of a dropper remains"),
+        ("dropper_locked_force_pct", "Force left when the dropper is locked", "%",
+         "largest compensation force at the largest stiffness coefficient, over its value without damping"),
+    ),
+)
+# fmt: on
+"""Quantities that no record gives, in the order of reports."""
