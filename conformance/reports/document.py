@@ -4,7 +4,7 @@ A new page element is a class here and one macro or function in each of `templat
 `templates/elements.typ` and `formats/markdown.py`. The writers escape every text.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, fields
 from typing import Any, Literal
 
@@ -55,6 +55,7 @@ class Drawing:
 
 Inline = str | Code | Remark | Link | VerdictMark | TrustMark | Drawing
 RichText = Inline | tuple[Inline, ...]
+Record = dict[str, Any]
 
 
 @dataclass(frozen=True)
@@ -103,15 +104,7 @@ class WarningBox:
 
 @dataclass(frozen=True)
 class Facts:
-    """Names and values.
-
-    Parameters
-    ----------
-    pairs : tuple of (str, str)
-        Facts that follow from the input.
-    times : tuple of (str, str)
-        Times of the run. The PDF omits them, so that two runs of the same input give the same bytes.
-    """
+    """Names and values. The PDF omits the times of the run, so that two runs of the same input give the same bytes."""
 
     pairs: tuple[tuple[str, str], ...]
     times: tuple[tuple[str, str], ...] = ()
@@ -119,46 +112,27 @@ class Facts:
 
 @dataclass(frozen=True)
 class Column:
-    """A column of a table.
-
-    Parameters
-    ----------
-    heading : str
-        Its heading.
-    share : float
-        Share of the remaining width on paper; 0: as wide as its content.
-    number : bool
-        Whether the column holds numbers, which are aligned to the right and never broken.
-    short : str
-        Heading on paper where the column is narrow; empty: the same heading.
-    """
+    """A column of a table."""
 
     heading: str
     share: float = 0.0
+    """Share of the remaining width on paper; 0: as wide as its content."""
     number: bool = False
+    """Whether the column holds numbers, which are aligned to the right and never broken."""
     short: str = ""
+    """Heading on paper where the column is narrow; empty: the same heading."""
 
 
 @dataclass(frozen=True)
 class Table:
-    """A table.
-
-    Parameters
-    ----------
-    columns : tuple of Column
-        Columns.
-    rows : tuple of tuple of RichText
-        Cells, one row after the other.
-    caption : str
-        Text above the table; empty if the heading of its section says enough.
-    layout : {"text", "grid", "cards"}
-        Rows with a heading cell; a dense grid of values; rows that become cards on a narrow screen.
-    """
+    """Rows of cells below their headings."""
 
     columns: tuple[Column, ...]
     rows: tuple[tuple[RichText, ...], ...]
     caption: str = ""
+    """Text above the table; empty if the heading of its section says enough."""
     layout: Literal["text", "grid", "cards"] = "text"
+    """Rows with a heading cell; a dense grid of values; rows that become cards on a narrow screen."""
 
 
 @dataclass(frozen=True)
@@ -201,52 +175,30 @@ class PlainHeader:
 
 @dataclass(frozen=True)
 class VerdictHeader:
-    """Head of a report with a verdict.
-
-    Parameters
-    ----------
-    heading : str
-        Heading, printed before the verdict.
-    verdict : str
-        The overall verdict.
-    statement : str
-        Nature of the report, printed on every page.
-    headline : str
-        The verdict in one sentence.
-    subject : str
-        System, suite and trust in sentences.
-    footer : str
-        Suite and system, printed at the foot of every page.
-    """
+    """Head of a report with a verdict."""
 
     heading: str
     verdict: str
     statement: str
+    """Nature of the report, printed on every page."""
     headline: str
+    """The verdict in one sentence."""
     subject: str
+    """System, suite and trust in sentences."""
     footer: str
+    """Suite and system, printed at the foot of every page."""
 
 
 @dataclass(frozen=True)
 class Document:
-    """A whole report.
-
-    Parameters
-    ----------
-    title : str
-        Title in the metadata of the file.
-    header : PlainHeader or VerdictHeader
-        Head of the first page.
-    blocks : tuple of Block
-        Sections, and warnings before them.
-    results : dict or None
-        Results to be embedded in the PDF, which then bears the date of their run; None: no attachment and no date.
-    """
+    """A whole report: warnings and sections below a header."""
 
     title: str
+    """Title in the metadata of the file."""
     header: PlainHeader | VerdictHeader
     blocks: tuple[Block, ...]
     results: dict[str, Any] | None = None
+    """Results to be embedded in the PDF, which then bears the date of their run; None: no attachment and no date."""
 
 
 def to_plain(value: Any) -> Any:
@@ -259,7 +211,9 @@ def to_plain(value: Any) -> Any:
     return value
 
 
-def make_grid(caption: str, headings: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> Table:
-    """A dense table of values; its last column takes the remaining width."""
-    columns = (*map(Column, headings[:-1]), Column(headings[-1], share=1))
-    return Table(columns, tuple(rows), caption, layout="grid")
+def make_grid(caption: str, records: Iterable[Record], cells: dict[str, Callable[[Record], str]]) -> Table:
+    """A dense table of values: one row per record, one column per heading; the last takes the remaining width."""
+    *headings, last = cells
+    columns = (*map(Column, headings), Column(last, share=1))
+    rows = tuple(tuple(cell(record) for cell in cells.values()) for record in records)
+    return Table(columns, rows, caption, layout="grid")

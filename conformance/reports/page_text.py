@@ -43,6 +43,11 @@ def format_value(value: float | None, digits: int = 4) -> str:
     return replace_minus((f"{value:.{digits - 1}e}" if "e" in text else text).rstrip("."))
 
 
+def format_percent(ratio: float | None, digits: int = 4) -> str:
+    """A ratio in percent, without the sign."""
+    return format_value(None if ratio is None else 100 * ratio, digits)
+
+
 def format_plain(value: float | None) -> str:
     """An input number in its shortest form: `20`, `0.001`."""
     return "–" if value is None else replace_minus(f"{value:.12g}")

@@ -1,26 +1,16 @@
 """Page of the self-test: the checks of a record and the verdict on every mutant."""
 
 from pantocheck.conformance.consistency.record_checks import RECORD_CHECKS
-from pantocheck.conformance.reports.document import (
-    BulletList,
-    Code,
-    Column,
-    Document,
-    Paragraph,
-    PlainHeader,
-    RichText,
-    Section,
-    Table,
-)
+from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.self_test.bench import Row, SelfTest
 
 LIMITS_ALONE_KEY = (
     "Limits alone: verdict without the checks. Where it is ",
-    Code("pass"),
+    doc.Code("pass"),
     ", the fault would go unnoticed. Where it is ",
-    Code("skip"),
+    doc.Code("skip"),
     ", a quantity could not be computed: the verdict is not ",
-    Code("pass"),
+    doc.Code("pass"),
     ", but the reason would be missing.",
 )
 UNDETECTED_FAULTS = (
@@ -30,70 +20,75 @@ UNDETECTED_FAULTS = (
 )
 
 
-def build_self_test_page(test: SelfTest) -> Document:
+def build_self_test_page(test: SelfTest) -> doc.Document:
     """The page `docs/self-test.md`."""
     right = tuple(
-        ("The unchanged system on ", Code(case), ": ", Code(verdict)) for case, (verdict, _) in test.right.items()
+        ("The unchanged system on ", doc.Code(case), ": ", doc.Code(verdict))
+        for case, (verdict, _) in test.right.items()
     )
-    return Document(
+    return doc.Document(
         title="Self-test",
-        header=PlainHeader(
+        header=doc.PlainHeader(
             "Self-test: can the suite fail?",
             "The self-test grades the reference simulator, which must pass, and mutants of it. A mutant is a system "
             "with one deliberate fault, which must end in fail or error for the reason stated here.",
         ),
         blocks=(
-            Paragraph(("Written by ", Code("pantocheck self-test --markdown docs/self-test.md"), "; do not edit.")),
-            Section(
+            doc.Paragraph(
+                ("Written by ", doc.Code("pantocheck self-test --markdown docs/self-test.md"), "; do not edit.")
+            ),
+            doc.Section(
                 "Checks of a record",
                 (
-                    Paragraph(
+                    doc.Paragraph(
                         "The limits of a case bound statistics of the force. A wrong record can have statistics inside "
                         "them. Every record therefore undergoes checks that need no other simulator."
                     ),
                     _checks(),
-                    Paragraph(
+                    doc.Paragraph(
                         "A record that contradicts itself ends as error before any limit. If the channel of a check is "
                         "missing, a note of the case says so."
                     ),
                 ),
             ),
-            Section("Detected faults", (BulletList(right), _mutants(test.rows), Paragraph(LIMITS_ALONE_KEY))),
-            Section(
+            doc.Section(
+                "Detected faults", (doc.BulletList(right), _mutants(test.rows), doc.Paragraph(LIMITS_ALONE_KEY))
+            ),
+            doc.Section(
                 "Faults that may remain undetected",
                 (
-                    Paragraph("Smaller faults of the same kinds show the limit of detection."),
+                    doc.Paragraph("Smaller faults of the same kinds show the limit of detection."),
                     _mild_mutants(test.mild),
-                    Paragraph(UNDETECTED_FAULTS),
+                    doc.Paragraph(UNDETECTED_FAULTS),
                 ),
             ),
         ),
     )
 
 
-def _checks() -> Table:
+def _checks() -> doc.Table:
     columns = ("Check", "Condition", "Needs", "Fault that it finds")
     rows = tuple((check.name, check.must_hold, check.needs, check.why) for check in RECORD_CHECKS)
-    return Table(tuple(map(Column, columns)), rows)
+    return doc.Table(tuple(map(doc.Column, columns)), rows)
 
 
-def _mutants(rows: tuple[Row, ...]) -> Table:
+def _mutants(rows: tuple[Row, ...]) -> doc.Table:
     columns = ("Mutant", "Fault", "Case", "Verdict", "Detected by", "Limits alone", "Quantities outside their limits")
     cells = tuple((*_fault(row), row.mutant.caught_by or "–", row.by_limits, _names(row.outside)) for row in rows)
-    return Table(tuple(map(Column, columns)), cells)
+    return doc.Table(tuple(map(doc.Column, columns)), cells)
 
 
-def _mild_mutants(rows: tuple[Row, ...]) -> Table:
+def _mild_mutants(rows: tuple[Row, ...]) -> doc.Table:
     columns = ("Mutant", "Fault", "Case", "Verdict", "Objecting check", "Quantities outside their limits")
     cells = tuple((*_fault(row), ", ".join(row.checks) or "none", _names(row.outside)) for row in rows)
-    return Table(tuple(map(Column, columns)), cells)
+    return doc.Table(tuple(map(doc.Column, columns)), cells)
 
 
-def _fault(row: Row) -> tuple[RichText, ...]:
-    return row.mutant.name, row.mutant.wrong, Code(row.case), row.verdict
+def _fault(row: Row) -> tuple[doc.RichText, ...]:
+    return row.mutant.name, row.mutant.wrong, doc.Code(row.case), row.verdict
 
 
-def _names(quantities: tuple[str, ...]) -> RichText:
+def _names(quantities: tuple[str, ...]) -> doc.RichText:
     if not quantities:
         return "none"
-    return tuple(part for name in quantities for part in (", ", Code(name)))[1:]
+    return tuple(part for name in quantities for part in (", ", doc.Code(name)))[1:]

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.certificate.case_facts import (
     list_case_facts,
     list_suite_facts,
@@ -16,29 +17,13 @@ from pantocheck.conformance.reports.certificate.quantity_tables import (
     list_skipped,
 )
 from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline, list_reasons, summarise_case
-from pantocheck.conformance.reports.document import (
-    Block,
-    BulletList,
-    Code,
-    Column,
-    Document,
-    Figures,
-    Link,
-    Paragraph,
-    Section,
-    Table,
-    TrustMark,
-    VerdictHeader,
-    VerdictMark,
-    WarningBox,
-)
 from pantocheck.conformance.reports.page_text import clean_tree
 from pantocheck.conformance.reports.words import read_words
 
 HEADING = "Conformance report"
 
 
-def build_certificate(results: dict[str, Any]) -> Document:
+def build_certificate(results: dict[str, Any]) -> doc.Document:
     """The certificate of a run.
 
     Parameters
@@ -50,20 +35,20 @@ def build_certificate(results: dict[str, Any]) -> Document:
     header = build_header(cleaned)
     cases = cleaned["cases"]
     anchors = [f"case-{number}" for number in range(1, len(cases) + 1)]
-    reasons = list_reasons(cleaned) or (Paragraph("Nothing was graded."),)
+    reasons = list_reasons(cleaned) or (doc.Paragraph("Nothing was graded."),)
     trusts = read_words()["trust"].items()
-    levels = BulletList(tuple((TrustMark(name), f" {level['meaning']}") for name, level in trusts))
-    closing = Paragraph(f"This is a {header.statement}. It is not a certification by a third party.")
-    return Document(
+    levels = doc.BulletList(tuple((doc.TrustMark(name), f" {level['meaning']}") for name, level in trusts))
+    closing = doc.Paragraph(f"This is a {header.statement}. It is not a certification by a third party.")
+    return doc.Document(
         title=f"{read_words()['verdict'][header.verdict]['word']} – {HEADING} – {name_system(cleaned)}",
         header=header,
         blocks=(
-            Section("Reasons", reasons, anchor="reasons"),
-            Section("Cases", (_case_index(cases, anchors),), anchor="cases"),
+            doc.Section("Reasons", reasons, anchor="reasons"),
+            doc.Section("Cases", (_case_index(cases, anchors),), anchor="cases"),
             *map(_case_section, cases, anchors),
-            Section(
+            doc.Section(
                 "Reproducibility",
-                (list_suite_facts(cleaned), Section("Levels of trust", (levels,)), closing),
+                (list_suite_facts(cleaned), doc.Section("Levels of trust", (levels,)), closing),
                 anchor="reproducibility",
             ),
         ),
@@ -71,13 +56,13 @@ def build_certificate(results: dict[str, Any]) -> Document:
     )
 
 
-def build_header(results: dict[str, Any]) -> VerdictHeader:
+def build_header(results: dict[str, Any]) -> doc.VerdictHeader:
     """Head of the pages made from results.json."""
     trust = results.get("trust") or ""
     level = read_words()["trust"].get(trust)
     system, suite = name_system(results), name_suite(results)
     counted = f" Lowest trust of the limits that count: {trust} ({level['meaning']})." if level else ""
-    return VerdictHeader(
+    return doc.VerdictHeader(
         heading=HEADING,
         verdict=results["verdict"],
         statement=results.get("statement") or "",
@@ -87,48 +72,50 @@ def build_header(results: dict[str, Any]) -> VerdictHeader:
     )
 
 
-def _case_index(cases: list[dict[str, Any]], anchors: list[str]) -> Table:
+def _case_index(cases: list[dict[str, Any]], anchors: list[str]) -> doc.Table:
     rows = tuple(
-        (Link(case["id"], anchor), VerdictMark(case["verdict"]), summarise_case(case))
+        (doc.Link(case["id"], anchor), doc.VerdictMark(case["verdict"]), summarise_case(case))
         for case, anchor in zip(cases, anchors, strict=True)
     )
-    return Table((Column("Case", share=2), Column("Verdict"), Column("Criteria", share=3)), rows)
+    return doc.Table((doc.Column("Case", share=2), doc.Column("Verdict"), doc.Column("Criteria", share=3)), rows)
 
 
-def _case_section(case: dict[str, Any], anchor: str) -> Section:
-    blocks: list[Block] = [
-        Paragraph((VerdictMark(case["verdict"]), "\N{EN SPACE}", Code(case["id"]))),
-        Paragraph(summarise_case(case)),
+def _case_section(case: dict[str, Any], anchor: str) -> doc.Section:
+    blocks: list[doc.Block] = [
+        doc.Paragraph((doc.VerdictMark(case["verdict"]), "\N{EN SPACE}", doc.Code(case["id"]))),
+        doc.Paragraph(summarise_case(case)),
     ]
     if case.get("warnings"):
-        blocks.append(WarningBox(tuple(case["warnings"])))
+        blocks.append(doc.WarningBox(tuple(case["warnings"])))
     if case["criteria"]:
-        blocks.append(Section("Criteria", criteria_blocks(case, anchor)))
-    blocks += [Section(table["caption"], (_study_table(table),)) for table in case.get("tables") or []]
+        blocks.append(doc.Section("Criteria", criteria_blocks(case, anchor)))
+    blocks += [doc.Section(table["caption"], (_study_table(table),)) for table in case.get("tables") or []]
     bands, quantities = build_band_table(case), build_quantity_table(case)
     if bands.rows:
-        blocks.append(Section("Extended band, up to 50 Hz", (bands,)))
+        blocks.append(doc.Section("Extended band, up to 50 Hz", (bands,)))
     figures = tuple(draw_case_figures(case))
     if figures:
-        blocks.append(Section("Figures", (Figures(figures),)))
+        blocks.append(doc.Section("Figures", (doc.Figures(figures),)))
     if quantities.rows:
-        blocks.append(Section("All quantities", (quantities,)))
+        blocks.append(doc.Section("All quantities", (quantities,)))
     for heading, sentences in (("Skipped", list_skipped(case)), ("Notes", tuple(case.get("notes") or ()))):
         if sentences:
-            blocks.append(Section(heading, (BulletList(sentences),)))
+            blocks.append(doc.Section(heading, (doc.BulletList(sentences),)))
     if case.get("inputs"):
-        blocks.append(Section("Inputs", (_input_table(case["inputs"]),)))
-    blocks.append(Section("Run", (list_case_facts(case),)))
-    return Section(case.get("title") or case["id"], tuple(blocks), anchor=anchor, new_page=True)
+        blocks.append(doc.Section("Inputs", (_input_table(case["inputs"]),)))
+    blocks.append(doc.Section("Run", (list_case_facts(case),)))
+    return doc.Section(case.get("title") or case["id"], tuple(blocks), anchor=anchor, new_page=True)
 
 
-def _study_table(table: dict[str, Any]) -> Table:
+def _study_table(table: dict[str, Any]) -> doc.Table:
     names = table["columns"]
     shares = (2.0, 0.0, 3.0) if len(names) <= 3 else (2.0, *(1.0 for _ in names[1:]))
-    columns = tuple(Column(name, share) for name, share in zip(names, shares, strict=False))
-    return Table(columns, tuple(map(tuple, table["rows"])))
+    columns = tuple(doc.Column(name, share) for name, share in zip(names, shares, strict=False))
+    return doc.Table(columns, tuple(map(tuple, table["rows"])))
 
 
-def _input_table(inputs: list[dict[str, Any]]) -> Table:
-    rows = tuple((Code(group["group"]), TrustMark(group["trust"]), group.get("source") or "") for group in inputs)
-    return Table((Column("Group", share=1), Column("Trust"), Column("Source", share=3)), rows)
+def _input_table(inputs: list[dict[str, Any]]) -> doc.Table:
+    rows = tuple(
+        (doc.Code(group["group"]), doc.TrustMark(group["trust"]), group.get("source") or "") for group in inputs
+    )
+    return doc.Table((doc.Column("Group", share=1), doc.Column("Trust"), doc.Column("Source", share=3)), rows)

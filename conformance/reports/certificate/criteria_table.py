@@ -3,20 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-from pantocheck.conformance.reports.document import (
-    Block,
-    Code,
-    Column,
-    Drawing,
-    Link,
-    NumberedList,
-    Remark,
-    RichText,
-    SmallPrint,
-    Table,
-    TrustMark,
-    VerdictMark,
-)
+from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.figures.margin_bar import draw_margin_bar
 from pantocheck.conformance.reports.page_text import format_beside_limits, format_limits, format_value
 from pantocheck.conformance.reports.words import name_owner, quantity_label, read_words
@@ -62,7 +49,7 @@ def describe_criterion(criterion: dict[str, Any]) -> CriterionTexts:
     )
 
 
-def criteria_blocks(case: dict[str, Any], anchor: str) -> tuple[Block, ...]:
+def criteria_blocks(case: dict[str, Any], anchor: str) -> tuple[doc.Block, ...]:
     """The table of criteria, its key and the sources of the limits.
 
     Parameters
@@ -76,47 +63,50 @@ def criteria_blocks(case: dict[str, Any], anchor: str) -> tuple[Block, ...]:
     sources = list(dict.fromkeys(criterion["source"] for criterion in criteria if criterion.get("source")))
     error = error_name(case)
     columns = (
-        Column("Quantity", share=1),
-        Column("Pantograph", short="Pant."),
-        Column("Value", number=True),
-        Column(error, number=True, short=SHORT_NAMES[error]),
-        Column("Limits", number=True),
-        Column("Margin"),
-        Column("Verdict"),
-        Column("Trust"),
-        Column("Source"),
+        doc.Column("Quantity", share=1),
+        doc.Column("Pantograph", short="Pant."),
+        doc.Column("Value", number=True),
+        doc.Column(error, number=True, short=SHORT_NAMES[error]),
+        doc.Column("Limits", number=True),
+        doc.Column("Margin"),
+        doc.Column("Verdict"),
+        doc.Column("Trust"),
+        doc.Column("Source"),
     )
     rows = tuple(_row(criterion, sources, anchor) for criterion in criteria)
-    blocks: list[Block] = [Table(columns, rows, layout="cards"), SmallPrint(f"{MARGIN_KEY}{error.lower()}.")]
+    blocks: list[doc.Block] = [
+        doc.Table(columns, rows, layout="cards"),
+        doc.SmallPrint(f"{MARGIN_KEY}{error.lower()}."),
+    ]
     if sources:
-        blocks.append(NumberedList("Sources of the limits", tuple(sources), f"{anchor}-source"))
+        blocks.append(doc.NumberedList("Sources of the limits", tuple(sources), f"{anchor}-source"))
     return tuple(blocks)
 
 
-def _row(criterion: dict[str, Any], sources: list[str], anchor: str) -> tuple[RichText, ...]:
+def _row(criterion: dict[str, Any], sources: list[str], anchor: str) -> tuple[doc.RichText, ...]:
     texts = describe_criterion(criterion)
     limited = criterion["lower"] is not None or criterion["upper"] is not None
     source = sources.index(criterion["source"]) + 1 if criterion.get("source") else None
     return (
-        (f"{texts.label} ", Code(texts.quantity), *map(Remark, texts.remarks)),
+        (f"{texts.label} ", doc.Code(texts.quantity), *map(doc.Remark, texts.remarks)),
         texts.pantograph,
         texts.value,
         texts.error,
         texts.limits,
         (_bar(criterion, texts), f" {texts.margin}") if limited and criterion["value"] is not None else texts.margin,
-        VerdictMark(criterion["verdict"]),
-        TrustMark(criterion["trust"] if limited else ""),
-        "–" if source is None else Link(f"[{source}]", f"{anchor}-source-{source}"),
+        doc.VerdictMark(criterion["verdict"]),
+        doc.TrustMark(criterion["trust"] if limited else ""),
+        "–" if source is None else doc.Link(f"[{source}]", f"{anchor}-source-{source}"),
     )
 
 
-def _bar(criterion: dict[str, Any], texts: CriterionTexts) -> Drawing:
+def _bar(criterion: dict[str, Any], texts: CriterionTexts) -> doc.Drawing:
     error = find_error(criterion)
     meaning = read_words()["verdict"][criterion["verdict"]]["meaning"]
     value, lower, upper = criterion["value"], criterion["lower"], criterion["upper"]
     shown = format_beside_limits(value, lower, upper)
     drawing = draw_margin_bar(value, lower, upper, error, criterion["verdict"])
-    return Drawing(drawing, f"{meaning}: {shown}, limits {texts.limits}")
+    return doc.Drawing(drawing, f"{meaning}: {shown}, limits {texts.limits}")
 
 
 def error_name(case: dict[str, Any]) -> str:

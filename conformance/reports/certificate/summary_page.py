@@ -2,24 +2,15 @@
 
 from typing import Any
 
+from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.certificate.certificate_page import build_header
 from pantocheck.conformance.reports.certificate.criteria_table import describe_criterion, error_name
 from pantocheck.conformance.reports.certificate.verdict_reasons import list_reasons
-from pantocheck.conformance.reports.document import (
-    Block,
-    Column,
-    Document,
-    Paragraph,
-    Section,
-    Table,
-    VerdictMark,
-    WarningBox,
-)
 from pantocheck.conformance.reports.page_text import clean_tree
 from pantocheck.conformance.reports.words import read_words
 
 
-def build_summary(results: dict[str, Any]) -> Document:
+def build_summary(results: dict[str, Any]) -> doc.Document:
     """Verdict, reasons and criteria of a run.
 
     Parameters
@@ -29,20 +20,20 @@ def build_summary(results: dict[str, Any]) -> Document:
     """
     results = clean_tree(results)
     header = build_header(results)
-    return Document(header.heading, header, (*list_reasons(results), *map(_case_section, results["cases"])))
+    return doc.Document(header.heading, header, (*list_reasons(results), *map(_case_section, results["cases"])))
 
 
-def _case_section(case: dict[str, Any]) -> Section:
-    blocks: list[Block] = [Paragraph(f"Case {case['id']}{': ' + case['reason'] if case.get('reason') else ''}")]
+def _case_section(case: dict[str, Any]) -> doc.Section:
+    blocks: list[doc.Block] = [doc.Paragraph(f"Case {case['id']}{': ' + case['reason'] if case.get('reason') else ''}")]
     if case.get("warnings"):
-        blocks.append(WarningBox(tuple(case["warnings"])))
+        blocks.append(doc.WarningBox(tuple(case["warnings"])))
     if case["criteria"]:
         blocks.append(_criteria(case))
     word = read_words()["verdict"][case["verdict"]]["word"]
-    return Section(f"{word}: {case['title']}", tuple(blocks))
+    return doc.Section(f"{word}: {case['title']}", tuple(blocks))
 
 
-def _criteria(case: dict[str, Any]) -> Table:
+def _criteria(case: dict[str, Any]) -> doc.Table:
     rows = []
     for criterion in case["criteria"]:
         texts = describe_criterion(criterion)
@@ -55,15 +46,15 @@ def _criteria(case: dict[str, Any]) -> Table:
                 texts.error,
                 texts.limits,
                 texts.margin,
-                VerdictMark(criterion["verdict"]),
+                doc.VerdictMark(criterion["verdict"]),
                 criterion["trust"] if limited else "",
             )
         )
     columns = (
-        Column("Quantity"),
-        Column("Pantograph"),
-        *(Column(heading, number=True) for heading in ("Value", error_name(case), "Limits", "Margin")),
-        Column("Verdict"),
-        Column("Trust"),
+        doc.Column("Quantity"),
+        doc.Column("Pantograph"),
+        *(doc.Column(heading, number=True) for heading in ("Value", error_name(case), "Limits", "Margin")),
+        doc.Column("Verdict"),
+        doc.Column("Trust"),
     )
-    return Table(columns, tuple(rows))
+    return doc.Table(columns, tuple(rows))

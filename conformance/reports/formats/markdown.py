@@ -3,37 +3,17 @@
 import re
 from collections.abc import Iterable, Iterator
 
-from pantocheck.conformance.reports.document import (
-    Block,
-    BulletList,
-    Code,
-    CodeBlock,
-    Document,
-    Drawing,
-    Facts,
-    Figures,
-    Inline,
-    NumberedList,
-    Paragraph,
-    RichText,
-    Section,
-    SmallPrint,
-    Table,
-    TrustMark,
-    VerdictHeader,
-    VerdictMark,
-    WarningBox,
-)
+from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.words import read_words
 
 # Everything with a meaning in the Markdown of GitHub or GitLab, mentions (@) and references (#, !) included.
 SPECIAL = re.compile(r"([\\`*_{}\[\]()#+!|~$@])")
 
 
-def render_markdown(document: Document) -> str:
+def render_markdown(document: doc.Document) -> str:
     """Markdown text of a document; figures are replaced by their alternative texts."""
     header = document.header
-    if isinstance(header, VerdictHeader):
+    if isinstance(header, doc.VerdictHeader):
         parts = [
             f"# {_word(header.verdict)}: {escape_markdown(header.headline)}",
             escape_markdown(f"{header.subject} This is a {header.statement}."),
@@ -53,32 +33,32 @@ def escape_markdown(text: str) -> str:
     return re.sub(r"(?i)(https?|ftp)://", r"\1:&#8203;//", text).replace("www.", "www&#8203;.")
 
 
-def _render(block: Block, level: int) -> Iterator[str]:
+def _render(block: doc.Block, level: int) -> Iterator[str]:
     """Paragraphs of one block."""
     match block:
-        case Section():
+        case doc.Section():
             yield f"{'#' * level} {escape_markdown(block.heading)}"
             for part in block.blocks:
                 yield from _render(part, level + 1)
-        case Paragraph() | SmallPrint():
+        case doc.Paragraph() | doc.SmallPrint():
             yield _text(block.text)
-        case CodeBlock():
+        case doc.CodeBlock():
             yield "\n".join(f"    {line}" for line in block.code.splitlines())
-        case BulletList():
+        case doc.BulletList():
             yield _bullets(map(_text, block.items))
-        case NumberedList():
+        case doc.NumberedList():
             yield "\n".join(f"{number}. {_text(item)}" for number, item in enumerate(block.items, start=1))
-        case WarningBox():
+        case doc.WarningBox():
             yield _bullets(f"Warning: {_text(sentence)}" for sentence in block.sentences)
-        case Facts():
+        case doc.Facts():
             yield _bullets(f"{_text(name)}: {_text(value)}" for name, value in block.pairs + block.times)
-        case Table():
+        case doc.Table():
             yield _table(block)
-        case Figures():
+        case doc.Figures():
             yield _bullets(_text(figure.alternative) for figure in block.figures)
 
 
-def _table(table: Table) -> str:
+def _table(table: doc.Table) -> str:
     rules = (":--" if not column.number else "--:" for column in table.columns)
     rows = [[_text(column.heading) for column in table.columns], rules, *(map(_text, row) for row in table.rows)]
     caption = f"{_text(table.caption)}\n\n" if table.caption else ""
@@ -89,21 +69,21 @@ def _bullets(items: Iterable[str]) -> str:
     return "\n".join(f"* {item}" for item in items)
 
 
-def _text(text: RichText) -> str:
+def _text(text: doc.RichText) -> str:
     return "".join(map(_inline, text)) if isinstance(text, tuple) else _inline(text)
 
 
-def _inline(element: Inline) -> str:
+def _inline(element: doc.Inline) -> str:
     match element:
         case str():
             return escape_markdown(element)
-        case Code() if not re.search(r"[`|\\]", element.text):
+        case doc.Code() if not re.search(r"[`|\\]", element.text):
             return f"`{element.text}`"
-        case VerdictMark():
+        case doc.VerdictMark():
             return _word(element.verdict)
-        case TrustMark():
+        case doc.TrustMark():
             return escape_markdown(element.trust or "–")
-        case Drawing():
+        case doc.Drawing():
             return escape_markdown(element.alternative)
         case _:
             return escape_markdown(element.text)

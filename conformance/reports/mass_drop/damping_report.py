@@ -2,21 +2,9 @@
 
 from typing import Any
 
-from pantocheck.conformance.reports.document import (
-    Block,
-    CodeBlock,
-    Document,
-    Figure,
-    Figures,
-    Paragraph,
-    PlainHeader,
-    Section,
-    Table,
-    WarningBox,
-    make_grid,
-)
+from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.figures.damping_figures import draw_comparison, draw_observability
-from pantocheck.conformance.reports.page_text import clean_tree, format_value
+from pantocheck.conformance.reports.page_text import clean_tree, format_percent, format_value
 
 COEFFICIENT_UNITS = {"stiffness": "s", "mass": "1/s"}
 RESULT = (
@@ -25,7 +13,7 @@ RESULT = (
 COMPARISON = "The line as it is has the damping of its present file."
 
 
-def build_damping_document(results: dict[str, Any], block: str) -> Document:
+def build_damping_document(results: dict[str, Any], block: str) -> doc.Document:
     """The report.
 
     Parameters
@@ -36,31 +24,39 @@ def build_damping_document(results: dict[str, Any], block: str) -> Document:
         The result as a TOML block for the line file.
     """
     results = clean_tree(results)
-    observable = [row for row in results["observability"] if row["observable"]]
-    kinds = dict.fromkeys(row["kind"].replace("_", " ") for row in observable)
+    kinds = dict.fromkeys(_component(row) for row in results["observability"] if row["observable"])
     headline = (
         f"Rayleigh damping fitted to {len(results['pairs'])} modes leaves {100 * results['residual']:.2g} % "
         f"of their damping ratios. Observable: {', '.join(kinds) or 'nothing'}."
     )
-    header = PlainHeader("Damping model from mass drops", headline)
-    blocks: list[Block] = []
+    header = doc.PlainHeader("Damping model from mass drops", headline)
+    blocks: list[doc.Block] = []
     if results["unpaired"]:
         frequencies = ", ".join(format_value(frequency) for frequency in results["unpaired"])
-        blocks.append(WarningBox((f"measured modes without a counterpart in the model: {frequencies} Hz",)))
-    blocks += [
-        Section("Result", (Paragraph(RESULT), CodeBlock(block), _coefficients(results))),
-        Section("Comparison", (Paragraph(COMPARISON), Figures((_comparison(results),)))),
-        Section(
-            "Observability",
-            (
-                Paragraph(describe_observability(results["thresholds"])),
-                Figures((_observability_figure(results),)),
-                _observability(results),
-            ),
+        blocks.append(doc.WarningBox((f"measured modes without a counterpart in the model: {frequencies} Hz",)))
+    comparison = doc.Figure(
+        draw_comparison(results["comparison"]),
+        "Damping ratio over frequency, measured and of the models; the pairs are in the table.",
+        "Damping ratio: measured (95 % intervals), of the line as it is, of Rayleigh, and of Rayleigh + modal damping.",
+    )
+    observability = doc.Figure(
+        draw_observability(results["observability"], results["thresholds"]),
+        "Bars of the numbers in the table; filled bars are observable.",
+        "Observability: filled bars are observable, dashed lines are the thresholds.",
+    )
+    explanation = describe_observability(results["thresholds"])
+    sections: dict[str, tuple[doc.Block, ...]] = {
+        "Result": (doc.Paragraph(RESULT), doc.CodeBlock(block), _coefficient_table(results["coefficients"])),
+        "Comparison": (doc.Paragraph(COMPARISON), doc.Figures((comparison,))),
+        "Observability": (
+            doc.Paragraph(explanation),
+            doc.Figures((observability,)),
+            _observability_table(results["observability"]),
         ),
-        Section("Pairs of modes", (_pairs(results),)),
-    ]
-    return Document(header.heading, header, tuple(blocks))
+        "Pairs of modes": (_pair_table(results["pairs"]),),
+    }
+    blocks += (doc.Section(heading, parts) for heading, parts in sections.items())
+    return doc.Document(header.heading, header, tuple(blocks))
 
 
 def describe_observability(thresholds: dict[str, float]) -> str:
@@ -73,74 +69,46 @@ def describe_observability(thresholds: dict[str, float]) -> str:
     )
 
 
-def _coefficients(results: dict[str, Any]) -> Table:
-    rows = [
-        (
-            row["kind"].replace("_", " "),
-            row["matrix"],
-            f"{format_value(row['value'])} {COEFFICIENT_UNITS[row['matrix']]}",
-            f"{format_value(row['low_95'], 3)} to {format_value(row['high_95'], 3)}",
-        )
-        for row in results["coefficients"]
-    ]
-    return make_grid("Coefficients", ("Component", "Multiplies", "Value", "95 % interval"), rows)
+def _component(row: dict[str, Any]) -> str:
+    return str(row["kind"]).replace("_", " ")
 
 
-def _comparison(results: dict[str, Any]) -> Figure:
-    return Figure(
-        draw_comparison(results["comparison"]),
-        "Damping ratio over frequency, measured and of the models; the pairs are in the table.",
-        "Damping ratio: measured (95 % intervals), of the line as it is, of Rayleigh, and of Rayleigh + modal damping.",
-    )
+def _matrix(row: dict[str, Any]) -> str:
+    return str(row["matrix"])
 
 
-def _observability(results: dict[str, Any]) -> Table:
-    rows = [
-        (
-            row["kind"].replace("_", " "),
-            row["matrix"],
-            format_value(100 * row["largest_share"], 3),
-            format_value(row["std"], 2),
-            format_value(row["plausible_over_std"], 3),
-            format_value(row["variance_inflation"], 3),
-            format_value(row["residual_without"], 3),
-            "yes" if row["observable"] else "no",
-        )
-        for row in results["observability"]
-    ]
-    headings = (
-        "Component",
-        "Multiplies",
-        "Share [%]",
-        "Std",
-        "Plausible / std",
-        "Inflation",
-        "Residual without",
-        "Observable",
-    )
-    return make_grid("Information of the modes on each coefficient", headings, rows)
+def _coefficient_table(rows: list[dict[str, Any]]) -> doc.Table:
+    cells = {
+        "Component": _component,
+        "Multiplies": _matrix,
+        "Value": lambda row: f"{format_value(row['value'])} {COEFFICIENT_UNITS[row['matrix']]}",
+        "95 % interval": lambda row: f"{format_value(row['low_95'], 3)} to {format_value(row['high_95'], 3)}",
+    }
+    return doc.make_grid("Coefficients", rows, cells)
 
 
-def _observability_figure(results: dict[str, Any]) -> Figure:
-    return Figure(
-        draw_observability(results["observability"], results["thresholds"]),
-        "Bars of the numbers in the table; filled bars are observable.",
-        "Observability: filled bars are observable, dashed lines are the thresholds.",
-    )
+def _observability_table(rows: list[dict[str, Any]]) -> doc.Table:
+    cells = {
+        "Component": _component,
+        "Multiplies": _matrix,
+        "Share [%]": lambda row: format_percent(row["largest_share"], 3),
+        "Std": lambda row: format_value(row["std"], 2),
+        "Plausible / std": lambda row: format_value(row["plausible_over_std"], 3),
+        "Inflation": lambda row: format_value(row["variance_inflation"], 3),
+        "Residual without": lambda row: format_value(row["residual_without"], 3),
+        "Observable": lambda row: "yes" if row["observable"] else "no",
+    }
+    return doc.make_grid("Information of the modes on each coefficient", rows, cells)
 
 
-def _pairs(results: dict[str, Any]) -> Table:
-    rows = [
-        (
-            format_value(pair["measured_Hz"], 5),
-            format_value(pair["computed_Hz"], 5),
-            format_value(pair["mac"], 4),
-            str(pair["group"]),
-            format_value(100 * pair["measured"], 4),
-            format_value(100 * pair["fitted"], 4),
-            "yes" if pair["used"] else "no: outlier of its group",
-        )
-        for pair in results["pairs"]
-    ]
-    headings = ("Measured [Hz]", "Computed [Hz]", "MAC", "Group", "Measured ζ [%]", "Fitted ζ [%]", "Used")
-    return make_grid("Measured modes and their computed counterparts", headings, rows)
+def _pair_table(pairs: list[dict[str, Any]]) -> doc.Table:
+    cells = {
+        "Measured [Hz]": lambda pair: format_value(pair["measured_Hz"], 5),
+        "Computed [Hz]": lambda pair: format_value(pair["computed_Hz"], 5),
+        "MAC": lambda pair: format_value(pair["mac"], 4),
+        "Group": lambda pair: str(pair["group"]),
+        "Measured ζ [%]": lambda pair: format_percent(pair["measured"]),
+        "Fitted ζ [%]": lambda pair: format_percent(pair["fitted"]),
+        "Used": lambda pair: "yes" if pair["used"] else "no: outlier of its group",
+    }
+    return doc.make_grid("Measured modes and their computed counterparts", pairs, cells)

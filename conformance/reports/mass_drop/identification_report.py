@@ -3,20 +3,9 @@
 from collections.abc import Iterator
 from typing import Any
 
-from pantocheck.conformance.reports.document import (
-    Block,
-    Document,
-    Figure,
-    Figures,
-    Paragraph,
-    PlainHeader,
-    Section,
-    Table,
-    WarningBox,
-    make_grid,
-)
+from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.figures import identification_figures as figures
-from pantocheck.conformance.reports.page_text import clean_tree, format_value
+from pantocheck.conformance.reports.page_text import clean_tree, format_percent, format_value
 
 UNITS = {"acceleration": "m/s²", "velocity": "m/s", "displacement": "m"}
 MODES_TEXT = (
@@ -26,7 +15,7 @@ MODES_TEXT = (
 )
 
 
-def build_identification_document(lines: list[dict[str, Any]]) -> Document:
+def build_identification_document(lines: list[dict[str, Any]]) -> doc.Document:
     """The report.
 
     Parameters
@@ -36,17 +25,16 @@ def build_identification_document(lines: list[dict[str, Any]]) -> Document:
     """
     lines = clean_tree(lines)
     modes = [mode for line in lines for mode in line["modes"]]
-    certain = [mode for mode in modes if mode["certain"] and not mode["lateral"]]
-    doubtful = len(modes) - len(certain)
-    headline = f"{len(certain)} modes identified with a damping ratio known to better than 5 %"
-    headline += f"; {doubtful} more are uncertain or lateral." if doubtful else "."
-    header = PlainHeader("Identification of mass drops", headline)
+    certain = sum(mode["certain"] and not mode["lateral"] for mode in modes)
+    headline = f"{certain} modes identified with a damping ratio known to better than 5 %"
+    headline += f"; {len(modes) - certain} more are uncertain or lateral." if len(modes) > certain else "."
+    header = doc.PlainHeader("Identification of mass drops", headline)
     warnings = collect_warnings(lines)
-    blocks: list[Block] = [WarningBox(warnings)] if warnings else []
+    blocks: list[doc.Block] = [doc.WarningBox(warnings)] if warnings else []
     for line in lines:
         names = ", ".join(record["name"] for record in line["records"])
         blocks += _list_sections(line, f" ({names})" if len(lines) > 1 else "")
-    return Document(header.heading, header, tuple(blocks))
+    return doc.Document(header.heading, header, tuple(blocks))
 
 
 def collect_warnings(lines: list[dict[str, Any]]) -> tuple[str, ...]:
@@ -54,92 +42,110 @@ def collect_warnings(lines: list[dict[str, Any]]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(text for line in lines for text in line["warnings"]))
 
 
-def _list_sections(line: dict[str, Any], suffix: str) -> Iterator[Section]:
+def _list_sections(line: dict[str, Any], suffix: str) -> Iterator[doc.Section]:
     unit = UNITS[line["quantity"]]
-    spectra = tuple(_spectrum(data, unit) for data in line["spectra"])
-    yield Section(f"Damping{suffix}", (*_damping_figures(line), _groups(line)))
-    yield Section(f"Modes{suffix}", (Paragraph(MODES_TEXT), _modes(line)))
-    yield Section(f"Fit{suffix}", (Paragraph(_describe_fit(line)), Figures(spectra)))
+    yield doc.Section(f"Damping{suffix}", (*_damping_figures(line["modes"]), _group_table(line["groups"])))
+    yield doc.Section(f"Modes{suffix}", (doc.Paragraph(MODES_TEXT), _mode_table(line["modes"])))
+    # The records stand before the fit: its tall figure starts a page, and they fill the one before.
+    yield doc.Section(f"Records{suffix}", (_record_table(line["records"]),))
+    yield doc.Section(f"Fit{suffix}", tuple(_fit(line, unit)))
     if line["repeatability"]:
-        yield Section(f"Repeatability{suffix}", tuple(_repeatability(line, unit)))
-    if line["frequency_responses"]:
-        yield Section(f"Frequency responses{suffix}", (Figures((_response(line["frequency_responses"][0]),)),))
-    yield Section(f"Records{suffix}", (_records(line),))
+        yield doc.Section(f"Repeatability{suffix}", tuple(_repeatability(line, unit)))
+    for data in line["frequency_responses"][:1]:
+        figure = doc.Figure(
+            figures.draw_responses(data),
+            f"Magnitude and phase of the frequency responses of {data['record']}, measured and identified.",
+            f"{data['record']}: accelerance, with the release as a step force m g.",
+        )
+        yield doc.Section(f"Frequency responses{suffix}", (doc.Figures((figure,)),))
 
 
-def _describe_fit(line: dict[str, Any]) -> str:
-    return (
-        f"The squared residual is {format_value(line['misfit'], 3)} times that of noise alone "
-        f"(1 for a complete model); modes between {line['band_Hz'][0]:g} and {line['band_Hz'][1]:g} Hz."
-    )
-
-
-def _damping_figures(line: dict[str, Any]) -> tuple[Figures, ...]:
-    if not line["modes"]:
+def _damping_figures(modes: list[dict[str, Any]]) -> tuple[doc.Figures, ...]:
+    if not modes:
         return ()
-    boxes = Figure(
-        figures.draw_boxes(line["modes"]),
+    boxes = doc.Figure(
+        figures.draw_boxes(modes),
         "Box plots of the damping ratio of each group of span modes; the numbers are in the table of groups.",
         "Damping ratio per group of span modes: quartiles, median, modes, outliers; without uncertain modes.",
     )
-    ratios = Figure(
-        figures.draw_damping(line["modes"]),
+    ratios = doc.Figure(
+        figures.draw_damping(modes),
         "Damping ratio over frequency with error bars; the numbers are in the table of modes.",
         "Damping ratio of every mode with its 95 % interval.",
     )
-    return (Figures((boxes, ratios)),)
+    return (doc.Figures((boxes, ratios)),)
 
 
-def _groups(line: dict[str, Any]) -> Table:
-    rows = [
-        (
-            str(group["group"]),
-            f"{format_value(group['from_Hz'])}–{format_value(group['to_Hz'])}",
-            f"{group['certain']} of {group['modes']}",
-            _percent(group["median_damping_ratio"]),
-            f"{_percent(group['lowest'])} to {_percent(group['highest'])}",
-        )
-        for group in line["groups"]
-    ]
-    headings = ("Group", "Frequency [Hz]", "Certain modes", "Median damping ratio [%]", "Range [%]")
-    return make_grid("Groups of span modes", headings, rows)
+def _group_table(groups: list[dict[str, Any]]) -> doc.Table:
+    cells = {
+        "Group": lambda group: str(group["group"]),
+        "Frequency [Hz]": lambda group: f"{format_value(group['from_Hz'])}–{format_value(group['to_Hz'])}",
+        "Certain modes": lambda group: f"{group['certain']} of {group['modes']}",
+        "Median damping ratio [%]": lambda group: format_percent(group["median_damping_ratio"]),
+        "Range [%]": lambda group: f"{format_percent(group['lowest'])} to {format_percent(group['highest'])}",
+    }
+    return doc.make_grid("Groups of span modes", groups, cells)
 
 
-def _modes(line: dict[str, Any]) -> Table:
-    rows = [
-        (
-            format_value(mode["frequency_Hz"], 6),
-            format_value(1e3 * mode["frequency_std_Hz"], 2),
-            _percent(mode["damping_ratio"]),
-            format_value(100 * mode["damping_ratio_std"] / mode["damping_ratio"], 2),
-            "–" if mode["group"] is None else str(mode["group"]),
-            format_value(mode["phase_collinearity"], 4),
-            format_value(100 * mode["error"], 2),
-            "; ".join(_shorten(text) for text in mode["warnings"]) or "–",
-        )
-        for mode in line["modes"]
-    ]
-    headings = ("f [Hz]", "± [mHz]", "ζ [%]", "± [% of ζ]", "Group", "Collinearity", "Error [%]", "Warnings")
-    return make_grid("Modes by frequency", headings, rows)
+def _mode_table(modes: list[dict[str, Any]]) -> doc.Table:
+    cells = {
+        "f [Hz]": lambda mode: format_value(mode["frequency_Hz"], 6),
+        "± [mHz]": lambda mode: format_value(1e3 * mode["frequency_std_Hz"], 2),
+        "ζ [%]": lambda mode: format_percent(mode["damping_ratio"]),
+        "± [% of ζ]": lambda mode: format_value(100 * mode["damping_ratio_std"] / mode["damping_ratio"], 2),
+        "Group": lambda mode: "–" if mode["group"] is None else str(mode["group"]),
+        "Collinearity": lambda mode: format_value(mode["phase_collinearity"], 4),
+        "Error [%]": lambda mode: format_percent(mode["error"], 2),
+        "Warnings": lambda mode: "; ".join(map(_shorten, mode["warnings"])) or "–",
+    }
+    return doc.make_grid("Modes by frequency", modes, cells)
 
 
 def _shorten(warning: str) -> str:
     return warning.split(";", maxsplit=1)[0] if warning.startswith("half-power") else warning
 
 
-def _spectrum(data: dict[str, Any], unit: str) -> Figure:
-    return Figure(
-        figures.draw_spectra(data, unit),
-        f"Spectra of the vertical sensors of {data['record']} with the identified fit over them.",
-        f"{data['record']}: spectrum of the free decay, the identified modes and the residual.",
+def _record_table(records: list[dict[str, Any]]) -> doc.Table:
+    def drop(record: dict[str, Any]) -> str:
+        place = f"{record['drop_wire'] or '?'} at {format_value(record['drop_position_m'])} m"
+        return f"{format_value(record['mass_kg'], 3)} kg, {place}"
+
+    def analysed(record: dict[str, Any]) -> str:
+        start, end = (record[key] - record["release_s"] for key in ("used_from_s", "used_to_s"))
+        return f"{format_value(start, 3)}–{format_value(end)} s"
+
+    cells = {
+        "Record": lambda record: record["name"],
+        "Drop": drop,
+        "Recording": lambda record: f"{format_value(record['length_s'])} s at {record['sampling_rate_Hz']:g} Hz",
+        "Used after the release": analysed,
+        "Channels": lambda record: ", ".join(record["channels"]),
+    }
+    return doc.make_grid("Records and the part of each that was used", records, cells)
+
+
+def _fit(line: dict[str, Any], unit: str) -> Iterator[doc.Block]:
+    yield doc.Paragraph(
+        f"The squared residual is {format_value(line['misfit'], 3)} times that of noise alone "
+        f"(1 for a complete model); modes between {line['band_Hz'][0]:g} and {line['band_Hz'][1]:g} Hz."
+    )
+    yield doc.Figures(
+        tuple(
+            doc.Figure(
+                figures.draw_spectra(data, unit),
+                f"Spectra of the vertical sensors of {data['record']} with the identified fit over them.",
+                f"{data['record']}: spectrum of the free decay, the identified modes and the residual.",
+            )
+            for data in line["spectra"]
+        )
     )
 
 
-def _repeatability(line: dict[str, Any], unit: str) -> Iterator[Block]:
+def _repeatability(line: dict[str, Any], unit: str) -> Iterator[doc.Block]:
     for result in line["repeatability"]:
-        yield Paragraph(f"{result['verdict'].capitalize()}: {result['reason']}.")
+        yield doc.Paragraph(f"{result['verdict'].capitalize()}: {result['reason']}.")
     overlays = tuple(
-        Figure(
+        doc.Figure(
             figures.draw_overlay(overlay["runs"], overlay["channel"], unit),
             "Repeats of the drop laid over each other; their correlations are in the table.",
             f"Repeats at {overlay['channel']} at the start and a minute later.",
@@ -147,47 +153,14 @@ def _repeatability(line: dict[str, Any], unit: str) -> Iterator[Block]:
         for overlay in line["overlays"]
     )
     if overlays:
-        yield Figures(overlays)
-    headings = ("Records", "Channel", "Correlation, start", "a minute later", "Residual [%], start", "a minute later")
+        yield doc.Figures(overlays)
+    cells = {
+        "Records": lambda pair: f"{pair['first']} / {pair['second']}",
+        "Channel": lambda pair: pair["channel"],
+        "Correlation, start": lambda pair: format_value(pair["correlation_at_start"], 5),
+        "Correlation, a minute later": lambda pair: format_value(pair["correlation_later"], 5),
+        "Residual [%], start": lambda pair: format_percent(pair["residual_at_start"], 3),
+        "Residual [%], a minute later": lambda pair: format_percent(pair["residual_later"], 3),
+    }
     for result in line["repeatability"]:
-        rows = [
-            (
-                f"{pair['first']} / {pair['second']}",
-                pair["channel"],
-                format_value(pair["correlation_at_start"], 5),
-                format_value(pair["correlation_later"], 5),
-                format_value(100 * pair["residual_at_start"], 3),
-                format_value(None if pair["residual_later"] is None else 100 * pair["residual_later"], 3),
-            )
-            for pair in result["comparisons"]
-        ]
-        yield make_grid("Repeats compared below 6 Hz over ten seconds", headings, rows)
-
-
-def _response(data: dict[str, Any]) -> Figure:
-    return Figure(
-        figures.draw_responses(data),
-        f"Magnitude and phase of the frequency responses of {data['record']}, measured and identified.",
-        f"{data['record']}: accelerance, with the release as a step force m g.",
-    )
-
-
-def _records(line: dict[str, Any]) -> Table:
-    rows = [
-        (
-            record["name"],
-            f"{format_value(record['mass_kg'], 3)} kg, {record['drop_wire'] or '?'} "
-            f"at {format_value(record['drop_position_m'])} m",
-            f"{format_value(record['length_s'])} s at {record['sampling_rate_Hz']:g} Hz",
-            f"{format_value(record['used_from_s'] - record['release_s'], 3)}–"
-            f"{format_value(record['used_to_s'] - record['release_s'])} s",
-            ", ".join(record["channels"]),
-        )
-        for record in line["records"]
-    ]
-    headings = ("Record", "Drop", "Recording", "Used after the release", "Channels")
-    return make_grid("Records and the part of each that was used", headings, rows)
-
-
-def _percent(ratio: float | None) -> str:
-    return format_value(None if ratio is None else 100 * ratio, 4)
+        yield doc.make_grid("Repeats compared below 6 Hz over ten seconds", result["comparisons"], cells)

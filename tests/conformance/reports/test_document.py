@@ -2,6 +2,7 @@
 
 import re
 import time
+from operator import itemgetter
 
 import pytest
 from pypdf import PdfReader
@@ -11,7 +12,11 @@ from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.reports.formats.report_writers import write_report
 
 FIGURE = Figure("<svg xmlns='http://www.w3.org/2000/svg'/>", "points", "Damping ratios")
-TABLE = make_grid("Modes by frequency", ("f [Hz]", "ζ [%]"), [("0.836193", "0.6074")])
+TABLE = make_grid(
+    "Modes by frequency",
+    [{"f": "0.836193", "zeta": "0.6074"}],
+    {"f [Hz]": itemgetter("f"), "ζ [%]": itemgetter("zeta")},
+)
 DOCUMENT = Document(
     "Identification", PlainHeader("Identification", "1 mode"), (Section("Modes", (Figures((FIGURE,)), TABLE)),)
 )
