@@ -22,6 +22,7 @@ from scipy.optimize import linear_sum_assignment
 
 from pantocheck.conformance.identification.identify import Identification, identify_modes
 from pantocheck.conformance.identification.pole_refinement import refine_poles
+from pantocheck.conformance.identification.projection import whiten
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
 from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
 
@@ -82,7 +83,7 @@ def made_up(seed: int, peers: bool) -> None:
 
 def bounds(found: Identification, poles: NDArray[np.complex128]) -> Real:
     """Cramer-Rao bounds on the damping ratios, relative, with the noise of an identification, (m,)."""
-    white = found.fit.whitened_blocks()
+    white = whiten([block.data for block in found.fit.blocks], [block.noise for block in found.fit.blocks])
     covariance = refine_poles(poles, white, iterations=0).covariance
     return np.asarray(np.sqrt(np.diag(covariance)[: poles.size]) / -poles.real)
 

@@ -20,7 +20,7 @@ from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.cases.profile_file import Profile
 from pantocheck.conformance.identification.damping.damping_format import DampingResults
 from pantocheck.conformance.identification.identification_format import IdentificationFile
-from pantocheck.conformance.identification.modes_file import ModesFile
+from pantocheck.conformance.identification.mode import ModesFile
 from pantocheck.conformance.mass_drops.drop_sidecar import DropSidecar as MassDropSidecar
 from pantocheck.conformance.plan import Plan
 from pantocheck.conformance.records.record_sidecar import RecordSidecar

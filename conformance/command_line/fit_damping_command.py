@@ -9,7 +9,7 @@ from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.command_line.console import console, escape_text
 from pantocheck.conformance.identification.damping.damping_results import build_damping_results, write_damping_toml
-from pantocheck.conformance.identification.modes_file import read_modes
+from pantocheck.conformance.identification.mode import read_modes
 from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
 from pantocheck.conformance.input_files.input_error import InputError

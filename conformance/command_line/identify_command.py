@@ -10,7 +10,7 @@ from pantocheck.conformance.identification.hand_placed_poles import read_poles
 from pantocheck.conformance.identification.identification_analysis import analyse_identification
 from pantocheck.conformance.identification.identification_format import IdentificationFile
 from pantocheck.conformance.identification.identify import identify_modes
-from pantocheck.conformance.identification.modes_file import ModesFile
+from pantocheck.conformance.identification.mode import ModesFile
 from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.table_formats import TABLE_FORMATS, list_suffixes

@@ -1,5 +1,6 @@
-"""Finite filters: a filtered decay keeps its pole."""
+"""Frequency band of an identification, and finite filters: a filtered decay keeps its pole."""
 
+from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
@@ -8,6 +9,37 @@ import scipy.signal
 from pantocheck.conformance.array_types import ComplexArray, RealArray
 
 SampledArray = TypeVar("SampledArray", RealArray, ComplexArray)
+
+
+LOWEST_FREQUENCY = 0.3
+"""Lower edge of the band of the reported modes [Hz]."""
+
+
+@dataclass(frozen=True)
+class FrequencyBand:
+    """Band of the reported modes, and the margins that fit and filters need above it.
+
+    Parameters
+    ----------
+    low, high : float
+        Edges of the band of the reported modes [Hz].
+    fitted : float
+        Upper edge of the fit [Hz]; the margin keeps the effects of the edge away from the reported modes.
+    stop : float
+        Lower edge of the stop band of the low-pass [Hz].
+    """
+
+    low: float
+    high: float
+    fitted: float
+    stop: float
+
+    @classmethod
+    def up_to(cls, high: float, rate: float) -> "FrequencyBand":
+        """Band up to a frequency [Hz], or to a lower one if the sampling rate [Hz] requires it."""
+        stop = min(high + 4.0, 0.45 * rate)
+        fitted = min(high + 1.0, 0.78 * stop)
+        return cls(LOWEST_FREQUENCY, min(high, 0.92 * fitted), fitted, stop)
 
 
 def low_pass_decay(rate: float, passes: float, stops: float, attenuation: float) -> RealArray:

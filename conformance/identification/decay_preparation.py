@@ -5,8 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.identification.decay_filters import complete_overlap
-from pantocheck.conformance.identification.frequency_band import FrequencyBand
+from pantocheck.conformance.identification.decay_filters import FrequencyBand, complete_overlap
 from pantocheck.conformance.identification.linear_decay import LinearDecay, find_linear_decay
 from pantocheck.conformance.identification.release import Release, find_release
 from pantocheck.conformance.input_files.input_error import InputError

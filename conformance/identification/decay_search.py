@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pantocheck.conformance.array_types import ComplexArray, IntegerArray, RealArray
-from pantocheck.conformance.identification.decay_filters import complete_overlap, low_pass_decay
-from pantocheck.conformance.identification.frequency_band import FrequencyBand
+from pantocheck.conformance.identification.decay_filters import FrequencyBand, complete_overlap, low_pass_decay
 from pantocheck.conformance.identification.model_order import select_poles
 from pantocheck.conformance.identification.projection import build_block, solve_residues
 from pantocheck.conformance.identification.start_poles import find_start_poles
@@ -34,37 +33,8 @@ TEST_TRANSITION = 2.5
 
 
 @dataclass(frozen=True)
-class LinearPart:
-    """Linear part of a decay.
-
-    Parameters
-    ----------
-    start, end : int
-        First sample, and the one after the last.
-    poles : (m,) complex ndarray
-        Poles of the last fit of the search [1/s].
-    """
-
-    start: int
-    end: int
-    poles: ComplexArray
-
-
-@dataclass(frozen=True)
-class DisturbedWindows:
-    """Overlapping windows over the whole record, and whether their residual exceeds the noise.
-
-    Parameters
-    ----------
-    starts : (w,) ndarray
-        First sample of each window.
-    disturbed : (w,) ndarray
-        Whether its residual exceeds the noise.
-    window : int
-        Samples of a window.
-    reach : int
-        Samples that a window depends on, including its filter.
-    """
+class _TestedWindows:
+    """First samples of overlapping windows, windows disturbed, samples of a window and with those of its filter."""
 
     starts: IntegerArray
     disturbed: NDArray[np.bool_]
@@ -112,8 +82,10 @@ class DecaySearch:
     dt: float
     band: FrequencyBand
 
-    def find_linear_part(self) -> LinearPart:
-        """Fit ever longer parts until a disturbance or the end of the record bounds the linear part.
+    def find_linear_part(self) -> tuple[int, int, ComplexArray]:
+        """First sample of the linear part, the one after its last, and the poles of the last fit, (m,) [1/s].
+
+        Fits of ever longer parts end at a disturbance or with the record.
 
         A fit of a short part may fail later because it did not separate close modes. An end therefore counts only if
         a fit that spans it fails there, too.
@@ -129,12 +101,12 @@ class DecaySearch:
                 continue
             # A fit that predicts far beyond its end is right about a disturbance; one that fails soon missed a mode.
             if end + (end - begin) // 4 < late < limit and tested.stays_disturbed(late):
-                return LinearPart(self._find_start(end, poles), late, poles)
+                return self._find_start(end, poles), late, poles
             further = min(limit, max(late, begin + (end - begin) * 3 // 2)) if late < limit else limit
             if late >= limit or further <= end:
-                return LinearPart(self._find_start(end, poles), limit if late >= limit else end, poles)
+                return self._find_start(end, poles), limit if late >= limit else end, poles
             end = further
-        return LinearPart(self._find_start(end, poles), end, poles)
+        return self._find_start(end, poles), end, poles
 
     def _fit_poles(self, end: int) -> ComplexArray:
         samples = self.samples[self.begin : end]
@@ -142,14 +114,14 @@ class DecaySearch:
         poles = find_start_poles([scaled], 1 / self.dt, self.band.low, self.band.fitted + 0.5)
         return select_poles(poles, [build_block(samples, self.dt, self.band.low, self.band.fitted)], rounds=4).poles
 
-    def _test_windows(self, end: int, poles: ComplexArray, width: float) -> DisturbedWindows:
+    def _test_windows(self, end: int, poles: ComplexArray, width: float) -> _TestedWindows:
         """Compare the residual of a fit with its median, in windows of a width [s]."""
         window = int(width / self.dt)
-        starts, level = residual_levels(self._residual(end, poles), window, self.dt, self.band)
+        starts, level = _residual_levels(self._residual(end, poles), window, self.dt, self.band)
         reach = window + _test_filter(self.dt, self.band).size
         inside = (starts >= self.begin) & (starts + reach < end)
         floor = np.maximum(np.median(level[inside], axis=0), np.finfo(float).tiny)
-        return DisturbedWindows(starts, _exceeds_noise(level / floor, width, self.band), window, reach)
+        return _TestedWindows(starts, _exceeds_noise(level / floor, width, self.band), window, reach)
 
     def _residual(self, end: int, poles: ComplexArray) -> RealArray:
         """All samples minus the decays fitted to [begin, end); drift and signals outside the band remain."""
@@ -174,26 +146,12 @@ class DecaySearch:
         return min(max(int(tested.starts[early][-1]) + reach, earliest), end - 1)
 
 
-def residual_levels(residual: RealArray, window: int, dt: float, band: FrequencyBand) -> tuple[IntegerArray, RealArray]:
-    """Mean squares of the residual below the upper edge of the band, in overlapping windows without their trend.
+def _residual_levels(
+    residual: RealArray, window: int, dt: float, band: FrequencyBand
+) -> tuple[IntegerArray, RealArray]:
+    """First samples of overlapping windows, (w,), and mean squares of the low-passed residual in them, (w, c).
 
-    Parameters
-    ----------
-    residual : (n, c) ndarray
-        Residual of all samples.
-    window : int
-        Samples of a window.
-    dt : float
-        Sampling interval [s].
-    band : FrequencyBand
-        Band of the identification.
-
-    Returns
-    -------
-    (w,) ndarray
-        First sample of each window.
-    (w, c) ndarray
-        Mean squares.
+    The trend of each window is removed.
     """
     inner = complete_overlap(residual, _test_filter(dt, band))
     starts = np.arange(0, inner.shape[0] - window + 1, max(window // 4, 1))

@@ -24,10 +24,6 @@ class FrequencyResponse:
 
     Parameters
     ----------
-    record : str
-        Name of the record.
-    channels : tuple of str
-        (c,) names of its channels.
     frequency : (k,) ndarray
         Frequencies [Hz].
     measured : (k, c) complex ndarray
@@ -36,23 +32,13 @@ class FrequencyResponse:
         Response of the identified poles, extrapolated back to the release [m/s2/N].
     """
 
-    record: str
-    channels: tuple[str, ...]
     frequency: RealArray
     measured: ComplexArray
     identified: ComplexArray
 
 
 def compute_frequency_response(fit: LineFit, record_fit: RecordFit) -> FrequencyResponse | None:
-    """Frequency responses of one record; None if its mass is unknown.
-
-    Parameters
-    ----------
-    fit : LineFit
-        Fit of the line.
-    record_fit : RecordFit
-        The record, one of `fit.records`.
-    """
+    """Frequency responses of one of the records of a fit; None if its mass is unknown."""
     decay, linear = record_fit.decay, record_fit.decay.linear
     record, columns = decay.record, list(decay.columns)
     if record.drop.mass is None:
@@ -74,13 +60,7 @@ def compute_frequency_response(fit: LineFit, record_fit: RecordFit) -> Frequency
     poles, duration = fit.poles[inside], n / record.rate
     identified = _transform(poles, omega, duration) @ residues
     identified += _transform(poles.conj(), omega, duration) @ residues.conj()
-    return FrequencyResponse(
-        record.name,
-        decay.channel_names,
-        frequency[used],
-        measured * to_accelerance[:, None],
-        identified * to_accelerance[:, None],
-    )
+    return FrequencyResponse(frequency[used], measured * to_accelerance[:, None], identified * to_accelerance[:, None])
 
 
 def _transform(poles: ComplexArray, omega: RealArray, duration: float) -> ComplexArray:

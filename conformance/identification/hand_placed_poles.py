@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from pantocheck.conformance.array_types import ComplexArray
-from pantocheck.conformance.identification.modes_file import read_modes
+from pantocheck.conformance.identification.mode import read_modes
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_model
 

@@ -2,11 +2,9 @@
 
 import numpy as np
 
-from pantocheck.conformance.array_types import ComplexArray
 from pantocheck.conformance.identification.decay_preparation import PreparedDecay
 from pantocheck.conformance.identification.frequency_response import compute_frequency_response
 from pantocheck.conformance.identification.identification_format import (
-    Curve,
     IdentifiedLine,
     IdentifiedRecord,
     ModeGroup,
@@ -83,19 +81,19 @@ def _spectra(fit: LineFit, record: RecordFit, modes: tuple[Mode, ...]) -> Record
     data, columns = record.block.data, record.columns
     shown = data.omega <= 2 * np.pi * fit.band.high
     measured, residual = (values[shown][:, columns] * data.dt for values in (data.spectrum, record.block.fit.residual))
+    magnitudes = [
+        tuple(round_curve(np.abs(column)) for column in spectra.T)
+        for spectra in (measured, measured - residual, residual)
+    ]
     return RecordSpectra(
         record=record.decay.record.name,
         channels=record.decay.channel_names,
         frequency_Hz=round_curve(data.omega[shown] / (2 * np.pi)),
-        measured=_magnitudes(measured),
-        fitted=_magnitudes(measured - residual),
-        residual=_magnitudes(residual),
+        measured=magnitudes[0],
+        fitted=magnitudes[1],
+        residual=magnitudes[2],
         poles_Hz=tuple(mode.frequency_Hz for mode in modes),
     )
-
-
-def _magnitudes(spectra: ComplexArray) -> tuple[Curve, ...]:
-    return tuple(round_curve(np.abs(column)) for column in spectra.T)
 
 
 def _responses(fit: LineFit, record: RecordFit) -> RecordResponses | None:
@@ -107,8 +105,8 @@ def _responses(fit: LineFit, record: RecordFit) -> RecordResponses | None:
         for columns in (response.measured, response.identified)
     )
     return RecordResponses(
-        record=response.record,
-        channels=response.channels,
+        record=record.decay.record.name,
+        channels=record.decay.channel_names,
         frequency_Hz=round_curve(response.frequency),
         measured=measured,
         identified=identified,

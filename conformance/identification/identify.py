@@ -3,10 +3,12 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import numpy as np
+
 from pantocheck.conformance.array_types import ComplexArray, RealArray
+from pantocheck.conformance.identification.decay_filters import FrequencyBand
 from pantocheck.conformance.identification.decay_preparation import PreparedDecay, prepare_decay
-from pantocheck.conformance.identification.frequency_band import FrequencyBand
-from pantocheck.conformance.identification.line_fit import SAME_LENGTH, LineFit, SharedBlocks, fit_line, share_blocks
+from pantocheck.conformance.identification.line_fit import SAME_LENGTH, LineFit, fit_line, share_blocks
 from pantocheck.conformance.identification.mode import Mode
 from pantocheck.conformance.identification.mode_building import build_modes
 from pantocheck.conformance.identification.model_order import (
@@ -15,9 +17,8 @@ from pantocheck.conformance.identification.model_order import (
     find_hidden_poles,
     select_poles,
 )
-from pantocheck.conformance.identification.noise_estimate import whiten
 from pantocheck.conformance.identification.pole_refinement import refine_poles
-from pantocheck.conformance.identification.projection import DataBlock
+from pantocheck.conformance.identification.projection import DataBlock, build_block, whiten
 from pantocheck.conformance.identification.start_poles import find_start_poles
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
@@ -93,16 +94,15 @@ def _identify_line(
     for record in records:
         progress(f"{record.name}: release and linear decay")
         decays.append(prepare_decay(record, band))
-    shared = share_blocks(decays)
-    data = shared.transform(band)
+    samples, places = share_blocks(decays)
+    data = [build_block(channels, dt, band.low, band.fitted) for channels, dt in samples]
     progress(f"{records[0].name}: poles")
     if start is None:
-        selection = select_poles(_find_start_poles(decays, shared, band), data)
-        selection = find_hidden_poles(selection, data)
+        selection = find_hidden_poles(select_poles(_find_start_poles(decays, samples, band), data), data)
     else:
         selection = _refine_start_poles(start, data)
     progress(f"{records[0].name}: uncertainty")
-    fit = fit_line(decays, shared.places, data, selection.poles, selection.noise, band)
+    fit = fit_line(decays, places, data, selection.poles, selection.noise, band)
     return Identification(fit, build_modes(fit, len(records[0].line.spans) or None), _list_warnings(fit))
 
 
@@ -118,12 +118,14 @@ def _choose_band(records: list[DropRecord], highest: float) -> FrequencyBand:
     return band
 
 
-def _find_start_poles(decays: list[PreparedDecay], shared: SharedBlocks, band: FrequencyBand) -> ComplexArray:
-    intervals = {dt for _, dt in shared.samples}
+def _find_start_poles(
+    decays: list[PreparedDecay], samples: list[tuple[RealArray, float]], band: FrequencyBand
+) -> ComplexArray:
+    intervals = {dt for _, dt in samples}
     if len(intervals) > 1:
         # The search needs one sampling rate: with several, the poles of the longest linear decay are the start.
         return max(decays, key=lambda decay: decay.linear.duration).linear.poles
-    scaled: list[RealArray] = [samples / samples.std(axis=0) for samples, _ in shared.samples]
+    scaled = [np.asarray(channels / channels.std(axis=0)) for channels, _ in samples]
     return find_start_poles(scaled, 1 / intervals.pop(), band.low, band.fitted + 0.5)
 
 

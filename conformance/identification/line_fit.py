@@ -5,16 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from pantocheck.conformance.array_types import ComplexArray, RealArray
+from pantocheck.conformance.identification.decay_filters import FrequencyBand
 from pantocheck.conformance.identification.decay_preparation import PreparedDecay
-from pantocheck.conformance.identification.frequency_band import FrequencyBand
-from pantocheck.conformance.identification.noise_estimate import whiten
 from pantocheck.conformance.identification.pole_refinement import refine_poles
 from pantocheck.conformance.identification.projection import (
     DataBlock,
     ProjectionFit,
-    build_block,
     residue_spread,
     solve_residues,
+    whiten,
 )
 
 SAME_LENGTH = 0.02
@@ -99,33 +98,17 @@ class LineFit:
     records: tuple[RecordFit, ...]
     misfit: float
 
-    def whitened_blocks(self) -> list[DataBlock]:
-        """Blocks with each channel in units of its noise."""
-        return whiten([block.data for block in self.blocks], [block.noise for block in self.blocks])
 
+def share_blocks(decays: list[PreparedDecay]) -> tuple[list[tuple[RealArray, float]], list[tuple[int, slice]]]:
+    """Put repeats of about one length into one block, cut to the shortest.
 
-@dataclass(frozen=True)
-class SharedBlocks:
-    """Samples of all records, in blocks of one sampling interval and length.
-
-    Parameters
-    ----------
-    samples : list of ((n, c) ndarray, float)
+    Returns
+    -------
+    list of ((n, c) ndarray, float)
         Samples and sampling interval [s] of each block.
-    places : list of (int, slice)
+    list of (int, slice)
         Block of each record, and its channels there.
     """
-
-    samples: list[tuple[RealArray, float]]
-    places: list[tuple[int, slice]]
-
-    def transform(self, band: FrequencyBand) -> list[DataBlock]:
-        """Spectra of the blocks over the fitted band."""
-        return [build_block(samples, dt, band.low, band.fitted) for samples, dt in self.samples]
-
-
-def share_blocks(decays: list[PreparedDecay]) -> SharedBlocks:
-    """Put repeats of about one length into one block, cut to the shortest."""
     blocks: list[tuple[RealArray, float]] = []
     places = []
     for decay in decays:
@@ -139,7 +122,7 @@ def share_blocks(decays: list[PreparedDecay]) -> SharedBlocks:
         else:
             places.append((len(blocks), slice(0, samples.shape[1])))
             blocks.append((samples, dt))
-    return SharedBlocks(blocks, places)
+    return blocks, places
 
 
 def fit_line(
@@ -175,11 +158,7 @@ def fit_line(
         for block, sigma in zip(data, noise, strict=True)
     )
     records = tuple(RecordFit(decay, blocks[b], columns) for decay, (b, columns) in zip(decays, places, strict=True))
-    misfit = _misfit(refined.cost, poles.size, white)
+    unknowns = sum((2 * poles.size + block.residual_terms.shape[1]) * block.spectrum.shape[1] for block in white)
+    rows = sum(2 * block.spectrum.size for block in white)
+    misfit = float(refined.cost / max(rows - unknowns - 2 * poles.size, 1))
     return LineFit(band, poles, refined.covariance, blocks, records, misfit)
-
-
-def _misfit(cost: float, poles: int, blocks: list[DataBlock]) -> float:
-    rows = sum(2 * data.lines.size * data.spectrum.shape[1] for data in blocks)
-    linear = sum((2 * poles + data.residual_terms.shape[1]) * data.spectrum.shape[1] for data in blocks)
-    return float(cost / max(rows - linear - 2 * poles, 1))

@@ -5,9 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from pantocheck.conformance.array_types import ComplexArray, RealArray
-from pantocheck.conformance.identification.decay_filters import complete_overlap, low_pass_decay
+from pantocheck.conformance.identification.decay_filters import FrequencyBand, complete_overlap, low_pass_decay
 from pantocheck.conformance.identification.decay_search import SHORTEST_DECAY, DecaySearch
-from pantocheck.conformance.identification.frequency_band import FrequencyBand
 from pantocheck.conformance.identification.release import Release
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
@@ -103,8 +102,7 @@ def find_linear_decay(
             "never changes after the release",
             "The sensor was lost: remove this channel from the sidecar.",
         )
-    part = DecaySearch(samples, guard, dt, band).find_linear_part()
-    start, end = part.start, part.end
+    start, end, poles = DecaySearch(samples, guard, dt, band).find_linear_part()
     if clipped_until > release.time:
         start = max(start, guard)
     warnings = []
@@ -127,6 +125,6 @@ def find_linear_decay(
         start=begin / rate + start * dt,
         end=begin / rate + end * dt + 2 * half_filter,
         first=begin / rate + start * dt + half_filter,
-        poles=part.poles,
+        poles=poles,
         warnings=tuple(warnings),
     )

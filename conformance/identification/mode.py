@@ -1,10 +1,15 @@
-"""Identified mode: a row of modes.json, and the type that identification, damping fit and reports share."""
+"""Identified mode, shared by identification, damping fit and reports, and modes.json, the list of modes."""
 
+from pathlib import Path
 from typing import Annotated
 
-from pydantic import ConfigDict, Field
+from pydantic import ConfigDict, Field, RootModel, TypeAdapter
 
 from pantocheck.conformance.identification.rounded_model import Rounded, RoundedModel
+from pantocheck.conformance.input_files.json_file import read_json, validate_json
+
+MAX_MODES_BYTES = 50_000_000
+"""Limit of the size of a modes.json [bytes]."""
 
 
 class SensorShape(RoundedModel):
@@ -49,3 +54,20 @@ class Mode(RoundedModel):
         Rounded | None, Field(description="largest lateral over largest vertical amplitude; null: no lateral channel")
     ] = None
     half_power_points: Annotated[Rounded | None, Field(description="spectral lines in the half-power band")] = None
+
+
+class ModesFile(RootModel[tuple[Mode, ...]]):
+    """Modes of all lines of an identification, each line by frequency."""
+
+
+def read_modes(path: Path) -> tuple[Mode, ...]:
+    """Read a modes.json.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, is not JSON, or is not a list of modes.
+    """
+    data = read_json(path, "modes", MAX_MODES_BYTES)
+    hint = "Give the modes.json that `pantocheck identify` writes."
+    return tuple(validate_json(data, TypeAdapter(list[Mode]), f"modes '{path.name}'", hint))

@@ -13,8 +13,7 @@ from pantocheck.conformance.identification.mode_quality import (
     list_mode_warnings,
     phase_collinearity,
 )
-from pantocheck.conformance.identification.noise_estimate import estimate_noise
-from pantocheck.conformance.identification.projection import build_block, residue_spread, solve_residues
+from pantocheck.conformance.identification.projection import build_block, estimate_noise, residue_spread, solve_residues
 
 FREQUENCY_REACH = 3
 """Spectral lines on each side that show the residual of a mode."""

@@ -83,11 +83,9 @@ def list_mode_warnings(
             f"half-power band: {bandwidth * duration:.1f} spectral lines in {duration:.0f} s; "
             f"{POINTS_IN_HALF_POWER_BAND} need a record of {POINTS_IN_HALF_POWER_BAND / bandwidth:.0f} s"
         )
-    relative = damping_ratio_std / damping_ratio
-    if relative > UNCERTAIN:
-        warnings.append(
-            f"weakly excited: the damping ratio is uncertain by {100 * relative:.0f} % (one standard deviation)"
-        )
+    if not is_certain(damping_ratio, damping_ratio_std):
+        relative = 100 * (damping_ratio_std / damping_ratio)
+        warnings.append(f"weakly excited: the damping ratio is uncertain by {relative:.0f} % (one standard deviation)")
     if nearest < COINCIDENT * bandwidth or nearest * duration < 1.5:
         warnings.append(f"near-coincident: another mode is only {1000 * nearest:.1f} mHz away")
     if is_lateral(lateral_share):

@@ -17,9 +17,14 @@ from pantocheck.conformance.identification.local_fit import (
     pole_contributions,
     restrict_fit,
 )
-from pantocheck.conformance.identification.noise_estimate import estimate_noise, whiten
 from pantocheck.conformance.identification.pole_refinement import refine_poles
-from pantocheck.conformance.identification.projection import DataBlock, ProjectionFit, solve_residues
+from pantocheck.conformance.identification.projection import (
+    DataBlock,
+    ProjectionFit,
+    estimate_noise,
+    solve_residues,
+    whiten,
+)
 
 FALSE_ALARM = 1e-3
 """Probability that noise alone adds a pole to a record."""

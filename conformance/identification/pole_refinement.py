@@ -6,7 +6,8 @@ import numpy as np
 import scipy.linalg
 
 from pantocheck.conformance.array_types import ComplexArray, RealArray
-from pantocheck.conformance.identification.projection import DataBlock, build_normal_equations
+from pantocheck.conformance.identification.decay_kernel import kernel_and_derivative, real_columns
+from pantocheck.conformance.identification.projection import DataBlock, project_spectrum
 
 SMALLEST_DAMPING_RATIO = 1e-6
 """Lower limit of a damping ratio; a record of minutes does not show a slower decay [-]."""
@@ -48,9 +49,9 @@ def refine_poles(
         Stop when a step reduces the cost by less [-].
     """
     poles = poles[np.argsort(poles.imag)]
-    if not poles.size:
-        return RefinedPoles(poles, build_normal_equations(poles, blocks).cost, np.zeros((0, 0)))
     current = build_normal_equations(poles, blocks)
+    if not poles.size:
+        return RefinedPoles(poles, current.cost, np.zeros((0, 0)))
     damping = 1e-3
     for _ in range(iterations):
         trial_poles = _step(poles, current.matrix, current.gradient, damping)
@@ -86,3 +87,64 @@ def _step(poles: ComplexArray, matrix: RealArray, gradient: RealArray, damping: 
 def _inverse(matrix: RealArray) -> RealArray:
     scale = np.sqrt(np.maximum(np.diag(matrix), np.finfo(float).tiny))
     return np.asarray(scipy.linalg.pinvh(matrix / np.outer(scale, scale)) / np.outer(scale, scale))
+
+
+@dataclass(frozen=True)
+class NormalEquations:
+    """Gauss-Newton normal equations in (decay rate, angular frequency) of every pole.
+
+    Parameters
+    ----------
+    cost : float
+        Sum of squared residuals over all blocks.
+    matrix : (2 m, 2 m) ndarray
+        J'J of the Jacobian J; decay rates first, then angular frequencies.
+    gradient : (2 m,) ndarray
+        J'r of the residual r.
+    """
+
+    cost: float
+    matrix: RealArray
+    gradient: RealArray
+
+
+def build_normal_equations(poles: ComplexArray, blocks: list[DataBlock]) -> NormalEquations:
+    """Build the normal equations of the poles over all blocks; the residues are eliminated per channel.
+
+    Parameters
+    ----------
+    poles : (m,) complex ndarray
+        Poles lambda = -delta + i omega [1/s].
+    blocks : list of DataBlock
+        Data, each channel in units of its noise.
+    """
+    m = poles.size
+    cost, matrix, gradient = 0.0, np.zeros((2 * m, 2 * m)), np.zeros(2 * m)
+    for data in blocks:
+        value, slope = kernel_and_derivative(poles, data.omega, data.dt, data.n)
+        mirrored, mirrored_slope = kernel_and_derivative(poles.conj(), data.omega, data.dt, data.n)
+        q, coefficients, residual = project_spectrum(real_columns(value, mirrored), data)
+        derivative = real_columns(slope, mirrored_slope)
+        correlation = derivative.T @ residual
+        derivative -= q @ (q.T @ derivative)
+        cost += float(np.sum(residual**2))
+        _accumulate(matrix, gradient, derivative.T @ derivative, correlation, coefficients[: 2 * m])
+    return NormalEquations(cost, matrix, gradient)
+
+
+def _accumulate(
+    matrix: RealArray, gradient: RealArray, gram: RealArray, correlation: RealArray, residues: RealArray
+) -> None:
+    """Add one block: with a = p + i s, d(model)/d(delta) = -(p D1 + s D2) and d(model)/d(omega) = -s D1 + p D2."""
+    m = gram.shape[0] // 2
+    p, s = residues[:m], residues[m:]
+    pp, ps, ss = p @ p.T, p @ s.T, s @ s.T
+    g11, g12, g21, g22 = gram[:m, :m], gram[:m, m:], gram[m:, :m], gram[m:, m:]
+    matrix[:m, :m] += pp * g11 + ps * g12 + ps.T * g21 + ss * g22
+    cross = ps * g11 - pp * g12 + ss * g21 - ps.T * g22
+    matrix[:m, m:] += cross
+    matrix[m:, :m] += cross.T
+    matrix[m:, m:] += ss * g11 - ps.T * g12 - ps * g21 + pp * g22
+    c1, c2 = correlation[:m], correlation[m:]
+    gradient[:m] += -np.sum(p * c1 + s * c2, axis=1)
+    gradient[m:] += np.sum(-s * c1 + p * c2, axis=1)

@@ -12,7 +12,7 @@ References
    IMAC XIV (1996) 540-546.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.linalg
@@ -22,10 +22,15 @@ from pantocheck.conformance.identification.decay_kernel import (
     decay_kernel,
     drift_columns,
     far_pole_columns,
-    kernel_and_derivative,
     real_columns,
     stack_real_imaginary,
 )
+
+DRIFT_DEGREE = 4
+"""Degree of the polynomial in time for the drift of the offset."""
+
+FAR_DEGREE = 3
+"""Degree of the polynomial in frequency for modes outside the band."""
 
 
 @dataclass(frozen=True)
@@ -79,9 +84,7 @@ class ProjectionFit:
     residual: ComplexArray
 
 
-def build_block(
-    samples: RealArray, dt: float, low: float, high: float, drift_degree: int = 4, far_degree: int = 3
-) -> DataBlock:
+def build_block(samples: RealArray, dt: float, low: float, high: float) -> DataBlock:
     """Transform channels, and build the residual terms of a band.
 
     Parameters
@@ -92,16 +95,12 @@ def build_block(
         Sampling interval [s].
     low, high : float
         Edges of the band [Hz].
-    drift_degree : int
-        Degree of the polynomial in time for the drift of the offset.
-    far_degree : int
-        Degree of the polynomial in frequency for modes outside the band.
     """
     n = samples.shape[0]
     lines = np.arange(max(1, int(np.ceil(low * n * dt))), min(n // 2, int(high * n * dt) + 1), dtype=np.int64)
     spectrum = np.fft.rfft(samples - samples.mean(axis=0), axis=0)[lines]
     omega = 2 * np.pi * lines / (n * dt)
-    terms = np.hstack([drift_columns(drift_degree, n, lines), far_pole_columns(omega, far_degree)])
+    terms = np.hstack([drift_columns(DRIFT_DEGREE, n, lines), far_pole_columns(omega, FAR_DEGREE)])
     return DataBlock(lines, np.asarray(spectrum), dt, n, terms)
 
 
@@ -114,15 +113,17 @@ def pole_columns(poles: ComplexArray, data: DataBlock) -> RealArray:
 
 def solve_residues(poles: ComplexArray, data: DataBlock) -> ProjectionFit:
     """Solve for the residues of given poles, (m,) [1/s], by least squares."""
-    columns = np.hstack([pole_columns(poles, data), data.residual_terms])
-    q, r = scipy.linalg.qr(columns, mode="economic", check_finite=False)
+    _, coefficients, residual = project_spectrum(pole_columns(poles, data), data)
+    m, k = poles.size, data.lines.size
+    return ProjectionFit(coefficients[:m] + 1j * coefficients[m : 2 * m], residual[:k] + 1j * residual[k:])
+
+
+def project_spectrum(columns: RealArray, data: DataBlock) -> tuple[RealArray, RealArray, RealArray]:
+    """Orthonormal basis of columns and residual terms, their least-squares coefficients, and the residual."""
+    q, r = scipy.linalg.qr(np.hstack([columns, data.residual_terms]), mode="economic", check_finite=False)
     x = stack_real_imaginary(data.spectrum)
     projected = q.T @ x
-    m = poles.size
-    coefficients = np.linalg.lstsq(r, projected, rcond=1e-13)[0]
-    residual = x - q @ projected
-    k = data.lines.size
-    return ProjectionFit(coefficients[:m] + 1j * coefficients[m : 2 * m], residual[:k] + 1j * residual[k:])
+    return q, np.linalg.lstsq(r, projected, rcond=1e-13)[0], np.asarray(x - q @ projected)
 
 
 def residue_spread(poles: ComplexArray, data: DataBlock) -> RealArray:
@@ -134,67 +135,28 @@ def residue_spread(poles: ComplexArray, data: DataBlock) -> RealArray:
     return np.asarray(np.sqrt((variance[:m] + variance[m : 2 * m]) / 2))
 
 
-@dataclass(frozen=True)
-class NormalEquations:
-    """Gauss-Newton normal equations in (decay rate, angular frequency) of every pole.
+def estimate_noise(fit: ProjectionFit, poles: int, data: DataBlock) -> RealArray:
+    """Standard deviation of the real or imaginary part of a spectral line, per channel, (c,).
+
+    It follows from the median over the lines, which a few peaks outside the model do not move: |r|^2 / (2 sigma^2) of
+    white noise has the median ln 2. It is corrected for the number of fitted parameters.
 
     Parameters
     ----------
-    cost : float
-        Sum of squared residuals over all blocks.
-    matrix : (2 m, 2 m) ndarray
-        J'J of the Jacobian J; decay rates first, then angular frequencies.
-    gradient : (2 m,) ndarray
-        J'r of the residual r.
+    fit : ProjectionFit
+        Fit of the block.
+    poles : int
+        Number of poles.
+    data : DataBlock
+        The block.
     """
-
-    cost: float
-    matrix: RealArray
-    gradient: RealArray
-
-
-def build_normal_equations(poles: ComplexArray, blocks: list[DataBlock]) -> NormalEquations:
-    """Build the normal equations of the poles over all blocks; the residues are eliminated per channel.
-
-    Parameters
-    ----------
-    poles : (m,) complex ndarray
-        Poles lambda = -delta + i omega [1/s].
-    blocks : list of DataBlock
-        Data, each channel in units of its noise.
-    """
-    m = poles.size
-    cost, matrix, gradient = 0.0, np.zeros((2 * m, 2 * m)), np.zeros(2 * m)
-    for data in blocks:
-        value, slope = kernel_and_derivative(poles, data.omega, data.dt, data.n)
-        mirrored, mirrored_slope = kernel_and_derivative(poles.conj(), data.omega, data.dt, data.n)
-        columns = np.hstack([real_columns(value, mirrored), data.residual_terms])
-        q, r = scipy.linalg.qr(columns, mode="economic", check_finite=False)
-        x = stack_real_imaginary(data.spectrum)
-        projected = q.T @ x
-        residual = x - q @ projected
-        residues = np.linalg.lstsq(r, projected, rcond=1e-13)[0][: 2 * m]
-        derivative = real_columns(slope, mirrored_slope)
-        correlation = derivative.T @ residual
-        derivative -= q @ (q.T @ derivative)
-        cost += float(np.sum(residual**2))
-        _accumulate(matrix, gradient, derivative.T @ derivative, correlation, residues)
-    return NormalEquations(cost, matrix, gradient)
+    rows, channels = 2 * data.lines.size, data.spectrum.shape[1]
+    fitted = 2 * poles + data.residual_terms.shape[1] + 2 * poles / channels
+    share_left = max(1 - fitted / rows, 0.1)
+    median = np.median(np.abs(fit.residual) ** 2, axis=0)
+    return np.asarray(np.sqrt(np.maximum(median, np.finfo(float).tiny) / (2 * np.log(2) * share_left)))
 
 
-def _accumulate(
-    matrix: RealArray, gradient: RealArray, gram: RealArray, correlation: RealArray, residues: RealArray
-) -> None:
-    """Add one block: with a = p + i s, d(model)/d(delta) = -(p D1 + s D2) and d(model)/d(omega) = -s D1 + p D2."""
-    m = gram.shape[0] // 2
-    p, s = residues[:m], residues[m:]
-    pp, ps, ss = p @ p.T, p @ s.T, s @ s.T
-    g11, g12, g21, g22 = gram[:m, :m], gram[:m, m:], gram[m:, :m], gram[m:, m:]
-    matrix[:m, :m] += pp * g11 + ps * g12 + ps.T * g21 + ss * g22
-    cross = ps * g11 - pp * g12 + ss * g21 - ps.T * g22
-    matrix[:m, m:] += cross
-    matrix[m:, :m] += cross.T
-    matrix[m:, m:] += ss * g11 - ps.T * g12 - ps * g21 + pp * g22
-    c1, c2 = correlation[:m], correlation[m:]
-    gradient[:m] += -np.sum(p * c1 + s * c2, axis=1)
-    gradient[m:] += np.sum(-s * c1 + p * c2, axis=1)
+def whiten(blocks: list[DataBlock], noise: list[RealArray]) -> list[DataBlock]:
+    """Blocks with each channel in units of its noise."""
+    return [replace(data, spectrum=data.spectrum / sigma) for data, sigma in zip(blocks, noise, strict=True)]

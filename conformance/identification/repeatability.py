@@ -60,7 +60,7 @@ def compare_records(repeats: tuple[PreparedDecay, ...]) -> Repeatability:
 def overlay_records(repeats: tuple[PreparedDecay, ...]) -> Overlay:
     """Curves of the repeats of a drop at the sensor that moves most; parameters as in `compare_records`."""
     lowest_rate = min(decay.record.rate for decay in repeats)
-    curves = [align_records(decay, lowest_rate) for decay in repeats]
+    curves = [_align_record(decay, lowest_rate) for decay in repeats]
     channel = int(np.argmax(curves[0][1].std(axis=0)))
     runs = []
     for decay, (time, samples) in zip(repeats, curves, strict=True):
@@ -87,15 +87,10 @@ def _is_repeatable(c: Comparison) -> bool:
     return c.correlation_later >= MIN_CORRELATION_LATER * c.possible_later
 
 
-def align_records(decay: PreparedDecay, lowest_rate: float) -> tuple[RealArray, RealArray]:
-    """Time from the release [s], (n,), and the vertical channels below `HIGHEST_COMPARED`, (n, c).
+def _align_record(decay: PreparedDecay, lowest_rate: float) -> tuple[RealArray, RealArray]:
+    """Time from the release [s], (n,), and the low-passed vertical channels, (n, c).
 
-    Parameters
-    ----------
-    decay : PreparedDecay
-        Record.
-    lowest_rate : float
-        Lowest sampling rate of the compared records [Hz]; at a low rate the band ends below `HIGHEST_COMPARED`.
+    The band ends at `HIGHEST_COMPARED`, or earlier if the lowest sampling rate of the repeats [Hz] requires it.
     """
     rate, passes = decay.record.rate, min(HIGHEST_COMPARED, 0.28 * lowest_rate)
     taps = low_pass_decay(rate, passes, 1.5 * passes, 50.0)
@@ -106,38 +101,36 @@ def align_records(decay: PreparedDecay, lowest_rate: float) -> tuple[RealArray, 
 
 def _compare_pair(first: PreparedDecay, second: PreparedDecay) -> list[Comparison]:
     lowest_rate = min(first.record.rate, second.record.rate)
-    t1, x1 = align_records(first, lowest_rate)
-    t2, x2 = align_records(second, lowest_rate)
+    t1, x1 = _align_record(first, lowest_rate)
+    t2, x2 = _align_record(second, lowest_rate)
     rate = first.record.rate
     shift = _delay(t1, x1, t2, x2, rate)
-    noise = [_noise_at_rest(t, x) for t, x in ((t1, x1), (t2, x2))]
+    noise_1, noise_2 = _noise_at_rest(t1, x1), _noise_at_rest(t2, x2)
+    early, later = (begin + np.arange(int(WINDOW * rate)) / rate for begin in (EARLY, LATER))
+    end = min(t1[-1], t2[-1] - shift)
+    if early[-1] > end:
+        return []
+
+    def compare(grid: RealArray, c: int) -> tuple[float, float, float]:
+        a, b = np.interp(grid, t1, x1[:, c]), np.interp(grid + shift, t2, x2[:, c])
+        return _compare_signals(a - a.mean(), b - b.mean(), float(noise_1[c]), float(noise_2[c]))
+
     comparisons = []
     for c, name in enumerate(first.channel_names):
-        values: list[tuple[float, float, float] | None] = []
-        for begin in (EARLY, LATER):
-            grid = begin + np.arange(int(WINDOW * rate)) / rate
-            if grid[-1] > min(t1[-1], t2[-1] - shift):
-                values.append(None)
-                continue
-            a = np.interp(grid, t1, x1[:, c])
-            b = np.interp(grid + shift, t2, x2[:, c])
-            values.append(_compare_signals(a - a.mean(), b - b.mean(), float(noise[0][c]), float(noise[1][c])))
-        early, late = values
-        if early is None:
-            continue
-        later = (None, None, None) if late is None else late
+        at_start = compare(early, c)
+        at_end = compare(later, c) if later[-1] <= end else (None, None, None)
         comparisons.append(
             Comparison(
                 first=first.record.name,
                 second=second.record.name,
                 channel=name,
                 shift_s=shift,
-                correlation_at_start=early[0],
-                correlation_later=later[0],
-                possible_at_start=max(early[1], 1e-6),
-                possible_later=later[1],
-                residual_at_start=early[2],
-                residual_later=later[2],
+                correlation_at_start=at_start[0],
+                correlation_later=at_end[0],
+                possible_at_start=max(at_start[1], 1e-6),
+                possible_later=at_end[1],
+                residual_at_start=at_start[2],
+                residual_later=at_end[2],
             )
         )
     return comparisons

@@ -18,10 +18,14 @@ import scipy.linalg
 from pantocheck.conformance.array_types import ComplexArray, RealArray
 from pantocheck.conformance.identification.decay_filters import complete_overlap, low_pass_decay
 
+BAND = 1.0
+"""Width of a band [Hz]."""
 
-def find_start_poles(
-    records: list[RealArray], rate: float, low: float, high: float, band: float = 1.0, largest_order: int = 24
-) -> ComplexArray:
+LARGEST_ORDER = 24
+"""Largest number of poles in a band with its flanks."""
+
+
+def find_start_poles(records: list[RealArray], rate: float, low: float, high: float) -> ComplexArray:
     """Find the poles of all bands between two frequencies.
 
     Parameters
@@ -32,23 +36,18 @@ def find_start_poles(
         Sampling rate [Hz].
     low, high : float
         Edges of the frequency range [Hz].
-    band : float
-        Width of a band [Hz].
-    largest_order : int
-        Largest number of poles in a band with its flanks.
 
     Returns
     -------
     (m,) ndarray
         Poles, by frequency [1/s].
     """
-    count = max(1, round((high - low) / band))
-    edges = np.linspace(low, high, count + 1)
-    poles = np.concatenate([_band_poles(records, rate, a, b, largest_order) for a, b in pairwise(edges)])
+    edges = np.linspace(low, high, max(1, round((high - low) / BAND)) + 1)
+    poles = np.concatenate([_band_poles(records, rate, a, b) for a, b in pairwise(edges)])
     return np.asarray(poles[np.argsort(poles.imag)])
 
 
-def _band_poles(records: list[RealArray], rate: float, low: float, high: float, largest_order: int) -> ComplexArray:
+def _band_poles(records: list[RealArray], rate: float, low: float, high: float) -> ComplexArray:
     width = high - low
     # A narrow flank needs a long filter, which may take at most a tenth of the record.
     flank = max(0.4 * width, 25.0 * rate / min(samples.shape[0] for samples in records))
@@ -60,21 +59,17 @@ def _band_poles(records: list[RealArray], rate: float, low: float, high: float, 
         shifted = samples * np.exp(-1j * middle * np.arange(samples.shape[0]) / rate)[:, None]
         signals.append(complete_overlap(shifted, taps)[::step])
     dt = step / rate
-    best_score, best = np.inf, np.zeros(0, dtype=np.complex128)
-    basis = _signal_subspace(signals, largest_order)
-    for order in range(1, basis.shape[1] + 1):
-        poles = _poles_of(basis[:, :order], dt)
-        score = _information_criterion(signals, poles, dt)
-        if score < best_score:
-            best_score, best = score, poles
+    basis = _signal_subspace(signals)
+    trials = [_subspace_poles(basis[:, :order], dt) for order in range(1, basis.shape[1] + 1)]
+    best = min(trials, key=lambda poles: _information_criterion(signals, poles, dt), default=np.zeros(0))
     poles = best + 1j * middle
     inside = (poles.imag >= 2 * np.pi * low) & (poles.imag < 2 * np.pi * high) & (poles.real < 0)
     # Faster decays vanish within the filter: they are flanks of other modes.
     return np.asarray(poles[inside & (-poles.real < 0.1 * poles.imag)])
 
 
-def _signal_subspace(signals: list[ComplexArray], most: int) -> ComplexArray:
-    """Leading left singular vectors of the block Hankel matrix of all channels, (rows, at most `most`)."""
+def _signal_subspace(signals: list[ComplexArray]) -> ComplexArray:
+    """Leading left singular vectors of the block Hankel matrix of all channels, (rows, at most `LARGEST_ORDER`)."""
     rows = min(signal.shape[0] for signal in signals) // 2
     gram = np.zeros((rows, rows), dtype=np.complex128)
     for signal in signals:
@@ -82,16 +77,18 @@ def _signal_subspace(signals: list[ComplexArray], most: int) -> ComplexArray:
             hankel = scipy.linalg.hankel(channel[:rows], channel[rows - 1 :])
             gram += hankel @ hankel.conj().T
     vectors = np.linalg.eigh(gram)[1]
-    return np.asarray(vectors[:, ::-1][:, : min(most, rows // 2)])
+    return np.asarray(vectors[:, ::-1][:, : min(LARGEST_ORDER, rows // 2)])
 
 
-def _poles_of(basis: ComplexArray, dt: float) -> ComplexArray:
+def _subspace_poles(basis: ComplexArray, dt: float) -> ComplexArray:
+    """Poles of the signals that span a subspace, shifted by the middle of the band [1/s]."""
     transition = np.linalg.lstsq(basis[:-1], basis[1:], rcond=None)[0]
     q = np.linalg.eigvals(transition)
     return np.asarray(np.log(q[np.abs(q) > 0]) / dt)
 
 
 def _information_criterion(signals: list[ComplexArray], poles: ComplexArray, dt: float) -> float:
+    """Bayesian information criterion of the signals fitted by the poles; the lowest is best."""
     shortest = min(signal.shape[0] for signal in signals)
     decays = poles[poles.real < 5.0 / (shortest * dt)]
     score, values, channels = 0.0, 0, 0

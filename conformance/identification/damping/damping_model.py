@@ -28,6 +28,9 @@ MODEL_ERROR = 0.01
 FIT_REPLICATES = 400
 """Replicates of the confidence intervals."""
 
+LAST_BAND = 3
+"""Last group of span modes that gets a band of modal damping."""
+
 WIRES: tuple[str, ...] = (Kind.CONTACT_WIRE, Kind.MESSENGER_WIRE)
 """Kinds of component that are fitted."""
 
@@ -79,8 +82,8 @@ class DampingFit:
         return {(c.kind, c.matrix): c.value for c in self.coefficients}
 
 
-def fit_damping_model(basis: DampingBasis, measured: MeasuredModes, kinds: tuple[str, ...] = WIRES) -> DampingFit:
-    """Fit the coefficients of some kinds of component by non-negative least squares.
+def fit_damping_model(basis: DampingBasis, measured: MeasuredModes) -> DampingFit:
+    """Fit the coefficients of the wires by non-negative least squares.
 
     All groups of span modes have the same weight, whatever their number of modes. Within a group a mode is weighted by
     its uncertainty and that of the line model. A mode whose residual is far from the median of its group is left out.
@@ -91,15 +94,13 @@ def fit_damping_model(basis: DampingBasis, measured: MeasuredModes, kinds: tuple
         Damping ratios of the computed counterparts of the measured modes per unit of each coefficient.
     measured : MeasuredModes
         The measured modes.
-    kinds : tuple of str
-        Kinds of component to fit.
 
     Raises
     ------
     InputError
         There are not more modes than coefficients.
     """
-    terms = [term for term in basis.terms if term[0] in kinds]
+    terms = [term for term in basis.terms if term[0] in WIRES]
     if measured.frequency.size <= len(terms):
         raise InputError(
             "modes",
@@ -189,23 +190,15 @@ def _confidence_intervals(
     return np.percentile(replicates, 2.5, axis=0), np.percentile(replicates, 97.5, axis=0)
 
 
-def fit_modal_bands(measured: MeasuredModes, last_group: int = 3) -> tuple[ModalBand, ...]:
-    """Measured medians of the first groups, each over a band that ends half-way to the next group.
-
-    Parameters
-    ----------
-    measured : MeasuredModes
-        The measured modes.
-    last_group : int
-        Number of the last group that gets a band.
-    """
-    present = [number for number in range(1, last_group + 2) if np.any(measured.group == number)]
+def fit_modal_bands(measured: MeasuredModes) -> tuple[ModalBand, ...]:
+    """Measured medians of the first groups, each over a band that ends half-way to the next group."""
+    present = [number for number in range(1, LAST_BAND + 2) if np.any(measured.group == number)]
     edges = {
         n: (measured.frequency[measured.group == n].min(), measured.frequency[measured.group == n].max())
         for n in present
     }
     bands = []
-    for number in (n for n in present if n <= last_group):
+    for number in (n for n in present if n <= LAST_BAND):
         low, high = edges[number]
         width = max(high - low, 0.05 * low)
         below = (edges[number - 1][1] + low) / 2 if number - 1 in edges else low - width / 2

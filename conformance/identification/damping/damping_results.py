@@ -19,9 +19,12 @@ from pantocheck.conformance.identification.damping.damping_model import (
     fit_modal_bands,
 )
 from pantocheck.conformance.identification.damping.damping_terms import MATRICES, TABLE_OF_KIND, build_damping_basis
-from pantocheck.conformance.identification.damping.mode_pairing import pair_modes
+from pantocheck.conformance.identification.damping.mode_pairing import (
+    compute_sensor_shapes,
+    find_sensor_positions,
+    pair_modes,
+)
 from pantocheck.conformance.identification.damping.observability import THRESHOLDS, compute_observability
-from pantocheck.conformance.identification.damping.sensor_shapes import compute_sensor_shapes, find_sensor_positions
 from pantocheck.conformance.identification.mode import Mode
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.model import Catenary, Kind, discretise

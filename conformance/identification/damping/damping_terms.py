@@ -23,8 +23,6 @@ class DampingMatrix:
 
     Parameters
     ----------
-    name : str
-        `stiffness` or `mass`.
     key : str
         Key of the coefficient in a line file.
     unit : str
@@ -33,15 +31,14 @@ class DampingMatrix:
         Largest coefficient of a wire in Vo Van, Balmes, Lorang 2015, in that unit.
     """
 
-    name: str
     key: str
     unit: str
     plausible: float
 
 
 MATRICES = {
-    "stiffness": DampingMatrix("stiffness", "stiffness_coefficient_s", "s", 1e-4),
-    "mass": DampingMatrix("mass", "mass_coefficient_1_s", "1/s", 0.1),
+    "stiffness": DampingMatrix("stiffness_coefficient_s", "s", 1e-4),
+    "mass": DampingMatrix("mass_coefficient_1_s", "1/s", 0.1),
 }
 """Matrices by name, in the order of the terms."""
 

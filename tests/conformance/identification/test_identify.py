@@ -7,13 +7,14 @@ import pytest
 from scipy.optimize import linear_sum_assignment
 
 from helpers.synthetic_drops import drop, span_modes
-from pantocheck.conformance.identification.frequency_band import FrequencyBand
+from pantocheck.conformance.identification.decay_filters import FrequencyBand
 from pantocheck.conformance.identification.hand_placed_poles import read_poles
 from pantocheck.conformance.identification.identification_analysis import analyse_identification
 from pantocheck.conformance.identification.identify import identify_modes
 from pantocheck.conformance.identification.linear_decay import find_linear_decay
 from pantocheck.conformance.identification.mode_groups import find_group_outliers, number_groups
 from pantocheck.conformance.identification.pole_refinement import refine_poles
+from pantocheck.conformance.identification.projection import whiten
 from pantocheck.conformance.identification.release import find_release
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
@@ -48,7 +49,7 @@ def test_blind_identification_reaches_the_bound(seed):
     made = drop(random, true, duration=100.0, rate=50.0, noise=0.002)
     (found,) = identify_modes((record_of(made),), highest=4.6)
     true = true[true.imag < 2 * np.pi * 4.5]
-    white = found.fit.whitened_blocks()
+    white = whiten([block.data for block in found.fit.blocks], [block.noise for block in found.fit.blocks])
     bound = np.sqrt(np.diag(refine_poles(true, white, iterations=0).covariance))[: true.size] / -true.real
     poles = complex_poles(found.modes)
     rows, columns = linear_sum_assignment(np.minimum(np.abs(true[:, None] - poles[None, :]), 1.0))

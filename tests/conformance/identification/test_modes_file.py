@@ -4,8 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from pantocheck.conformance.identification.mode import Mode, SensorShape
-from pantocheck.conformance.identification.modes_file import ModesFile, read_modes
+from pantocheck.conformance.identification.mode import Mode, ModesFile, SensorShape, read_modes
 from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.input_error import InputError
 

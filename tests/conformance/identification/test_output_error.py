@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from pantocheck.conformance.identification.model_order import select_poles
-from pantocheck.conformance.identification.noise_estimate import estimate_noise, whiten
-from pantocheck.conformance.identification.pole_refinement import refine_poles
-from pantocheck.conformance.identification.projection import build_block, build_normal_equations, solve_residues
+from pantocheck.conformance.identification.pole_refinement import build_normal_equations, refine_poles
+from pantocheck.conformance.identification.projection import build_block, estimate_noise, solve_residues, whiten
 from pantocheck.conformance.identification.start_poles import find_start_poles
 
 DT = 0.05
