@@ -255,6 +255,10 @@ class Catenary:
         """Whether a wire has a stagger, so that the lateral field is computed."""
         return any(wire.stagger is not None for wire in self.wires)
 
+    def rayleigh(self, kind: Kind) -> Rayleigh:
+        """Damping of a kind of component."""
+        return self.damping.get(kind, Rayleigh())
+
     def wire(self, name: str) -> Wire:
         """Wire with a name; KeyError if there is none."""
         return {wire.name: wire for wire in self.wires}[name]

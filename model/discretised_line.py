@@ -71,26 +71,32 @@ def discretise(catenary: Catenary, element_length: float, places: tuple[float, .
 
 
 def with_damping(line: DiscretisedLine, damping: Mapping[Kind, Rayleigh]) -> DiscretisedLine:
-    """Replace the damping of a line; its initial state does not depend on it.
-
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Discretised line.
-    damping : mapping of Kind to Rayleigh
-        Damping of each kind of component.
-
-    Returns
-    -------
-    DiscretisedLine
-        The line with that damping.
-    """
+    """Replace the damping of a line; its initial state does not depend on it."""
     catenary = replace(line.catenary, damping=dict(damping))
-    connectors = build_connectors(catenary, line.mesh, line.state)
-    return replace(line, catenary=catenary, beams=build_beams(catenary, line.mesh), connectors=connectors)
+    beams, connectors = build_beams(catenary, line.mesh), build_connectors(catenary, line.mesh, line.state)
+    return replace(line, catenary=catenary, beams=beams, connectors=connectors)
 
 
 def never_slack(line: DiscretisedLine) -> DiscretisedLine:
     """Let the droppers push as well as pull: unphysical, but it shows the influence of slackening."""
     connectors = line.connectors._replace(unilateral=np.zeros_like(line.connectors.unilateral))
     return replace(line, connectors=connectors)
+
+
+def with_viscous_part_kept(line: DiscretisedLine) -> DiscretisedLine:
+    """Let the dashpots of slack droppers act as well: only the elastic force is unilateral.
+
+    By default a slack dropper carries no force. In a code that keeps the damping matrix constant and compensates only
+    the elastic force, the dashpot of a slack dropper still acts. Here it is a separate connector beside the dropper.
+    """
+    connectors, unilateral = line.connectors, line.connectors.unilateral
+    zeros = np.zeros(int(unilateral.sum()))
+    separated = connectors._replace(
+        station=np.append(connectors.station, connectors.station[unilateral]),
+        coefficient=np.concatenate([connectors.coefficient, connectors.coefficient[unilateral]]),
+        stiffness=np.append(connectors.stiffness, zeros),
+        damping=np.append(np.where(unilateral, 0.0, connectors.damping), connectors.damping[unilateral]),
+        preload=np.append(connectors.preload, zeros),
+        unilateral=np.append(unilateral, np.zeros(zeros.size, dtype=np.bool_)),
+    )
+    return replace(line, connectors=separated)

@@ -208,12 +208,5 @@ def apparent_mass(pantograph: Pantograph, frequency: Array) -> Array:
 
 def _chain_matrix(element: Array) -> Array:
     """Matrix of a chain of elements, each between a mass and its lower neighbour or the base."""
-    n = len(element)
-    matrix = np.zeros((n, n))
-    for i, value in enumerate(element):
-        matrix[i, i] += value
-        if i:
-            matrix[i - 1, i - 1] += value
-            matrix[i, i - 1] -= value
-            matrix[i - 1, i] -= value
-    return matrix
+    above = element[1:]
+    return np.diag(element + np.append(above, 0.0)) - np.diag(above, 1) - np.diag(above, -1)

@@ -72,7 +72,7 @@ def causal_reach(line: DiscretisedLine, speed: float, duration: float) -> float:
     Parameters
     ----------
     line : DiscretisedLine
-        The discretised line.
+        Discretised line.
     speed : float
         Speed of the pantographs [m/s].
     duration : float

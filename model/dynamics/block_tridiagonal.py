@@ -44,20 +44,7 @@ class Factor(NamedTuple):
 
 
 def factorise_blocks(diagonal: Array, below: Array, free: NDArray[np.bool_]) -> Factor:
-    """Eliminate all rows from both ends.
-
-    Parameters
-    ----------
-    diagonal, below : (B, S, 2, 2) ndarray
-        Blocks; entry s of `below` couples station s to station s - 1.
-    free : (B, S, 2) ndarray
-        Whether deflection and slope can move.
-
-    Returns
-    -------
-    Factor
-        Block factors.
-    """
+    """Eliminate all rows from both ends; entry s of `below` couples station s to s - 1; both (B, S, 2, 2)."""
     rows, stations = diagonal.shape[:2]
     inverse, link = np.zeros((2, rows, stations, 3)), np.zeros((2, rows, stations, 4))
     meeting = np.zeros((rows, stations, 3))
@@ -99,16 +86,9 @@ def _invert(blocks: Array, free: NDArray[np.bool_], inverse: Array) -> None:
 
 @njit(cache=True)
 def solve_line(factor: Factor, first: int, last: int, w: Array, r: Array) -> None:
-    """Solve A x = f for a stretch of all rows, in place; f is zero and x negligible outside it.
+    """Solve A x = f in place for the stations `first` to `last` of all rows; f is zero and x negligible outside.
 
-    Parameters
-    ----------
-    factor : Factor
-        Block factors of A.
-    first, last : int
-        First and last station of the stretch.
-    w, r : (B, S) ndarray
-        On entry forces and moments, on return accelerations of deflection and slope.
+    `w`, `r`, (B, S): on entry forces and moments, on return accelerations of deflection and slope.
     """
     for b in range(w.shape[0]):
         solve_row(factor, b, first, w[b, first : last + 1], r[b, first : last + 1])
@@ -176,20 +156,7 @@ def _substitute(inverse: Array, link: Array, s: int, force: ForceMoment, inward:
 
 @njit(cache=True)
 def solve_rows(factor: Factor, force: Array) -> Array:
-    """Solve A x = f on all rows for several right-hand sides.
-
-    Parameters
-    ----------
-    factor : Factor
-        Block factors of A.
-    force : (n, B, S, 2) ndarray
-        Forces and moments.
-
-    Returns
-    -------
-    (n, B, S, 2) ndarray
-        Accelerations of deflection and slope.
-    """
+    """Solve A x = f on all rows for several right-hand sides; forces and accelerations (n, B, S, 2)."""
     solution = np.empty_like(force)
     for n in range(force.shape[0]):
         w, r = force[n, :, :, 0].copy(), force[n, :, :, 1].copy()

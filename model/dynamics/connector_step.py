@@ -69,24 +69,7 @@ def connector_ends(connectors: Connectors) -> list[tuple[int, int]]:
 def build_connector_arrays(
     connectors: Connectors, factor: Factor, time_step: float, half_width: int
 ) -> ConnectorArrays:
-    """Connectors of a line in a time step.
-
-    Parameters
-    ----------
-    connectors : Connectors
-        Connectors of the line.
-    factor : Factor
-        Block factors of the effective matrix.
-    time_step : float
-        Time step [s].
-    half_width : int
-        Number of stations H on either side of a column.
-
-    Returns
-    -------
-    ConnectorArrays
-        Arrays for `sweep_connectors`.
-    """
+    """Build the arrays of the connectors for a time step [s]; `half_width` as in `inverse_columns`."""
     number, row = np.nonzero(connectors.coefficient)
     end = np.arange(number.size) - np.searchsorted(number, number)
     shape = (len(connectors.station), int(end.max(initial=-1)) + 1)

@@ -79,24 +79,7 @@ class ContactWorkspace(NamedTuple):
 
 
 def build_contact_arrays(line: DiscretisedLine, factor: Factor, time_step: float, half_width: int) -> ContactArrays:
-    """Contact wires of a line in a time step.
-
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Discretised line.
-    factor : Factor
-        Block factors of the effective matrix.
-    time_step : float
-        Time step [s].
-    half_width : int
-        Number of stations H on either side of a column.
-
-    Returns
-    -------
-    ContactArrays
-        Arrays for `sweep_contacts`.
-    """
+    """Build the arrays of the contact wires for a time step [s]; `half_width` as in `inverse_columns`."""
     row, stations = np.array(line.contact_rows, dtype=np.int64), line.mesh.position.size
     loads = np.indices((row.size, stations, 2)).reshape(3, -1)
     columns = inverse_columns(factor, row[loads[0]], loads[1], loads[2], half_width)

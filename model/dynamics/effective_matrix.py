@@ -15,21 +15,9 @@ def factorise(beams: Beams, time_step: float) -> Factor:
 
 
 def build_effective_blocks(beams: Beams, time_step: float) -> tuple[Array, Array]:
-    """Diagonal and sub-diagonal blocks of A; fixed unknowns have the identity on the diagonal.
+    """Diagonal and sub-diagonal blocks of A, (B, S, 2, 2) each; fixed unknowns have the identity on the diagonal.
 
-    Parameters
-    ----------
-    beams : Beams
-        Rows of beams.
-    time_step : float
-        Time step [s].
-
-    Returns
-    -------
-    diagonal : (B, S, 2, 2) ndarray
-        Blocks of the stations.
-    below : (B, S, 2, 2) ndarray
-        Entry s couples station s to station s - 1.
+    Entry s of the sub-diagonal blocks couples station s to station s - 1.
     """
     rows, stations = beams.lumped_mass.shape
     diagonal, below = np.zeros((rows, stations, 2, 2)), np.zeros((rows, stations, 2, 2))

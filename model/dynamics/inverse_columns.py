@@ -17,18 +17,10 @@ NEGLIGIBLE_SHARE = 1e-12
 
 @njit(cache=True)
 def inverse_column(factor: Factor, row: int, station: int, slope: int, column: Array) -> float:
-    """Compute one column of the inverse around the loaded station; return its relative size at the cut.
+    """Compute one column of the inverse, for a unit force (slope 0) or a unit moment (slope 1) at a station.
 
-    Parameters
-    ----------
-    factor : Factor
-        Block factors.
-    row, station : int
-        Position of the unit load.
-    slope : int
-        0 for a unit force, 1 for a unit moment.
-    column : (2, 2H) ndarray
-        Filled with deflection and slope; the loaded station is at index H, beyond the ends of the line they are zero.
+    Fills `column`, (2, 2H), with deflection and slope: the loaded station is at index H, and both are zero beyond the
+    ends of the line. Returns the size of the column at the cut relative to its peak.
     """
     half_width, stations = column.shape[1] // 2, factor.meeting.shape[1]
     column[:] = 0.0
@@ -60,22 +52,7 @@ def column_half_width(factor: Factor, loads: list[tuple[int, int]]) -> int:
 
 @njit(cache=True)
 def inverse_columns(factor: Factor, rows: Indices, stations: Indices, slopes: Indices, half_width: int) -> Array:
-    """Columns of the inverse for several loads.
-
-    Parameters
-    ----------
-    factor : Factor
-        Block factors.
-    rows, stations, slopes : (L,) int ndarray
-        Position of each unit load; slope 0 for a force, 1 for a moment.
-    half_width : int
-        Number of stations H on either side.
-
-    Returns
-    -------
-    (L, 2, 2H) ndarray
-        Deflection and slope around each load.
-    """
+    """Columns of the inverse for L unit loads as in `inverse_column`, (L, 2, 2H), with H stations on either side."""
     columns = np.zeros((rows.size, 2, 2 * half_width))
     for n in range(rows.size):
         inverse_column(factor, rows[n], stations[n], slopes[n], columns[n])

@@ -88,24 +88,7 @@ class Workspace(NamedTuple):
 def build_kernel_arrays(
     line: DiscretisedLine, time_step: float, reach: float = math.inf, load: Load | None = None
 ) -> KernelArrays:
-    """Arrays of the time step of a line.
-
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Discretised line.
-    time_step : float
-        Time step [s].
-    reach : float
-        Half-width of the active window around the pantographs [m]; infinite: the whole line is active.
-    load : Load or None
-        Position of the external load, if there is one.
-
-    Returns
-    -------
-    KernelArrays
-        Arrays for `newmark.step`.
-    """
+    """Build the arrays of the time step [s] of a line; `reach` [m] as in `Passage`."""
     factor = factorise(line.beams, time_step)
     terms = build_modal_terms(line)
     if terms.damping.size:

@@ -6,9 +6,8 @@ the displacements q of an undamped system into
 
     M (q+ - 2 q + q-) / dt^2 + K (q+ + 10 q + q-) / 12 = f
 
-This is Newmark's method with gamma = 1/2, beta = 1/12, the Fox-Goodwin method, with a period error of fourth order
-(Hughes, The Finite Element Method, 1987, section 9.1). It is stable for w dt < sqrt(6), as long as M - dt^2/6 K is
-positive definite.
+This is Newmark's method with gamma = 1/2, beta = 1/12, the Fox-Goodwin method, with a period error of fourth order. It
+is stable for w dt < sqrt(6), as long as M - dt^2/6 K is positive definite (Hughes, The Finite Element Method, 1987).
 
 Only the string part of K is corrected (linear shape functions): bending affects only waves too short to be of interest.
 Where an element is too short for the stability bound, the correction is limited and the method stays stable.
@@ -28,21 +27,9 @@ When the ends of an element move apart by one each, they feel at least a tenth o
 
 
 def mass_correction(beams: Beams, row: int, time_step: float) -> Array:
-    """Matrices that a time step subtracts from the mass of the elements of one row.
+    """Matrices that a time step [s] subtracts from the mass of the elements of one row, (S-1, 4, 4) [kg].
 
-    Parameters
-    ----------
-    beams : Beams
-        Rows of beams.
-    row : int
-        Index of the row.
-    time_step : float
-        Time step [s].
-
-    Returns
-    -------
-    (S-1, 4, 4) ndarray
-        dt^2/6 K of a string; less where an element is shorter than 2.6 times the path of a wave in one step [kg].
+    dt^2/6 K of a string; less where an element is shorter than 2.6 times the path of a wave in one step.
     """
     h, tension, mass_per_length = beams.length, beams.tension[row], beams.mass_per_length[row]
     # An element without a wire has neither tension nor mass.

@@ -51,20 +51,9 @@ def simulate_steps(
     recording: Recording,
     progress: Callable[[float], None] | None = None,
 ) -> None:
-    """Advance line and pantographs by as many steps as the recording has, and fill it.
+    """Advance line and pantographs, in place, by as many steps as the recording has, and fill it.
 
-    Parameters
-    ----------
-    kernel : KernelArrays
-        Arrays of the line.
-    motion, train : Motion, Train
-        States at the start, advanced in place.
-    load : (T,) ndarray
-        External load in each step [N].
-    recording : Recording
-        Filled in place.
-    progress : callable or None
-        Called from time to time with the completed share, 0 to 1.
+    `load`, (T,), is the external load in each step [N]; `progress` is called with the completed share, 0 to 1.
 
     Raises
     ------
@@ -121,22 +110,7 @@ def march(
 def allocate_recording(
     line: DiscretisedLine, watched: tuple[tuple[str, float], ...], steps: int, pantographs: int
 ) -> Recording:
-    """Empty recording.
-
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Discretised line.
-    watched : tuple of (str, float)
-        Wire and position of the stations whose vertical motion is recorded [-, m].
-    steps, pantographs : int
-        Numbers of time steps and of pantographs.
-
-    Returns
-    -------
-    Recording
-        Arrays of zeros.
-    """
+    """Allocate a recording of the vertical motion at the watched stations (wire, position [m])."""
     return Recording(
         row=np.array([line.mesh.row_of[wire, "z"] for wire, _ in watched], dtype=np.int64),
         station=np.array([line.mesh.station(position) for _, position in watched], dtype=np.int64),

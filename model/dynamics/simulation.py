@@ -70,22 +70,7 @@ def _check_passage(line: DiscretisedLine, passage: Passage) -> None:
 
 
 def start_motion(line: DiscretisedLine, kernel: KernelArrays, passage: Passage) -> tuple[Motion, Train]:
-    """Line and pantographs at rest, each pantograph pressing with its static force.
-
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Discretised line.
-    kernel : KernelArrays
-        Its arrays of the time step.
-    passage : Passage
-        Pantographs and their positions.
-
-    Returns
-    -------
-    tuple of (Motion, Train)
-        State of the line, state of the pantographs.
-    """
+    """Line and pantographs at rest, each pantograph pressing with its static force."""
     share = 1 / len(line.contact_rows)
     load = np.zeros(line.beams.free.size)
     for pantograph, x in zip(passage.pantographs, passage.start, strict=True):

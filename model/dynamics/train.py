@@ -57,19 +57,8 @@ def empty_train(contact_wires: int) -> Train:
 def build_train(passage: Passage, wire_height: Array, flexibility: Array) -> Train:
     """Pantographs at rest, each pressing with its static force.
 
-    Parameters
-    ----------
-    passage : Passage
-        Pantographs, their positions, speed and time step.
-    wire_height : (P, W) ndarray
-        Height of each contact wire above each head, under the static forces [m].
-    flexibility : (P, W) ndarray
-        Residual flexibility of the contact wires there [m/N].
-
-    Returns
-    -------
-    Train
-        State at the start.
+    `wire_height` [m] is the height of each contact wire above each head under the static forces, and `flexibility`
+    [m/N] its residual flexibility there, (P, W) each.
     """
     wires = wire_height.shape[1]
     train = _allocate(len(passage.pantographs), max(p.head.size for p in passage.pantographs), wires)

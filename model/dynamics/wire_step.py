@@ -86,15 +86,7 @@ class ElementForces(NamedTuple):
 
 
 class WireWorkspace(NamedTuple):
-    """Scratch arrays of `apply_wire_forces`.
-
-    Parameters
-    ----------
-    w, r : (PIECE + 1,) ndarray
-        Deflection and slope of a piece of wire, plus damping times their rates.
-    forces : ElementForces
-        Forces of its elements.
-    """
+    """Scratch arrays of `apply_wire_forces`: deflection and slope of a piece plus damping times their rates, forces."""
 
     w: Array
     r: Array

@@ -56,18 +56,7 @@ def free_unknowns(line: DiscretisedLine) -> Indices:
 
 
 def assemble_matrices(line: DiscretisedLine) -> GlobalMatrices:
-    """Assemble mass, damping and stiffness of the line with every dropper taut.
-
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Discretised line.
-
-    Returns
-    -------
-    GlobalMatrices
-        Matrices of the free unknowns.
-    """
+    """Assemble mass, damping and stiffness of the line with every dropper taut."""
     beams, free = line.beams, free_unknowns(line)
     rows, order, directions = range(line.mesh.rows), bandwidth_order(line), connector_directions(line)
     stiffness, mass = [wire_stiffness(beams, row) for row in rows], [wire_mass(beams, row) for row in rows]
@@ -90,20 +79,7 @@ def assemble_matrices(line: DiscretisedLine) -> GlobalMatrices:
 
 
 def stepping_mass(line: DiscretisedLine, time_step: float) -> sp.csc_array:
-    """Corrected mass of the line in a time step (`mass_correction`), for independent solvers.
-
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Discretised line.
-    time_step : float
-        Time step [s].
-
-    Returns
-    -------
-    (n, n) sparse array
-        Mass of the free unknowns [kg].
-    """
+    """Corrected mass of the free unknowns in a time step [s] (`mass_correction`), for independent solvers [kg]."""
     rows = range(line.mesh.rows)
     correction = sp.block_diag([assemble_row(mass_correction(line.beams, r, time_step)) for r in rows], format="csr")
     matrices, order = assemble_matrices(line), bandwidth_order(line)
@@ -122,21 +98,9 @@ def connector_directions(line: DiscretisedLine) -> sp.csr_array:
 
 
 def point_load(line: DiscretisedLine, row: int, position: float) -> Array:
-    """Shape functions of one row at a position: deflection per unknown, or the nodal forces of a unit force.
+    """Shape functions of one row at a position [m]: share of every unknown, (unknowns,) [-, m].
 
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Discretised line.
-    row : int
-        Index of the row.
-    position : float
-        Position along the track [m].
-
-    Returns
-    -------
-    (unknowns,) ndarray
-        Shares of deflections and slopes [-, m].
+    Their product with the unknowns is the deflection there; they are also the nodal forces of a unit force.
     """
     element, length, s = find_element(line.mesh.position, position)
     share = np.zeros(line.beams.free.size)
@@ -148,24 +112,7 @@ def point_load(line: DiscretisedLine, row: int, position: float) -> Array:
 
 
 def contact_stiffness(line: DiscretisedLine, row: int, position: float, penalty: float) -> float:
-    """Stiffness of the penalty and of the residual flexibility in series, for independent solvers.
-
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Discretised line.
-    row : int
-        Row of a contact wire.
-    position : float
-        Position of the contact [m].
-    penalty : float
-        Stiffness of the penalty contact [N/m].
-
-    Returns
-    -------
-    float
-        Stiffness [N/m].
-    """
+    """Stiffness of penalty [N/m] and residual flexibility at a position [m] in series, for independent solvers."""
     beams = line.beams
     element, length, s = find_element(line.mesh.position, position)
     tension, bending_stiffness = float(beams.tension[row, element]), float(beams.bending_stiffness[row, element])

@@ -30,91 +30,31 @@ def stiffness(h: float | Array, tension: float | Array, bending_stiffness: float
         Symmetric matrices [N/m, N, N m].
     """
     h = np.asarray(h, dtype=np.float64)
-    one = np.ones_like(h)
-    bending = np.array(
-        [
-            [12 * one, 6 * h, -12 * one, 6 * h],
-            [6 * h, 4 * h**2, -6 * h, 2 * h**2],
-            [-12 * one, -6 * h, 12 * one, -6 * h],
-            [6 * h, 2 * h**2, -6 * h, 4 * h**2],
-        ]
-    )
-    string = np.array(
-        [
-            [36 * one, 3 * h, -36 * one, 3 * h],
-            [3 * h, 4 * h**2, -3 * h, -(h**2)],
-            [-36 * one, -3 * h, 36 * one, -3 * h],
-            [3 * h, -(h**2), -3 * h, 4 * h**2],
-        ]
-    )
-    return _by_element(bending_stiffness / h**3 * bending + tension / (30 * h) * string)
+    bending = np.array([[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]])
+    string = np.array([[36, 3, -36, 3], [3, 4, -3, -1], [-36, -3, 36, -3], [3, -1, -3, 4]])
+    return _element_matrices(bending_stiffness / h**3, bending, h) + _element_matrices(tension / (30 * h), string, h)
 
 
 def mass(h: float | Array, mass_per_length: float | Array) -> Array:
-    """Consistent mass of elements.
+    """Consistent mass of elements of length h [m], (..., 4, 4) [kg, kg m, kg m2]; mass per length in [kg/m]."""
+    shares = np.array([[156, 22, 54, -13], [22, 4, 13, -3], [54, 13, 156, -22], [-13, -3, -22, 4]])
+    return _element_matrices(mass_per_length * h / 420, shares, h)
 
-    Parameters
-    ----------
-    h : float or ndarray
-        Length of each element, (...) [m].
-    mass_per_length : float or ndarray
-        Mass per length, (...) [kg/m].
 
-    Returns
-    -------
-    (..., 4, 4) ndarray
-        Symmetric matrices [kg, kg m, kg m2].
-    """
-    h = np.asarray(h, dtype=np.float64)
-    one = np.ones_like(h)
-    shares = np.array(
-        [
-            [156 * one, 22 * h, 54 * one, -13 * h],
-            [22 * h, 4 * h**2, 13 * h, -3 * h**2],
-            [54 * one, 13 * h, 156 * one, -22 * h],
-            [-13 * h, -3 * h**2, -22 * h, 4 * h**2],
-        ]
-    )
-    return _by_element(mass_per_length * h / 420 * shares)
+def _element_matrices(factor: float | Array, shares: Array, h: float | Array) -> Array:
+    """Matrices `factor` times `shares`, in which every slope counts times the length h of the element."""
+    scale = np.stack([np.ones_like(h), h, np.ones_like(h), h], axis=-1)
+    return np.asarray(np.asarray(factor)[..., None, None] * (shares * (scale[..., :, None] * scale[..., None, :])))
 
 
 def springs(stiffness: Array) -> Array:
-    """Stiffness of springs between the ends of the elements, as of strings with linear shape functions.
-
-    Parameters
-    ----------
-    stiffness : (n,) ndarray
-        Stiffness of each spring, T / h for a string [N/m].
-
-    Returns
-    -------
-    (n, 4, 4) ndarray
-        Symmetric matrices, zero for the slopes [N/m].
-    """
+    """Stiffness of springs between the ends of n elements, (n, 4, 4): strings with linear shape functions [N/m]."""
     elongation = np.array([1.0, 0.0, -1.0, 0.0])
     return np.asarray(stiffness[:, None, None] * np.outer(elongation, elongation))
 
 
-def _by_element(matrices: Array) -> Array:
-    """Move the indices of the matrix to the end."""
-    return np.moveaxis(matrices, (0, 1), (-2, -1))
-
-
 def uniform_load(h: float, load_per_length: float) -> Array:
-    """Nodal forces of a uniform load, consistent with the shape functions.
-
-    Parameters
-    ----------
-    h : float
-        Length of the element [m].
-    load_per_length : float
-        Load per length [N/m].
-
-    Returns
-    -------
-    (4,) ndarray
-        Forces and moments [N, N m].
-    """
+    """Nodal forces (4,) of a load per length [N/m], consistent with the shape functions [N, N m]."""
     return load_per_length * h / 12 * np.array([6, h, 6, -h])
 
 
@@ -139,43 +79,11 @@ def shape(s: float, h: float) -> Array:
 def pinned_frequencies(
     n: int, length: float, tension: float, bending_stiffness: float, mass_per_length: float
 ) -> Array:
-    """Natural frequencies of a pinned tensioned beam, modes 1 to n (closed form).
-
-    Parameters
-    ----------
-    n : int
-        Number of modes.
-    length : float
-        Length of the beam [m].
-    tension : float
-        Tension T [N].
-    bending_stiffness : float
-        Bending stiffness EI [N m2].
-    mass_per_length : float
-        Mass per length m [kg/m].
-
-    Returns
-    -------
-    (n,) ndarray
-        Frequencies [Hz].
-    """
+    """Natural frequencies of a pinned tensioned beam, modes 1 to n in closed form [Hz]; parameters in SI units."""
     k = np.arange(1, n + 1) * np.pi / length
     return np.asarray(np.sqrt((tension * k**2 + bending_stiffness * k**4) / mass_per_length) / (2 * np.pi))
 
 
 def wave_speed(tension: float, mass_per_length: float) -> float:
-    """Speed of transverse waves on a wire without bending stiffness: sqrt(T / m).
-
-    Parameters
-    ----------
-    tension : float
-        Tension T [N].
-    mass_per_length : float
-        Mass per length m [kg/m].
-
-    Returns
-    -------
-    float
-        Wave speed [m/s].
-    """
+    """Speed sqrt(T / m) of transverse waves on a wire without bending stiffness [m/s]; T in [N], m in [kg/m]."""
     return float(np.sqrt(tension / mass_per_length))

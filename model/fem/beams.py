@@ -11,7 +11,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from pantocheck.model.arrays import Array
-from pantocheck.model.catenary import Catenary, Kind, Rayleigh
+from pantocheck.model.catenary import Catenary, Kind
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.lumped_parts import sum_lumped_parts
 from pantocheck.model.fem.mesh import Mesh
@@ -47,20 +47,7 @@ class Beams(NamedTuple):
 
 
 def build_beams(catenary: Catenary, mesh: Mesh) -> Beams:
-    """Build the wires and lumped parts of a line as rows of beams.
-
-    Parameters
-    ----------
-    catenary : Catenary
-        Line.
-    mesh : Mesh
-        Stations and rows.
-
-    Returns
-    -------
-    Beams
-        Rows of beams.
-    """
+    """Build the wires and lumped parts of a line as rows of beams."""
     stations = mesh.position.size
     length = np.diff(mesh.position)
     middle = mesh.position[:-1] + length / 2
@@ -78,8 +65,7 @@ def build_beams(catenary: Catenary, mesh: Mesh) -> Beams:
         free[row, first : last + 1] = True
         if wire.kind is not Kind.STITCH_WIRE:  # a stitch wire ends in clamps, not in anchors
             free[row, [first, last], 0] = False
-    undamped = Rayleigh()
-    rayleigh = [catenary.damping.get(kind, undamped) for kind in mesh.row_kind]
+    rayleigh = [catenary.rayleigh(kind) for kind in mesh.row_kind]
     return Beams(
         length,
         tension,
@@ -117,22 +103,7 @@ def assemble_row(elements: Array) -> sp.csr_array:
 
 
 def weight(beams: Beams, row: int, gravity: float) -> Array:
-    """Weight of the wires of one row as nodal forces, negative downwards.
-
-    Parameters
-    ----------
-    beams : Beams
-        Rows of beams.
-    row : int
-        Index of the row.
-    gravity : float
-        Acceleration of gravity [m/s2].
-
-    Returns
-    -------
-    (2 S,) ndarray
-        Forces and moments by station [N, N m].
-    """
+    """Weight of the wires of one row as nodal forces, (2 S,), negative downwards [N, N m]; gravity in [m/s2]."""
     force = np.zeros(2 * beams.free.shape[1])
     for e in np.flatnonzero(beams.mass_per_length[row]):
         force[2 * e : 2 * e + 4] -= beam.uniform_load(beams.length[e], beams.mass_per_length[row, e] * gravity)

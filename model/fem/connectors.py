@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pantocheck.model.arrays import Array, Indices
-from pantocheck.model.catenary import Catenary, Kind, Rayleigh, SteadyArm
+from pantocheck.model.catenary import Catenary, Kind, SteadyArm
 from pantocheck.model.fem.mesh import Mesh
 from pantocheck.model.statics.initial_state import InitialState
 
@@ -62,22 +62,7 @@ class Connectors(NamedTuple):
 
 
 def build_connectors(catenary: Catenary, mesh: Mesh, state: InitialState) -> Connectors:
-    """Build droppers, clamps and, with a lateral field, steady arms of a line.
-
-    Parameters
-    ----------
-    catenary : Catenary
-        Line.
-    mesh : Mesh
-        Stations and rows.
-    state : InitialState
-        Gives forces, lengths and directions.
-
-    Returns
-    -------
-    Connectors
-        Droppers first.
-    """
+    """Build droppers, clamps and, with a lateral field, steady arms of a line."""
     bars = _droppers(catenary, mesh, state) + _clamps(catenary, mesh, state)
     if catenary.has_lateral_field:
         bars += _transverse_droppers(catenary, mesh, state) + _steady_arms(catenary, mesh, state)
@@ -104,28 +89,21 @@ def _coefficients(mesh: Mesh, upper: str, lower: str, direction: tuple[float, fl
 
 
 def _droppers(catenary: Catenary, mesh: Mesh, state: InitialState) -> list[Bar]:
-    rayleigh = catenary.damping.get(Kind.DROPPER, Rayleigh())
+    damping_time = catenary.rayleigh(Kind.DROPPER).stiffness_coefficient
     bars = []
     for n, dropper in enumerate(catenary.droppers):
         stiffness = dropper.stiffness
         if stiffness is None:
             stiffness = (dropper.axial_stiffness or 0.0) / float(state.dropper_length[n])
         y, z = map(float, state.dropper_direction[n])
-        bars.append(
-            Bar(
-                mesh.station(dropper.position),
-                _coefficients(mesh, dropper.upper, dropper.lower, (y, z)),
-                stiffness,
-                rayleigh.stiffness_coefficient * stiffness,
-                float(state.dropper_tension[n]),
-                unilateral=True,
-            )
-        )
+        coefficient = _coefficients(mesh, dropper.upper, dropper.lower, (y, z))
+        station, preload = mesh.station(dropper.position), float(state.dropper_tension[n])
+        bars.append(Bar(station, coefficient, stiffness, damping_time * stiffness, preload, unilateral=True))
     return bars
 
 
 def _clamps(catenary: Catenary, mesh: Mesh, state: InitialState) -> list[Bar]:
-    directions = [(0.0, 1.0)] if not catenary.has_lateral_field else [(0.0, 1.0), (1.0, 0.0)]
+    directions = [(0.0, 1.0), (1.0, 0.0)] if catenary.has_lateral_field else [(0.0, 1.0)]
     return [
         Bar(
             mesh.station(clamp.position),
@@ -151,7 +129,7 @@ def _transverse_droppers(catenary: Catenary, mesh: Mesh, state: InitialState) ->
 
 def _steady_arms(catenary: Catenary, mesh: Mesh, state: InitialState) -> list[Bar]:
     """Hinged bars, rigid along their length; their transverse stiffness is axial force over length."""
-    rayleigh = catenary.damping.get(Kind.STEADY_ARM, Rayleigh())
+    damping_time = catenary.rayleigh(Kind.STEADY_ARM).stiffness_coefficient
     bars = []
     for arm, force in zip(catenary.steady_arms, state.arm_force, strict=True):
         station, rows = mesh.station(arm.position), [mesh.row_of[arm.wire, field] for field in "yz"]
@@ -161,27 +139,16 @@ def _steady_arms(catenary: Catenary, mesh: Mesh, state: InitialState) -> list[Ba
         if arm.vertical_stiffness is None and arm.length is not None and tension != 0.0:
             stiffness = tension / arm.length
             across = dict(zip(rows, (z, -y), strict=True))
-            bars.append(Bar(station, across, stiffness, rayleigh.stiffness_coefficient * abs(stiffness)))
+            bars.append(Bar(station, across, stiffness, damping_time * abs(stiffness)))
     return bars
 
 
 def arm_direction(arm: SteadyArm, force: Array) -> tuple[float, float, float]:
-    """Direction of a steady arm from the contact-wire clamp to the hinge, and its axial tension.
+    """Direction (y, z) of a steady arm from the contact-wire clamp to the hinge, and its tension [N].
 
-    A hinged bar lies along the force it carries; its hinge carries its weight. The hinge of a pulling arm lies on the
-    side to which the arm pulls, that of a pushing arm on the other side.
-
-    Parameters
-    ----------
-    arm : SteadyArm
-        Steady arm.
-    force : (2,) ndarray
-        Static force of the arm on the contact wire, y and z [N].
-
-    Returns
-    -------
-    tuple of (float, float, float)
-        Direction y, z [-], and tension, negative for a pushing arm [N].
+    A hinged bar lies along its force (y, z) on the contact wire [N]; its hinge carries its weight. The hinge of a
+    pulling arm lies on the side to which the arm pulls, that of a pushing arm on the other side. The tension of a
+    pushing arm is negative.
     """
     size = float(np.hypot(*force))
     if force[0] == 0.0:

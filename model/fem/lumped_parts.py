@@ -9,22 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from pantocheck.model.arrays import Array
-from pantocheck.model.catenary import Catenary, Kind, Rayleigh
+from pantocheck.model.catenary import Catenary, Kind
 from pantocheck.model.fem.mesh import Mesh
-
-
-class LumpedParts(NamedTuple):
-    """Sums of the lumped parts; B rows, S stations.
-
-    Parameters
-    ----------
-    mass, stiffness, damping : (B, S) ndarray
-        Coefficients on the deflections [kg, N/m, N s/m].
-    """
-
-    mass: Array
-    stiffness: Array
-    damping: Array
 
 
 class LumpedPart(NamedTuple):
@@ -38,31 +24,20 @@ class LumpedPart(NamedTuple):
     damping: float = 0.0
 
 
-def sum_lumped_parts(catenary: Catenary, mesh: Mesh) -> LumpedParts:
-    """Sum the lumped parts of a line, with the Rayleigh damping of their kind, at each station.
+def sum_lumped_parts(catenary: Catenary, mesh: Mesh) -> tuple[Array, Array, Array]:
+    """Sum mass, stiffness and damping of the lumped parts at each station, (B, S) each [kg, N/m, N s/m].
 
-    Parameters
-    ----------
-    catenary : Catenary
-        Line.
-    mesh : Mesh
-        Stations and rows.
-
-    Returns
-    -------
-    LumpedParts
-        Sums by row and station.
+    The damping includes the Rayleigh damping of the kind of each part.
     """
     mass, stiffness, damping = (np.zeros((mesh.rows, mesh.position.size)) for _ in range(3))
-    undamped = Rayleigh()
     for part in _lumped_parts(catenary, mesh):
-        station, rayleigh = mesh.station(part.position), catenary.damping.get(part.kind, undamped)
+        station, rayleigh = mesh.station(part.position), catenary.rayleigh(part.kind)
         mass[part.row, station] += part.mass
         stiffness[part.row, station] += part.stiffness
         damping[part.row, station] += (
             part.damping + rayleigh.mass_coefficient * part.mass + rayleigh.stiffness_coefficient * part.stiffness
         )
-    return LumpedParts(mass, stiffness, damping)
+    return mass, stiffness, damping
 
 
 def _lumped_parts(catenary: Catenary, mesh: Mesh) -> Iterator[LumpedPart]:

@@ -49,42 +49,14 @@ class Mesh:
 
 
 def find_element(stations: Array, position: float) -> tuple[int, float, float]:
-    """Element at a position along the track.
-
-    Parameters
-    ----------
-    stations : (S,) ndarray
-        Positions of the stations [m].
-    position : float
-        Position along the track [m].
-
-    Returns
-    -------
-    tuple of (int, float, float)
-        Index and length of the element, and the position within it as a share of its length [-, m, -].
-    """
+    """Index and length [m] of the element at a position [m], and the position within it as a share of its length."""
     element = min(max(int(np.searchsorted(stations, position)) - 1, 0), stations.size - 2)
     length = stations[element + 1] - stations[element]
     return element, length, (position - stations[element]) / length
 
 
 def build_mesh(catenary: Catenary, element_length: float, places: tuple[float, ...] = ()) -> Mesh:
-    """Place stations at every connector and requested position, and divide the stretches between them into elements.
-
-    Parameters
-    ----------
-    catenary : Catenary
-        Line.
-    element_length : float
-        Largest length of an element [m].
-    places : tuple of float
-        Positions of additional stations [m].
-
-    Returns
-    -------
-    Mesh
-        Stations and rows.
-    """
+    """Place stations at connectors and requested places [m], and divide the stretches between them into elements."""
     fields = ("z", "y") if catenary.has_lateral_field else ("z",)
     rows: list[list[Wire]] = []
     for wire in catenary.wires:

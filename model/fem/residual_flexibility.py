@@ -19,21 +19,9 @@ FUNCTIONS = 3
 
 
 def condensed_bubbles(h: float, tension: float, bending_stiffness: float) -> Array:
-    """Flexibility matrix of the bubble functions of one element.
+    """Flexibility of the bubble functions of one element, (6,): inverse of their stiffness [m/N].
 
-    Parameters
-    ----------
-    h : float
-        Length of the element [m].
-    tension : float
-        Tension T [N].
-    bending_stiffness : float
-        Bending stiffness EI [N m2].
-
-    Returns
-    -------
-    (6,) ndarray
-        Entries (i, j) = 00, 01, 02, 11, 12, 22 of the inverse of their stiffness [m/N].
+    The entries are (i, j) = 00, 01, 02, 11, 12, 22; parameters as in `beam.stiffness`.
     """
     if bending_stiffness == 0.0:
         return np.zeros(6)  # a string has a kink under a force, which no smooth function represents
@@ -73,19 +61,9 @@ def _integral(polynomial: Polynomial) -> float:
 
 @njit(cache=True)
 def local_flexibility(bubble: Array, s: float) -> float:
-    """Deflection per force at a point of an element with clamped ends.
+    """Deflection per force at the share s of the length of an element with clamped ends [m/N].
 
-    Parameters
-    ----------
-    bubble : (6,) ndarray
-        Flexibility matrix of the element, from `condensed_bubbles`.
-    s : float
-        Position of the point as a share of the length [-].
-
-    Returns
-    -------
-    float
-        Flexibility [m/N].
+    `bubble` is the flexibility of its bubble functions, from `condensed_bubbles`.
     """
     f = s * s * (1 - s) * (1 - s)
     t = 2 * s - 1

@@ -32,18 +32,7 @@ class ModalTerms:
 
 
 def build_modal_terms(line: DiscretisedLine) -> ModalTerms:
-    """Compute the low-rank part of the damping of a line; without modal damping its rank is zero.
-
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Discretised line.
-
-    Returns
-    -------
-    ModalTerms
-        Terms of the selected modes.
-    """
+    """Compute the low-rank part of the damping of a line; without modal damping its rank is zero."""
     bands = line.catenary.modal_damping
     if not bands:
         return ModalTerms(np.zeros(0), np.zeros((0, *line.beams.free.shape)))

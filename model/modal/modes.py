@@ -94,24 +94,7 @@ def _normalise_sign(vectors: Array) -> Array:
 
 
 def deflection_at(line: DiscretisedLine, shapes: Modes, row: int, position: float) -> Array:
-    """Deflection of every mode at a station of one row.
-
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Discretised line.
-    shapes : Modes
-        Modes of the line.
-    row : int
-        Index of the row.
-    position : float
-        Position of the station [m].
-
-    Returns
-    -------
-    (n,) ndarray
-        Deflections [kg^-1/2].
-    """
+    """Deflection of every mode at a station [m] of one row, (n,) [kg^-1/2]."""
     return np.asarray(shapes.shape[:, row, line.mesh.station(position), 0])
 
 

@@ -58,23 +58,7 @@ class InitialState:
 def compute_initial_state(
     catenary: Catenary, mesh: Mesh, beams: Beams, stiffness: Stiffness = wire_stiffness
 ) -> InitialState:
-    """Compute the equilibrium of the line under its weight.
-
-    Parameters
-    ----------
-    catenary : Catenary
-        Line.
-    mesh : Mesh
-        Stations and rows.
-    beams : Beams
-        Rows of beams.
-    stiffness : callable
-        Stiffness of the wires of one row: beams (default) or strings.
-
-    Returns
-    -------
-    InitialState
-        Line at rest.
+    """Compute the equilibrium of the line under its weight, with its wires as beams (default) or strings.
 
     Raises
     ------
@@ -97,7 +81,7 @@ def compute_initial_state(
     # 2. Messenger and stitch wires.
     if upper:
         matrix = sp.block_diag([stiffness(beams, row) for row in upper], format="csr")
-        deflection[upper], clamp_force[:, 1] = _hang_upper_wires(catenary, mesh, beams, tension, matrix)
+        deflection[upper], clamp_force[:, 1] = _hang_upper_wires(catenary, mesh, beams, upper, tension, matrix)
     height = _dropper_extent(catenary, mesh, deflection, "z")
     if height.size and height.min() <= 0:
         position = catenary.droppers[int(np.argmin(height))].position
@@ -126,9 +110,8 @@ def _hold_contact_wire(
         for d in catenary.droppers
         if d.lower in names and d.contact_wire_height is not None
     }
-    heights |= {
-        mesh.station(arm.position): 0.0 for arm in catenary.steady_arms if arm.wire in names and arm.carries_share
-    }
+    arms = [arm for arm in catenary.steady_arms if arm.wire in names and arm.carries_share]
+    heights |= {mesh.station(arm.position): 0.0 for arm in arms}
     load, free = weight(beams, row, GRAVITY), beams.free[row].copy()
     shape = np.zeros((mesh.position.size, 2))
     for station, height in heights.items():
@@ -156,10 +139,9 @@ def _dropper_tension(catenary: Catenary, mesh: Mesh, reaction: Array) -> Array:
 
 
 def _hang_upper_wires(
-    catenary: Catenary, mesh: Mesh, beams: Beams, tension: Array, stiffness: sp.csr_array
+    catenary: Catenary, mesh: Mesh, beams: Beams, rows: list[int], tension: Array, stiffness: sp.csr_array
 ) -> tuple[Array, Array]:
     """Shape of messenger and stitch wires under weight and dropper tensions, and the vertical forces of the clamps."""
-    rows = [r for r in range(mesh.rows) if mesh.row_field[r] == "z" and mesh.row_kind[r] is not Kind.CONTACT_WIRE]
     stations = mesh.position.size
     load = np.concatenate([weight(beams, row, GRAVITY) for row in rows])
     free, shape = beams.free[rows].ravel(), np.zeros(len(rows) * stations * 2)
@@ -191,11 +173,7 @@ def _messenger_heights(catenary: Catenary) -> list[tuple[str, float, float]]:
     heights = []
     for wire in catenary.wires:
         if wire.kind is Kind.MESSENGER_WIRE:
-            supports = sorted(
-                (support.position, support.height)
-                for support in catenary.messenger_supports
-                if support.wire == wire.name
-            )
+            supports = sorted((s.position, s.height) for s in catenary.messenger_supports if s.wire == wire.name)
             if supports:
                 heights += [(wire.name, wire.start, supports[0][1]), (wire.name, wire.end, supports[-1][1])]
             heights += [(wire.name, *support) for support in supports]
@@ -204,10 +182,7 @@ def _messenger_heights(catenary: Catenary) -> list[tuple[str, float, float]]:
 
 def _dropper_extent(catenary: Catenary, mesh: Mesh, deflection: Array, field: str) -> Array:
     """Upper minus lower end of every dropper in one field."""
-    return np.array(
-        [
-            deflection[mesh.row_of[d.upper, field], mesh.station(d.position), 0]
-            - deflection[mesh.row_of[d.lower, field], mesh.station(d.position), 0]
-            for d in catenary.droppers
-        ]
-    )
+    station = [mesh.station(dropper.position) for dropper in catenary.droppers]
+    upper = [mesh.row_of[dropper.upper, field] for dropper in catenary.droppers]
+    lower = [mesh.row_of[dropper.lower, field] for dropper in catenary.droppers]
+    return np.asarray(deflection[upper, station, 0] - deflection[lower, station, 0])

@@ -49,24 +49,7 @@ class LateralState:
 
 
 def compute_lateral_state(catenary: Catenary, mesh: Mesh, beams: Beams, dropper_stiffness: Array) -> LateralState:
-    """Compute the equilibrium of the lateral rows.
-
-    Parameters
-    ----------
-    catenary : Catenary
-        Line with the staggers of its wires.
-    mesh : Mesh
-        Stations and rows.
-    beams : Beams
-        Rows of beams.
-    dropper_stiffness : (droppers,) ndarray
-        Lateral stiffness of each dropper, vertical force over height [N/m].
-
-    Returns
-    -------
-    LateralState
-        Plan view at rest.
-    """
+    """Compute the equilibrium of the lateral rows; `dropper_stiffness` is vertical force over height [N/m]."""
     rows = [row for row in range(mesh.rows) if mesh.row_field[row] == "y"]
     stations = mesh.position.size
     wires = sp.block_diag([wire_stiffness(beams, row) for row in rows], format="csr")
@@ -77,12 +60,9 @@ def compute_lateral_state(catenary: Catenary, mesh: Mesh, beams: Beams, dropper_
     bars: list[Dropper | Clamp] = [*catenary.droppers, *catenary.clamps]
     upper = [deflection_index(bar.upper, bar.position) for bar in bars]
     lower = [deflection_index(bar.lower, bar.position) for bar in bars]
-    bar_stiffness = np.concatenate([dropper_stiffness, np.full(len(catenary.clamps), CLAMP_STIFFNESS)])
-    number = np.arange(len(bars))
-    elongation = sp.csr_array(
-        (np.repeat([1.0, -1.0], len(bars)), (np.concatenate([upper, lower]), np.tile(number, 2))),
-        shape=(wires.shape[0], len(bars)),
-    )
+    bar_stiffness = np.append(dropper_stiffness, np.full(len(catenary.clamps), CLAMP_STIFFNESS))
+    indices = (np.append(upper, lower).astype(int), np.tile(np.arange(len(bars)), 2))
+    elongation = sp.csr_array((np.repeat([1.0, -1.0], len(bars)), indices), shape=(wires.shape[0], len(bars)))
     free = beams.free[rows].copy()
     shape = np.zeros((len(rows), stations, 2))
     for wire in catenary.wires:

@@ -11,23 +11,9 @@ from pantocheck.model.arrays import Array
 def solve_with_prescribed_displacements(
     stiffness: sp.csr_array, load: Array, free: NDArray[np.bool_], prescribed: Array
 ) -> Array:
-    """Solve K q = f for the free unknowns, with prescribed values of the others.
+    """Solve K q = f for the free unknowns, with prescribed values of the others; return all unknowns.
 
-    Parameters
-    ----------
-    stiffness : (n, n) sparse array
-        Stiffness matrix K; an unknown without stiffness stays at zero.
-    load : (n,) ndarray
-        Forces f.
-    free : (n,) ndarray
-        Whether each unknown can move.
-    prescribed : (n,) ndarray
-        Values of the fixed unknowns.
-
-    Returns
-    -------
-    (n,) ndarray
-        All unknowns.
+    An unknown without stiffness stays at zero.
     """
     active = np.flatnonzero(free & (stiffness.diagonal() != 0))
     solution: Array = np.where(free, 0.0, prescribed)

@@ -45,18 +45,5 @@ def in_vertical_plane(catenary: Catenary) -> Catenary:
 
 
 def string_stiffness(beams: Beams, row: int) -> sp.csr_array:
-    """Stiffness of the wires of one row as strings; the slopes have no stiffness.
-
-    Parameters
-    ----------
-    beams : Beams
-        Rows of beams.
-    row : int
-        Index of the row.
-
-    Returns
-    -------
-    (2 S, 2 S) sparse array
-        Unknowns (w, r) by station [N/m].
-    """
+    """Stiffness of the wires of one row as strings; the slopes have no stiffness."""
     return assemble_row(beam.springs(beams.tension[row] / beams.length))

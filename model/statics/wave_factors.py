@@ -15,20 +15,7 @@ def impedance(wires: Iterable[Wire]) -> float:
 
 
 def doppler_factor(speed: float, wave_speed: float) -> float:
-    """Doppler factor (c - v) / (c + v): frequency ratio between a wave sent ahead and its reflection at the train.
-
-    Parameters
-    ----------
-    speed : float
-        Speed v of the train [m/s].
-    wave_speed : float
-        Wave speed c of the contact wire [m/s].
-
-    Returns
-    -------
-    float
-        Factor [-].
-    """
+    """Doppler factor (c - v) / (c + v): frequency ratio between a wave sent ahead and its reflection at the train."""
     return (wave_speed - speed) / (wave_speed + speed)
 
 

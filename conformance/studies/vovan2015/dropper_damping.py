@@ -27,8 +27,7 @@ from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.studies.vovan2015.findings_table import build_findings_table
 from pantocheck.conformance.studies.vovan2015.provenance_table import build_provenance_table
 from pantocheck.model import Catenary, DiscretisedLine, Kind, Passage, Rayleigh, discretise, simulate_passage
-from pantocheck.model.discretised_line import with_damping
-from pantocheck.model.fem.dropper_laws import with_viscous_part_kept
+from pantocheck.model.discretised_line import with_damping, with_viscous_part_kept
 
 TRANSITION_SHARE = 0.1
 """Relative change of the force at the onset of the transition, and remaining share of the force at its end."""

@@ -11,8 +11,7 @@ from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.studies.vovan2015.dropper_damping import find_transition, run_dropper_damping
 from pantocheck.model import Kind, Passage, Rayleigh, chain, discretise, simulate_passage
-from pantocheck.model.discretised_line import with_damping
-from pantocheck.model.fem.dropper_laws import with_viscous_part_kept
+from pantocheck.model.discretised_line import with_damping, with_viscous_part_kept
 
 COEFFICIENTS = np.geomspace(1e-6, 1e-1, 51)
 
