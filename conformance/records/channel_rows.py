@@ -7,15 +7,11 @@ import numpy as np
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.measured_table import TableColumn
+from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.table_formats import CSV, HDF5, read_tables
+from pantocheck.conformance.input_files.units import suggest_key
 from pantocheck.conformance.records.record import LARGEST_NUMBER, MAX_SAMPLES
-from pantocheck.conformance.records.record_channels import (
-    CHANNELS,
-    RecordColumn,
-    column_name,
-    find_column,
-    suggest_column,
-)
+from pantocheck.conformance.records.record_channels import CHANNELS, RecordColumn, find_column
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 
 RECORD_FORMATS = (CSV, HDF5)
@@ -45,7 +41,14 @@ def read_channel_rows(path: Path, sidecar: RecordSidecar) -> ChannelRows:
             raise InputError(where, "two columns have the same name", "Each channel stands in one column.")
         with np.errstate(invalid="ignore", over="ignore"):  # numbers too large are reported by `_check_size`
             channel[meaning.number] = meaning.factor * values
-    _check_complete(rows, where)
+    for missing, present in (
+        ("force_N", "force" in rows),
+        ("time_s or position_m", rows.keys() & {"time", "position"}),
+    ):
+        if not present:
+            raise InputError(
+                where, f"there is no channel {missing}", "A record needs force_N, and time_s or position_m."
+            )
     for name in rows:
         _check_count(name, rows[name], sidecar, where)
         _check_size(name, rows[name], where)
@@ -59,24 +62,13 @@ def _find_meaning(column: TableColumn, sidecar: RecordSidecar, where: str) -> Re
     place = f"{where}, column {column.name[:80]!r}"
     meaning = find_column(column.name, column.row)
     if meaning is None:
-        known = [
-            column_name(channel.key, i)
-            for channel in CHANNELS.values()
-            for i in range(1, sidecar.rows(channel.per) + 1)
-        ]
-        raise InputError(place, "unknown column", suggest_column(column.name, known))
+        known = [channel.column(i + 1) for channel in CHANNELS.values() for i in range(sidecar.rows(channel.per))]
+        hint = suggest_key(column.name, None, known) or suggest_names(column.name, known)
+        raise InputError(place, "unknown column", hint)
     allowed = sidecar.rows(meaning.channel.per)
     if meaning.number > allowed:
         raise InputError(place, f"the sidecar has no {meaning.channel.per} {meaning.number}", f"It has {allowed}.")
     return meaning
-
-
-def _check_complete(rows: ChannelRows, where: str) -> None:
-    """Refuse a table without force, or with neither time nor position."""
-    if "force" not in rows:
-        raise InputError(where, "there is no channel force_N", "A record needs force_N, and time_s or position_m.")
-    if not rows.keys() & {"time", "position"}:
-        raise InputError(where, "there is no channel time_s or position_m", "A record needs force_N, and one of these.")
 
 
 def _check_count(name: str, rows: dict[int, RealArray], sidecar: RecordSidecar, where: str) -> None:
@@ -98,7 +90,7 @@ def _check_size(name: str, rows: dict[int, RealArray], where: str) -> None:
         if impossible.any():
             sample = int(np.argmax(impossible))
             raise InputError(
-                f"{where}, {column_name(CHANNELS[name].key, number)}",
+                f"{where}, {CHANNELS[name].column(number)}",
                 f"{values[sample]:.3g} at sample {sample + 1} is impossible",
                 "Write nan where a value is missing.",
             )

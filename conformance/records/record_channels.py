@@ -4,8 +4,7 @@ import re
 from dataclasses import dataclass
 from typing import Literal
 
-from pantocheck.conformance.input_files.suggestions import suggest_names
-from pantocheck.conformance.input_files.units import find_key_units, suggest_key
+from pantocheck.conformance.input_files.units import find_key_units
 
 
 @dataclass(frozen=True)
@@ -30,6 +29,10 @@ class RecordChannel:
     def key(self) -> str:
         """Name with the SI unit, as in HDF5 files."""
         return f"{self.name}_{self.unit}"
+
+    def column(self, number: int) -> str:
+        """Name of a CSV column: the force of pantograph 2 is `force_2_N`."""
+        return self.key if self.per == "record" else f"{self.name}_{number}_{self.unit}"
 
 
 CHANNELS: dict[str, RecordChannel] = {
@@ -76,21 +79,9 @@ def find_column(name: str, row: int) -> RecordColumn | None:
     return None
 
 
-def column_name(key: str, number: int) -> str:
-    """Name of a CSV column: `force_N` of pantograph 2 is `force_2_N`."""
-    channel = next(channel for channel in CHANNELS.values() if channel.key == key)
-    return key if channel.per == "record" else f"{channel.name}_{number}_{channel.unit}"
-
-
-def suggest_column(name: str, known: list[str]) -> str:
-    """Hint for an unknown column."""
-    return suggest_key(name, None, known) or suggest_names(name, known)
-
-
 def _list_readings(name: str) -> list[tuple[str, str | None, str]]:
     """Every way to split a name into channel, number and unit; units such as `m_s` contain underscores."""
-    parts = name.split("_")
-    splits = [("_".join(parts[:i]), "_".join(parts[i:])) for i in range(1, len(parts))]
+    splits = [(name[: mark.start()], name[mark.end() :]) for mark in re.finditer("_", name)]
     readings: list[tuple[str, str | None, str]] = [(stem, None, unit) for stem, unit in splits]
     for stem, unit in splits:
         channel, _, number = stem.rpartition("_")

@@ -13,6 +13,7 @@ from pantocheck.conformance.input_files.table_formats import MAX_TABLE_BYTES
 from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.records.channel_rows import ChannelRows, read_channel_rows
 from pantocheck.conformance.records.record import Record, RecordInvalid
+from pantocheck.conformance.records.record_channels import CHANNELS
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.samples import RecordSamples, build_record
 
@@ -80,17 +81,10 @@ def build_record_error(table: Path, error: RecordInvalid) -> InputError:
 
 
 def _build_samples(rows: ChannelRows, sidecar: RecordSidecar) -> RecordSamples:
-    supports = sorted(rows.get("uplift", {}))
-    stacked: dict[str, RealArray] = {
-        name: np.ascontiguousarray(np.vstack([numbered[i] for i in sorted(numbered)]))
+    """Stack the rows of each channel; only supports with a row of uplift are listed."""
+    channels: dict[str, RealArray] = {
+        name: numbered[1] if CHANNELS[name].per == "record" else np.vstack([numbered[i] for i in sorted(numbered)])
         for name, numbered in rows.items()
     }
-    return RecordSamples(
-        force=stacked["force"],
-        time=stacked["time"][0] if "time" in stacked else None,
-        speed=stacked["speed"][0] if "speed" in stacked else None,
-        position=stacked.get("position"),
-        contact_height=stacked.get("contact_height"),
-        uplift=stacked.get("uplift"),
-        support_position=np.array([(sidecar.support_position_m or ())[i - 1] for i in supports]) if supports else None,
-    )
+    supports = [(sidecar.support_position_m or ())[i - 1] for i in sorted(rows.get("uplift", {}))]
+    return RecordSamples(**channels, support_position=np.array(supports) if supports else None)

@@ -15,7 +15,7 @@ from pantocheck.conformance.input_files.table_formats import CSV, TableFormat, f
 from pantocheck.conformance.input_files.toml_file import read_toml
 from pantocheck.conformance.records.channel_rows import RECORD_FORMATS
 from pantocheck.conformance.records.record import Record
-from pantocheck.conformance.records.record_channels import column_name
+from pantocheck.conformance.records.record_channels import CHANNELS
 from pantocheck.conformance.records.record_sidecar import RECORD_SCHEMA, RecordSidecar
 
 
@@ -94,15 +94,15 @@ def check_record_path(path: Path) -> None:
 def _write_table(record: Record, table_format: TableFormat, path: Path) -> None:
     """Write the channels of a record to a file of any name."""
     channels = {
-        "time_s": record.time,
-        "position_m": record.position,
-        "force_N": record.force,
-        "contact_height_m": record.contact_height,
-        "uplift_m": record.support_uplift,
+        "time": record.time,
+        "position": record.position,
+        "force": record.force,
+        "contact_height": record.contact_height,
+        "uplift": record.support_uplift,
     }
-    rows = {key: values for key, values in channels.items() if values is not None}
+    rows = {CHANNELS[name]: values for name, values in channels.items() if values is not None}
     if table_format is CSV:
-        names = [column_name(key, i) for key, values in rows.items() for i in range(1, len(np.atleast_2d(values)) + 1)]
+        names = [channel.column(i + 1) for channel, values in rows.items() for i in range(len(np.atleast_2d(values)))]
         write_csv_table(path, names, np.vstack(list(rows.values())).T, 12)
     else:
-        write_hdf5_table(path, {}, rows)
+        write_hdf5_table(path, {}, {channel.key: values for channel, values in rows.items()})
