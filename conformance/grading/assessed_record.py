@@ -15,8 +15,7 @@ from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.records.measured.block_bootstrap import FEWEST_BLOCKS, bootstrap_uncertainties
 from pantocheck.conformance.records.measured.record_preparation import PreparedRecord, prepare_record
 from pantocheck.conformance.records.record import RecordInvalid
-from pantocheck.conformance.records.record_opening import open_record
-from pantocheck.conformance.records.record_reading import build_record_error, read_samples
+from pantocheck.conformance.records.record_reading import build_record_error, open_record, read_samples
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.record_summary import RecordSummary
 from pantocheck.conformance.records.sidecar_tables import LineTable, SystemTable

@@ -1,4 +1,4 @@
-"""Reading of a contact-force record: the table and its sidecar are checked before they become samples or a `Record`."""
+"""Reading of records: samples with a sidecar, which are checked before they become a `Record`, and summaries."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -10,12 +10,39 @@ from pantocheck.conformance.input_files.atomic_writing import file_digest
 from pantocheck.conformance.input_files.bounded_file import check_file
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.table_formats import MAX_TABLE_BYTES
-from pantocheck.conformance.input_files.toml_file import read_model
+from pantocheck.conformance.input_files.toml_file import read_model, read_toml
 from pantocheck.conformance.records.channel_rows import ChannelRows, read_channel_rows
 from pantocheck.conformance.records.record import Record, RecordInvalid
 from pantocheck.conformance.records.record_channels import CHANNELS
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
+from pantocheck.conformance.records.record_summary import RecordSummary
 from pantocheck.conformance.records.samples import RecordSamples, build_record
+
+RECORD_SCHEMAS: dict[str, type[RecordSidecar] | type[RecordSummary]] = {
+    "pantocheck.record/1": RecordSidecar,
+    "pantocheck.summary/1": RecordSummary,
+}
+
+
+def open_record(path: Path) -> RecordSidecar | RecordSummary:
+    """Read the TOML file of a record of either kind; the path may also be that of the table.
+
+    Raises
+    ------
+    InputError
+        It cannot be read, does not fit its model, or is of neither kind.
+    """
+    path = path.with_suffix(".toml")
+    schema = read_toml(path, "record").get("schema")
+    model = RECORD_SCHEMAS.get(schema) if isinstance(schema, str) else None
+    if model is None:
+        expected = " or ".join(f'"{name}"' for name in RECORD_SCHEMAS)
+        raise InputError(
+            f"record '{path.name}', key schema",
+            "missing" if schema is None else f"found {str(schema)[:60]!r}",
+            f"Write schema = {expected}.",
+        )
+    return read_model(path, model, "sidecar" if model is RecordSidecar else "summary record")
 
 
 def read_record(path: Path, evaluated: tuple[float, float] | None = None) -> tuple[Record, RecordSidecar]:
@@ -37,10 +64,10 @@ def read_record(path: Path, evaluated: tuple[float, float] | None = None) -> tup
     samples, sidecar, table = read_samples(path)
     try:
         record = build_record(samples, sidecar)
+        if sidecar.evaluated_m is None and evaluated is not None:
+            record = replace(record, evaluated=evaluated)
     except RecordInvalid as error:
         raise build_record_error(table, error) from None
-    if sidecar.evaluated_m is None and evaluated is not None:
-        record = replace(record, evaluated=evaluated)
     return record, sidecar
 
 
@@ -62,7 +89,7 @@ def read_samples(path: Path) -> tuple[RecordSamples, RecordSidecar, Path]:
     InputError
         A file is missing or damaged, or table and sidecar contradict each other.
     """
-    sidecar_path = path if path.suffix == ".toml" else path.with_suffix(".toml")
+    sidecar_path = path.with_suffix(".toml")
     sidecar = read_model(sidecar_path, RecordSidecar, "sidecar")
     table = sidecar_path.parent / sidecar.file
     check_file(table, f"record '{table.name}'", MAX_TABLE_BYTES)

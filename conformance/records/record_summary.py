@@ -1,13 +1,11 @@
 """Summary records: published or measured statistics of a run whose samples are not available."""
 
-from pathlib import Path
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
 from pantocheck.conformance.input_files.sourced_table import NumberList, SourcedTable, validation_problem
 from pantocheck.conformance.input_files.suggestions import suggest_names
-from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value
 from pantocheck.conformance.quantities.force_quantities import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES
 from pantocheck.conformance.quantities.registry import QUANTITIES
@@ -109,14 +107,3 @@ def _check_table(values: dict[str, float], table: str, known: list[str]) -> None
     low, high = values.get("min_force_N"), values.get("max_force_N")
     if low is not None and high is not None and low > high:
         raise validation_problem(f"{table}.min_force_N", f"{low:g} is above max_force_N = {high:g}", "Exchange them.")
-
-
-def read_record_summary(path: Path) -> RecordSummary:
-    """Read a summary record.
-
-    Raises
-    ------
-    InputError
-        It cannot be read or does not fit the model.
-    """
-    return read_model(path, RecordSummary, "summary record")

@@ -8,8 +8,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import library_folder, source_text
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_toml
-from pantocheck.conformance.records.record_opening import RECORD_SCHEMAS, open_record
-from pantocheck.conformance.records.record_reading import read_record
+from pantocheck.conformance.records.record_reading import RECORD_SCHEMAS, open_record, read_record
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.record_summary import RecordSummary
 from pantocheck.conformance.results.outcome import Delivered, Errored, Outcome, Skipped

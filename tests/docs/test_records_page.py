@@ -11,9 +11,8 @@ from typer.testing import CliRunner
 
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.records.record_reading import read_record
+from pantocheck.conformance.records.record_reading import open_record, read_record
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
-from pantocheck.conformance.records.record_summary import read_record_summary
 
 PAGE = (Path(__file__).parents[2] / "docs" / "records.md").read_text(encoding="utf-8")
 
@@ -59,7 +58,7 @@ def test_matlab_program_writes_the_same_sidecar(written: Path) -> None:
 
 def test_summary_of_the_page_is_read(tmp_path: Path) -> None:
     (tmp_path / "s.toml").write_text(blocks("toml")[0])
-    assert read_record_summary(tmp_path / "s.toml").quantities == {"max_uplift_at_support_mm": 52.2}
+    assert open_record(tmp_path / "s.toml").quantities == {"max_uplift_at_support_mm": 52.2}
 
 
 def test_messages_of_the_page_are_those_that_are_printed(written: Path) -> None:

@@ -27,7 +27,7 @@ class PooledSignals:
     """
 
     parts: tuple[PantographSignals, ...]
-    why_none: str
+    why_none: str = ""
 
     @property
     def filter_applied_Hz(self) -> float | None:

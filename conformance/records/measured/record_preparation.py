@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.quantities.signals import ForceChannel, LineSignals, PantographSignals
-from pantocheck.conformance.records.measured.filtered_force import detect_filtered
-from pantocheck.conformance.records.measured.outliers import find_outliers
+from pantocheck.conformance.records.measured.force_checks import detect_filtered, find_outliers
 from pantocheck.conformance.records.measured.pooled_signals import PooledSignals
 from pantocheck.conformance.records.measured.sample_positions import PlacedSamples, missing_share, place_samples
 from pantocheck.conformance.records.measured.usable_sections import (
@@ -159,19 +158,20 @@ def _prepare_pantograph(placed: PlacedSamples, row: int, settings: _Settings) ->
     if len(sections) > 1:
         warnings.append(f"{name} is evaluated over {len(parts)} sections between gaps, each filtered on its own")
     start, end = settings.section
+    extent = f"{start:.6g} m to {end:.6g} m"
+    if not parts:
+        reason = f"no section of {SHORTEST_S:g} s inside {extent} is without gaps and at the nominal speed"
+        return PooledSignals((), reason), warnings
     covered = sum(part.section[1] - part.section[0] for part in parts) / (end - start)
-    if parts and covered < LEAST_COVERED:
+    if covered < LEAST_COVERED:
         reason = (
-            f"only {100 * covered:.2g} % of {start:.6g} m to {end:.6g} m can be evaluated: "
+            f"only {100 * covered:.2g} % of {extent} can be evaluated: "
             "set evaluated_m to a section that the record covers"
         )
         return PooledSignals((), reason), warnings
-    if parts and covered < FULLY_COVERED:
+    if covered < FULLY_COVERED:
         warnings.append(f"{name} is evaluated over {100 * covered:.3g} % of the analysis section")
-    reason = (
-        f"no section of {SHORTEST_S:g} s inside {start:.6g} m to {end:.6g} m is without gaps and at the nominal speed"
-    )
-    pooled, remarks = detect_filtered(PooledSignals(tuple(parts), reason), name)
+    pooled, remarks = detect_filtered(PooledSignals(tuple(parts)), name)
     return pooled, [*warnings, *remarks]
 
 

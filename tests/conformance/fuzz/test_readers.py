@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 
 from pantocheck.conformance.cases.library import library_folder, select_cases
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.records.record_opening import open_record
-from pantocheck.conformance.records.record_reading import read_samples
+from pantocheck.conformance.records.record_reading import open_record, read_samples
 from pantocheck.conformance.runner import run_cases
 from pantocheck.conformance.systems.record_folder import open_record_folder
 

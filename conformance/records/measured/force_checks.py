@@ -1,10 +1,12 @@
-"""Detection of a force that the measuring chain has low-passed at 20 Hz."""
+"""Checks of a measured force: outliers, and a low-pass filter that the sidecar does not state."""
 
 from dataclasses import replace
 
 import numpy as np
-from scipy.signal import welch
+from numpy.typing import NDArray
+from scipy.signal import medfilt, welch
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE
 from pantocheck.conformance.records.measured.pooled_signals import PooledSignals
 
@@ -14,6 +16,33 @@ FILTERED_RATIO = 0.08
 The force of the reference simulator has 0.26 to 0.40 (EN 50318:2002 at 250 and 300 km/h, AC simple at 320 km/h), and
 0.02 to 0.08 after a filter of order 4 or 6 at 20 Hz. If a sidecar correctly states "none", only the numbers above 20 Hz
 are lost."""
+
+
+NEIGHBOURS = 7
+"""Number of samples in the running median."""
+
+DEVIATIONS = 12.0
+"""Robust standard deviations from the running median beyond which a sample is an outlier."""
+
+SMALLEST_DISTANCE_N = 50.0
+"""Smallest distance of an outlier from the running median [N]."""
+
+
+def find_outliers(force: RealArray) -> NDArray[np.intp]:
+    """Indices of samples far from their neighbours; they are reported but never removed, because a peak may be real.
+
+    Parameters
+    ----------
+    force : (n,) ndarray
+        Contact force without missing values [N].
+    """
+    if force.size < NEIGHBOURS:
+        return np.empty(0, dtype=np.intp)
+    distance = np.abs(force - medfilt(force, NEIGHBOURS))
+    # 1.4826: standard deviation of a normal variable over the median of its absolute value.
+    deviation = 1.4826 * float(np.median(distance))
+    inner = distance[NEIGHBOURS // 2 : -(NEIGHBOURS // 2)]  # medfilt pads its ends with zeros
+    return np.flatnonzero(inner > max(DEVIATIONS * deviation, SMALLEST_DISTANCE_N)) + NEIGHBOURS // 2
 
 
 def detect_filtered(pooled: PooledSignals, name: str) -> tuple[PooledSignals, list[str]]:
@@ -33,7 +62,7 @@ def detect_filtered(pooled: PooledSignals, name: str) -> tuple[PooledSignals, li
     warnings : list of str
         A warning if an unstated filter was detected.
     """
-    if not pooled.parts or pooled.filter_applied_Hz is not None:
+    if pooled.filter_applied_Hz is not None:
         return pooled, []
     channel = pooled.parts[0].force
     if channel.rate * HIGHEST_SHARE_OF_RATE < 50:
