@@ -98,35 +98,37 @@ def load_assessed_record(path: Path, profile: Profile, line: LineTable) -> Asses
         The record cannot be read, is impossible, or was filtered in another way than the profile requires.
     """
     header = open_record(path)
-    known = header.line.model_copy(update=line.model_dump(exclude_none=True))
+    known_line = header.line.model_copy(update=line.model_dump(exclude_none=True))
     if isinstance(header, RecordSummary):
-        return _assess_summary(path, header, profile, known)
+        return _assess_summary(path, header, profile, known_line)
     samples, sidecar, table = read_samples(path)
     try:
         prepared = prepare_record(samples, sidecar, profile.filter.low_pass, profile.speed_tolerance_pct)
     except RecordInvalid as error:
         raise build_record_error(table, error) from None
-    digest = _digest(file_digest(path.with_suffix(".toml")), file_digest(table), known.model_dump_json())
-    block = _block_length(known, sidecar)
+    digest = join_digests(file_digest(path.with_suffix(".toml")), file_digest(table), known_line.model_dump_json())
+    block = _block_length(known_line, sidecar)
     uncertainty = {
         number: bootstrap_uncertainties(pooled, block / prepared.speed, digest)
         for number, pooled in prepared.pantographs.items()
     }
+    uncertainty_note = (
+        "Uncertainties are half-widths of 95 % intervals from the length of the record (moving-block bootstrap, "
+        f"blocks of {block:g} m)."
+        if any(uncertainty.values())
+        else f"The record is shorter than {FEWEST_BLOCKS} spans: the uncertainty of its statistics is unknown."
+    )
     return AssessedRecord(
         name=path.stem,
         header=sidecar,
-        line=known,
+        line=known_line,
         digest=digest,
-        values=_add_line_quantities(evaluate_signals(prepared.pantographs, prepared.line), known, sidecar.speed_km_h),
+        values=_add_line_quantities(
+            evaluate_signals(prepared.pantographs, prepared.line), known_line, sidecar.speed_km_h
+        ),
         uncertainty={number: values for number, values in uncertainty.items() if values},
         prepared=prepared,
-        notes=(
-            *prepared.notes,
-            f"Uncertainties are half-widths of 95 % intervals from the length of the record (moving-block bootstrap, "
-            f"blocks of {block:g} m)."
-            if any(uncertainty.values())
-            else f"The record is shorter than {FEWEST_BLOCKS} spans: the uncertainty of its statistics is unknown.",
-        ),
+        notes=(*prepared.notes, uncertainty_note),
         warnings=prepared.warnings,
     )
 
@@ -143,7 +145,7 @@ def _assess_summary(path: Path, summary: RecordSummary, profile: Profile, line: 
         name=path.stem,
         header=summary,
         line=line,
-        digest=_digest(file_digest(path.with_suffix(".toml")), line.model_dump_json()),
+        digest=join_digests(file_digest(path.with_suffix(".toml")), line.model_dump_json()),
         values=_add_line_quantities(summary.evaluation, line, summary.speed_km_h),
         uncertainty={},
         prepared=None,
@@ -171,5 +173,6 @@ def _add_line_quantities(evaluation: Evaluation, line: LineTable, speed_km_h: fl
     return Evaluation({**evaluation.values, LINE: ordered}, evaluation.skipped)
 
 
-def _digest(*parts: str) -> str:
+def join_digests(*parts: str) -> str:
+    """SHA-256 of texts and digests, in hexadecimal."""
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()

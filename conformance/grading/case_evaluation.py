@@ -1,5 +1,6 @@
 """Evaluation of a delivery: signals, quantities, errors and consistency findings, each computed once."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -8,7 +9,6 @@ from pantocheck.conformance.consistency.check import CheckName, Finding
 from pantocheck.conformance.consistency.record_checks import check_record
 from pantocheck.conformance.consistency.record_positions import SPEED_TOLERANCE
 from pantocheck.conformance.grading.criterion_grading import GradedValues, grade_limit
-from pantocheck.conformance.grading.section_spread import section_spread
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation
 from pantocheck.conformance.quantities.registry import QUANTITIES
@@ -17,7 +17,10 @@ from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.results.results_format import Criterion
 
 SECTION_TOLERANCE_M = 0.01
-"""Difference between the analysis sections of a record and its case [m]."""
+"""Tolerance of the analysis section of a record against that of its case [m]."""
+
+MIN_SECTIONS = 3
+"""Smallest number of shifted sections that give a spread."""
 
 
 @dataclass(frozen=True)
@@ -70,8 +73,8 @@ class CaseEvaluation:
         """Quantities with discretisation error and section spread."""
         refined = self.delivered.refined
         return GradedValues(
-            evaluation=self._complete(self.delivered, self.signals.evaluation if self.signals is not None else None),
-            refined=None if refined is None else self._complete(refined, self._evaluate(refined)),
+            evaluation=_complete(self.delivered, None if self.signals is None else self.signals.evaluation),
+            refined=None if refined is None else _complete(refined, self._evaluate(refined)),
             spread={} if self.signals is None else section_spread(self.signals, self.case.shifted_sections),
         )
 
@@ -107,11 +110,41 @@ class CaseEvaluation:
         record = delivered.record
         return None if record is None else evaluate_record(record, self.case.file.filter.low_pass)
 
-    @staticmethod
-    def _complete(delivered: Delivered, evaluation: Evaluation | None) -> Evaluation:
-        """Quantities of the record or summary, with those of the line at rest and of a study."""
-        evaluation = evaluation or delivered.summary or Evaluation({LINE: {}}, {LINE: {}})
-        values = dict(evaluation.values)
-        for owner, extra in ((LINE, delivered.static), *delivered.study.findings.items()):
-            values[owner] = {**values.get(owner, {}), **{name: extra[name] for name in QUANTITIES if name in extra}}
-        return Evaluation(values, evaluation.skipped)
+
+def _complete(delivered: Delivered, evaluation: Evaluation | None) -> Evaluation:
+    """Quantities of the record or summary, with those of the line at rest and of a study."""
+    evaluation = evaluation or delivered.summary or Evaluation({LINE: {}}, {LINE: {}})
+    values = dict(evaluation.values)
+    for owner, extra in ((LINE, delivered.static), *delivered.study.findings.items()):
+        values[owner] = {**values.get(owner, {}), **{name: extra[name] for name in QUANTITIES if name in extra}}
+    return Evaluation(values, evaluation.skipped)
+
+
+def section_spread(signals: RecordSignals, sections: Sequence[tuple[float, float]]) -> dict[int, dict[str, float]]:
+    """Largest difference of each quantity from its value when the analysis section is shifted.
+
+    At constant speed on equal spans, the quantities settle. At speeds near the wave speed this takes tens of spans;
+    until then they depend on the analysis section. Mesh refinement does not reduce this uncertainty.
+
+    Parameters
+    ----------
+    signals : RecordSignals
+        Signals of the run.
+    sections : sequence of tuple of float
+        Start and end of every section of the same length [m, m].
+
+    Returns
+    -------
+    dict of int to dict of str to float
+        Spread in the units of the quantities, by pantograph and name; quantities available in fewer than
+        `MIN_SECTIONS` sections are left out.
+    """
+    shifted = [signals.evaluate_section(section).values for section in sections]
+    spread: dict[int, dict[str, float]] = {}
+    for owner, quantities in signals.evaluation.values.items():
+        for name, value in quantities.items():
+            others = [values.get(owner, {}).get(name) for values in shifted]
+            numbers = [other for other in others if isinstance(other, float | int)]
+            if isinstance(value, float | int) and len(numbers) >= MIN_SECTIONS:
+                spread.setdefault(owner, {})[name] = float(max(abs(other - value) for other in numbers))
+    return spread

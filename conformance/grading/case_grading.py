@@ -13,6 +13,9 @@ from pantocheck.conformance.results.results_building import key_by_owner, select
 from pantocheck.conformance.results.results_format import CaseResult, FilterFacts, InputGroup, RunFacts
 from pantocheck.conformance.results.traces import build_pantograph_traces, build_uplift_traces
 
+_EMPTY = {"warnings": [], "criteria": [], "quantities": {}, "skipped": {}, "spread": {}, "traces": {}, "uplift": []}
+"""Parts of a result without grades."""
+
 
 def grade_case(case: Case, outcome: Outcome, lowest_trust: Trust) -> CaseResult:
     """Grade the outcome of a case.
@@ -70,20 +73,7 @@ def grade_evaluation(evaluation: CaseEvaluation, lowest_trust: Trust) -> CaseRes
 
 def build_ungraded(case: Case, verdict: Verdict, reason: str, delivered: Delivered | None = None) -> CaseResult:
     """Result of a case that was not graded."""
-    return _build_result(
-        case,
-        delivered or Delivered(),
-        verdict=verdict,
-        reason=" ".join(reason.split()),
-        warnings=[],
-        notes=[],
-        criteria=[],
-        quantities={},
-        skipped={},
-        spread={},
-        traces={},
-        uplift=[],
-    )
+    return _build_result(case, delivered or Delivered(), notes=[], verdict=verdict, reason=" ".join(reason.split()))
 
 
 def _build_result(case: Case, delivered: Delivered, notes: Sequence[str], **parts: object) -> CaseResult:
@@ -103,6 +93,7 @@ def _build_result(case: Case, delivered: Delivered, notes: Sequence[str], **part
                 filter=FilterFacts(**file.filter.model_dump()),
                 evaluated_m=None if case.is_static else case.analysis_section,
             ),
+            **_EMPTY,
             **parts,
         }
     )

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.limits import Limit
-from pantocheck.conformance.grading.near_limit import ValueErrors, near_limit_remarks
+from pantocheck.conformance.grading.near_limit import NO_ERRORS, ValueErrors, near_limit_remarks
 from pantocheck.conformance.grading.verdicts import Verdict, judge, margin
 from pantocheck.conformance.input_files.trust import Trust, limit_counts
 from pantocheck.conformance.quantities.evaluation import Evaluation, Value
@@ -83,26 +83,27 @@ def grade_limit(limit: Limit, values: GradedValues, lowest_trust: Trust, limit_u
         Uncertainty of the limit itself, if it comes from a measured record.
     """
     owner, name = limit.owner, limit.quantity
+    requirement = Requirement(name, owner, limit.item, limit.lower, limit.upper, limit.trust, source_text(limit.source))
     value = find_value(limit, values.evaluation.values)
-    refined = find_value(limit, values.refined.values) if values.refined is not None else None
+    if value is None:
+        missing = values.evaluation.skipped.get(owner, {}).get(name, "the system delivers no such quantity")
+        return build_criterion(requirement, None, missing, lowest_trust)
+    refined = None if values.refined is None else find_value(limit, values.refined.values)
     errors = ValueErrors(
-        discretisation=None if value is None or refined is None else abs(value - refined),
+        discretisation=None if refined is None else abs(value - refined),
         spread=values.spread.get(owner, {}).get(name),
         uncertainty=values.uncertainty.get(owner, {}).get(name),
         limit_uncertainty=limit_uncertainty,
     )
-    missing = values.evaluation.skipped.get(owner, {}).get(name, "the system delivers no such quantity")
-    source = source_text(limit.source)
-    requirement = Requirement(name, owner, limit.item, limit.lower, limit.upper, limit.trust, source)
-    return build_criterion(requirement, value, missing, lowest_trust, errors)
+    return build_criterion(requirement, value, None, lowest_trust, errors)
 
 
 def build_criterion(
     requirement: Requirement,
     value: float | None,
-    missing: str,
+    missing: str | None,
     lowest_trust: Trust,
-    errors: ValueErrors | None = None,
+    errors: ValueErrors = NO_ERRORS,
 ) -> Criterion:
     """Grade a value by its limits.
 
@@ -112,22 +113,20 @@ def build_criterion(
         Limits of the value.
     value : float or None
         Value; None if it is not available.
-    missing : str
+    missing : str or None
         Reason why there is no value or no limit.
     lowest_trust : Trust
         Lowest trust of the limits that count.
-    errors : ValueErrors or None
+    errors : ValueErrors
         Errors of the value.
     """
     name, lower, upper = requirement.quantity, requirement.lower, requirement.upper
     unit = QUANTITIES[name].unit if name in QUANTITIES else ""  # a baseline can have quantities of an older registry
-    errors = errors if errors is not None and value is not None else ValueErrors()
     verdict: Verdict = "skip"
-    reason: str | None = missing
+    reason, distance = missing, None
     if value is not None and (lower is not None or upper is not None):
-        verdict = judge(value, lower, upper)
+        verdict, distance = judge(value, lower, upper), margin(value, lower, upper)
         reason = _distance_outside(value, requirement, unit) if verdict == "fail" else None
-    has_margin = verdict != "skip"
     if not limit_counts(requirement.trust, lowest_trust):
         hypothetical = {"pass": "would pass", "fail": f"would fail: {reason}", "skip": f"not graded: {reason}"}[verdict]
         verdict, reason = "info", f"{hypothetical}; the limit is {requirement.trust} and does not count"
@@ -142,7 +141,7 @@ def build_criterion(
         verdict=verdict,
         trust=requirement.trust,
         source=requirement.source,
-        margin=margin(value, lower, upper) if has_margin and value is not None else None,
+        margin=distance,
         discretisation_error=errors.discretisation,
         spread=errors.spread,
         reason=reason,

@@ -26,6 +26,9 @@ class ValueErrors:
     limit_uncertainty: float = 0.0
 
 
+NO_ERRORS = ValueErrors()
+
+
 def near_limit_remarks(
     value: float | None, limits: tuple[float | None, float | None], unit: str, errors: ValueErrors
 ) -> list[str]:

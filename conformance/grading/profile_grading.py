@@ -1,12 +1,11 @@
 """Assessment of a record by a profile: acceptance of a line, or a simulation against a line test."""
 
-import hashlib
 import re
 from collections.abc import Sequence
 
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.profile_file import Profile
-from pantocheck.conformance.grading.assessed_record import AssessedRecord
+from pantocheck.conformance.grading.assessed_record import AssessedRecord, join_digests
 from pantocheck.conformance.grading.extended_band import find_unvalidated
 from pantocheck.conformance.grading.rule_grading import RuleGrading
 from pantocheck.conformance.grading.verdicts import worst_verdict
@@ -45,23 +44,19 @@ def assess_record(
         A measured record is missing, not needed, or does not fit the record.
     """
     _check_pair(subject, measured, profile)
-    graded = RuleGrading(subject, measured, trust).grade_profile(profile, limits)
+    criteria, omitted = RuleGrading(subject, measured, trust).grade_profile(profile, limits)
     records = [record for record in (subject, measured) if record is not None]
-    digests = [subject.digest, measured.digest if measured else "", profile.model_dump_json()]
+    digest = join_digests(subject.digest, measured.digest if measured else "", profile.model_dump_json())
     case = CaseResult(
         id=f"{profile.name}/{re.sub(r'[^A-Za-z0-9._-]', '_', subject.name)}",
         title=f"{profile.title}: {subject.name}",
-        verdict=worst_verdict(criterion.verdict for criterion in graded.criteria),
+        verdict=worst_verdict(criterion.verdict for criterion in criteria),
         reason=None,
         notes=[*_name_sources(records, "notes"), *([profile.note.strip()] if profile.note else [])],
-        warnings=[
-            *_name_sources(records, "warnings"),
-            *graded.omitted,
-            *find_unvalidated(subject.values),
-        ],
+        warnings=[*_name_sources(records, "warnings"), *omitted, *find_unvalidated(subject.values)],
         inputs=[group for record in records for group in record.inputs],
-        input_digest=f"sha256:{hashlib.sha256(chr(10).join(digests).encode()).hexdigest()}",
-        criteria=list(graded.criteria),
+        input_digest=f"sha256:{digest}",
+        criteria=criteria,
         quantities=key_by_owner(select_finite(subject.values.values)),
         skipped=key_by_owner(subject.values.skipped),
         spread={},

@@ -16,22 +16,6 @@ from pantocheck.conformance.results.results_format import Criterion
 
 
 @dataclass(frozen=True)
-class GradedRules:
-    """Result of the rules of a profile.
-
-    Parameters
-    ----------
-    criteria : tuple of Criterion
-        Criteria of the rules and of the user's own limits.
-    omitted : tuple of str
-        Remarks on optional rules that could not be applied.
-    """
-
-    criteria: tuple[Criterion, ...]
-    omitted: tuple[str, ...]
-
-
-@dataclass(frozen=True)
 class RuleGrading:
     """Grading of a record by rules.
 
@@ -49,8 +33,16 @@ class RuleGrading:
     measured: AssessedRecord | None
     trust: Trust
 
-    def grade_profile(self, profile: Profile, limits: Sequence[Limit]) -> GradedRules:
-        """Grade by the rules of a profile; a user's own limit replaces the rule of the same quantity."""
+    def grade_profile(self, profile: Profile, limits: Sequence[Limit]) -> tuple[list[Criterion], list[str]]:
+        """Grade by the rules of a profile; a user's own limit replaces the rule of the same quantity.
+
+        Returns
+        -------
+        criteria : list of Criterion
+            Criteria of the rules and of the user's own limits.
+        omitted : list of str
+            Remarks on optional rules that could not be applied.
+        """
         criteria: list[Criterion] = []
         omitted: list[str] = []
         replaced = {limit.target for limit in limits}
@@ -67,7 +59,7 @@ class RuleGrading:
                     else:
                         criteria.append(self._skip_rule(rule, owner, str(reason)))
         criteria += [grade_limit(limit, self._values, self.trust, self._limit_uncertainty(limit)) for limit in limits]
-        return GradedRules(tuple(criteria), tuple(omitted))
+        return criteria, omitted
 
     @property
     def _values(self) -> GradedValues:

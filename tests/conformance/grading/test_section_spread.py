@@ -7,8 +7,8 @@ import pytest
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.grading.case_evaluation import section_spread
 from pantocheck.conformance.grading.case_grading import grade_case
-from pantocheck.conformance.grading.section_spread import section_spread
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals, evaluate_record
 from pantocheck.conformance.reports.certificate.criteria_table import remark_shift
