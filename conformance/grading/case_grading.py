@@ -13,7 +13,15 @@ from pantocheck.conformance.results.results_building import key_by_owner, select
 from pantocheck.conformance.results.results_format import CaseResult, FilterFacts, InputGroup, RunFacts
 from pantocheck.conformance.results.traces import build_pantograph_traces, build_uplift_traces
 
-_EMPTY = {"warnings": [], "criteria": [], "quantities": {}, "skipped": {}, "spread": {}, "traces": {}, "uplift": []}
+_EMPTY: dict[str, object] = {
+    "warnings": [],
+    "criteria": [],
+    "quantities": {},
+    "skipped": {},
+    "spread": {},
+    "traces": {},
+    "uplift": [],
+}
 """Parts of a result without grades."""
 
 
