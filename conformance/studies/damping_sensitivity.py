@@ -1,4 +1,4 @@
-"""Damping sensitivity: the same passage of any case under several damping models, side by side."""
+"""Damping sensitivity: the passage of any case under several damping models."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -14,18 +14,18 @@ from pantocheck.conformance.quantities.registry import table_quantities
 from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.results.outcome import Delivered, Outcome, StudyResult, missing_record_reason
 from pantocheck.conformance.results.results_format import TextTable
-from pantocheck.conformance.studies.force_charts import draw_band_bars
+from pantocheck.conformance.studies.band_charts import draw_band_bars
 from pantocheck.conformance.systems.system import System
 
 MODELS = {name: f"vovan2015/damping/{name}.toml" for name in ("benchmark", "initial", "updated")}
-"""Damping files of the library, for the damping study of any line."""
+"""Damping files of the library by name of the model, for the damping study of any line."""
 TABLE_ROWS = table_quantities("damping models")
 CASE_DAMPING = "of the case"
-"""Column of the damping of the case."""
+"""Name of the model for the damping of the case."""
 
 
 def add_damping_study(case: Case) -> Case:
-    """Case that also runs with the damping models of the library; a static case or a study is returned unchanged."""
+    """Add runs with the damping models of the library to a case; a static case or a study stays unchanged."""
     if case.is_static or case.file.study is not None:
         return case
     dampings = {
@@ -38,32 +38,33 @@ def add_damping_study(case: Case) -> Case:
 
 
 def run_damping_sensitivity(case: Case, system: System) -> Outcome:
-    """Run a passage with the damping of the case and with each of its other damping models."""
+    """Run a passage with the damping of the case and with each damping model of its study."""
     outcome = system.run(case.without_study())
     if not isinstance(outcome, Delivered) or outcome.record is None:
         return outcome
-    values, missing = {CASE_DAMPING: evaluate_record(outcome.record, case.file.filter.low_pass).values}, []
+    low_pass = case.file.filter.low_pass
+    values, missing = {CASE_DAMPING: evaluate_record(outcome.record, low_pass).values}, []
     for name, damping in case.dampings.items():
         run = _run_unrefined(system, case.with_damping(name, damping))
         if isinstance(run, Delivered) and run.record is not None:
-            values[name] = evaluate_record(run.record, case.file.filter.low_pass).values
+            values[name] = evaluate_record(run.record, low_pass).values
         else:
             missing.append(f"damping '{name}': {missing_record_reason(run)}")
     return replace(
         outcome,
         warnings=(*outcome.warnings, *missing),
-        study=StudyResult(charts=draw_band_bars(values, {}, BAND_QUANTITIES), tables=(_table(values),)),
+        study=StudyResult(charts=draw_band_bars(values, {}, BAND_QUANTITIES), tables=(_comparison_table(values),)),
     )
 
 
 def _run_unrefined(system: System, case: Case) -> Outcome:
-    """Run of a case, without the refinement of the reference simulator."""
+    """Run a case; the reference simulator leaves out its refined run."""
     from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
 
     return system.run_unrefined(case) if isinstance(system, ReferenceSimulator) else system.run(case)
 
 
-def _table(values: Mapping[str, ValuesByOwner]) -> TextTable:
+def _comparison_table(values: Mapping[str, ValuesByOwner]) -> TextTable:
     owners = sorted({owner for model in values.values() for owner in model}, key=lambda owner: (owner == LINE, owner))
     rows = []
     for owner in owners:
@@ -75,6 +76,6 @@ def _table(values: Mapping[str, ValuesByOwner]) -> TextTable:
                 rows.append([quantity, name, *texts])
     return TextTable(
         caption="Damping sensitivity: the same run under several damping models",
-        columns=["Quantity", "Of", *values],
+        columns=["Quantity", "Pantograph or line", *values],
         rows=rows,
     )

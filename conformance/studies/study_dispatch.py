@@ -1,4 +1,4 @@
-"""Dispatch of a case to one run of the system under test or to its study; a study is imported on use."""
+"""Choice between a single run of a case and its study. A study is imported only when it runs."""
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import (
@@ -11,7 +11,7 @@ from pantocheck.conformance.cases.study_tables import (
 from pantocheck.conformance.results.outcome import Outcome, Skipped
 from pantocheck.conformance.systems.system import System
 
-ONLY_BUILTIN = "this study needs the reference simulator; other systems deliver no such runs"
+ONLY_BUILTIN = "only the reference simulator can run this study"
 
 
 def run_study(case: Case, system: System) -> Outcome:
@@ -22,7 +22,12 @@ def run_study(case: Case, system: System) -> Outcome:
     case : Case
         Case to run.
     system : System
-        System under test. Any system runs the studies of changed damping, the reference simulator alone the others.
+        System under test. Any system can run the studies of changed damping. The others need the reference simulator.
+
+    Returns
+    -------
+    Outcome
+        Delivered run or study, or the reason why there is none.
     """
     match case.file.study:
         case None if case.file.mass_drop is None or system.kind != "builtin":

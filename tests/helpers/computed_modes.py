@@ -1,4 +1,4 @@
-"""Computed modes in place of identified ones: the result of an identification without errors, in a second."""
+"""Computed modes in place of identified modes, like the result of an identification without errors."""
 
 from dataclasses import replace
 
@@ -7,15 +7,16 @@ from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.identification.mode import Mode, SensorShape
 from pantocheck.conformance.results.outcome import Delivered, StudyResult
 from pantocheck.conformance.results.results_format import Criterion
-from pantocheck.conformance.studies.vovan2015.damping_models import computed_damping_ratios
+from pantocheck.conformance.studies.vovan2015.line_damping import computed_damping_ratios
 from pantocheck.model import Catenary, discretise
 from pantocheck.model.modal.modes import compute_modes_below
 
 ELEMENT = 1.5
+"""Length of the elements [m]."""
 
 
 def computed_modes(line: Catenary, spans: int, highest: float) -> list[Mode]:
-    """All modes of a line below a frequency [Hz], numbered in groups of one mode per span."""
+    """Modes of a line below a frequency [Hz]; each group holds one mode per span."""
     mesh = discretise(line, ELEMENT)
     shapes = compute_modes_below(mesh, highest)
     return [
@@ -33,8 +34,8 @@ def computed_modes(line: Catenary, spans: int, highest: float) -> list[Mode]:
     ]
 
 
-def verdicts(case: Case, findings: dict) -> dict[tuple[str, int | None], Criterion]:
-    """Criteria of a case for findings, by quantity and item (or pantograph where there is one)."""
+def grade_findings(case: Case, findings: dict) -> dict[tuple[str, int | None], Criterion]:
+    """Criteria of a case for findings, by quantity and by item or pantograph."""
     result = grade_case(
         replace(case, file=case.file.model_copy(update={"speed_km_h": None})),
         Delivered(study=StudyResult(findings)),

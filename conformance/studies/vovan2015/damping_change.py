@@ -7,6 +7,9 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import DampingChange
 from pantocheck.conformance.quantities.bands import BAND_QUANTITIES
 from pantocheck.conformance.quantities.evaluation import LINE, Value, ValuesByOwner
+from pantocheck.conformance.quantities.signals import EXTENDED_CUTOFF_HZ, ForceChannel
+from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
+from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.results.outcome import (
     Delivered,
@@ -16,10 +19,10 @@ from pantocheck.conformance.results.outcome import (
     StudyResult,
     missing_record_reason,
 )
-from pantocheck.conformance.results.results_format import TextTable
-from pantocheck.conformance.studies.force_charts import PrintedValues, draw_band_bars, draw_trailing_force
-from pantocheck.conformance.studies.vovan2015.findings_table import build_findings_table
-from pantocheck.conformance.studies.vovan2015.provenance_table import build_provenance_table
+from pantocheck.conformance.results.results_format import Chart, Series, TextTable
+from pantocheck.conformance.results.traces import thin_series
+from pantocheck.conformance.studies.band_charts import PrintedValues, draw_band_bars, sort_pantographs
+from pantocheck.conformance.studies.vovan2015.paper_tables import build_findings_table, build_provenance_table
 from pantocheck.conformance.systems.system import System
 
 PRINTED_QUANTITIES = ("cov_20", "cov_50", *BAND_QUANTITIES)
@@ -36,31 +39,40 @@ def run_damping_change(case: Case, study: DampingChange, system: System) -> Outc
         Damping before the change, and printed values.
     system : System
         System under test, which runs both passages.
+
+    Returns
+    -------
+    Outcome
+        Delivered run with the damping of the case and the comparison; else the reason of the run without a record.
     """
     ((name, damping),) = case.dampings.items()
     runs: dict[str, Delivered] = {}
+    records: dict[str, Record] = {}
     for model, variant in ((name, case.with_damping(name, damping)), (study.after, case.without_study())):
         outcome = system.run(variant)
         if not isinstance(outcome, Delivered) or outcome.record is None:
             failure = Skipped if isinstance(outcome, Skipped) else Errored
             return failure(f"{model}: {missing_record_reason(outcome)}")
-        runs[model] = outcome
-    before, after = runs[name], runs[study.after]
-    values = {model: _evaluate(case, run) for model, run in runs.items()}
-    findings = band_changes(values[name], values[study.after])
+        runs[model], records[model] = outcome, outcome.record
+    before, after = runs.values()
+    values = {model: _evaluate(case, record) for model, record in records.items()}
+    findings = band_changes(*values.values())
     refined = after.refined
     if refined is not None and before.refined is not None:
-        refined_findings = band_changes(_evaluate(case, before.refined), _evaluate(case, refined))
-        refined = replace(refined, study=StudyResult(refined_findings))
+        refined_values = (_evaluate(case, before.refined.record), _evaluate(case, refined.record))
+        refined = replace(refined, study=StudyResult(band_changes(*refined_values)))
     printed = {(table.model, table.pantograph): table.values for table in study.printed}
+    printed_changes = band_changes(
+        *({p: dict(table) for (model, p), table in printed.items() if model == run} for run in runs)
+    )
     return replace(
         after,
         refined=refined,
         study=StudyResult(
             findings=findings,
-            charts=(*draw_band_bars(values, printed, BAND_QUANTITIES), *draw_trailing_force(case, study, runs)),
+            charts=(*draw_band_bars(values, printed, BAND_QUANTITIES), *_draw_rear_force(case, study.span, records)),
             tables=(
-                build_findings_table(case.limits, findings, _printed_changes(printed, name, study.after)),
+                build_findings_table(case.limits, findings, printed_changes),
                 _comparison_table(values, printed),
                 build_provenance_table(case),
             ),
@@ -69,12 +81,18 @@ def run_damping_change(case: Case, study: DampingChange, system: System) -> Outc
 
 
 def band_changes(before: ValuesByOwner, after: ValuesByOwner) -> dict[int, dict[str, Value]]:
-    """Changes of the RMS of the bands, by pantograph (0: difference of the last and the first) and name.
+    """Changes of the RMS in the bands [%].
 
     Parameters
     ----------
     before, after : ValuesByOwner
-        Quantities by pantograph and name; a band that one of them lacks is left out.
+        Quantities by pantograph and name.
+
+    Returns
+    -------
+    dict of int to dict of str to Value
+        Changes by pantograph and name, without the bands that one side lacks. The line holds the difference of the
+        last and the first pantograph.
     """
     findings: dict[int, dict[str, Value]] = {}
     for pantograph in before.keys() & after.keys() - {LINE}:
@@ -90,37 +108,52 @@ def band_changes(before: ValuesByOwner, after: ValuesByOwner) -> dict[int, dict[
     return findings
 
 
-def _evaluate(case: Case, run: Delivered) -> ValuesByOwner:
-    return {} if run.record is None else evaluate_record(run.record, case.file.filter.low_pass).values
-
-
-def _printed_changes(printed: PrintedValues, before: str, after: str) -> dict[int, dict[str, Value]]:
-    return band_changes(
-        *(
-            {pantograph: dict(values) for (model, pantograph), values in printed.items() if model == name}
-            for name in (before, after)
-        )
-    )
+def _evaluate(case: Case, record: Record | None) -> ValuesByOwner:
+    return {} if record is None else evaluate_record(record, case.file.filter.low_pass).values
 
 
 def _comparison_table(values: Mapping[str, ValuesByOwner], printed: PrintedValues) -> TextTable:
-    """Computed and printed values side by side."""
-    pantographs = sorted({number for model_values in values.values() for number in model_values if number != LINE})
+    pantographs = sort_pantographs(values)
     rows = []
     for quantity in PRINTED_QUANTITIES:
         for model, computed in values.items():
-            row = [quantity, model]
-            for number in pantographs:
-                for cells in (computed.get(number, {}), printed.get((model, number), {})):
-                    row.append(_format_number(cells.get(quantity)))
-            rows.append(row)
-    heads = [f"{origin}, pantograph {number}" for number in pantographs for origin in ("computed", "printed")]
+            sources = [source for p in pantographs for source in (computed.get(p, {}), printed.get((model, p), {}))]
+            numbers = [source.get(quantity) for source in sources]
+            cells = [f"{number:.3g}" if isinstance(number, int | float) else "-" for number in numbers]
+            rows.append([quantity, model, *cells])
+    heads = [f"{origin}, pantograph {p}" for p in pantographs for origin in ("computed", "printed")]
     return TextTable(
-        caption="Computed beside printed. Line and pantograph are assumed: absolute values are informative.",
+        caption="Computed and printed values. Line and pantograph are assumed: absolute values are informative.",
         columns=["Quantity", "Damping", *heads],
         rows=rows,
     )
 
 
-def _format_number(value: Value | None) -> str:
-    return f"{value:.3g}" if isinstance(value, int | float) else "-"
+def _draw_rear_force(case: Case, span: int, records: Mapping[str, Record]) -> list[Chart]:
+    """Contact force of the last pantograph over one span, low-passed at 20 Hz and at 50 Hz (Figure 11 of the paper)."""
+    start, end = case.line.geometry.span(span)
+    charts = []
+    for cutoff in (case.file.filter.cutoff_Hz, EXTENDED_CUTOFF_HZ):
+        low_pass = replace(case.file.filter.low_pass, cutoff_Hz=cutoff)
+        series = []
+        for model, record in records.items():
+            try:
+                force = ForceChannel(record.force[-1], record.rate, low_pass, record.filter_applied_Hz).graded
+            except QuantityUnavailable:
+                continue
+            position = record.position[-1]
+            inside = (position >= start) & (position <= end)
+            series.append(
+                Series(label=model, style="line", x=thin_series(position[inside]), y=thin_series(force[inside]))
+            )
+        if series:
+            charts.append(
+                Chart(
+                    caption=f"Contact force of the last pantograph, span {span}, low-passed at {cutoff:g} Hz.",
+                    alternative=f"Contact force from {start:g} m to {end:g} m under the two damping models.",
+                    x_label="position along the track [m]",
+                    y_label="contact force [N]",
+                    series=series,
+                )
+            )
+    return charts

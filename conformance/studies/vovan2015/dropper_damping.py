@@ -1,16 +1,16 @@
 """Largest compensation force of a dropper against its stiffness coefficient.
 
-Vo Van, Balmes and Lorang (2015), Figure 8. A dropper stays taut in the matrix of the system; a force compensates it
-while it is slack. Two laws are compared:
+Vo Van, Balmes and Lorang (2015), Figure 8. The matrices of the system hold every dropper as taut. While a dropper is
+slack, a force compensates it. Two laws are compared:
 
-* The slack dropper carries no force: its elastic and viscous forces are compensated, as in the reference simulator.
-* Only the elastic force is compensated: the viscous part stays in the constant damping matrix. A large coefficient
+* The elastic and the viscous force are compensated, as in the reference simulator: a slack dropper carries no force.
+* Only the elastic force is compensated: the viscous force stays in the constant damping matrix. A large coefficient
   then locks the dropper, because its dashpot also resists compression.
 """
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -24,8 +24,7 @@ from pantocheck.conformance.results.results_format import Chart, Mark, Series
 from pantocheck.conformance.results.traces import thin_series
 from pantocheck.conformance.simulation.case_run import build_passage, build_run_table, record_passage
 from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.studies.vovan2015.findings_table import build_findings_table
-from pantocheck.conformance.studies.vovan2015.provenance_table import build_provenance_table
+from pantocheck.conformance.studies.vovan2015.paper_tables import build_findings_table, build_provenance_table
 from pantocheck.model import Catenary, DiscretisedLine, Kind, Passage, Rayleigh, discretise, simulate_passage
 from pantocheck.model.discretised_line import with_damping, with_viscous_part_kept
 
@@ -33,28 +32,11 @@ TRANSITION_SHARE = 0.1
 """Relative change of the force at the onset of the transition, and remaining share of the force at its end."""
 SMALLEST_DRAWN_FORCE = 1.0
 """Smaller forces are drawn at this value on the logarithmic scale [N]."""
-
-
-@dataclass(frozen=True)
-class Law:
-    """Compensation law of a slack dropper.
-
-    Parameters
-    ----------
-    line : callable
-        Function that gives a discretised line this law.
-    viscous_share : float
-        Share of the viscous force that is compensated in addition to the elastic force.
-    """
-
-    line: Callable[[DiscretisedLine], DiscretisedLine]
-    viscous_share: float
-
-
-LAWS = {
-    "slack dropper carries nothing": Law(lambda line: line, 1.0),
-    "only the elastic force is compensated": Law(with_viscous_part_kept, 0.0),
+LAWS: dict[str, tuple[Callable[[DiscretisedLine], DiscretisedLine], float]] = {
+    "slack dropper carries no force": (lambda line: line, 1.0),
+    "only the elastic force is compensated": (with_viscous_part_kept, 0.0),
 }
+"""Compensation laws by name: function that gives a line the law, and compensated share of the viscous force."""
 GRADED = "only the elastic force is compensated"
 
 
@@ -64,48 +46,54 @@ def run_dropper_damping(case: Case, study: DropperDamping) -> Delivered:
     Parameters
     ----------
     case : Case
-        Passage with given uplift forces.
+        Passage with stated uplift forces.
     study : DropperDamping
         Dropper and its stiffness coefficients.
+
+    Returns
+    -------
+    Delivered
+        Study with the record of the passage under the damping of the case.
 
     Raises
     ------
     InputError
-        There is no dropper at this position, or an uplift force has to be tuned.
+        No dropper hangs at the position of the study, or a pantograph has no uplift force.
     """
     begin = time.perf_counter()
     steps, line = case.file.discretisation, build_catenary(case.line)
     dropper = _find_dropper(line, study, case.id)
     forces = tuple(use.uplift_force_N or 0.0 for use in case.file.pantograph)
     if not all(forces):
-        raise InputError(f"case '{case.id}', key pantograph", "no uplift_force_N", "This study does not tune forces.")
+        raise InputError(
+            f"case '{case.id}', key pantograph", "no uplift_force_N", "This study needs the force of every pantograph."
+        )
     mesh = discretise(line, steps.element_m)
     passage = build_passage(case, mesh, steps, forces)
-    at_rest = simulate_passage(mesh, passage)
+    history = simulate_passage(mesh, passage)
     coefficients = np.array(study.coefficients_s)
     force = {
-        name: np.array([_largest_force(mesh, passage, dropper, value, law) for value in coefficients])
-        for name, law in LAWS.items()
+        law: np.array([_largest_force(mesh, passage, dropper, value, law) for value in coefficients]) for law in LAWS
     }
     findings = {LINE: find_transition(coefficients, force[GRADED])}
     runs = 1 + len(LAWS) * coefficients.size
     return Delivered(
-        record=record_passage(case, passage, at_rest),
+        record=record_passage(case, passage, history),
         run=build_run_table(steps, runs * passage.duration, begin),
         study=StudyResult(
             findings=findings,
-            charts=(_chart(case, study, force),),
+            charts=(_draw_forces(case, study, force),),
             tables=(build_findings_table(case.limits, findings, {}), build_provenance_table(case)),
         ),
         notes=(
-            "The paper does not print which force it compensates. The graded law compensates the elastic force only: "
+            "The paper does not print which force it compensates. The graded law compensates only the elastic force: "
             "it locks the dropper as the paper describes. The law of the reference simulator does not lock it.",
         ),
     )
 
 
 def find_transition(coefficient: RealArray, force: RealArray) -> dict[str, Value]:
-    """Transition of the largest compensation force from its undamped value, and the share that remains.
+    """Find the transition of the largest compensation force from its undamped value to locking.
 
     Parameters
     ----------
@@ -117,7 +105,8 @@ def find_transition(coefficient: RealArray, force: RealArray) -> dict[str, Value
     Returns
     -------
     dict of str to Value
-        Values by name of quantity, without the levels that are not reached; empty if the first force is zero.
+        Onset, middle and end of the transition [s] if reached, and force that remains at the largest coefficient
+        [%], by name of quantity; empty if the first force is zero.
     """
     if force[0] == 0:
         return {}
@@ -126,46 +115,43 @@ def find_transition(coefficient: RealArray, force: RealArray) -> dict[str, Value
     change = np.abs(share - 1)
     levels = (("start", change, TRANSITION_SHARE, 1), ("middle", share, 0.5, -1), ("end", share, TRANSITION_SHARE, -1))
     for name, curve, level, sign in levels:
-        crossed = _crossing(np.log(coefficient), sign * curve, sign * level)
-        if crossed is not None:
-            findings[f"dropper_transition_{name}_s"] = float(np.exp(crossed))
+        crossing = _find_crossing(np.log(coefficient), sign * curve, sign * level)
+        if crossing is not None:
+            findings[f"dropper_transition_{name}_s"] = float(np.exp(crossing))
     return findings
 
 
-def _crossing(x: RealArray, y: RealArray, level: float) -> float | None:
-    """Abscissa where a curve first rises through a level, by linear interpolation; None if it never does."""
-    above = np.flatnonzero(y >= level)
-    if not above.size:
+def _find_crossing(x: RealArray, y: RealArray, level: float) -> float | None:
+    """Abscissa at which a curve first reaches a level, by linear interpolation; None if it stays below."""
+    i = int(np.argmax(y >= level))
+    if y[i] < level:
         return None
-    i = int(above[0])
-    if i == 0:
-        return float(x[0])
-    return float(x[i - 1] + (level - y[i - 1]) / (y[i] - y[i - 1]) * (x[i] - x[i - 1]))
+    return float(x[0] if i == 0 else x[i - 1] + (level - y[i - 1]) / (y[i] - y[i - 1]) * (x[i] - x[i - 1]))
 
 
 def _find_dropper(line: Catenary, study: DropperDamping, name: str) -> int:
-    for i, dropper in enumerate(line.droppers):
-        if abs(dropper.position - study.x_m) < 1e-3:
-            return i
-    raise InputError(
-        f"case '{name}', key study.x_m", f"no dropper at {study.x_m:g} m", "Give the position of a dropper."
-    )
+    number = next((i for i, dropper in enumerate(line.droppers) if abs(dropper.position - study.x_m) < 1e-3), None)
+    if number is None:
+        problem = f"no dropper at {study.x_m:g} m"
+        raise InputError(f"case '{name}', key study.x_m", problem, "Give the position of a dropper.")
+    return number
 
 
-def _largest_force(mesh: DiscretisedLine, passage: Passage, number: int, coefficient: float, law: Law) -> float:
-    """Largest force that compensates the taut dropper while it is slack [N]."""
+def _largest_force(mesh: DiscretisedLine, passage: Passage, number: int, coefficient: float, law: str) -> float:
+    """Largest force [N] that compensates a dropper while it is slack, under the law of this name."""
+    apply_law, viscous_share = LAWS[law]
     damping = dict(mesh.catenary.damping) | {Kind.DROPPER: Rayleigh(stiffness_coefficient=coefficient)}
     line = with_damping(mesh, damping)
     dropper, bars = mesh.catenary.droppers[number], line.connectors
     watched = ((dropper.upper, dropper.position), (dropper.lower, dropper.position))
-    history = simulate_passage(law.line(line), replace(passage, watched=watched))
+    history = simulate_passage(apply_law(line), replace(passage, watched=watched))
     change = history.motion[0] - history.motion[1]
     taut = bars.preload[number] + bars.stiffness[number] * change[:, 0]
-    taut += law.viscous_share * bars.damping[number] * change[:, 1]
+    taut += viscous_share * bars.damping[number] * change[:, 1]
     return float(max(0.0, -taut.min()))
 
 
-def _chart(case: Case, study: DropperDamping, force: dict[str, RealArray]) -> Chart:
+def _draw_forces(case: Case, study: DropperDamping, force: dict[str, RealArray]) -> Chart:
     marks = [
         Mark(label="printed: transition", axis="x", low=limit.lower, high=limit.upper)
         for limit in case.limits
@@ -173,7 +159,7 @@ def _chart(case: Case, study: DropperDamping, force: dict[str, RealArray]) -> Ch
     ]
     chosen = case.line.damping.droppers.stiffness_coefficient_s
     if chosen > 0:
-        marks.append(Mark(label="chosen in the paper", axis="x", low=chosen))
+        marks.append(Mark(label="value of the paper", axis="x", low=chosen))
     return Chart(
         caption=f"Largest compensation force of the dropper at {study.x_m:g} m against its stiffness coefficient; "
         f"values below {SMALLEST_DRAWN_FORCE:g} N are drawn at this value.",

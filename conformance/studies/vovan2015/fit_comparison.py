@@ -1,6 +1,6 @@
-"""Damping model fitted to identified modes, compared with the one of the simulation.
+"""Damping model fitted to identified modes, compared with the damping of the simulation.
 
-Observability as in Vo Van, Balmes and Lorang (2015), Figure 6.
+The observability of the coefficients is drawn as in Vo Van, Balmes and Lorang (2015), Figure 6.
 """
 
 from pantocheck.conformance.cases.case import Case
@@ -18,36 +18,29 @@ SMALLEST_DRAWN_RATIO = 1e-3
 
 
 def build_fit_report(case: Case, identification: Identification) -> tuple[tuple[TextTable, ...], tuple[Chart, ...]]:
-    """Table of simulated and fitted coefficients, and chart of their observability.
+    """Build the table of simulated and fitted coefficients and the chart of their observability.
 
     Parameters
     ----------
     case : Case
-        Case whose drops were simulated.
+        Case with the simulated drops.
     identification : Identification
         Modes identified from the drops.
+
+    Returns
+    -------
+    tuple of (tuple of TextTable, tuple of Chart)
+        Tables and charts; without enough modes, a table with the reason and no chart.
     """
-    line = build_catenary(case.line)
+    line, element = build_catenary(case.line), case.file.discretisation.element_m
     try:
-        results = fit_identified_damping(case, identification)
+        results = build_damping_results(identification.modes, line, element, f"the modes of {case.id}")
     except InputError as error:
-        return (TextTable(caption="Fitted damping", columns=["Reason why there is none"], rows=[[str(error)]]),), ()
-    return (_coefficients(results, line),), (_observability(results),)
+        return (TextTable(caption="Fitted damping: none", columns=["Reason"], rows=[[str(error)]]),), ()
+    return (_coefficient_table(results, line),), (_draw_observability(results),)
 
 
-def fit_identified_damping(case: Case, identification: Identification) -> DampingResults:
-    """Damping model fitted to the modes identified from the drops of a case, as by `pantocheck fit-damping`.
-
-    Raises
-    ------
-    InputError
-        There are too few modes.
-    """
-    element = case.file.discretisation.element_m
-    return build_damping_results(identification.modes, build_catenary(case.line), element, f"the modes of {case.id}")
-
-
-def _coefficients(results: DampingResults, line: Catenary) -> TextTable:
+def _coefficient_table(results: DampingResults, line: Catenary) -> TextTable:
     rows = []
     for c in results.coefficients:
         rayleigh = line.damping.get(Kind(c.kind))
@@ -55,22 +48,21 @@ def _coefficients(results: DampingResults, line: Catenary) -> TextTable:
         difference = f"{100 * (c.value / simulated - 1):+.1f} %" if simulated else "-"
         name = f"{c.kind.replace('_', ' ')}, {c.matrix} [{MATRICES[c.matrix].unit}]"
         rows.append([name, f"{simulated:.4g}", f"{c.value:.4g}", f"{c.low_95:.3g} to {c.high_95:.3g}", difference])
-    modal = " The case has modal damping, which the fit takes for Rayleigh damping." if line.modal_damping else ""
+    modal = " The case has modal damping; the fit describes it by Rayleigh damping." if line.modal_damping else ""
     return TextTable(
-        caption="Rayleigh damping of the wires: of the simulation, and fitted to the identified modes." + modal,
+        caption="Rayleigh damping of the wires: simulated, and fitted to the identified modes." + modal,
         columns=["Coefficient", "Simulated", "Fitted", "95 % interval", "Difference"],
         rows=rows,
     )
 
 
-def _observability(results: DampingResults) -> Chart:
+def _draw_observability(results: DampingResults) -> Chart:
     rows = results.observability
     return Chart(
-        caption="Observability of every coefficient: its plausible value over the standard deviation with which the "
-        "modes determine it. An observable coefficient reaches the dashed line and makes up at least "
+        caption="Observability of every coefficient: its plausible value divided by its standard deviation from the "
+        "modes. An observable coefficient reaches the dashed line and contributes at least "
         f"{100 * results.thresholds.largest_share:g} % of the damping of some mode. "
-        f"Values below {SMALLEST_DRAWN_RATIO:g} are "
-        f"drawn at {SMALLEST_DRAWN_RATIO:g}.",
+        f"Values below {SMALLEST_DRAWN_RATIO:g} are drawn at {SMALLEST_DRAWN_RATIO:g}.",
         alternative="; ".join(
             f"{row.kind} {row.matrix}: {row.plausible_over_std:.3g}, "
             f"{'observable' if row.observable else 'not observable'}"

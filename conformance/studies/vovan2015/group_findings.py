@@ -8,11 +8,11 @@ from pantocheck.conformance.identification.mode import Mode
 from pantocheck.conformance.quantities.evaluation import Value
 
 HIGHEST_HZ = 6.0
-"""Up to this frequency the paper finds no variation of damping after the third group."""
+"""Vo Van, Balmes and Lorang (2015): from the third group to this frequency [Hz], the damping does not vary."""
 
 
 def compute_group_findings(modes: Sequence[Mode]) -> dict[str, Value]:
-    """Quantities of the groups of identified modes; those that need more modes are left out.
+    """Compute the quantities by which Vo Van, Balmes and Lorang (2015) describe groups of span modes.
 
     Parameters
     ----------
@@ -22,17 +22,16 @@ def compute_group_findings(modes: Sequence[Mode]) -> dict[str, Value]:
     Returns
     -------
     dict of str to Value
-        Values by name of quantity; lists count groups from 1.
+        Values by name of quantity. Lists start with group 1. Quantities that need more modes are left out.
     """
     vertical = [mode for mode in modes if not mode.lateral]
     certain = [mode for mode in vertical if mode.certain]
-    counts, frequency, damping = [], [], []
-    number = 1
-    while members := [mode for mode in certain if mode.group == number]:
-        counts.append(float(sum(mode.group == number for mode in vertical)))
+    counts: list[float] = []
+    frequency, damping = [], []
+    while members := [mode for mode in certain if mode.group == len(counts) + 1]:
+        counts.append(float(sum(mode.group == members[0].group for mode in vertical)))
         frequency.append(float(np.median([mode.frequency_Hz for mode in members])))
         damping.append(float(np.median([mode.damping_ratio for mode in members])))
-        number += 1
     findings: dict[str, Value] = {
         "modes_in_group": tuple(counts),
         "mode_frequency_Hz": tuple(frequency),

@@ -11,10 +11,9 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.results.outcome import Delivered, StudyResult
 from pantocheck.conformance.results.results_format import Chart, Series, TextTable
 from pantocheck.conformance.results.traces import thin_series
-from pantocheck.conformance.simulation.case_run import build_run_table
 from pantocheck.conformance.simulation.drop_simulation import ORDER, SimulatedDrop, require_mass_drop, simulate_drop
-from pantocheck.conformance.studies.vovan2015.damping_models import build_lines
-from pantocheck.conformance.studies.vovan2015.provenance_table import build_provenance_table
+from pantocheck.conformance.studies.vovan2015.line_damping import build_drop_run_table, build_lines
+from pantocheck.conformance.studies.vovan2015.paper_tables import build_provenance_table
 
 
 def run_release_velocity(case: Case, study: ReleaseVelocity) -> Delivered:
@@ -27,10 +26,15 @@ def run_release_velocity(case: Case, study: ReleaseVelocity) -> Delivered:
     study : ReleaseVelocity
         Damping models, sensor and time windows.
 
+    Returns
+    -------
+    Delivered
+        Study without a record.
+
     Raises
     ------
     InputError
-        There is no such sensor, or a window lies outside the record.
+        The sensor does not exist, or a window lies outside the record.
     """
     begin, mass_drop = time.perf_counter(), require_mass_drop(case)
     if study.sensor > len(mass_drop.sensor):
@@ -50,15 +54,15 @@ def run_release_velocity(case: Case, study: ReleaseVelocity) -> Delivered:
     sensor = mass_drop.sensor[study.sensor - 1]
     place = f"{sensor.wire.replace('_', ' ')} at {sensor.x_m:g} m"
     return Delivered(
-        run=build_run_table(case.file.discretisation, len(drops) * (mass_drop.hanging_s + mass_drop.record_s), begin),
+        run=build_drop_run_table(case, len(drops), begin),
         study=StudyResult(
-            charts=tuple(_chart(drops, study, window, place) for window in study.windows_s),
-            tables=(_table(drops, study, place), build_provenance_table(case)),
+            charts=tuple(_draw_velocity(drops, study, window, place) for window in study.windows_s),
+            tables=(_rms_table(drops, study, place), build_provenance_table(case)),
         ),
     )
 
 
-def _table(drops: dict[str, SimulatedDrop], study: ReleaseVelocity, place: str) -> TextTable:
+def _rms_table(drops: dict[str, SimulatedDrop], study: ReleaseVelocity, place: str) -> TextTable:
     rows = []
     for name, drop in drops.items():
         rms = [float(np.sqrt(np.mean(_cut_window(drop, study, window)[1] ** 2))) for window in study.windows_s]
@@ -78,11 +82,13 @@ def _cut_window(
     return drop.decay.time[inside], drop.decay.motion[study.sensor - 1, inside, ORDER["velocity"]]
 
 
-def _chart(drops: dict[str, SimulatedDrop], study: ReleaseVelocity, window: tuple[float, float], place: str) -> Chart:
+def _draw_velocity(
+    drops: dict[str, SimulatedDrop], study: ReleaseVelocity, window: tuple[float, float], place: str
+) -> Chart:
     series = []
     for name, drop in drops.items():
-        moment, velocity = _cut_window(drop, study, window)
-        series.append(Series(label=name, style="line", x=thin_series(moment), y=thin_series(1e3 * velocity)))
+        instant, velocity = _cut_window(drop, study, window)
+        series.append(Series(label=name, style="line", x=thin_series(instant), y=thin_series(1e3 * velocity)))
     return Chart(
         caption=f"Velocity of the {place} after the release, {window[0]:g} s to {window[1]:g} s.",
         alternative="Velocity over time under each damping model; the RMS of each is in the table.",

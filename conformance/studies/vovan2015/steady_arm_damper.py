@@ -1,8 +1,10 @@
 """Identified damping with and without vertical dampers at the steady arms (Vo Van, Balmes, Lorang 2015, Figure 9)."""
 
+import math
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import takewhile
 
 import numpy as np
 
@@ -12,12 +14,13 @@ from pantocheck.conformance.identification.mode import Mode
 from pantocheck.conformance.quantities.evaluation import LINE, Value
 from pantocheck.conformance.results.outcome import Delivered, StudyResult
 from pantocheck.conformance.results.results_format import Chart, Mark, TextTable
-from pantocheck.conformance.simulation.case_run import build_run_table
 from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.simulation.drop_simulation import require_mass_drop
-from pantocheck.conformance.studies.vovan2015.drop_identification import damping_series, identify_drops
-from pantocheck.conformance.studies.vovan2015.findings_table import build_findings_table
-from pantocheck.conformance.studies.vovan2015.provenance_table import build_provenance_table
+from pantocheck.conformance.studies.vovan2015.line_damping import (
+    build_drop_run_table,
+    draw_damping_ratios,
+    identify_drops,
+)
+from pantocheck.conformance.studies.vovan2015.paper_tables import build_findings_table, build_provenance_table
 
 FrequencyBands = tuple[tuple[float, float], ...]
 
@@ -31,8 +34,13 @@ def run_steady_arm_damper(case: Case, study: SteadyArmDamper) -> Delivered:
         Case with a mass drop.
     study : SteadyArmDamper
         Damper and frequency bands.
+
+    Returns
+    -------
+    Delivered
+        Study without a record.
     """
-    begin, mass_drop = time.perf_counter(), require_mass_drop(case)
+    begin = time.perf_counter()
     line = build_catenary(case.line)
     arms = tuple(replace(arm, vertical_damper=study.damper_N_s_m) for arm in line.steady_arms)
     identified = {
@@ -44,16 +52,14 @@ def run_steady_arm_damper(case: Case, study: SteadyArmDamper) -> Delivered:
     findings = {LINE: damping_gains(without, damped)}
     warnings = [text for drops in identified.values() for text in drops.identification.warnings]
     return Delivered(
-        run=build_run_table(
-            case.file.discretisation, 2 * len(mass_drop.drop) * (mass_drop.hanging_s + mass_drop.record_s), begin
-        ),
+        run=build_drop_run_table(case, sum(len(drops.drops) for drops in identified.values()), begin),
         warnings=tuple(dict.fromkeys(warnings)),
         study=StudyResult(
             findings=findings,
-            charts=(_chart(modes, study.bands_Hz[-1][0]),),
+            charts=(_draw_damping(modes, study.bands_Hz[-1][0]),),
             tables=(
                 build_findings_table(case.limits, findings, {}),
-                _table(study.bands_Hz, without, damped),
+                _band_table(study.bands_Hz, without, damped),
                 build_provenance_table(case),
             ),
         ),
@@ -61,20 +67,20 @@ def run_steady_arm_damper(case: Case, study: SteadyArmDamper) -> Delivered:
 
 
 def damping_gains(without: list[float], damped: list[float]) -> dict[str, Value]:
-    """Gains of the median damping ratio of the bands [%], up to the first band without modes.
+    """Gains of the median damping ratio by the dampers, band by band [%].
 
     Parameters
     ----------
     without, damped : list of float
-        Median of every band without and with the dampers; NaN where a band holds no certain mode.
+        Median damping ratio of every band without and with the dampers; NaN for a band without modes.
 
     Returns
     -------
     dict of str to Value
-        Values by name of quantity.
+        Values by name of quantity. The list of gains ends before the first band without modes.
     """
     gain = [100 * (z / z0 - 1) for z0, z in zip(without, damped, strict=True)]
-    known = tuple(gain[: next((i for i, value in enumerate(gain) if not np.isfinite(value)), len(gain))])
+    known = tuple(takewhile(math.isfinite, gain))
     findings: dict[str, Value] = {"damping_gain_pct": known}
     if len(known) == len(gain) > 2:
         findings["damping_gain_fading_pct"] = known[1] - known[-1]
@@ -90,7 +96,7 @@ def _band_medians(modes: Sequence[Mode], bands: FrequencyBands) -> list[float]:
     return medians
 
 
-def _table(bands: FrequencyBands, without: list[float], damped: list[float]) -> TextTable:
+def _band_table(bands: FrequencyBands, without: list[float], damped: list[float]) -> TextTable:
     rows = [
         [f"{low:g} to {high:g} Hz", f"{100 * z0:.3f} %", f"{100 * z:.3f} %", f"{100 * (z / z0 - 1):+.1f} %"]
         for (low, high), z0, z in zip(bands, without, damped, strict=True)
@@ -102,13 +108,13 @@ def _table(bands: FrequencyBands, without: list[float], damped: list[float]) -> 
     )
 
 
-def _chart(modes: Mapping[str, Sequence[Mode]], last: float) -> Chart:
+def _draw_damping(modes: Mapping[str, Sequence[Mode]], last: float) -> Chart:
     return Chart(
         caption="Identified damping ratios without and with a vertical damper at every steady arm, with 95 % "
         "intervals.",
         alternative="Damping ratio over frequency; the medians of the bands are in the table.",
         x_label="frequency [Hz]",
         y_label="damping ratio [%]",
-        series=[damping_series(name, certain) for name, certain in modes.items()],
-        marks=[Mark(label=f"printed: no effect visible after {last:g} Hz", axis="x", low=last)],
+        series=[draw_damping_ratios(name, certain) for name, certain in modes.items()],
+        marks=[Mark(label=f"printed: no visible effect above {last:g} Hz", axis="x", low=last)],
     )

@@ -1,4 +1,4 @@
-"""A case under several damping models side by side."""
+"""Damping study of a case: one column of the table per damping model."""
 
 from dataclasses import dataclass
 
@@ -8,8 +8,8 @@ from pantocheck.conformance.runner import run_cases
 from pantocheck.conformance.studies.damping_sensitivity import CASE_DAMPING, MODELS, add_damping_study
 
 
-def told_apart(wave):
-    """A system whose deviation follows the case's damping: 20 N and 1e5 N/s for every second of it."""
+def damping_dependent(wave):
+    """System with a standard deviation of the force of 20 N plus 1e5 N/s times the stiffness coefficient."""
 
     @dataclass(frozen=True)
     class Damped(wave):
@@ -20,11 +20,11 @@ def told_apart(wave):
     return Damped()
 
 
-def test_every_model_has_a_column_of_its_own(case_250, wave):
+def test_every_model_has_its_column(case_250, wave):
     studied = add_damping_study(case_250)
-    (result,) = run_cases([studied], told_apart(wave)).cases
+    (result,) = run_cases([studied], damping_dependent(wave)).cases
     (table,) = result.tables
-    assert table.columns == ["Quantity", "Of", CASE_DAMPING, *MODELS]
+    assert table.columns == ["Quantity", "Pantograph or line", CASE_DAMPING, *MODELS]
     rows = {(row[0], row[1]): row[2:] for row in table.rows}
     # The case and the benchmark have 1e-4 s, the initial model 2.35e-4 s.
     updated = studied.dampings["updated"].contact_wire.stiffness_coefficient_s
@@ -33,25 +33,25 @@ def test_every_model_has_a_column_of_its_own(case_250, wave):
     assert len(result.charts) == 1
 
 
-def test_the_case_is_graded_as_without_the_study(case_250, wave):
+def test_grading_does_not_depend_on_the_study(case_250, wave):
     plain, studied = (run_cases([case], wave()).cases[0] for case in (case_250, add_damping_study(case_250)))
     assert studied.criteria == plain.criteria
     assert studied.input_digest == plain.input_digest
 
 
-def test_a_system_that_cannot_run_a_model_is_named_in_a_warning(case_250, wave):
+def test_warning_names_each_model_that_the_system_cannot_run(case_250, wave):
     @dataclass(frozen=True)
-    class Only(wave):
+    class OneModel(wave):
         def run(self, case):
             return wave().run(case) if case.id == case_250.id else Skipped("there is no record of this case")
 
-    (result,) = run_cases([add_damping_study(case_250)], Only()).cases
-    assert [w for w in result.warnings if w.startswith("damping '")] == [
+    (result,) = run_cases([add_damping_study(case_250)], OneModel()).cases
+    assert [warning for warning in result.warnings if warning.startswith("damping '")] == [
         f"damping '{name}': there is no record of this case" for name in MODELS
     ]
-    assert result.tables[0].columns == ["Quantity", "Of", CASE_DAMPING]
+    assert result.tables[0].columns == ["Quantity", "Pantograph or line", CASE_DAMPING]
 
 
-def test_static_cases_and_studies_stay_as_they_are():
+def test_static_cases_and_studies_get_no_damping_study():
     for case in select_cases(["en50318-2018/ac-simple/static", "vovan2015/contact-force"]):
         assert add_damping_study(case) is case

@@ -1,4 +1,4 @@
-"""The same passage under two damping models: the arithmetic on the printed table, and models that are broken."""
+"""Change of the bands between two damping models: values of the printed table, and detection of wrong models."""
 
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -10,17 +10,17 @@ from pantocheck.conformance.cases.damping_file import Damping
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.results.outcome import Delivered, Skipped, StudyResult
-from pantocheck.conformance.studies.force_charts import draw_band_bars
+from pantocheck.conformance.studies.band_charts import draw_band_bars
 from pantocheck.conformance.studies.study_dispatch import run_study
 from pantocheck.conformance.studies.vovan2015.damping_change import band_changes
 from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
 
 
 @dataclass(frozen=True)
-class Once:
-    """The reference simulator without its refinement pair."""
+class Unrefined:
+    """The reference simulator without the refined run."""
 
-    name: str = "once"
+    name: str = "unrefined"
     version: str = "1"
     kind: Literal["builtin"] = "builtin"
 
@@ -30,27 +30,33 @@ class Once:
 
 @pytest.fixture(scope="module")
 def case():
-    (found,) = select_cases(["vovan2015/contact-force"])
-    # Three spans on a coarse mesh: the changes keep their signs, which is all that is graded.
-    coarse = found.file.discretisation.model_copy(update={"element_m": 1.0, "time_step_s": 0.002})
-    file = found.file.model_copy(update={"discretisation": coarse, "evaluated_spans": (7, 9)})
+    (case,) = select_cases(["vovan2015/contact-force"])
+    # Only the signs of the changes are graded; they are right with three spans and a coarse mesh.
+    coarse = case.file.discretisation.model_copy(update={"element_m": 1.0, "time_step_s": 0.002})
+    file = case.file.model_copy(update={"discretisation": coarse, "evaluated_spans": (7, 9)})
     study = file.study.model_copy(update={"span": 8})
-    return replace(found, file=file.model_copy(update={"study": study}))
+    return replace(case, file=file.model_copy(update={"study": study}))
 
 
-def model(mass, stiffness):
-    both = {"mass_coefficient_1_s": mass, "stiffness_coefficient_s": stiffness}
+def build_damping(mass, stiffness):
+    rayleigh = {"mass_coefficient_1_s": mass, "stiffness_coefficient_s": stiffness}
     return Damping.model_validate(
-        {"trust": "provisional", "source": "test", "contact_wire": both, "messenger_wire": both, "droppers": both}
+        {
+            "trust": "provisional",
+            "source": "test",
+            "contact_wire": rayleigh,
+            "messenger_wire": rayleigh,
+            "droppers": rayleigh,
+        }
     )
 
 
-def rows(case, before=None, after=None):
+def run_and_grade(case, before=None, after=None):
     if before is not None:
         case = replace(case, dampings={"initial": before})
     if after is not None:
         case = replace(case, line=case.line.model_copy(update={"damping": after}))
-    result = grade_case(case, run_study(case, Once()), "primary")
+    result = grade_case(case, run_study(case, Unrefined()), "primary")
     return {(row.quantity, row.pantograph): row for row in result.criteria}, result
 
 
@@ -59,73 +65,79 @@ FRONT, REAR = ("change_rms_20_50_pct", 1), ("change_rms_20_50_pct", 2)
 DIFFERENCE = ("rear_over_front_change_20_50_pct", 0)
 
 
+def printed_changes(case):
+    printed = {(table.model, table.pantograph): dict(table.values) for table in case.file.study.printed}
+    return band_changes(*({p: printed[name, p] for p in (1, 2)} for name in ("initial", "updated")))
+
+
 def test_changes_of_the_printed_table(case):
     """Table 1: 34.0 to 29.6 N, 26.0 to 29.7 N, 32.9 to 42.5 N."""
-    printed = {(one.model, one.pantograph): dict(one.values) for one in case.file.study.printed}
-    found = band_changes(*({p: printed[name, p] for p in (1, 2)} for name in ("initial", "updated")))
-    assert_allclose(found[1]["change_rms_0_5_pct"], 0.0, atol=1e-12)
-    assert_allclose(found[1]["change_rms_5_20_pct"], -12.94, atol=0.01)
-    assert_allclose(found[1]["change_rms_20_50_pct"], 14.23, atol=0.01)
-    assert_allclose(found[2]["change_rms_20_50_pct"], 29.18, atol=0.01)
-    assert_allclose(found[0]["rear_over_front_change_20_50_pct"], 14.95, atol=0.01)
+    changes = printed_changes(case)
+    assert_allclose(changes[1]["change_rms_0_5_pct"], 0.0, atol=1e-12)
+    assert_allclose(changes[1]["change_rms_5_20_pct"], -12.94, atol=0.01)
+    assert_allclose(changes[1]["change_rms_20_50_pct"], 14.23, atol=0.01)
+    assert_allclose(changes[2]["change_rms_20_50_pct"], 29.18, atol=0.01)
+    assert_allclose(changes[0]["rear_over_front_change_20_50_pct"], 14.95, atol=0.01)
 
 
 def test_changes_of_the_rear_pantograph_alone():
-    """Where a paper prints those of one pantograph, there is nothing to compare it with."""
+    """Without values of the front pantograph there is no difference between rear and front."""
     values = [{2: {"rms_20_50_N": value}} for value in (32.0, 40.0)]
     assert band_changes(*values) == {2: {"change_rms_20_50_pct": 25.0}}
 
 
 def test_the_printed_values_meet_every_limit(case):
-    """The limits are those of the paper's own findings."""
-    printed = {(one.model, one.pantograph): dict(one.values) for one in case.file.study.printed}
-    found = band_changes(*({p: printed[name, p] for p in (1, 2)} for name in ("initial", "updated")))
+    """The limits express the findings of the paper."""
     static = replace(case, file=case.file.model_copy(update={"speed_km_h": None, "study": None}))
-    assert {row.verdict for row in grade_case(static, Delivered(study=StudyResult(found)), "primary").criteria} == {
-        "pass"
-    }
+    result = grade_case(static, Delivered(study=StudyResult(printed_changes(case))), "primary")
+    assert {row.verdict for row in result.criteria} == {"pass"}
 
 
-def test_the_updated_damping_brings_more_above_20_hz(case):
-    found, result = rows(case)
-    assert [found[key].verdict for key in (LOW, FRONT, REAR, DIFFERENCE)] == ["pass"] * 4
-    assert all(row.margin is not None for row in found.values())
+def test_updated_damping_raises_the_force_above_20_hz(case):
+    rows, result = run_and_grade(case)
+    assert [rows[key].verdict for key in (LOW, FRONT, REAR, DIFFERENCE)] == ["pass"] * 4
+    assert all(row.margin is not None for row in rows.values())
     assert result.tables[0].caption == "Findings"
     assert any("span 8" in chart.caption for chart in result.charts)
 
 
-def test_charts_say_what_is_drawn_beside_the_computed_bars():
-    """Without printed values there are no printed bars, and no table of computed beside printed ones."""
-    values = {"one": {1: {"rms_0_5_N": 30.0}}}
-    (alone,), (beside,) = (
-        draw_band_bars(values, printed, ["rms_0_5_N"]) for printed in ({}, {("one", 1): {"rms_0_5_N": 34.0}})
+def test_chart_mentions_printed_values_only_if_it_shows_them():
+    values = {"initial": {1: {"rms_0_5_N": 30.0}}}
+    (computed_only,), (compared,) = (
+        draw_band_bars(values, printed, ["rms_0_5_N"]) for printed in ({}, {("initial", 1): {"rms_0_5_N": 34.0}})
     )
-    assert "printed" in beside.caption
-    assert "printed" in beside.alternative
-    assert "computed under each damping model" in alone.caption
-    assert "printed" not in alone.caption + alone.alternative
+    assert "printed" in compared.caption
+    assert "printed" in compared.alternative
+    assert "computed under each damping model" in computed_only.caption
+    assert "printed" not in computed_only.caption + computed_only.alternative
 
 
-def test_damping_that_grows_with_frequency_takes_the_extended_band_away(case):
-    """The exchange of the two models: less above 20 Hz on both pantographs, most on the rear."""
-    found, _ = rows(case, before=case.line.damping, after=case.dampings["initial"])
-    assert [found[key].verdict for key in (FRONT, REAR, DIFFERENCE)] == ["fail"] * 3
+def test_exchanged_models_are_detected_above_20_hz(case):
+    """Damping that grows with frequency lowers the force above 20 Hz on both pantographs, most on the rear."""
+    rows, _ = run_and_grade(case, before=case.line.damping, after=case.dampings["initial"])
+    assert [rows[key].verdict for key in (FRONT, REAR, DIFFERENCE)] == ["fail"] * 3
 
 
-def test_mass_damping_out_of_scale_is_caught_below_5_hz(case):
+def test_excessive_mass_damping_is_detected_below_5_hz(case):
     """A mass coefficient of 1.5 1/s is 13 % of critical damping at 0.9 Hz."""
-    assert rows(case, after=model(1.5, 1e-4))[0][LOW].verdict == "fail"
+    assert run_and_grade(case, after=build_damping(1.5, 1e-4))[0][LOW].verdict == "fail"
 
 
-def test_less_stiffness_damping_is_caught_between_5_and_20_hz(case):
-    """Taking nearly all damping away cannot lower the force there."""
-    assert rows(case, before=model(0.3, 1e-3), after=model(0.0, 1e-6))[0][MIDDLE].verdict == "fail"
-    assert rows(case, before=model(0.0, 1e-6), after=model(0.3, 1e-3))[0][MIDDLE].verdict == "pass"
+def test_removed_damping_is_detected_between_5_and_20_hz(case):
+    """A line with almost no damping cannot have a lower force in this band."""
+    assert (
+        run_and_grade(case, before=build_damping(0.3, 1e-3), after=build_damping(0.0, 1e-6))[0][MIDDLE].verdict
+        == "fail"
+    )
+    assert (
+        run_and_grade(case, before=build_damping(0.0, 1e-6), after=build_damping(0.3, 1e-3))[0][MIDDLE].verdict
+        == "pass"
+    )
 
 
-def test_a_system_without_a_record_of_one_model_is_skipped(case):
+def test_study_is_skipped_without_a_record_of_each_model(case):
     @dataclass(frozen=True)
-    class OneModel(Once):
+    class OneModel(Unrefined):
         def run(self, case):
             return Skipped("there is no record of this case")
 

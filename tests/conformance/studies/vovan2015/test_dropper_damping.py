@@ -1,11 +1,11 @@
-"""The dropper's compensation force against its stiffness coefficient: where it changes, and what locks a dropper."""
+"""Compensation force of a dropper against its stiffness coefficient: transition, and locking by the graded law."""
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.testing import assert_allclose
 
-from helpers.computed_modes import verdicts
+from helpers.computed_modes import grade_findings
 from helpers.lines import simple_line
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.quantities.evaluation import LINE
@@ -17,47 +17,49 @@ COEFFICIENTS = np.geomspace(1e-6, 1e-1, 51)
 
 
 def low_pass_curve(corner):
-    """Force that falls like 1 / (1 + (a / corner)^2)."""
+    """Force proportional to 1 / (1 + (a / corner)^2) for a coefficient a."""
     return 1000 / (1 + (COEFFICIENTS / corner) ** 2)
 
 
 def test_levels_of_a_known_curve():
-    """Half is left at the corner, 90 % at a third and 10 % at three times of it; points lie 26 % apart."""
-    found = find_transition(COEFFICIENTS, low_pass_curve(2e-3))
-    assert_allclose(found["dropper_transition_start_s"], 2e-3 / 3, rtol=0.03)
-    assert_allclose(found["dropper_transition_middle_s"], 2e-3, rtol=0.01)
-    assert_allclose(found["dropper_transition_end_s"], 6e-3, rtol=0.03)
-    assert_allclose(found["dropper_locked_force_pct"], 100 / (1 + 50**2), rtol=1e-3)
+    """The force falls to 90 % at a third of the corner, to half at the corner, to 10 % at three times the corner.
+
+    The coefficients lie 26 % apart.
+    """
+    findings = find_transition(COEFFICIENTS, low_pass_curve(2e-3))
+    assert_allclose(findings["dropper_transition_start_s"], 2e-3 / 3, rtol=0.03)
+    assert_allclose(findings["dropper_transition_middle_s"], 2e-3, rtol=0.01)
+    assert_allclose(findings["dropper_transition_end_s"], 6e-3, rtol=0.03)
+    assert_allclose(findings["dropper_locked_force_pct"], 100 / (1 + 50**2), rtol=1e-3)
 
 
-def test_a_dropper_that_never_slackens_has_no_transition():
-    """There is no force whose share could be told."""
+def test_dropper_that_is_never_slack_has_no_transition():
     with np.errstate(all="raise"):
         assert find_transition(COEFFICIENTS, np.zeros(COEFFICIENTS.size)) == {}
 
 
-def graded(force):
+def grade_force(force):
     (case,) = select_cases(["vovan2015/dropper-damping"])
-    rows = verdicts(case, {LINE: find_transition(COEFFICIENTS, force)})
+    rows = grade_findings(case, {LINE: find_transition(COEFFICIENTS, force)})
     return {quantity.removeprefix("dropper_"): row.verdict for (quantity, _), row in rows.items()}
 
 
-def test_a_transition_out_of_place_is_caught():
+def test_wrong_transition_is_detected():
     start, middle, end, locked = "transition_start_s", "transition_middle_s", "transition_end_s", "locked_force_pct"
-    assert graded(low_pass_curve(2e-3)) == dict.fromkeys((start, middle, end, locked), "pass")
-    assert graded(low_pass_curve(2e-4))[start] == "fail"
-    late = graded(low_pass_curve(0.06))
+    assert grade_force(low_pass_curve(2e-3)) == dict.fromkeys((start, middle, end, locked), "pass")
+    assert grade_force(low_pass_curve(2e-4))[start] == "fail"
+    late = grade_force(low_pass_curve(0.06))
     assert late == {start: "fail", middle: "fail", end: "skip", locked: "fail"}  # the end is not reached
 
 
-def test_a_dropper_that_never_locks_is_caught():
-    """No transition is not a pass: there is nothing to grade, and the force that is left is too much."""
-    found = graded(np.full(COEFFICIENTS.size, 1000.0))
-    assert found["transition_middle_s"] == "skip"
-    assert found["locked_force_pct"] == "fail"
+def test_dropper_that_never_locks_is_detected():
+    """The missing transition is skipped, and the remaining force exceeds its limit."""
+    verdicts = grade_force(np.full(COEFFICIENTS.size, 1000.0))
+    assert verdicts["transition_middle_s"] == "skip"
+    assert verdicts["locked_force_pct"] == "fail"
 
 
-def test_the_law_that_compensates_the_elastic_force_locks_and_the_other_does_not():
+def test_only_compensation_of_the_elastic_force_locks_a_dropper():
     (case,) = select_cases(["vovan2015/dropper-damping"])
     coarse = case.file.discretisation.model_copy(update={"element_m": 1.5, "time_step_s": 0.002})
     study = case.file.study.model_copy(update={"coefficients_s": (1e-6, 3e-3, 1e-1), "x_m": 283.5})
@@ -67,7 +69,7 @@ def test_the_law_that_compensates_the_elastic_force_locks_and_the_other_does_not
     outcome = run_dropper_damping(replace(case, file=file), study)
     (chart,) = outcome.study.charts
     nothing, elastic = (series.y for series in chart.series)
-    # Neither law knows the other without damping: they agree to what a coefficient of 1e-6 s does.
+    # Without damping the laws are the same; the tolerance covers the effect of a coefficient of 1e-6 s.
     assert_allclose(nothing[0], elastic[0], rtol=0.01)
     assert nothing[-1] > nothing[0]
     assert elastic[-1] < 0.1 * elastic[0]
@@ -76,39 +78,39 @@ def test_the_law_that_compensates_the_elastic_force_locks_and_the_other_does_not
 
 
 def test_both_laws_are_the_same_while_every_dropper_is_taut():
-    """Two linear systems with the same matrices, that go apart as soon as one dropper slackens.
+    """The laws give two linear systems with the same matrices until one dropper becomes slack.
 
-    Only rounding may differ, 1e-13 of the displacement measured; a dashpot wrong by a thousandth gives 2e-5.
+    The measured difference is rounding, 1e-13 of the displacement. A dashpot with an error of 0.1 % would give 2e-5.
     """
     line = simple_line(damping={Kind.DROPPER: Rayleigh(stiffness_coefficient=1e-3)})
     mesh = discretise(line, 2.0)
     kept = with_viscous_part_kept(mesh)
     assert kept.connectors.damping.sum() == mesh.connectors.damping.sum()
     assert not kept.connectors.unilateral[mesh.connectors.station.size :].any()
-    # Another damping makes the connectors anew: the law is to be laid over it last.
+    # `with_damping` builds new connectors without the law: it must come before the law.
     assert with_damping(kept, line.damping).connectors.station.size == mesh.connectors.station.size
-    light, heavy = taut_and_apart(mesh, kept, 5.0), taut_and_apart(mesh, kept, 200.0)
-    assert light.smallest > 0  # every dropper pulls at every time
-    assert light.moved > 1e-4  # and the line does move
-    assert light.apart < 1e-10 * light.moved
-    assert heavy.smallest < 0
-    assert heavy.apart > 1e-3 * heavy.moved
+    light, heavy = compare_runs(mesh, kept, 5.0), compare_runs(mesh, kept, 200.0)
+    assert light.smallest_force > 0  # every dropper pulls at every time
+    assert light.displacement > 1e-4
+    assert light.difference < 1e-10 * light.displacement
+    assert heavy.smallest_force < 0
+    assert heavy.difference > 1e-3 * heavy.displacement
 
 
 @dataclass(frozen=True)
-class Pair:
-    """Two runs: smallest dropper force [N], largest displacement and largest difference at the droppers [m]."""
+class RunComparison:
+    """Smallest dropper force [N], and largest displacement and difference of two runs at the droppers [m]."""
 
-    smallest: float
-    moved: float
-    apart: float
+    smallest_force: float
+    displacement: float
+    difference: float
 
 
-def taut_and_apart(mesh, other, uplift):
-    """A head pressed up with a constant force, over most of two lines."""
+def compare_runs(mesh, other, uplift):
+    """Compare passages of a head with a constant uplift force [N] over most of two lines."""
     head = chain(np.array([5.0]), np.array([0.0]), np.array([20.0]), uplift, 0, 50e3)
     droppers = mesh.catenary.droppers
-    watched = tuple((wire, one.position) for one in droppers for wire in (one.upper, one.lower))
+    watched = tuple((wire, dropper.position) for dropper in droppers for wire in (dropper.upper, dropper.lower))
     passage = Passage((head,), (20.0,), 50.0, 1.0, 0.002, watched)
     motion, compared = (simulate_passage(line, passage).motion for line in (mesh, other))
     change = motion[0::2] - motion[1::2]
@@ -116,4 +118,4 @@ def taut_and_apart(mesh, other, uplift):
     assert bars.unilateral[:count].all()
     force = bars.preload[:count, None] + bars.stiffness[:count, None] * change[..., 0]
     force += bars.damping[:count, None] * change[..., 1]
-    return Pair(force.min(), np.abs(motion[..., 0]).max(), np.abs(compared - motion)[..., 0].max())
+    return RunComparison(force.min(), np.abs(motion[..., 0]).max(), np.abs(compared - motion)[..., 0].max())

@@ -1,6 +1,7 @@
-"""Observability of the coefficients on a study's page: what the drawn threshold means, and that it is the fit's."""
+"""Chart of the observability: the thresholds are those of the fit, and the caption explains them."""
 
 import re
+from types import SimpleNamespace
 
 import pytest
 
@@ -9,7 +10,7 @@ from pantocheck.conformance.identification.damping import observability
 from pantocheck.conformance.identification.damping.damping_format import DampingResults, Observability
 from pantocheck.conformance.reports.figures.damping_figures import draw_observability
 from pantocheck.conformance.reports.mass_drop.damping_report import describe_observability
-from pantocheck.conformance.studies.vovan2015 import fit_comparison as fitted
+from pantocheck.conformance.studies.vovan2015 import fit_comparison
 
 OBSERVED = tuple(
     Observability(
@@ -21,11 +22,11 @@ OBSERVED = tuple(
         plausible=0.1,
         plausible_over_std=ratio,
         residual_without=1.0,
-        observable=seen,
+        observable=observable,
     )
-    for kind, share, ratio, seen in (
+    for kind, share, ratio, observable in (
         ("contact_wire", 0.8, 40.0, True),
-        ("dropper", 0.01, 10.0, False),  # well determined, but it makes 1 % of any mode's damping
+        ("dropper", 0.01, 10.0, False),  # well determined, but at most 1 % of the damping of a mode
         ("steady_arm", 0.0, 0.0, False),
     )
 )
@@ -34,22 +35,25 @@ RESULTS = DampingResults.model_construct(coefficients=(), observability=OBSERVED
 
 @pytest.fixture
 def chart(monkeypatch):
-    monkeypatch.setattr(fitted, "fit_identified_damping", lambda *_: RESULTS)
+    monkeypatch.setattr(fit_comparison, "build_damping_results", lambda *_: RESULTS)
     (case,) = select_cases(["vovan2015/mass-drop/updated"])
-    ((chart,),) = fitted.build_fit_report(case, None)[1:]
+    ((chart,),) = fit_comparison.build_fit_report(case, SimpleNamespace(modes=()))[1:]
     return chart
 
 
-def test_what_is_well_determined_is_not_called_observable_for_that_alone(chart):
-    """A coefficient needs its share in some mode's damping, too."""
+def test_well_determined_coefficient_with_a_small_share_is_not_observable(chart):
     assert "above the dashed line it is observable" not in chart.caption
     assert f"{100 * observability.THRESHOLDS.largest_share:g} %" in chart.caption
     assert chart.marks[0].label == "needed"
-    told = re.findall(r"(\w+) mass: [\d.e+-]+, (observable|not observable)", chart.alternative)
-    assert dict(told) == {"contact_wire": "observable", "dropper": "not observable", "steady_arm": "not observable"}
+    described = re.findall(r"(\w+) mass: [\d.e+-]+, (observable|not observable)", chart.alternative)
+    assert dict(described) == {
+        "contact_wire": "observable",
+        "dropper": "not observable",
+        "steady_arm": "not observable",
+    }
 
 
-def test_drawn_threshold_is_that_of_the_fit(chart):
+def test_drawn_thresholds_are_those_of_the_fit(chart):
     assert chart.marks[0].low == observability.THRESHOLDS.plausible_over_std
     rows, thresholds = [row.model_dump() for row in OBSERVED], observability.THRESHOLDS.model_dump()
     left, right = draw_observability.__wrapped__(rows, thresholds).axes
@@ -60,7 +64,10 @@ def test_drawn_threshold_is_that_of_the_fit(chart):
     assert f"at least {thresholds['plausible_over_std']:g} times its standard deviation" in description
 
 
-def test_floor_of_the_logarithmic_scale_is_said(chart):
+def test_caption_names_the_smallest_drawn_ratio(chart):
     (bars,) = chart.series
-    assert bars.y == [40.0, 10.0, fitted.SMALLEST_DRAWN_RATIO]
-    assert f"Values below {fitted.SMALLEST_DRAWN_RATIO:g} are drawn at {fitted.SMALLEST_DRAWN_RATIO:g}" in chart.caption
+    assert bars.y == [40.0, 10.0, fit_comparison.SMALLEST_DRAWN_RATIO]
+    assert (
+        f"Values below {fit_comparison.SMALLEST_DRAWN_RATIO:g} are drawn at {fit_comparison.SMALLEST_DRAWN_RATIO:g}"
+        in chart.caption
+    )

@@ -1,0 +1,68 @@
+"""Tables of a study of Vo Van, Balmes and Lorang (2015): its findings, and the origin of its inputs and limits."""
+
+from collections.abc import Sequence
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.library import source_text
+from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.grading.criterion_grading import find_value
+from pantocheck.conformance.grading.verdicts import judge
+from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.quantities.evaluation import ValuesByOwner
+from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.results.results_format import TextTable
+
+PAPER = "vovan2015"
+"""Key of Vo Van, Balmes and Lorang (2015) in the bibliography."""
+FITTED = "fitted"
+"""Prefix of the source of a damping model that was fitted to identified modes."""
+
+
+def build_findings_table(limits: Sequence[Limit], computed: ValuesByOwner, printed: ValuesByOwner) -> TextTable:
+    """Build a table with one row per limit: finding in words, printed and computed value, agreement.
+
+    Parameters
+    ----------
+    limits : sequence of Limit
+        Limits of the case; their notes are the findings in words.
+    computed, printed : ValuesByOwner
+        Values by pantograph and name.
+
+    Returns
+    -------
+    TextTable
+        Findings of the paper.
+    """
+    rows = []
+    for limit in limits:
+        value, unit = find_value(limit, computed), QUANTITIES[limit.quantity].unit
+        verdict = "not evaluated" if value is None else judge(value, limit.lower, limit.upper)
+        agreement = {"pass": "reproduced", "fail": "not reproduced"}.get(verdict, verdict)
+        texts = [
+            "-" if number is None else f"{number:.3g} {unit}".strip() for number in (find_value(limit, printed), value)
+        ]
+        rows.append([limit.note or limit.quantity, *texts, agreement])
+    return TextTable(caption="Findings", columns=["Finding", "Printed", "Computed", "Agreement"], rows=rows)
+
+
+def build_provenance_table(case: Case) -> TextTable:
+    """Build a table of the origin of every group of inputs, every limit and every graded quantity of a case."""
+    rows = []
+    for provenance in case.inputs:
+        fitted = any(source.startswith(FITTED) for source in provenance.source)
+        origin = "computed" if fitted else _name_origin(provenance.trust, provenance.source)
+        rows.append([f"input {provenance.group}", origin, source_text(provenance.source)])
+    for limit in case.limits:
+        item = f" {limit.item}" if limit.item else ""
+        keys = [limit.source] if isinstance(limit.source, str) else limit.source
+        text = limit.note or source_text(limit.source)
+        rows.append([f"limit of {limit.quantity}{item}", _name_origin(limit.trust, keys), text])
+    quantities = dict.fromkeys(limit.quantity for limit in case.limits)
+    rows += [[name, "computed", QUANTITIES[name].definition] for name in quantities]
+    return TextTable(caption="Origin of inputs, limits and quantities", columns=["Item", "Origin", "Source"], rows=rows)
+
+
+def _name_origin(trust: Trust, keys: Sequence[str]) -> str:
+    if trust == "provisional":
+        return "assumed"
+    return "printed in the paper" if PAPER in keys else "published elsewhere"
