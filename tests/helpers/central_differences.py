@@ -49,19 +49,21 @@ def contact_force(line: DiscretisedLine, passage: Passage) -> Array:
     v = np.zeros(q.size)
     head_height = point_load(line, row, passage.start[0])[free] @ q + point_load(line, row, passage.start[0]) @ rest
     n = model.head.size
-    held = np.block([[model.stiffness, model.head[:, None]], [model.head[None], np.zeros((1, 1))]])
-    z = np.linalg.solve(held, np.append(model.force, head_height + model.static_force / model.contact_stiffness))[:n]
+    constrained = np.block([[model.stiffness, model.head[:, None]], [model.head[None], np.zeros((1, 1))]])
+    z = np.linalg.solve(
+        constrained, np.append(model.force, head_height + model.static_force / model.contact_stiffness)
+    )[:n]
     zv, inverse = np.zeros(n), np.linalg.inv(model.mass)
     steps = round(passage.duration / dt)
     record = np.zeros(steps)
     for step in range(steps):
         # Forces at the start of the step, the pantograph where it is then.
-        here = passage.start[0] + passage.speed * dt * step
-        share = point_load(line, row, here)
+        position = passage.start[0] + passage.speed * dt * step
+        share = point_load(line, row, position)
         tension = connectors.stiffness * (pull @ q) + connectors.damping * (pull @ v)
         change = np.where(connectors.unilateral, np.maximum(tension, -connectors.preload), tension)
         closing = model.head @ z - share[free] @ q - share @ rest
-        force = max(0.0, contact_stiffness(line, row, here, model.contact_stiffness) * closing)
+        force = max(0.0, contact_stiffness(line, row, position, model.contact_stiffness) * closing)
         record[step] = force
         v = v + dt * solve(share[free] * force - stiffness @ q - damping @ v - bars @ change)
         q = q + dt * v

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import eigvals
 
 from pantocheck.model import (
     Catenary,
@@ -14,12 +15,16 @@ from pantocheck.model import (
     Rayleigh,
     SteadyArm,
     Wire,
+    chain,
 )
 
 Array = NDArray[np.float64]
 
 DROPPERS_2002 = (5.0, 10.5, 17.0, 23.5, 30.0, 36.5, 43.0, 49.5, 55.0)
 """Positions of the droppers in a span of the EN 50318:2002 reference model [m]."""
+
+PANTOGRAPH_2002 = chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.array([90.0, 10.0]), 120.0, 0, 50e3)
+"""Pantograph of the EN 50318:2002 reference model (published_values.toml, en50318_2002)."""
 
 
 def bare_wire(
@@ -59,6 +64,15 @@ def simple_line(
         messenger_supports=tuple(MessengerSupport(number * span, "messenger", 1.2, 5e4) for number in range(spans + 1)),
         damping=damping or {},
     )
+
+
+def complex_roots(mass: Array, damping: Array, stiffness: Array, count: int) -> Array:
+    """Lowest complex eigenvalues of M q'' + C q' + K q = 0 with positive imaginary part [1/s]."""
+    n = len(mass)
+    lower = [-np.linalg.solve(mass, stiffness), -np.linalg.solve(mass, damping)]
+    roots = eigvals(np.block([[np.zeros((n, n)), np.eye(n)], lower]))
+    oscillating = roots[roots.imag > 0]
+    return np.asarray(oscillating[np.argsort(np.abs(oscillating))][:count])
 
 
 def without_connectors(line: DiscretisedLine) -> DiscretisedLine:

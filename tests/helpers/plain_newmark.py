@@ -55,18 +55,18 @@ class PlainNewmark:
         self.free = matrices.free
         pantographs = passage.pantographs
         sizes = [p.head.size for p in pantographs]
-        at = self.free.size + np.concatenate([[0], np.cumsum(sizes)]).astype(int)
-        self.pantograph_slices = [slice(first, last) for first, last in pairwise(at)]
-        self.M, self.C, self.K = (np.zeros((at[-1], at[-1])) for _ in range(3))
+        starts = self.free.size + np.concatenate([[0], np.cumsum(sizes)]).astype(int)
+        self.pantograph_slices = [slice(first, last) for first, last in pairwise(starts)]
+        self.M, self.C, self.K = (np.zeros((starts[-1], starts[-1])) for _ in range(3))
         inner = slice(0, self.free.size)
         self.M[inner, inner] = stepping_mass(line, passage.time_step).toarray()
         self.C[inner, inner] = matrices.damping.toarray()
         self.K[inner, inner] = matrices.stiffness.toarray()
-        self.force = np.zeros(at[-1])
+        self.force = np.zeros(starts[-1])
         for block, p in zip(self.pantograph_slices, pantographs, strict=True):
             self.M[block, block], self.C[block, block], self.K[block, block] = p.mass, p.damping, p.stiffness
             self.force[block] = p.force
-        self.elongation = np.zeros((at[-1], line.connectors.station.size))
+        self.elongation = np.zeros((starts[-1], line.connectors.station.size))
         self.elongation[inner] = connector_directions(line)[self.free].toarray()
         self.rest = line.state.deflection.ravel()[bandwidth_order(line)]
 

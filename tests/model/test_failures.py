@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from helpers.lines import simple_line
+from helpers.lines import PANTOGRAPH_2002, simple_line
 from pantocheck.model import Dropper, MessengerSupport, Passage, SteadyArm, chain, simulate_passage
 from pantocheck.model.discretised_line import discretise
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
@@ -13,17 +13,15 @@ from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.simulation import start_motion
 from pantocheck.model.failures import DidNotConverge, NoInitialState
 
-PANTOGRAPH = chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.array([90.0, 10.0]), 120.0, 0, 50e3)
-PASSAGE = Passage((PANTOGRAPH,), (20.0,), 50.0, 0.05, 1e-3)
+PASSAGE = Passage((PANTOGRAPH_2002,), (20.0,), 50.0, 0.05, 1e-3)
 
 
 def test_discretise_names_a_dropper_that_would_have_to_push() -> None:
     """A dropper that holds the wire 10 cm below its neighbours."""
     line = simple_line()
-    droppers = list(line.droppers)
-    droppers[4] = replace(droppers[4], contact_wire_height=-0.1)
+    droppers = tuple(replace(d, contact_wire_height=-0.1) if d.position == 30.0 else d for d in line.droppers)
     with pytest.raises(NoInitialState, match=r"x = 30 m would have to push with \d+"):
-        discretise(replace(line, droppers=tuple(droppers)), 1.0)
+        discretise(replace(line, droppers=droppers), 1.0)
 
 
 def test_discretise_rejects_wires_that_cross() -> None:
@@ -55,14 +53,8 @@ def test_discretise_names_an_unknown_wire(part: dict[str, tuple[object, ...]]) -
 def test_simulate_passage_fails_for_nan_in_a_pantograph(where: str) -> None:
     """The simulation raises DidNotConverge or rejects a matrix before; it never returns a history of NaN."""
     values = {"uplift": 120.0, "mass": 7.2, "contact": 50e3} | {where: np.nan}
-    pantograph = chain(
-        np.array([15.0, values["mass"]]),
-        np.array([50.0, 4200.0]),
-        np.array([90.0, 10.0]),
-        values["uplift"],
-        0,
-        values["contact"],
-    )
+    masses, stiffness, damping = np.array([15.0, values["mass"]]), np.array([50.0, 4200.0]), np.array([90.0, 10.0])
+    pantograph = chain(masses, stiffness, damping, values["uplift"], 0, values["contact"])
     with pytest.raises((DidNotConverge, ValueError, np.linalg.LinAlgError)):
         simulate_passage(discretise(simple_line(), 1.0), replace(PASSAGE, pantographs=(pantograph,)))
 

@@ -4,17 +4,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy.sparse as sp
+from scipy.sparse.linalg import eigsh
 
 from helpers.central_differences import contact_force
-from helpers.lines import Array, simple_line
-from pantocheck.model import Catenary, Kind, Passage, Rayleigh, Wire, chain, discretise, simulate_passage
-from pantocheck.model.fem.beam import pinned_frequencies
+from helpers.lines import PANTOGRAPH_2002, Array, simple_line
+from pantocheck.model import Kind, Passage, Rayleigh, discretise, simulate_passage
 from pantocheck.model.modal.modes import compute_modes
 from pantocheck.model.pantograph import preload_springs
 
-PANTOGRAPH = preload_springs(
-    chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.array([90.0, 10.0]), 120.0, 0, 50e3), np.full(2, 0.06)
-)
+PANTOGRAPH = preload_springs(PANTOGRAPH_2002, np.full(2, 0.06))
 RATE = 500.0
 BANDS = ((0.0, 5.0), (5.0, 20.0), (20.0, 50.0))
 
@@ -38,17 +37,9 @@ def test_passage_and_explicit_integration_agree_in_every_band() -> None:
     assert np.abs(kernel_force[settled]).max() == pytest.approx(np.abs(explicit_force[settled]).max(), rel=0.01)
 
 
-def test_compute_modes_gives_the_closed_form_of_a_tensioned_beam() -> None:
-    """Hermite elements of 0.2 m on 30 m converge with h^4: the first 20 modes within 1e-6."""
-    wire = Wire("contact", Kind.CONTACT_WIRE, 0.0, 30.0, 22e3, 1.35, 195.0)
-    found = compute_modes(discretise(Catenary((wire,)), 0.2), 20).frequency
-    assert found == pytest.approx(pinned_frequencies(20, 30.0, 22e3, 195.0, 1.35), rel=1e-6)
-
-
 def test_compute_modes_agrees_with_scikit_fem_on_a_whole_line() -> None:
     """scikit-fem assembles the same two beams, springs are added by hand: 1e-6 for two eigenvalue solvers."""
     skfem = pytest.importorskip("skfem", reason="scikit-fem comes with the extra 'peers'")
-    from scipy.sparse.linalg import eigsh
     from skfem.helpers import d, dd
 
     catenary = simple_line(3)
@@ -68,8 +59,6 @@ def test_compute_modes_agrees_with_scikit_fem_on_a_whole_line() -> None:
             return wire.mass_per_length * u * v
 
         blocks.append((stiffness.assemble(basis).tolil(), mass.assemble(basis).tolil(), basis))
-    import scipy.sparse as sp
-
     K = sp.lil_matrix(sp.block_diag([block[0] for block in blocks]))
     M = sp.csc_matrix(sp.block_diag([block[1] for block in blocks]))
     size = blocks[0][0].shape[0]

@@ -16,15 +16,14 @@ def pantograph(damping: float = 1.0) -> Pantograph:
 
 def test_frequencies_of_the_undamped_chain_are_the_published_ones() -> None:
     """Base fixed, head free: 0.4227, 5.687, 10.980 Hz, to half a unit of the fourth digit."""
-    found = frequencies(pantograph())
-    assert found == pytest.approx([0.4227, 5.687, 10.980], rel=1.2e-4)
+    assert frequencies(pantograph()) == pytest.approx([0.4227, 5.687, 10.980], rel=1.2e-4)
 
 
 def test_frequencies_are_the_roots_of_the_characteristic_polynomial() -> None:
     """Polynomial for masses a, b, c on springs p, q, r, without the assembly of the package."""
     (a, b, c), (p, q, r) = MASSES, STIFFNESS
-    one, two, three = np.poly1d([-a, p + q]), np.poly1d([-b, q + r]), np.poly1d([-c, r])
-    roots = np.sort((one * two * three - r**2 * one - q**2 * three).roots)
+    lower, middle, upper = np.poly1d([-a, p + q]), np.poly1d([-b, q + r]), np.poly1d([-c, r])
+    roots = np.sort((lower * middle * upper - r**2 * lower - q**2 * upper).roots)
     np.testing.assert_allclose(frequencies(pantograph()), np.sqrt(roots) / (2 * np.pi), rtol=1e-10)
 
 

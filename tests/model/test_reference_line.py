@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 from scipy.signal import butter, sosfiltfilt
 
-from helpers.lines import Array, simple_line
+from helpers.lines import PANTOGRAPH_2002, Array, simple_line
 from pantocheck.model import History, Kind, Passage, Rayleigh, chain, simulate_passage
 from pantocheck.model.discretised_line import discretise
 from pantocheck.model.dynamics.active_window import causal_reach
 
-# Data of the pantograph, damping and limits: published_values.toml, en50318_2002.
-PANTOGRAPH = chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.array([90.0, 10.0]), 120.0, 0, 50e3)
+# Damping and limits: published_values.toml, en50318_2002.
 DAMPING = {kind: Rayleigh(0.0125, 1e-4) for kind in Kind}
 
 
@@ -21,7 +20,7 @@ def passage(speed_km_h: float, element_length: float = 0.5, time_step: float = 1
     """Passage from the first span to the end of the seventh."""
     speed = speed_km_h / 3.6
     supports = tuple(("contact", x) for x in (240.0, 300.0, 360.0))
-    task = Passage((PANTOGRAPH,), (20.0,), speed, 400.0 / speed, time_step, supports, reach)
+    task = Passage((PANTOGRAPH_2002,), (20.0,), speed, 400.0 / speed, time_step, supports, reach)
     return simulate_passage(discretise(simple_line(spans=10, damping=DAMPING), element_length), task)
 
 

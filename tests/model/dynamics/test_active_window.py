@@ -4,18 +4,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from helpers.lines import DAMPED, simple_line
-from pantocheck.model import Passage, chain, simulate_passage
+from helpers.lines import DAMPED, PANTOGRAPH_2002, simple_line
+from pantocheck.model import Passage, simulate_passage
 from pantocheck.model.discretised_line import discretise
-
-PANTOGRAPH = chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.array([90.0, 10.0]), 120.0, 0, 50e3)
 
 
 def test_growing_active_window_changes_forces_and_motion_by_rounding_only() -> None:
     """Start at mid-line, reach longer than the line: forces, and motion at every support on both sides, to rounding."""
     line = discretise(simple_line(spans=10, damping=DAMPED), 0.5)
     supports = tuple(("contact", x) for x in np.arange(60.0, 600.0, 60.0))
-    passage = Passage((PANTOGRAPH, PANTOGRAPH), (290.0, 250.0), 70.0, 1.5, 1e-3, supports)
+    passage = Passage((PANTOGRAPH_2002, PANTOGRAPH_2002), (290.0, 250.0), 70.0, 1.5, 1e-3, supports)
     whole, growing = simulate_passage(line, passage), simulate_passage(line, replace(passage, reach=1e6))
     np.testing.assert_allclose(growing.force, whole.force, rtol=0, atol=1e-9)
     np.testing.assert_allclose(growing.motion[..., 0], whole.motion[..., 0], rtol=0, atol=1e-12)

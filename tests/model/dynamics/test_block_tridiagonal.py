@@ -25,9 +25,9 @@ def inverse_of_assembled(line: DiscretisedLine, time_step: float) -> Array:
     effective = (
         stepping_mass(line, time_step) + time_step / 2 * matrices.damping + time_step**2 / 4 * matrices.stiffness
     )
-    kept = bandwidth_order(line)[matrices.free]
+    order = bandwidth_order(line)[matrices.free]
     inverse = np.zeros((line.beams.free.size,) * 2)
-    inverse[np.ix_(kept, kept)] = splu(effective.tocsc()).solve(np.eye(kept.size))
+    inverse[np.ix_(order, order)] = splu(effective.tocsc()).solve(np.eye(order.size))
     return inverse.reshape(line.beams.free.shape * 2)
 
 
@@ -61,5 +61,5 @@ def test_solve_line_agrees_with_a_sparse_solver(line_and_step: tuple[Discretised
     solve_line(factor, 0, w.shape[1] - 1, w, r)
     for row in range(2):
         expected = np.einsum("siab,ab->si", inverse[row, :, :, row], load[row])
-        found = np.stack([w[row], r[row]], axis=1)
-        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
+        computed = np.stack([w[row], r[row]], axis=1)
+        np.testing.assert_allclose(computed, expected, rtol=0, atol=1e-12 * np.abs(expected).max())

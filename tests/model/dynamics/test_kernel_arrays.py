@@ -45,7 +45,7 @@ def test_modal_damping_makes_the_whole_line_active() -> None:
     """A mode moves every station, so the active window must not be limited; without modes it is."""
     line = discretise(simple_line(damping=dict.fromkeys(Kind, DAMPED[Kind.DROPPER])), 2.0)
     modal = replace(line, catenary=replace(line.catenary, modal_damping=(ModalBand(0.8, 1.5, 0.02),)))
-    limited, whole = (build_kernel_arrays(one, 1e-3, reach=50.0).window for one in (line, modal))
+    limited, whole = (build_kernel_arrays(variant, 1e-3, reach=50.0).window for variant in (line, modal))
     assert (limited.reach, limited.wave_front_speed) == (50.0, max_wave_speed(line))
     assert (whole.reach, whole.wave_front_speed) == (math.inf, math.inf)
 

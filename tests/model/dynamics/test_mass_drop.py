@@ -21,10 +21,10 @@ def test_mass_drop_of_a_light_mass_is_a_sum_of_decaying_modes() -> None:
     decay = simulate_mass_drop(LINE, 1.0, test)
     assert decay.last_slack is None
     line = discretise(LINE, 1.0, (33.0, 21.0, 45.0))
-    found = compute_modes(line, 140)
-    zeta, omega = damping_ratios(line, found), 2 * np.pi * found.frequency
+    modes = compute_modes(line, 140)
+    zeta, omega = damping_ratios(line, modes), 2 * np.pi * modes.frequency
     station = line.mesh.station
-    participation = found.shape[:, 0, station(33.0), 0] * -2.0 * GRAVITY / omega**2
+    participation = modes.shape[:, 0, station(33.0), 0] * -2.0 * GRAVITY / omega**2
     after = decay.time > 0
     # The load still acts at time zero, so the free decay starts half a step later.
     t = decay.time[after] - 0.5e-3
@@ -33,7 +33,7 @@ def test_mass_drop_of_a_light_mass_is_a_sum_of_decaying_modes() -> None:
         np.cos(np.outer(t, damped)) + zeta / np.sqrt(1 - zeta**2) * np.sin(np.outer(t, damped))
     )
     for sensor, row, x in ((0, 0, 21.0), (1, 1, 45.0)):
-        expected = swing @ (participation * found.shape[:, row, station(x), 0])
+        expected = swing @ (participation * modes.shape[:, row, station(x), 0])
         difference = decay.motion[sensor, after, 0] - expected
         assert np.abs(difference).max() < 0.01 * np.abs(expected).max()
 

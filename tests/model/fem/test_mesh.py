@@ -51,5 +51,5 @@ def test_mesh_rows_share_wires_of_one_kind_that_do_not_overlap() -> None:
 )
 def test_find_element_returns_index_and_share_of_the_length(position: float, element: int, share: float) -> None:
     """Elements of 1 m and 2 m; a station belongs to the element before it, the first station to the first element."""
-    found, length, s = find_element(np.array([0.0, 1.0, 3.0]), position)
-    assert (found, length, s) == (element, 1.0 + element, share)
+    index, length, s = find_element(np.array([0.0, 1.0, 3.0]), position)
+    assert (index, length, s) == (element, 1.0 + element, share)

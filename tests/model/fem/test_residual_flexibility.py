@@ -13,8 +13,8 @@ def fine_mesh_flexibility(h: float, tension: float, bending_stiffness: float, s:
     piece = h / elements
     stiffness = np.zeros((2 * elements + 2,) * 2)
     for e in range(elements):
-        at = slice(2 * e, 2 * e + 4)
-        stiffness[at, at] += beam.stiffness(piece, tension, bending_stiffness)
+        unknowns = slice(2 * e, 2 * e + 4)
+        stiffness[unknowns, unknowns] += beam.stiffness(piece, tension, bending_stiffness)
     load = np.zeros(2 * elements + 2)
     load[2 * round(s * elements)] = 1.0
     free = slice(2, -2)
@@ -27,16 +27,16 @@ def test_residual_flexibility_without_tension_approaches_a_clamped_beam(s: float
     for a force near an end, where the deflection is small.
     """
     exact = (s * (1 - s)) ** 3 * 0.5**3 / (3 * 195.0)
-    found = local_flexibility(condensed_bubbles(0.5, 0.0, 195.0), s)
-    assert 0.75 * exact < found <= exact * (1 + 1e-9)
+    flexibility = local_flexibility(condensed_bubbles(0.5, 0.0, 195.0), s)
+    assert 0.75 * exact < flexibility <= exact * (1 + 1e-9)
 
 
 @pytest.mark.parametrize("s", [0.25, 0.5, 0.75])
 def test_residual_flexibility_with_tension_approaches_a_fine_mesh(s: float) -> None:
     """Ritz's method converges from below; 12 % is a hundredth of the total flexibility of the contact."""
     exact = fine_mesh_flexibility(0.5, 22e3, 195.0, s)
-    found = local_flexibility(condensed_bubbles(0.5, 22e3, 195.0), s)
-    assert 0.88 * exact < found <= exact * (1 + 1e-9)
+    flexibility = local_flexibility(condensed_bubbles(0.5, 22e3, 195.0), s)
+    assert 0.88 * exact < flexibility <= exact * (1 + 1e-9)
 
 
 def test_residual_flexibility_vanishes_for_strings_and_at_stations() -> None:

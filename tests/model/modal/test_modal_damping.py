@@ -3,9 +3,8 @@
 from dataclasses import replace
 
 import numpy as np
-from scipy.linalg import eig
 
-from helpers.lines import Array, simple_line
+from helpers.lines import Array, complex_roots, simple_line
 from pantocheck.model import DiscretisedLine, Kind, ModalBand, Rayleigh, discretise
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
 from pantocheck.model.dynamics.motion import Motion
@@ -34,18 +33,13 @@ def full_damping(line: DiscretisedLine) -> Array:
 def test_complex_eigenvalues_have_the_modal_ratios_and_rayleigh_ratios_elsewhere() -> None:
     """Uniform Rayleigh damping couples no modes, so both hold exactly; dense eigenvalues carry about ten digits."""
     line = damped_line()
-    found = compute_modes(line, 12)
-    expected = damping_ratios(line, found)
-    chosen = (found.frequency >= BAND.from_frequency) & (found.frequency < BAND.to_frequency)
+    modes = compute_modes(line, 12)
+    expected = damping_ratios(line, modes)
+    chosen = (modes.frequency >= BAND.from_frequency) & (modes.frequency < BAND.to_frequency)
     assert 1 < chosen.sum() < 6
     expected[chosen] = BAND.damping_ratio
     matrices = assemble_matrices(line)
-    n = matrices.free.size
-    mass, stiffness = matrices.mass.toarray(), matrices.stiffness.toarray()
-    lower = [-np.linalg.solve(mass, stiffness), -np.linalg.solve(mass, full_damping(line))]
-    roots = eig(np.block([[np.zeros((n, n)), np.eye(n)], lower]), right=False)
-    roots = roots[roots.imag > 0]
-    roots = roots[np.argsort(np.abs(roots))][:12]
+    roots = complex_roots(matrices.mass.toarray(), full_damping(line), matrices.stiffness.toarray(), 12)
     np.testing.assert_allclose(-roots.real / np.abs(roots), expected, rtol=1e-5)
 
 

@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-from scipy.linalg import eig
 
-from helpers.lines import DAMPED, bare_wire, simple_line
+from helpers.lines import DAMPED, bare_wire, complex_roots, simple_line
 from pantocheck.model import Kind, Rayleigh, discretise
 from pantocheck.model.discretised_line import with_damping
 from pantocheck.model.fem.assembly import assemble_matrices
@@ -14,17 +13,17 @@ from pantocheck.model.modal.modes import component_energies, compute_modes, damp
 
 def test_compute_modes_of_a_bare_wire_are_the_closed_form() -> None:
     """Elements of 1 m on a wave of 12 m and more: the measured error is 2e-7."""
-    found = compute_modes(discretise(bare_wire(60.0), 1.0), 10)
-    np.testing.assert_allclose(found.frequency, pinned_frequencies(10, 60.0, 20e3, 195.0, 1.35), rtol=1e-6)
+    modes = compute_modes(discretise(bare_wire(60.0), 1.0), 10)
+    np.testing.assert_allclose(modes.frequency, pinned_frequencies(10, 60.0, 20e3, 195.0, 1.35), rtol=1e-6)
 
 
 def test_component_energies_of_mass_normalised_modes_add_up() -> None:
     """Sums of 7 kinds of component against 1 and omega squared: rounding, magnified by the condition of K."""
     line = discretise(simple_line(damping=DAMPED), 1.0)
-    found = compute_modes(line, 12)
-    energies = component_energies(line, found)
+    modes = compute_modes(line, 12)
+    energies = component_energies(line, modes)
     np.testing.assert_allclose(energies.mass.sum(axis=1), 1.0, rtol=1e-10)
-    np.testing.assert_allclose(energies.stiffness.sum(axis=1), (2 * np.pi * found.frequency) ** 2, rtol=1e-8)
+    np.testing.assert_allclose(energies.stiffness.sum(axis=1), (2 * np.pi * modes.frequency) ** 2, rtol=1e-8)
     assert energies.mass.min() > -1e-12
     assert energies.stiffness.min() > -1e-6
 
@@ -32,29 +31,22 @@ def test_component_energies_of_mass_normalised_modes_add_up() -> None:
 def test_damping_ratios_follow_from_component_energies() -> None:
     """zeta = sum (a k + b m) / 2 omega, the two sides computed by different sums: rounding."""
     line = discretise(simple_line(damping=DAMPED), 1.0)
-    found = compute_modes(line, 12)
-    energies = component_energies(line, found)
+    modes = compute_modes(line, 12)
+    energies = component_energies(line, modes)
     expected = np.zeros(12)
     for k, kind in enumerate(energies.kinds):
         rayleigh = DAMPED.get(kind, Rayleigh())
         expected += rayleigh.stiffness_coefficient * energies.stiffness[:, k]
         expected += rayleigh.mass_coefficient * energies.mass[:, k]
-    np.testing.assert_allclose(damping_ratios(line, found), expected / (4 * np.pi * found.frequency), rtol=1e-9)
+    np.testing.assert_allclose(damping_ratios(line, modes), expected / (4 * np.pi * modes.frequency), rtol=1e-9)
 
 
 @pytest.mark.parametrize("coefficients", [Rayleigh(0.05, 0.0), Rayleigh(0.0, 1e-4)])
 def test_damping_ratios_of_uniform_rayleigh_damping_equal_complex_eigenvalues(coefficients: Rayleigh) -> None:
     """Proportional damping: ratio of mode j is exactly its energy sum; dense eigenvalues carry about ten digits."""
     line = with_damping(discretise(simple_line(spans=1), 2.0), dict.fromkeys(Kind, coefficients))
-    found = compute_modes(line, 6)
+    modes = compute_modes(line, 6)
     matrices = assemble_matrices(line)
-    n = matrices.free.size
-    mass, damping, stiffness = (m.toarray() for m in (matrices.mass, matrices.damping, matrices.stiffness))
-    state = np.block(
-        [[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(mass, stiffness), -np.linalg.solve(mass, damping)]]
-    )
-    roots = eig(state, right=False)
-    roots = roots[roots.imag > 0]
-    roots = roots[np.argsort(np.abs(roots))][:6]
-    np.testing.assert_allclose(np.abs(roots) / (2 * np.pi), found.frequency, rtol=1e-6)
-    np.testing.assert_allclose(-roots.real / np.abs(roots), damping_ratios(line, found), rtol=1e-6)
+    roots = complex_roots(*(m.toarray() for m in (matrices.mass, matrices.damping, matrices.stiffness)), count=6)
+    np.testing.assert_allclose(np.abs(roots) / (2 * np.pi), modes.frequency, rtol=1e-6)
+    np.testing.assert_allclose(-roots.real / np.abs(roots), damping_ratios(line, modes), rtol=1e-6)

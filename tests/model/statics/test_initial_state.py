@@ -58,10 +58,10 @@ def end_pull(line: DiscretisedLine, name: str) -> float:
     row = line.mesh.row_of[name, "z"]
     stiffness = wire_stiffness(line.beams, row)
     residual = (stiffness @ line.state.deflection[row].ravel() - weight(line.beams, row, GRAVITY))[::2]
-    held = [line.mesh.station(x) for x in (line.catenary.wire(name).start, line.catenary.wire(name).end)]
+    supported = [line.mesh.station(x) for x in (line.catenary.wire(name).start, line.catenary.wire(name).end)]
     if line.catenary.wire(name).kind is Kind.MESSENGER_WIRE:
-        held += [line.mesh.station(s.position) for s in line.catenary.messenger_supports]
-    return float(residual[np.unique(held)].sum())
+        supported += [line.mesh.station(s.position) for s in line.catenary.messenger_supports]
+    return float(residual[np.unique(supported)].sum())
 
 
 @pytest.mark.parametrize("carries_share", [True, False])
@@ -86,8 +86,8 @@ def test_initial_state_is_in_equilibrium_at_every_unknown() -> None:
     for arm, force in zip(line.catenary.steady_arms, line.state.arm_force[:, 1], strict=True):
         pulled[2 * line.mesh.station(arm.position)] += force
     residual = (pulled - wires)[place] - connector_directions(line) @ line.connectors.preload
-    held = {2 * (line.mesh.rows * line.mesh.station(s.position) + 1) for s in line.catenary.messenger_supports}
-    free = [unknown for unknown in assemble_matrices(line).free if unknown not in held]
+    supported = {2 * (line.mesh.rows * line.mesh.station(s.position) + 1) for s in line.catenary.messenger_supports}
+    free = [unknown for unknown in assemble_matrices(line).free if unknown not in supported]
     np.testing.assert_allclose(residual[free], 0.0, atol=2.4e-6)
 
 
@@ -107,8 +107,8 @@ def test_tensions_of_a_level_string_are_the_weights_of_its_fields() -> None:
     catenary = simple_line(spans=2)
     strings = tuple(replace(wire, bending_stiffness=0.0) for wire in catenary.wires)
     coarse, fine = (discretise(replace(catenary, wires=strings), h).state for h in (0.2, 0.1))
-    held = np.sort([*(d.position for d in catenary.droppers), 0.0, 60.0, 120.0])
-    share = {x: (b - a) / 2 * 1.35 * GRAVITY for a, x, b in zip(held, held[1:], held[2:], strict=False)}
+    supported = np.sort([*(d.position for d in catenary.droppers), 0.0, 60.0, 120.0])
+    share = {x: (b - a) / 2 * 1.35 * GRAVITY for a, x, b in zip(supported, supported[1:], supported[2:], strict=False)}
     tension = 2 * fine.dropper_tension - coarse.dropper_tension
     np.testing.assert_allclose(tension, [share[d.position] for d in catenary.droppers], rtol=2e-4)
     assert 2 * fine.arm_force[0, 1] - coarse.arm_force[0, 1] == pytest.approx(share[60.0], rel=2e-4)
@@ -183,8 +183,8 @@ def test_clamps_join_wires_at_one_height_and_balance_them() -> None:
     row = line.mesh.row_of["stitch", "z"]
     messenger = line.mesh.row_of["messenger", "z"]
     for clamp in clamps:
-        at = line.mesh.station(clamp.position)
-        assert line.state.deflection[row, at, 0] == line.state.deflection[messenger, at, 0]
+        station = line.mesh.station(clamp.position)
+        assert line.state.deflection[row, station, 0] == line.state.deflection[messenger, station, 0]
     middle = line.mesh.station(60.0)
     sag = line.state.deflection[row, line.mesh.station(52.0), 0] - line.state.deflection[row, middle, 0]
     assert sag == pytest.approx(0.31 * GRAVITY * 16.0**2 / (8 * 3500.0), rel=1e-9)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from helpers.lines import Array, simple_line
+from helpers.lines import PANTOGRAPH_2002, Array, simple_line
 from pantocheck.model import (
     Catenary,
     DiscretisedLine,
@@ -14,7 +14,6 @@ from pantocheck.model import (
     Passage,
     SteadyArm,
     Wire,
-    chain,
     discretise,
     simulate_passage,
 )
@@ -24,9 +23,7 @@ from pantocheck.model.pantograph import preload_springs
 from pantocheck.model.statics.elasticity import static_uplift
 
 SPAN, STAGGER, TENSION = 60.0, 0.2, 20e3
-PANTOGRAPH = preload_springs(
-    chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.array([90.0, 10.0]), 120.0, 0, 50e3), np.full(2, 0.06)
-)
+PANTOGRAPH = preload_springs(PANTOGRAPH_2002, np.full(2, 0.06))
 
 
 def with_stagger(catenary: Catenary, contact: float, spans: int) -> Catenary:
@@ -64,9 +61,9 @@ def test_zero_stagger_gives_the_forces_of_the_vertical_plane() -> None:
     flat = discretise(plane, 0.5)
     assert "y" not in flat.mesh.row_field
     assert lateral.state.dropper_length == pytest.approx(flat.state.dropper_length, rel=1e-13)
-    ours, theirs = simulate_passage(lateral, passage()).force, simulate_passage(flat, passage()).force
-    assert np.ptp(theirs) > 50
-    assert np.abs(ours - theirs).max() < 1e-7
+    force, expected = (simulate_passage(line, passage()).force for line in (lateral, flat))
+    assert np.ptp(expected) > 50
+    assert np.abs(force - expected).max() < 1e-7
 
 
 def test_steady_arm_carries_the_change_of_direction_of_the_wire() -> None:
@@ -109,10 +106,11 @@ def test_lateral_forces_balance_on_every_station() -> None:
         stiffness = wire_stiffness(line.beams, row)
         left = -(stiffness @ line.state.deflection[row].ravel())[::2]
         for n, dropper in enumerate(line.catenary.droppers):
-            at = line.mesh.station(dropper.position)
-            left[at] += side * line.state.dropper_tension[n] * line.state.dropper_direction[n, 0]
-        held = {line.mesh.station(SPAN * n) for n in range(spans + 1)}
-        free = [s for s in range(line.mesh.position.size) if s not in held]
+            left[line.mesh.station(dropper.position)] += (
+                side * line.state.dropper_tension[n] * line.state.dropper_direction[n, 0]
+            )
+        supports = [line.mesh.station(SPAN * n) for n in range(spans + 1)]
+        free = np.setdiff1d(np.arange(line.mesh.position.size), supports)
         assert np.abs(left[free]).max() < 1e-8
         if name == "contact":
             for arm, force in zip(line.catenary.steady_arms, line.state.arm_force, strict=True):
@@ -127,7 +125,7 @@ def test_inclined_droppers_lie_along_the_line_between_their_wires() -> None:
     between = _between(line)
     assert line.state.dropper_length == pytest.approx(np.hypot(rise, between), rel=1e-12)
     assert line.state.dropper_direction[:, 0] == pytest.approx(between / line.state.dropper_length, abs=1e-12)
-    # What a dropper carries is set by the vertical plane: its tension is larger by the slant alone.
+    # The vertical component of the tension does not depend on the stagger.
     slanted = plane.state.dropper_tension * line.state.dropper_length / rise
     assert line.state.dropper_tension == pytest.approx(slanted, rel=1e-9)
     assert np.abs(between).max() > 0.1
@@ -136,40 +134,40 @@ def test_inclined_droppers_lie_along_the_line_between_their_wires() -> None:
 def _between(line: DiscretisedLine) -> Array:
     y = line.state.deflection[..., 0]
     upper, lower = line.mesh.row_of["messenger", "y"], line.mesh.row_of["contact", "y"]
-    at = [line.mesh.station(d.position) for d in line.catenary.droppers]
-    return np.asarray(y[upper, at] - y[lower, at])
+    station = [line.mesh.station(dropper.position) for dropper in line.catenary.droppers]
+    return np.asarray(y[upper, station] - y[lower, station])
 
 
 def test_mirrored_stagger_gives_the_same_forces() -> None:
     """The vertical motion does not depend on the side of the stagger, to rounding."""
     spans = 4
     lines = [discretise(with_stagger(simple_line(spans), side * STAGGER, spans), 0.5) for side in (1.0, -1.0)]
-    one, other = (simulate_passage(line, passage(duration=0.3)).force for line in lines)
-    assert np.abs(one - other).max() < 1e-7
+    left, right = (simulate_passage(line, passage(duration=0.3)).force for line in lines)
+    assert np.abs(left - right).max() < 1e-7
 
 
 def test_two_contact_wires_equal_one_of_double_tension_mass_and_stiffness() -> None:
     """Two contact wires share the contact force equally, so that they act as one."""
     single = simple_line(3, dropper_stiffness=2e5)
-    contact = next(wire for wire in single.wires if wire.kind is Kind.CONTACT_WIRE)
-    messenger = next(wire for wire in single.wires if wire.kind is Kind.MESSENGER_WIRE)
+    contact, messenger = single.wires
     doubled = replace(
         contact, tension=2 * contact.tension, mass_per_length=2.70, bending_stiffness=2 * contact.bending_stiffness
     )
-    one = replace(single, wires=(doubled, messenger))
+    heavy = replace(single, wires=(doubled, messenger))
     names = ("left", "right")
     droppers = tuple(Dropper(d.position, d.upper, name, stiffness=1e5) for d in single.droppers for name in names)
     arms = tuple(replace(arm, wire=name, vertical_stiffness=150.0) for arm in single.steady_arms for name in names)
-    two = replace(
+    parallel = replace(
         single,
         wires=(*(replace(contact, name=name) for name in names), messenger),
         droppers=droppers,
         steady_arms=arms,
     )
-    # Each wire has its own penalty: half as stiff, they give as one of the pantograph's.
+    # Each wire has its own penalty contact: two of half the stiffness equal one.
     half = replace(PANTOGRAPH, contact_stiffness=PANTOGRAPH.contact_stiffness / 2)
-    way = passage(duration=0.6)
-    together = simulate_passage(discretise(two, 0.5), replace(way, pantographs=(half,))).force
-    alone = simulate_passage(discretise(one, 0.5), way).force
-    assert np.ptp(alone) > 50
-    assert np.abs(together - alone).max() < 1e-6
+    single_contact = passage(duration=0.6)
+    two_contacts = replace(single_contact, pantographs=(half,))
+    force = simulate_passage(discretise(parallel, 0.5), two_contacts).force
+    expected = simulate_passage(discretise(heavy, 0.5), single_contact).force
+    assert np.ptp(expected) > 50
+    assert np.abs(force - expected).max() < 1e-6

@@ -36,20 +36,20 @@ def tensions_by_minimisation(load: Array) -> tuple[Array, Array]:
 
 def test_deflections_with_taut_droppers_superpose() -> None:
     """Small loads slacken no dropper: the deflection of the sum is the sum of the deflections, to rounding."""
-    one, two = 10.0 * point_load(LINE, 0, 73.3), -25.0 * point_load(LINE, 1, 111.0)
-    found = [STATICS.deflection(load) for load in (one, two, one + two)]
-    assert not any(f.slack.any() for f in found)
-    summed = found[0].displacement + found[1].displacement
-    np.testing.assert_allclose(found[2].displacement, summed, rtol=0, atol=1e-12)
+    first, second = 10.0 * point_load(LINE, 0, 73.3), -25.0 * point_load(LINE, 1, 111.0)
+    deflections = [STATICS.deflection(load) for load in (first, second, first + second)]
+    assert not any(deflection.slack.any() for deflection in deflections)
+    summed = deflections[0].displacement + deflections[1].displacement
+    np.testing.assert_allclose(deflections[2].displacement, summed, rtol=0, atol=1e-12)
 
 
 def test_deflection_grows_more_than_proportionally_with_slack_droppers() -> None:
     """800 N slacken several droppers: the uplift is a tenth larger than eighty times that of 10 N."""
     lift = [STATICS.deflection(force * point_load(LINE, 0, 90.0)) for force in (10.0, 800.0)]
-    at = LINE.mesh.station(90.0)
+    station = LINE.mesh.station(90.0)
     assert not lift[0].slack.any()
     assert lift[1].slack.sum() >= 3
-    assert lift[1].displacement[0, at, 0] > 1.1 * 80 * lift[0].displacement[0, at, 0]
+    assert lift[1].displacement[0, station, 0] > 1.1 * 80 * lift[0].displacement[0, station, 0]
 
 
 @settings(max_examples=40, deadline=None, derandomize=True)
@@ -60,10 +60,10 @@ def test_slack_droppers_are_those_of_the_convex_minimum(loads: list[tuple[float,
     The conditioning of the complementary problem limits the accuracy: droppers of 1e5 N/m beside wires of 1e3 N/m.
     """
     load = np.sum([force * point_load(LINE, row, x) for x, force, row in loads], axis=0)
-    found = STATICS.deflection(load)
+    deflection = STATICS.deflection(load)
     displacement, tension = tensions_by_minimisation(load)
-    np.testing.assert_allclose(found.tension, tension, rtol=0, atol=1e-6)
-    np.testing.assert_allclose(found.displacement, displacement, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(deflection.tension, tension, rtol=0, atol=1e-6)
+    np.testing.assert_allclose(deflection.displacement, displacement, rtol=0, atol=1e-9)
 
 
 def test_elasticity_is_positive_and_symmetrical() -> None:
