@@ -10,7 +10,14 @@ from pydantic import ValidationError
 from pantocheck.conformance.cases.library import read_limits
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.profile_file import load_profile
-from pantocheck.conformance.command_line.options import BaselineOption, build_options, split_names
+from pantocheck.conformance.command_line.options import (
+    BaselineOption,
+    DriftOption,
+    FormatsOption,
+    OutOption,
+    TrustOption,
+    build_options,
+)
 from pantocheck.conformance.command_line.results_output import EXIT_CODES, print_results
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
 from pantocheck.conformance.grading.baseline import compare_with_baseline
@@ -34,13 +41,9 @@ def assess_command(
     measured: Annotated[
         Path | None, typer.Option(help="Measured record to compare with, for a profile such as line-test.")
     ] = None,
-    out: Annotated[Path, typer.Option(help="Folder for the results.")] = Path("report"),
-    formats: Annotated[
-        str, typer.Option(help="Formats to write, separated by commas: html, pdf, json, junit, md, badge.")
-    ] = "html,pdf,json,junit,md",
-    trust: Annotated[
-        str, typer.Option(help="Lowest trust of rules that count: primary, secondary or provisional.")
-    ] = "secondary",
+    out: OutOption = None,
+    formats: FormatsOption = None,
+    trust: TrustOption = None,
     limits: Annotated[
         Path | None, typer.Option(help="TOML file of your own limits, which replace the rules of the profile.")
     ] = None,
@@ -51,7 +54,7 @@ def assess_command(
         float | None, typer.Option(help="Available uplift at the supports, if the record does not state it.")
     ] = None,
     baseline: BaselineOption = None,
-    drift: Annotated[float, typer.Option(help="Allowed drift of a value from the baseline [%].")] = 1.0,
+    drift: DriftOption = None,
 ) -> None:
     """Assess a simulated or measured record by the rules of a profile.
 
@@ -61,20 +64,21 @@ def assess_command(
 
     pantocheck assess simulated.toml --profile line-test --measured train.toml
     """
-    options = build_options(out=str(out), formats=split_names(formats), trust=trust, drift_pct=drift)
+    options = build_options(out=out, formats=formats, trust=trust, drift_pct=drift)
+    folder = Path(options.out)
     report_formats = check_formats(options.formats)
     rules = load_profile(profile)
     own_limits = () if limits is None else read_limits(limits)
     line = _build_line_table(wave_speed_m_s=wave_speed_m_s, uplift_space_mm=uplift_space_mm)
     earlier = None if baseline is None else read_results(baseline)
-    check_writable(out)
+    check_writable(folder)
     assessed = load_assessed_record(record, rules, line)
     reference = None if measured is None else load_assessed_record(measured, rules, LineTable())
     _check_pantographs(own_limits, len(assessed.pantographs))
     results = assess_record(assessed, rules, options.trust, reference, own_limits)
     if earlier is not None and baseline is not None:
         results = compare_with_baseline(results, earlier, options.drift_pct, baseline.name)
-    print_results(results, write_all(results, out, report_formats))
+    print_results(results, write_all(results, folder, report_formats))
     raise typer.Exit(EXIT_CODES[results.verdict])
 
 

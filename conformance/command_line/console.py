@@ -24,7 +24,7 @@ _STYLES: dict[Verdict, str] = {
 
 
 def console() -> Console:
-    """Standard output, as wide as the terminal or as the variable COLUMNS says."""
+    """Standard output, as wide as the terminal or the variable COLUMNS."""
     output = Console(highlight=False, soft_wrap=False)
     if output.is_terminal or "COLUMNS" in os.environ:
         return output
@@ -70,6 +70,6 @@ def escape_text(text: str) -> Text:
     return Text(strip_control_characters(text))
 
 
-def format_number(value: float | None) -> str:
-    """Number with four significant digits; a dash for None."""
-    return "-" if value is None else f"{value:.4g}"
+def format_number(value: float | None, digits: int = 4) -> str:
+    """Number with some significant digits; a dash for None."""
+    return "-" if value is None else f"{value:.{digits}g}"

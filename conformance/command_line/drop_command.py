@@ -1,5 +1,6 @@
 """`pantocheck drop`: simulated mass drops as records that can be identified like measured ones."""
 
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -7,8 +8,8 @@ from typing import Annotated
 import typer
 from rich.progress import Progress, TaskID
 
-from pantocheck.conformance.command_line.case_choice import choose_case
 from pantocheck.conformance.command_line.console import console, escape_text
+from pantocheck.conformance.command_line.options import choose_case
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
@@ -16,7 +17,12 @@ from pantocheck.conformance.mass_drops.drop_writing import write_drop_csv, write
 from pantocheck.conformance.mass_drops.uff_writing import write_drop_uff
 from pantocheck.conformance.simulation.drop_simulation import require_mass_drop, simulate_drop
 
-SUFFIXES = (".uff", ".csv", ".h5")
+WRITERS: dict[str, Callable[[DropRecord, Path], None]] = {
+    ".uff": write_drop_uff,
+    ".csv": write_drop_csv,
+    ".h5": lambda record, path: write_drop_hdf5((record,), path),
+}
+"""Writer of a record by the suffix of its file."""
 
 
 def drop_command(
@@ -33,8 +39,8 @@ def drop_command(
 
     Then: pantocheck identify drop.uff --out modes
     """
-    if out.suffix.lower() not in SUFFIXES:
-        raise InputError(str(out), f"format '{out.suffix}' cannot be written", f"Write one of {', '.join(SUFFIXES)}.")
+    if (write := WRITERS.get(out.suffix.lower())) is None:
+        raise InputError(str(out), f"format '{out.suffix}' cannot be written", f"Write one of {', '.join(WRITERS)}.")
     check_writable(out.parent)
     drop_case = choose_case(case, lambda each: each.file.mass_drop is not None, "with a [mass_drop] table")
     drops = len(require_mass_drop(drop_case).drop)
@@ -48,7 +54,7 @@ def drop_command(
             several = number is None and drops > 1
             path = out.with_name(f"{out.stem}-{n}{out.suffix}") if several else out
             record = simulation.record
-            _write(record, path)
+            write(record, path)
             slack = simulation.decay.last_slack
             droppers = "no slack dropper after the release" if slack is None else f"last slack dropper at {slack:.2f} s"
             text = f"{path}: {record.duration:g} s, {len(record.channels)} sensors, {droppers}"
@@ -57,13 +63,3 @@ def drop_command(
 
 def _advance(bar: Progress, task: TaskID, share: float) -> None:
     bar.update(task, completed=share)
-
-
-def _write(record: DropRecord, path: Path) -> None:
-    match path.suffix.lower():
-        case ".uff":
-            write_drop_uff(record, path)
-        case ".csv":
-            write_drop_csv(record, path)
-        case _:
-            write_drop_hdf5((record,), path)

@@ -1,41 +1,86 @@
-"""Options of the commands that grade."""
+"""Options and the choice of a case that several commands share."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
 import typer
 from pydantic import ValidationError
 
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.validation_messages import build_input_error
 from pantocheck.conformance.plan import Plan, read_plan
 
+OutOption = Annotated[Path | None, typer.Option(help="Folder for the results.", show_default="report")]
+FormatsOption = Annotated[
+    str | None,
+    typer.Option(
+        help="Formats to write, separated by commas: html, pdf, json, junit, md, badge.",
+        show_default="html,pdf,json,junit,md",
+    ),
+]
+TrustOption = Annotated[
+    str | None,
+    typer.Option(
+        help="Lowest trust of limits that count: primary, secondary or provisional.", show_default="secondary"
+    ),
+]
 BaselineOption = Annotated[
     Path | None, typer.Option(help="Earlier results.json; a value that drifts from it fails, apart from the limits.")
 ]
+DriftOption = Annotated[
+    float | None, typer.Option(help="Allowed drift of a value from the baseline [%].", show_default="1")
+]
 
 
-def build_options(plan: Path | None = None, **options: object) -> Plan:
+def build_options(plan: Path | None = None, formats: str | None = None, **options: object) -> Plan:
     """Combine the options of the command line with those of a plan.
 
     Parameters
     ----------
     plan : Path or None
         File of the plan.
+    formats : str or None
+        Names of formats, separated by commas.
     options : object
-        Options of the command line by their key in a plan; they replace those of the plan unless they are None.
+        Other options of the command line by their key in a plan; they replace those of the plan unless they are None.
 
     Raises
     ------
     InputError
         The plan cannot be read, or a value of the plan or of the command line is wrong.
     """
-    base = read_plan(plan).model_dump() if plan is not None else {}
+    if formats is not None:
+        options["formats"] = tuple(name.strip() for name in formats.split(",") if name.strip())
+    texts = {key: str(value) if isinstance(value, Path) else value for key, value in options.items()}
+    base = {} if plan is None else read_plan(plan).model_dump()
     try:
-        return Plan.model_validate(base | {key: value for key, value in options.items() if value is not None})
+        return Plan.model_validate(base | {key: value for key, value in texts.items() if value is not None})
     except ValidationError as error:
         raise build_input_error(error, Plan, "command line") from None
 
 
-def split_names(text: str | None) -> tuple[str, ...] | None:
-    """Split names at commas; None stays None."""
-    return None if text is None else tuple(name.strip() for name in text.split(",") if name.strip())
+def choose_case(name: str, accept: Callable[[Case], bool], kind: str) -> Case:
+    """Find the only case of a kind.
+
+    Parameters
+    ----------
+    name : str
+        Id, glob or path.
+    accept : callable
+        Condition on a case.
+    kind : str
+        Condition in words, for the message.
+
+    Raises
+    ------
+    InputError
+        No case, or several cases, meet the condition.
+    """
+    cases = [case for case in select_cases([name]) if accept(case)]
+    if len(cases) != 1:
+        ids = ", ".join(case.id for case in cases) or "none"
+        raise InputError(f"case '{name}'", f"expected one case {kind}, found {ids}", "Give the id of one case.")
+    return cases[0]

@@ -35,9 +35,11 @@ def build_rest_tables(case: Case) -> list[RenderableType]:
     element = case.file.discretisation.element_m
     quantities = compute_static_quantities(case, discretise(build_catenary(case.line), element))
     quantities.setdefault("natural_frequency_Hz", tuple(map(float, first_modes(case.line, element).frequency)))
-    models = dict.fromkeys(case.pantograph_files)
-    tables = [_build_quantity_table(quantities), _build_elasticity_table(case, quantities)]
-    tables += [_build_apparent_mass_table(model) for model in models]
+    tables = [
+        _build_quantity_table(quantities),
+        _build_elasticity_table(case, quantities),
+        *map(_build_apparent_mass_table, dict.fromkeys(case.pantograph_files)),
+    ]
     return [Padding(table, (1, 0, 0, 0)) for table in tables]
 
 

@@ -17,7 +17,6 @@ from pantocheck.conformance.runner import Progress as ResultCallback
 EXIT_CODES: dict[Verdict, int] = {"pass": 0, "info": 0, "fail": 1, "skip": 1, "error": 2}
 """Exit code by verdict; `skip` is not 0, because a limit without a grade is not met."""
 
-
 LEGEND = "+-: uncertainty of the value; shift: its change when the analysis section is shifted"
 
 
@@ -72,8 +71,8 @@ def _build_criterion_table(case: CaseResult) -> Table:
         table.add_row(
             escape_text(_name(item)),
             format_number(item.value),
-            "-" if error is None else f"{error:.2g}",
-            "-" if item.spread is None else f"{item.spread:.2g}",
+            format_number(error, 2),
+            format_number(item.spread, 2),
             _format_limits(item),
             "-" if item.margin is None else f"{item.margin:+.2f}",
             style_verdict(item.verdict),

@@ -6,7 +6,14 @@ from typing import Annotated
 import typer
 
 from pantocheck.conformance.command_line.guard import INTERRUPTED
-from pantocheck.conformance.command_line.options import BaselineOption, build_options, split_names
+from pantocheck.conformance.command_line.options import (
+    BaselineOption,
+    DriftOption,
+    FormatsOption,
+    OutOption,
+    TrustOption,
+    build_options,
+)
 from pantocheck.conformance.command_line.results_output import EXIT_CODES, print_results, report_progress
 from pantocheck.conformance.plan import prepare_plan
 from pantocheck.conformance.reports.formats.report_writers import write_all
@@ -24,24 +31,14 @@ def run_command(
         str | None,
         typer.Option(help="System under test: builtin, record:DIR or command:PROGRAM.", show_default="builtin"),
     ] = None,
-    out: Annotated[Path | None, typer.Option(help="Folder for the results.", show_default="report")] = None,
-    formats: Annotated[
-        str | None,
-        typer.Option(help="Formats to write, separated by commas.", show_default="html,pdf,json,junit,md"),
-    ] = None,
-    trust: Annotated[
-        str | None,
-        typer.Option(
-            help="Lowest trust of limits that count: primary, secondary or provisional.", show_default="secondary"
-        ),
-    ] = None,
+    out: OutOption = None,
+    formats: FormatsOption = None,
+    trust: TrustOption = None,
     limits: Annotated[
         Path | None, typer.Option(help="TOML file of your own limits, which replace those of the cases.")
     ] = None,
     baseline: BaselineOption = None,
-    drift: Annotated[
-        float | None, typer.Option(help="Allowed drift of a value from the baseline [%].", show_default="1")
-    ] = None,
+    drift: DriftOption = None,
     jobs: Annotated[int | None, typer.Option(help="Number of cases that run in parallel.", show_default="1")] = None,
     damping_study: Annotated[
         bool,
@@ -69,11 +66,11 @@ def run_command(
         plan,
         cases=tuple(case) if case else None,
         system=system,
-        out=None if out is None else str(out),
-        formats=split_names(formats),
+        out=out,
+        formats=formats,
         trust=trust,
-        limits=None if limits is None else str(limits),
-        baseline=None if baseline is None else str(baseline),
+        limits=limits,
+        baseline=baseline,
         drift_pct=drift,
         jobs=jobs,
         damping_study=damping_study or None,

@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-from pantocheck.conformance.command_line.case_choice import choose_case
 from pantocheck.conformance.command_line.console import console, escape_text
+from pantocheck.conformance.command_line.options import choose_case
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record_writing import check_record_path, write_record
