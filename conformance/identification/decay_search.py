@@ -63,19 +63,7 @@ class _TestedWindows:
 
 @dataclass(frozen=True)
 class DecaySearch:
-    """Search in the samples after a release.
-
-    Parameters
-    ----------
-    samples : (n, c) ndarray
-        Channels from the release on, low-passed and decimated.
-    begin : int
-        First sample of the fits.
-    dt : float
-        Sampling interval [s].
-    band : FrequencyBand
-        Band of the identification.
-    """
+    """Search in the samples after a release, (n, c), low-passed and decimated to `dt` [s]; fits start at `begin`."""
 
     samples: RealArray
     begin: int

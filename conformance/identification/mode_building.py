@@ -6,14 +6,20 @@ from pantocheck.conformance.array_types import ComplexArray, RealArray
 from pantocheck.conformance.identification.decay_filters import filter_gain
 from pantocheck.conformance.identification.line_fit import FittedBlock, LineFit, RecordFit
 from pantocheck.conformance.identification.mode import Mode, SensorShape
-from pantocheck.conformance.identification.mode_groups import find_group_outliers, number_groups
-from pantocheck.conformance.identification.mode_quality import (
-    is_certain,
-    is_lateral,
-    list_mode_warnings,
-    phase_collinearity,
-)
+from pantocheck.conformance.identification.mode_groups import assign_groups
 from pantocheck.conformance.identification.projection import build_block, estimate_noise, residue_spread, solve_residues
+
+POINTS_IN_HALF_POWER_BAND = 5
+"""Spectral lines that the half-power band should hold (Vo Van, Balmes, Lorang 2015)."""
+
+UNCERTAIN = 0.05
+"""Relative standard deviation above which a damping ratio is uncertain."""
+
+LATERAL = 20.0
+"""Lateral over vertical amplitude above which an oblique mounting of some degrees explains the vertical signal."""
+
+COINCIDENT = 2.0
+"""Half-power bandwidths: the spectrum does not separate two modes that are closer."""
 
 FREQUENCY_REACH = 3
 """Spectral lines on each side that show the residual of a mode."""
@@ -33,7 +39,7 @@ def build_modes(fit: LineFit, spans: int | None) -> tuple[Mode, ...]:
     frequency = np.abs(fit.poles) / (2 * np.pi)
     reported = np.flatnonzero((frequency >= fit.band.low) & (frequency <= fit.band.high))
     modes = [_build_mode(fit, int(j), max((float(share[j]) for share in shares), default=None)) for j in reported]
-    return _assign_groups(modes, spans)
+    return assign_groups(modes, spans)
 
 
 def _build_mode(fit: LineFit, j: int, lateral_share: float | None) -> Mode:
@@ -59,14 +65,55 @@ def _build_mode(fit: LineFit, j: int, lateral_share: float | None) -> Mode:
         sensor_shape=_sensor_shape(best, residues, spread, scale),
         error=_band_error(fit.blocks, pole),
         record=decay.record.name,
-        warnings=list_mode_warnings(frequency, damping, damping_std, linear.duration, nearest, lateral_share),
-        certain=is_certain(damping, damping_std),
-        lateral=is_lateral(lateral_share),
+        warnings=_list_warnings(frequency, damping, damping_std, linear.duration, nearest, lateral_share),
+        certain=_is_certain(damping, damping_std),
+        lateral=_is_lateral(lateral_share),
         amplitude_at_release=_finite(amplitude),
-        phase_collinearity=phase_collinearity(residues),
+        phase_collinearity=_phase_collinearity(residues),
         lateral_over_vertical=lateral_share,
         half_power_points=2 * damping * frequency * linear.duration,
     )
+
+
+def _phase_collinearity(shape: ComplexArray) -> float | None:
+    """Modal phase collinearity (Juang and Pappa 1985): 1 for a normal mode; None with fewer than two sensors."""
+    if shape.size < 2:
+        return None
+    # Moments about the origin, not about the mean: a shape with equal components is a normal mode.
+    xx, yy, xy = (float(np.sum(a * b)) for a, b in ((shape.real,) * 2, (shape.imag,) * 2, (shape.real, shape.imag)))
+    total = (xx + yy) ** 2
+    return ((xx - yy) ** 2 + 4 * xy**2) / total if total > 0 else None
+
+
+def _is_certain(damping_ratio: float, std: float) -> bool:
+    return std < UNCERTAIN * damping_ratio
+
+
+def _is_lateral(lateral_share: float | None) -> bool:
+    return lateral_share is not None and lateral_share > LATERAL
+
+
+def _list_warnings(
+    frequency: float, damping_ratio: float, std: float, duration: float, nearest: float, lateral_share: float | None
+) -> tuple[str, ...]:
+    """Reasons to doubt a mode; `nearest` is the distance to the nearest other mode [Hz]."""
+    warnings = []
+    bandwidth = 2 * damping_ratio * frequency
+    if bandwidth * duration < POINTS_IN_HALF_POWER_BAND:
+        warnings.append(
+            f"half-power band: {bandwidth * duration:.1f} spectral lines in {duration:.0f} s; "
+            f"{POINTS_IN_HALF_POWER_BAND} need a record of {POINTS_IN_HALF_POWER_BAND / bandwidth:.0f} s"
+        )
+    if not _is_certain(damping_ratio, std):
+        relative = 100 * (std / damping_ratio)
+        warnings.append(f"weakly excited: the damping ratio is uncertain by {relative:.0f} % (one standard deviation)")
+    if nearest < COINCIDENT * bandwidth or nearest * duration < 1.5:
+        warnings.append(f"near-coincident: another mode is only {1000 * nearest:.1f} mHz away")
+    if _is_lateral(lateral_share):
+        warnings.append(
+            "lateral: the mode moves the sensors sideways; their mounting explains the signal of the vertical channels"
+        )
+    return tuple(warnings)
 
 
 def _inflation(blocks: tuple[FittedBlock, ...], pole: complex) -> float:
@@ -130,23 +177,6 @@ def _lateral_shares(fit: LineFit, record: RecordFit) -> RealArray | None:
     sideways = np.where(np.abs(lateral.residues) > 4 * noise, np.abs(lateral.residues), 0).max(axis=1)
     upward = np.abs(record.residues).max(axis=1)
     return np.asarray(sideways / np.maximum(upward, np.finfo(float).tiny))
-
-
-def _assign_groups(modes: list[Mode], spans: int | None) -> tuple[Mode, ...]:
-    """Number the groups of the vertical modes and mark the outliers of each group."""
-    vertical = [i for i, mode in enumerate(modes) if not mode.lateral]
-    frequency = np.array([mode.frequency_Hz for mode in modes])
-    certain = np.array([modes[i].frequency_Hz for i in vertical if modes[i].certain])
-    numbers = number_groups(certain, frequency[vertical], spans)
-    groups = {i: int(number) or None for i, number in zip(vertical, numbers, strict=True)}
-    outliers = set[int]()
-    for number in {number for number in groups.values() if number is not None}:
-        members = [i for i in vertical if groups[i] == number and modes[i].certain]
-        flags = find_group_outliers(np.array([modes[i].damping_ratio for i in members]))
-        outliers |= {i for i, flag in zip(members, flags, strict=True) if flag}
-    return tuple(
-        mode.model_copy(update={"group": groups.get(i), "outlier": i in outliers}) for i, mode in enumerate(modes)
-    )
 
 
 def _finite(value: float) -> float:

@@ -10,12 +10,38 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pantocheck.conformance.array_types import IntegerArray, RealArray
+from pantocheck.conformance.identification.mode import Mode
 
 LAST_GROUP = 8
 """Last group that is numbered; beyond it, bending of the spans and bending between droppers mix."""
 
 CLEARANCE = 0.06
 """Half-width of the gap between two groups, over the mean frequency of the first group [-]."""
+
+
+def assign_groups(modes: list[Mode], spans: int | None) -> tuple[Mode, ...]:
+    """Number the groups of the vertical modes and mark the outliers of each group.
+
+    Parameters
+    ----------
+    modes : list of Mode
+        Modes of one line, by frequency.
+    spans : int or None
+        Number of spans; None if unknown.
+    """
+    vertical = [i for i, mode in enumerate(modes) if not mode.lateral]
+    frequency = np.array([mode.frequency_Hz for mode in modes])
+    certain = np.array([modes[i].frequency_Hz for i in vertical if modes[i].certain])
+    numbers = number_groups(certain, frequency[vertical], spans)
+    groups = {i: int(number) or None for i, number in zip(vertical, numbers, strict=True)}
+    outliers = set[int]()
+    for number in {number for number in groups.values() if number is not None}:
+        members = [i for i in vertical if groups[i] == number and modes[i].certain]
+        flags = find_group_outliers(np.array([modes[i].damping_ratio for i in members]))
+        outliers |= {i for i, flag in zip(members, flags, strict=True) if flag}
+    return tuple(
+        mode.model_copy(update={"group": groups.get(i), "outlier": i in outliers}) for i, mode in enumerate(modes)
+    )
 
 
 def number_groups(certain: RealArray, all_modes: RealArray, spans: int | None) -> IntegerArray:

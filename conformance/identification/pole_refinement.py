@@ -91,16 +91,9 @@ def _inverse(matrix: RealArray) -> RealArray:
 
 @dataclass(frozen=True)
 class NormalEquations:
-    """Gauss-Newton normal equations in (decay rate, angular frequency) of every pole.
+    """Gauss-Newton normal equations of the poles: cost r'r, matrix J'J and gradient J'r of residual r and Jacobian J.
 
-    Parameters
-    ----------
-    cost : float
-        Sum of squared residuals over all blocks.
-    matrix : (2 m, 2 m) ndarray
-        J'J of the Jacobian J; decay rates first, then angular frequencies.
-    gradient : (2 m,) ndarray
-        J'r of the residual r.
+    The unknowns are the decay rates, then the angular frequencies.
     """
 
     cost: float
