@@ -74,6 +74,5 @@ def identify_command(
     for text in collect_warnings(data):
         output.print(escape_text(f"warning: {text}"))
     output.print(
-        escape_text(f"{out}: modes.json, identification.json, identification.html, identification.pdf"),
-        soft_wrap=True,
+        escape_text(f"{out}: modes.json, identification.json, identification.html, identification.pdf"), soft_wrap=True
     )

@@ -76,14 +76,9 @@ def stack_real_imaginary(spectrum: ComplexArray) -> RealArray:
 
 
 def drift_columns(degree: int, n: int, lines: IntegerArray) -> RealArray:
-    """Transforms of the Legendre polynomials of degree 1..degree over the record, for a drift of the offset.
+    """Transforms of Legendre polynomials 1..degree in time, for a drift of the offset, (2 k, degree), of unit length.
 
-    The offset itself (degree 0) contributes to line 0 only, which is not used.
-
-    Returns
-    -------
-    (2 k, degree) ndarray
-        Each column of unit length.
+    The offset itself contributes to line 0 only, which is not used.
     """
     t = np.linspace(-1.0, 1.0, n)
     polynomials = np.polynomial.legendre.legvander(t, degree)[:, 1:]

@@ -26,22 +26,12 @@ class _Poles(BaseModel):
 
 
 def read_poles(path: Path) -> ComplexArray:
-    """Read poles from a TOML file with tables `[[pole]]`, or from a modes.json.
-
-    Parameters
-    ----------
-    path : Path
-        File with at least one pole.
-
-    Returns
-    -------
-    (m,) ndarray
-        Poles lambda [1/s].
+    """Read start poles lambda, (m,) [1/s], from a TOML file with tables `[[pole]]`, or from a modes.json.
 
     Raises
     ------
     InputError
-        The file cannot be read, or its content is invalid.
+        The file cannot be read, its content is invalid, or it holds no pole.
     """
     rows: list[tuple[float, float]]
     if path.suffix == ".json":

@@ -22,19 +22,7 @@ SAME_LENGTH = 0.02
 
 @dataclass(frozen=True)
 class FittedBlock:
-    """Block of data with its fit.
-
-    Parameters
-    ----------
-    data : DataBlock
-        Spectra of the channels.
-    fit : ProjectionFit
-        Residues and residual.
-    noise : (c,) ndarray
-        Standard deviation of the real or imaginary part of a line.
-    residue_std : (m,) ndarray
-        Standard deviation of the real or imaginary part of a residue for unit noise.
-    """
+    """Spectra of a block, their fit, noise per channel, (c,), and std of the residues for unit noise, (m,)."""
 
     data: DataBlock
     fit: ProjectionFit
@@ -44,17 +32,7 @@ class FittedBlock:
 
 @dataclass(frozen=True)
 class RecordFit:
-    """Part of a fit that belongs to one record.
-
-    Parameters
-    ----------
-    decay : PreparedDecay
-        The record.
-    block : FittedBlock
-        Block that holds its channels.
-    columns : slice
-        Its channels in the block.
-    """
+    """Part of a fit that belongs to one record: its block, and its channels there."""
 
     decay: PreparedDecay
     block: FittedBlock

@@ -22,16 +22,9 @@ DAMPING_TRIALS = (0.3, 1.0, 3.0)
 
 @dataclass(frozen=True)
 class LocalFit:
-    """Neighbourhood of a frequency.
+    """Neighbourhood of a frequency: its poles, their places among all poles, and its spectral lines.
 
-    Parameters
-    ----------
-    poles : (l,) complex ndarray
-        Poles of the neighbourhood [1/s].
-    near : (m,) ndarray
-        Their places among all poles.
-    blocks : list of DataBlock
-        Lines of the neighbourhood, without the contribution of the distant poles.
+    The contribution of the distant poles is removed from the lines.
     """
 
     poles: ComplexArray
@@ -75,15 +68,7 @@ def restrict_fit(
 
 
 def find_best_candidate(local: LocalFit, centre: float) -> tuple[complex, float] | None:
-    """Trial pole that reduces the squared residual most while the others are fixed, and the reduction.
-
-    Parameters
-    ----------
-    local : LocalFit
-        Neighbourhood.
-    centre : float
-        Centre of the grid of trial poles [rad/s].
-    """
+    """Trial pole near a frequency [rad/s] that reduces the squared residual most, and the reduction."""
     resolution = 2 * np.pi / max(data.duration for data in local.blocks)
     decay = float(np.median(-local.poles.real)) if local.poles.size else 0.003 * centre
     omegas = centre + resolution * np.arange(-3, 3.01, 0.25)

@@ -26,15 +26,7 @@ FREQUENCY_REACH = 3
 
 
 def build_modes(fit: LineFit, spans: int | None) -> tuple[Mode, ...]:
-    """Modes in the reported band, by frequency, numbered in groups of span modes.
-
-    Parameters
-    ----------
-    fit : LineFit
-        Fit of the line.
-    spans : int or None
-        Number of spans; None if unknown.
-    """
+    """Modes in the reported band, by frequency, in groups of span modes; the number of spans may be unknown."""
     shares = [share for record in fit.records if (share := _lateral_shares(fit, record)) is not None]
     frequency = np.abs(fit.poles) / (2 * np.pi)
     reported = np.flatnonzero((frequency >= fit.band.low) & (frequency <= fit.band.high))
@@ -57,7 +49,7 @@ def _build_mode(fit: LineFit, j: int, lateral_share: float | None) -> Mode:
     scale = residues[np.argmax(np.abs(residues))]
     gain = filter_gain(linear.taps, np.array([pole]), linear.rate)[0]
     amplitude = 2 * np.abs(scale / gain * np.exp(-pole * (linear.first - decay.release.time)))
-    return Mode(
+    mode = Mode(
         frequency_Hz=frequency,
         frequency_std_Hz=_finite(omega_std / (2 * np.pi)),
         damping_ratio=damping,
@@ -65,14 +57,14 @@ def _build_mode(fit: LineFit, j: int, lateral_share: float | None) -> Mode:
         sensor_shape=_sensor_shape(best, residues, spread, scale),
         error=_band_error(fit.blocks, pole),
         record=decay.record.name,
-        warnings=_list_warnings(frequency, damping, damping_std, linear.duration, nearest, lateral_share),
-        certain=_is_certain(damping, damping_std),
-        lateral=_is_lateral(lateral_share),
+        certain=damping_std < UNCERTAIN * damping,
+        lateral=lateral_share is not None and lateral_share > LATERAL,
         amplitude_at_release=_finite(amplitude),
         phase_collinearity=_phase_collinearity(residues),
         lateral_over_vertical=lateral_share,
         half_power_points=2 * damping * frequency * linear.duration,
     )
+    return mode.model_copy(update={"warnings": _list_warnings(mode, linear.duration, nearest)})
 
 
 def _phase_collinearity(shape: ComplexArray) -> float | None:
@@ -85,31 +77,21 @@ def _phase_collinearity(shape: ComplexArray) -> float | None:
     return ((xx - yy) ** 2 + 4 * xy**2) / total if total > 0 else None
 
 
-def _is_certain(damping_ratio: float, std: float) -> bool:
-    return std < UNCERTAIN * damping_ratio
-
-
-def _is_lateral(lateral_share: float | None) -> bool:
-    return lateral_share is not None and lateral_share > LATERAL
-
-
-def _list_warnings(
-    frequency: float, damping_ratio: float, std: float, duration: float, nearest: float, lateral_share: float | None
-) -> tuple[str, ...]:
-    """Reasons to doubt a mode; `nearest` is the distance to the nearest other mode [Hz]."""
+def _list_warnings(mode: Mode, duration: float, nearest: float) -> tuple[str, ...]:
+    """Reasons to doubt a mode in a decay of a duration [s], with the nearest other mode at a distance [Hz]."""
     warnings = []
-    bandwidth = 2 * damping_ratio * frequency
+    bandwidth = 2 * mode.damping_ratio * mode.frequency_Hz
     if bandwidth * duration < POINTS_IN_HALF_POWER_BAND:
         warnings.append(
             f"half-power band: {bandwidth * duration:.1f} spectral lines in {duration:.0f} s; "
             f"{POINTS_IN_HALF_POWER_BAND} need a record of {POINTS_IN_HALF_POWER_BAND / bandwidth:.0f} s"
         )
-    if not _is_certain(damping_ratio, std):
-        relative = 100 * (std / damping_ratio)
+    if not mode.certain:
+        relative = 100 * (mode.damping_ratio_std / mode.damping_ratio)
         warnings.append(f"weakly excited: the damping ratio is uncertain by {relative:.0f} % (one standard deviation)")
     if nearest < COINCIDENT * bandwidth or nearest * duration < 1.5:
         warnings.append(f"near-coincident: another mode is only {1000 * nearest:.1f} mHz away")
-    if _is_lateral(lateral_share):
+    if mode.lateral:
         warnings.append(
             "lateral: the mode moves the sensors sideways; their mounting explains the signal of the vertical channels"
         )

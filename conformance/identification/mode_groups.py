@@ -20,15 +20,7 @@ CLEARANCE = 0.06
 
 
 def assign_groups(modes: list[Mode], spans: int | None) -> tuple[Mode, ...]:
-    """Number the groups of the vertical modes and mark the outliers of each group.
-
-    Parameters
-    ----------
-    modes : list of Mode
-        Modes of one line, by frequency.
-    spans : int or None
-        Number of spans; None if unknown.
-    """
+    """Number the groups of the vertical modes and mark the outliers of each group; parameters as in `number_groups`."""
     vertical = [i for i, mode in enumerate(modes) if not mode.lateral]
     frequency = np.array([mode.frequency_Hz for mode in modes])
     certain = np.array([modes[i].frequency_Hz for i in vertical if modes[i].certain])
@@ -45,7 +37,7 @@ def assign_groups(modes: list[Mode], spans: int | None) -> tuple[Mode, ...]:
 
 
 def number_groups(certain: RealArray, all_modes: RealArray, spans: int | None) -> IntegerArray:
-    """Number the groups of the modes, from 1.
+    """Number the groups of modes from 1; 0 beyond `LAST_GROUP`, and for all with fewer than three certain modes.
 
     Parameters
     ----------
@@ -55,11 +47,6 @@ def number_groups(certain: RealArray, all_modes: RealArray, spans: int | None) -
         Frequencies to number [Hz].
     spans : int or None
         Number of spans; None if unknown.
-
-    Returns
-    -------
-    (m,) ndarray
-        Numbers of the groups; 0 beyond `LAST_GROUP`, and for all with fewer than three certain modes.
     """
     if certain.size < 3:
         return np.zeros(all_modes.size, dtype=np.int64)

@@ -41,15 +41,7 @@ MAX_TRIALS = 40
 
 @dataclass(frozen=True)
 class PoleSelection:
-    """Poles that the data support.
-
-    Parameters
-    ----------
-    poles : (m,) complex ndarray
-        Poles, by frequency [1/s].
-    noise : list of (c,) ndarray
-        Standard deviation of the real or imaginary part of a line, per block.
-    """
+    """Poles that the data support, by frequency [1/s], and the noise of the channels of each block, (c,)."""
 
     poles: ComplexArray
     noise: list[RealArray]
@@ -82,15 +74,7 @@ def select_poles(poles: ComplexArray, blocks: list[DataBlock], rounds: int = 8) 
 
 
 def find_hidden_poles(selection: PoleSelection, blocks: list[DataBlock]) -> PoleSelection:
-    """Try a second pole beside each pole, where the residual is too small to show it, and select again.
-
-    Parameters
-    ----------
-    selection : PoleSelection
-        Result of `select_poles`.
-    blocks : list of DataBlock
-        Data in physical units.
-    """
+    """Try a second pole beside each selected pole, where the residual is too small to show it, and select again."""
     white = whiten(blocks, selection.noise)
     extended = _add_poles(selection.poles, white, [float(omega) for omega in selection.poles.imag])
     if _are_equal(extended, selection.poles):

@@ -15,16 +15,10 @@ SMALLEST_DAMPING_RATIO = 1e-6
 
 @dataclass(frozen=True)
 class RefinedPoles:
-    """Poles at the least output error.
+    """Poles at the least output error, by frequency [1/s], with their cost and covariance.
 
-    Parameters
-    ----------
-    poles : (m,) complex ndarray
-        Poles, by frequency [1/s].
-    cost : float
-        Sum of squared residuals.
-    covariance : (2 m, 2 m) ndarray
-        Covariance of decay rates [1/s] and angular frequencies [rad/s], for channels in units of their noise.
+    The cost is the sum of squared residuals. The covariance, (2 m, 2 m), belongs to the decay rates [1/s], then the
+    angular frequencies [rad/s], for channels in units of their noise.
     """
 
     poles: ComplexArray

@@ -136,19 +136,10 @@ def residue_spread(poles: ComplexArray, data: DataBlock) -> RealArray:
 
 
 def estimate_noise(fit: ProjectionFit, poles: int, data: DataBlock) -> RealArray:
-    """Standard deviation of the real or imaginary part of a spectral line, per channel, (c,).
+    """Standard deviation of the real or imaginary part of a spectral line, per channel, (c,), from a fit of a block.
 
     It follows from the median over the lines, which a few peaks outside the model do not move: |r|^2 / (2 sigma^2) of
     white noise has the median ln 2. It is corrected for the number of fitted parameters.
-
-    Parameters
-    ----------
-    fit : ProjectionFit
-        Fit of the block.
-    poles : int
-        Number of poles.
-    data : DataBlock
-        The block.
     """
     rows, channels = 2 * data.lines.size, data.spectrum.shape[1]
     fitted = 2 * poles + data.residual_terms.shape[1] + 2 * poles / channels

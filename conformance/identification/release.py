@@ -93,8 +93,6 @@ def _quiet_start(signals: RealArray, rate: float, name: str) -> int:
     jump = np.any(spread > 4 * np.maximum(floor, 1e-6 * spread.max(axis=0, initial=0.0)), axis=1)
     if not jump.any() or int(np.argmax(jump)) * width < MIN_REST * rate:
         raise InputError(
-            name,
-            "has neither a trigger time nor a rest before the release",
-            "Give trigger_nominal_s in the sidecar.",
+            name, "has neither a trigger time nor a rest before the release", "Give trigger_nominal_s in the sidecar."
         )
     return int(np.argmax(jump)) * width - width // 2

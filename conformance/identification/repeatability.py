@@ -36,13 +36,7 @@ CURVE_STEP = 0.025
 
 
 def compare_records(repeats: tuple[PreparedDecay, ...]) -> Repeatability:
-    """Compare every further record of a drop with the first one, at each sensor.
-
-    Parameters
-    ----------
-    repeats : tuple of PreparedDecay
-        At least two records of one drop.
-    """
+    """Compare every further record of a drop with the first one, at each sensor."""
     comparisons = [comparison for other in repeats[1:] for comparison in _compare_pair(repeats[0], other)]
     verdict: Literal["repeatable", "not repeatable"]
     failed = next((c for c in comparisons if not _is_repeatable(c)), None)
@@ -58,7 +52,7 @@ def compare_records(repeats: tuple[PreparedDecay, ...]) -> Repeatability:
 
 
 def overlay_records(repeats: tuple[PreparedDecay, ...]) -> Overlay:
-    """Curves of the repeats of a drop at the sensor that moves most; parameters as in `compare_records`."""
+    """Curves of the repeats of a drop at the sensor that moves most."""
     lowest_rate = min(decay.record.rate for decay in repeats)
     curves = [_align_record(decay, lowest_rate) for decay in repeats]
     channel = int(np.argmax(curves[0][1].std(axis=0)))

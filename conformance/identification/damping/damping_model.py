@@ -131,33 +131,16 @@ def fit_deviation(measured: MeasuredModes) -> RealArray:
 
 
 def fit_weights(std: RealArray, group: IntegerArray, used: NDArray[np.bool_]) -> RealArray:
-    """Square roots of the weights: 1 / std, over the square root of the number of modes used in the group.
+    """Square roots of the weights of the modes, (m,): 1 / std, over the square root of the number used in the group.
 
-    Parameters
-    ----------
-    std : (m,) ndarray
-        Standard deviations of the modes.
-    group : (m,) ndarray
-        Numbers of their groups.
-    used : (m,) ndarray
-        Modes that enter; the others have no weight.
+    Modes that are not used have no weight.
     """
     count = np.array([max(int(np.sum(used & (group == number))), 1) for number in group])
     return np.where(used, 1 / (std * np.sqrt(count)), 0.0)
 
 
 def solve_weighted(columns: RealArray, target: RealArray, weight: RealArray) -> RealArray:
-    """Non-negative coefficients of weighted least squares, (t,).
-
-    Parameters
-    ----------
-    columns : (m, t) ndarray
-        Contribution of a unit of each coefficient to the target.
-    target : (m,) ndarray
-        Right-hand side.
-    weight : (m,) ndarray
-        Square roots of the weights.
-    """
+    """Non-negative least-squares coefficients, (t,), of columns (m, t); `weight` is the square root of the weights."""
     scale = np.maximum(np.linalg.norm(columns * weight[:, None], axis=0), np.finfo(float).tiny)
     solution, _ = scipy.optimize.nnls(columns * weight[:, None] / scale, target * weight)
     return np.asarray(solution / scale)

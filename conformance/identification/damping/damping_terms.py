@@ -19,17 +19,7 @@ Term = tuple[str, str]
 
 @dataclass(frozen=True)
 class DampingMatrix:
-    """Matrix that a Rayleigh coefficient multiplies.
-
-    Parameters
-    ----------
-    key : str
-        Key of the coefficient in a line file.
-    unit : str
-        Unit of the coefficient.
-    plausible : float
-        Largest coefficient of a wire in Vo Van, Balmes, Lorang 2015, in that unit.
-    """
+    """Matrix of a Rayleigh coefficient: key in a line file, unit, and plausible value of the coefficient."""
 
     key: str
     unit: str
@@ -40,7 +30,7 @@ MATRICES = {
     "stiffness": DampingMatrix("stiffness_coefficient_s", "s", 1e-4),
     "mass": DampingMatrix("mass_coefficient_1_s", "1/s", 0.1),
 }
-"""Matrices by name, in the order of the terms."""
+"""Matrices by name, in the order of the terms; plausible is the largest value in Vo Van, Balmes, Lorang 2015."""
 
 TABLE_OF_KIND = {
     Kind.CONTACT_WIRE: "contact_wire",
@@ -74,15 +64,7 @@ class DampingBasis:
 
 
 def build_damping_basis(frequency: RealArray, energies: ComponentEnergies) -> DampingBasis:
-    """Damping ratios per unit of each coefficient of every kind of component.
-
-    Parameters
-    ----------
-    frequency : (m,) ndarray
-        Natural frequencies of the modes [Hz].
-    energies : ComponentEnergies
-        Energies of the mass-normalised modes.
-    """
+    """Damping ratios per unit of each coefficient, from the frequencies [Hz] and energies of the modes."""
     terms = tuple((str(kind), matrix) for kind in energies.kinds for matrix in MATRICES)
     both = np.stack([energies.stiffness, energies.mass], axis=2).reshape(frequency.size, -1)
     return DampingBasis(terms, np.asarray(both / (4 * np.pi * frequency[:, None])))

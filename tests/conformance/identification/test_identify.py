@@ -8,10 +8,10 @@ from scipy.optimize import linear_sum_assignment
 
 from helpers.synthetic_drops import drop, span_modes
 from pantocheck.conformance.identification.decay_filters import FrequencyBand
+from pantocheck.conformance.identification.decay_preparation import find_linear_decay
 from pantocheck.conformance.identification.hand_placed_poles import read_poles
 from pantocheck.conformance.identification.identification_analysis import analyse_identification
 from pantocheck.conformance.identification.identify import identify_modes
-from pantocheck.conformance.identification.linear_decay import find_linear_decay
 from pantocheck.conformance.identification.mode_groups import find_group_outliers, number_groups
 from pantocheck.conformance.identification.pole_refinement import refine_poles
 from pantocheck.conformance.identification.projection import whiten
