@@ -1,4 +1,4 @@
-"""Synthetic mass-drop records with known poles, made with numpy alone."""
+"""Synthetic mass-drop records with known poles, computed with numpy alone."""
 
 from dataclasses import dataclass
 
@@ -20,25 +20,21 @@ class SyntheticDrop:
         Time of the release [s].
     poles : (m,) complex ndarray
         Poles [1/s].
-    residues : (m, c) complex ndarray
-        Residues at the release [m/s2].
-    noise : float
-        Standard deviation of the noise [m/s2].
     """
 
     samples: NDArray[np.float64]
     rate: float
     release: float
     poles: NDArray[np.complex128]
-    residues: NDArray[np.complex128]
-    noise: float
 
     @property
     def frequency(self) -> NDArray[np.float64]:
+        """Undamped natural frequencies, (m,) [Hz]."""
         return np.abs(self.poles) / (2 * np.pi)
 
     @property
     def damping_ratio(self) -> NDArray[np.float64]:
+        """Shares of critical damping, (m,) [-]."""
         return -self.poles.real / np.abs(self.poles)
 
 
@@ -48,14 +44,15 @@ def span_modes(
     """Poles in groups of one mode per span, some of them split into pairs 3 to 10 mHz apart."""
     first = rng.uniform(0.8, 1.1)
     spread = rng.uniform(0.15, 0.25)
-    frequency, damping = [], []
+    frequency: list[float] = []
+    damping: list[float] = []
     group = 1
     mass, stiffness = rng.uniform(0.03, 0.08), rng.uniform(3e-5, 1e-4)
     while len(frequency) < modes:
-        at = first * group * (1 + 0.004 * group) * (1 + spread * np.linspace(0, 1, spans) ** rng.uniform(0.8, 1.3))
-        at *= 1 + rng.uniform(-0.008, 0.008, spans)
-        frequency += list(at)
-        damping += list(mass / (4 * np.pi * at) + stiffness * np.pi * at + rng.uniform(-1e-4, 1e-4, spans))
+        members = first * group * (1 + 0.004 * group) * (1 + spread * np.linspace(0, 1, spans) ** rng.uniform(0.8, 1.3))
+        members *= 1 + rng.uniform(-0.008, 0.008, spans)
+        frequency += list(members)
+        damping += list(mass / (4 * np.pi * members) + stiffness * np.pi * members + rng.uniform(-1e-4, 1e-4, spans))
         group += 1
     f, z = np.array(frequency[:modes]), np.maximum(np.array(damping[:modes]), 5e-4)
     for j in rng.choice(modes, pairs, replace=False):
@@ -77,9 +74,9 @@ def drop(
     nonlinear: float = 0.6,
     weak: float = 0.15,
 ) -> SyntheticDrop:
-    """Record: rest, release after about 5 s, other residues while droppers are slack, then a free decay; with noise.
+    """Record of a rest, a release after about 5 s, and a decay with noise.
 
-    A share `weak` of the modes is weakly excited.
+    The residues differ while droppers are slack. A share `weak` of the modes is weakly excited.
     """
     m = poles.size
     strength = 10 ** rng.uniform(-1.3, 0.2, m)
@@ -98,4 +95,4 @@ def drop(
     samples[late] += (2 * np.exp(np.outer(t[late], poles)) @ residues).real
     other = residues * rng.uniform(0.5, 1.5, residues.shape)
     samples[early] += (2 * np.exp(np.outer(t[early], poles * 1.02)) @ other).real
-    return SyntheticDrop(samples, rate, release, poles, residues, noise)
+    return SyntheticDrop(samples, rate, release, poles)

@@ -20,7 +20,7 @@ DT, N = 0.025, 400
     damping_ratio=st.floats(1e-5, 0.05),
     amplitude=st.complex_numbers(min_magnitude=0.1, max_magnitude=10, allow_nan=False),
 )
-def test_model_is_the_transform_of_the_decay(frequency, damping_ratio, amplitude):
+def test_model_is_the_transform_of_the_decay(frequency: float, damping_ratio: float, amplitude: complex) -> None:
     """The geometric sum is exact, so only rounding over N terms is left: 1e-10 of the largest line."""
     pole = np.array([2 * np.pi * frequency * (-damping_ratio + 1j)])
     omega = 2 * np.pi * np.arange(1, N // 2) / (N * DT)
@@ -31,7 +31,7 @@ def test_model_is_the_transform_of_the_decay(frequency, damping_ratio, amplitude
     assert np.abs(modelled - measured).max() < 1e-10 * np.abs(measured).max()
 
 
-def test_derivative_is_that_of_the_kernel():
+def test_derivative_is_that_of_the_kernel() -> None:
     """Central differences of step h have an error of order h^2: here h = 1e-4, and the kernel varies over 0.05 1/s."""
     poles = np.array([-0.05 + 6.0j, -0.2 + 11.3j])
     omega = 2 * np.pi * np.arange(5, 60) / (N * DT)
@@ -41,7 +41,7 @@ def test_derivative_is_that_of_the_kernel():
     assert np.abs(slope - difference).max() < 1e-5 * np.abs(slope).max()
 
 
-def test_real_columns_carry_residues_as_real_numbers():
+def test_real_columns_carry_residues_as_real_numbers() -> None:
     poles, residue = np.array([-0.1 + 5.0j]), 0.7 - 1.9j
     omega = 2 * np.pi * np.arange(1, 50) / (N * DT)
     towards, away = decay_kernel(poles, omega, DT, N), decay_kernel(poles.conj(), omega, DT, N)
@@ -50,7 +50,7 @@ def test_real_columns_carry_residues_as_real_numbers():
     assert rows == pytest.approx(np.concatenate([expected.real, expected.imag]), rel=1e-12, abs=1e-12)
 
 
-def test_drift_columns_absorb_a_slow_drift():
+def test_drift_columns_absorb_a_slow_drift() -> None:
     """A cubic drift is a combination of the first three Legendre polynomials: the residual is rounding."""
     t = np.linspace(0, 1, N)
     lines = np.arange(1, 60)

@@ -14,7 +14,9 @@ MODAL_MASS = 100.0  # [kg]
 FREQUENCY, RATIO = np.array([0.9, 1.7, 2.6]), np.array([0.006, 0.004, 0.003])
 
 
-def record(name, random, noise=0.002, shift=0.0, other=1.0):
+def build_record(
+    name: str, random: np.random.Generator, noise: float = 0.002, shift: float = 0.0, other: float = 1.0
+) -> DropRecord:
     """Three oscillators released by a step force m g: x'' = F/M exp(-d t) (cos w t - d/w sin w t)."""
     t = np.arange(int(90 * RATE)) / RATE - RELEASE - shift
     force = MASS * STANDARD_GRAVITY
@@ -27,11 +29,17 @@ def record(name, random, noise=0.002, shift=0.0, other=1.0):
     signal += noise * random.standard_normal(signal.shape)
     channels = (DropChannel("S1_z", 1, "z", "CW", 10.0), DropChannel("S2_z", 2, "z", "CW", 30.0))
     return DropRecord(
-        name, "made", RATE, signal, channels, drop=DropDescription(MASS, "CW", 10.0, RELEASE), line=DropLine((60.0,))
+        name,
+        "synthetic",
+        RATE,
+        signal,
+        channels,
+        drop=DropDescription(MASS, "CW", 10.0, RELEASE),
+        line=DropLine((60.0,)),
     )
 
 
-def test_response_is_that_of_the_oscillators():
+def test_response_is_that_of_the_oscillators() -> None:
     """Accelerance sum -w^2 / (M (w0^2 - w^2 + 2 i z w0 w)) at half-power lines of the strongest mode.
 
     Within 6 %, the most that the record's end can do: what rings on after 85 s, exp(-2.9) = 6 % of the slowest mode,
@@ -39,8 +47,8 @@ def test_response_is_that_of_the_oscillators():
     1.7 Hz, 1.2 and 1.5 % at 2.6 Hz). The release is known to one sample: w dt = 0.11 rad at 0.9 Hz turns the phase,
     not the magnitude.
     """
-    (found,) = identify_modes((record("one", np.random.default_rng(1)),), highest=4.0)
-    response = compute_frequency_response(found.fit, found.fit.records[0])
+    (identification,) = identify_modes((build_record("one", np.random.default_rng(1)),), highest=4.0)
+    response = compute_frequency_response(identification.fit, identification.fit.records[0])
     assert response is not None
     omega = 2 * np.pi * response.frequency
     omega_0 = 2 * np.pi * FREQUENCY
@@ -54,23 +62,23 @@ def test_response_is_that_of_the_oscillators():
             assert np.abs(h[near, 0]).max() == pytest.approx(np.abs(exact[near]).max(), rel=0.06)
 
 
-def test_identified_response_overlays_the_measured_one():
-    (found,) = identify_modes((record("one", np.random.default_rng(2)),), highest=4.0)
-    response = compute_frequency_response(found.fit, found.fit.records[0])
+def test_identified_response_overlays_the_measured_one() -> None:
+    (identification,) = identify_modes((build_record("one", np.random.default_rng(2)),), highest=4.0)
+    response = compute_frequency_response(identification.fit, identification.fit.records[0])
     assert response is not None
     low = response.frequency < 3.0
     left = np.linalg.norm((response.measured - response.identified)[low])
     assert left < 0.03 * np.linalg.norm(response.measured[low])
 
 
-def test_repeats_correlate_and_another_line_does_not():
+def test_repeats_correlate_and_another_line_does_not() -> None:
     random = np.random.default_rng(3)
-    first, again = record("first", random), record("again", random, shift=0.13)
-    (found,) = identify_modes((first, again), highest=4.0)
-    same = compare_records(tuple(record.decay for record in found.fit.records))
+    first, again = build_record("first", random), build_record("again", random, shift=0.13)
+    (identification,) = identify_modes((first, again), highest=4.0)
+    same = compare_records(tuple(record.decay for record in identification.fit.records))
     assert same.verdict == "repeatable"
     assert min(c.correlation_at_start for c in same.comparisons) > 0.999
-    other = record("other", random, other=-1.0)
+    other = build_record("other", random, other=-1.0)
     (changed,) = identify_modes((first, other), highest=4.0)
     different = compare_records(tuple(record.decay for record in changed.fit.records))
     assert different.verdict == "not repeatable"

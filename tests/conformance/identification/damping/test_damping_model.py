@@ -8,6 +8,7 @@ import pytest
 import scipy.linalg
 import scipy.optimize
 
+from pantocheck.conformance.array_types import IntegerArray, RealArray
 from pantocheck.conformance.identification.damping.damping_model import (
     MeasuredModes,
     fit_damping_model,
@@ -28,15 +29,15 @@ STEP = 2.25  # node distance [m]; strings, whose bending below 6 Hz does not mat
 class Line(NamedTuple):
     """Computed modes of a line with their exact damping ratios and their groups."""
 
-    frequency: np.ndarray
+    frequency: RealArray
     energies: ComponentEnergies
     basis: DampingBasis
-    ratio: np.ndarray
-    group: np.ndarray
+    ratio: RealArray
+    group: IntegerArray
 
 
 @pytest.fixture(scope="module")
-def line():
+def line() -> Line:
     """Two strings on a common grid, droppers between them, arms and supports at the masts; plain dense matrices."""
     n = round(sum(SPANS) / STEP) + 1
     kinds = (*WIRES, "dropper", "steady_arm")
@@ -75,38 +76,38 @@ def line():
     return Line(frequency, energies, build_damping_basis(frequency, energies), ratio, np.repeat(np.arange(1, 7), 6))
 
 
-def measured_of(line, noise, random):
+def build_measured_modes(line: Line, noise: float, random: np.random.Generator) -> MeasuredModes:
     noisy = line.ratio * (1 + noise * random.standard_normal(line.ratio.size))
     return MeasuredModes(line.frequency, noisy, np.maximum(noise, 1e-4) * line.ratio, line.group)
 
 
-def test_energies_of_the_kinds_add_up(line):
+def test_energies_of_the_kinds_add_up(line: Line) -> None:
     assert line.energies.mass.sum(axis=1) == pytest.approx(1, rel=1e-10)
     assert line.energies.stiffness.sum(axis=1) == pytest.approx((2 * np.pi * line.frequency) ** 2, rel=1e-8)
 
 
-def test_fit_returns_the_coefficients(line):
+def test_fit_returns_the_coefficients(line: Line) -> None:
     """Both wires within 5 % from ratios known to 0.3 %; the bias by the droppers (1e-5 s, not fitted) is smaller."""
-    fit = fit_damping_model(line.basis, measured_of(line, 0.003, np.random.default_rng(1)))
+    fit = fit_damping_model(line.basis, build_measured_modes(line, 0.003, np.random.default_rng(1)))
     for kind, (_, _, mass, stiffness) in WIRES.items():
         assert fit.values[kind, "mass"] == pytest.approx(mass, rel=0.05)
         assert fit.values[kind, "stiffness"] == pytest.approx(stiffness, rel=0.05)
     assert fit.residual < 0.006
 
 
-def test_intervals_cover_the_truth(line):
+def test_intervals_cover_the_truth(line: Line) -> None:
     """Of 20 fits x 4 coefficients, 95 % intervals miss about 4; fewer than 13 is five standard errors away."""
     missed = 0
     for seed in range(20):
-        fit = fit_damping_model(line.basis, measured_of(line, 0.02, np.random.default_rng(seed)))
+        fit = fit_damping_model(line.basis, build_measured_modes(line, 0.02, np.random.default_rng(seed)))
         for c in fit.coefficients:
             true = WIRES[c.kind][2 if c.matrix == "mass" else 3]
             missed += not c.low_95 <= true <= c.high_95
     assert missed < 13
 
 
-def test_outlier_of_a_group_is_left_out(line):
-    measured = measured_of(line, 0.003, np.random.default_rng(2))
+def test_outlier_of_a_group_is_left_out(line: Line) -> None:
+    measured = build_measured_modes(line, 0.003, np.random.default_rng(2))
     measured.damping_ratio[8] *= 1.5
     fit = fit_damping_model(line.basis, measured)
     assert not fit.used[8]
@@ -114,23 +115,23 @@ def test_outlier_of_a_group_is_left_out(line):
     assert fit.values["contact_wire", "stiffness"] == pytest.approx(5e-5, rel=0.06)
 
 
-def test_wires_alone_are_observable(line):
-    measured = measured_of(line, 0.003, np.random.default_rng(3))
+def test_wires_alone_are_observable(line: Line) -> None:
+    measured = build_measured_modes(line, 0.003, np.random.default_rng(3))
     fit = fit_damping_model(line.basis, measured)
-    seen = {(one.kind, one.matrix) for one in compute_observability(line.basis, measured, fit) if one.observable}
-    assert seen == {(kind, matrix) for kind in WIRES for matrix in ("stiffness", "mass")}
-    for name in seen:
-        assert residual_without_term(line.basis, measured, fit, name) > 2 * fit.residual
+    observable = {(row.kind, row.matrix) for row in compute_observability(line.basis, measured, fit) if row.observable}
+    assert observable == {(kind, matrix) for kind in WIRES for matrix in ("stiffness", "mass")}
+    for term in observable:
+        assert residual_without_term(line.basis, measured, fit, term) > 2 * fit.residual
 
 
-def test_coefficients_are_those_of_the_modes_used(line):
+def test_coefficients_are_those_of_the_modes_used(line: Line) -> None:
     """Outliers of all sizes, some of which stand out only after larger ones are removed, leave no trace.
 
     A fit of the used modes alone, with the weights of their groups, gives the same coefficients to rounding.
     """
     for seed in range(10):
         random = np.random.default_rng(seed)
-        measured = measured_of(line, 0.003, random)
+        measured = build_measured_modes(line, 0.003, random)
         measured.damping_ratio[random.choice(36, 8, replace=False)] *= 1 + 10 ** random.uniform(-2, -0.5, 8)
         fit = fit_damping_model(line.basis, measured)
         columns = line.basis.ratios[:, [line.basis.terms.index(term) for term in fit.values]]
@@ -144,7 +145,7 @@ def test_coefficients_are_those_of_the_modes_used(line):
         assert [c.value for c in fit.coefficients] == pytest.approx(anew[0] / scale, rel=1e-8, abs=1e-15)
 
 
-def test_a_coefficient_fitted_as_zero_can_be_left_out(line):
+def test_a_coefficient_fitted_as_zero_can_be_left_out(line: Line) -> None:
     """A negative coefficient is fitted as 0; groups of different uncertainty make the weights matter."""
     true = {("contact_wire", "stiffness"): 5e-5, ("contact_wire", "mass"): -0.01, ("messenger_wire", "mass"): 0.1}
     ratio = line.basis.ratios @ [true.get(term, 0.0) for term in line.basis.terms]
@@ -153,13 +154,13 @@ def test_a_coefficient_fitted_as_zero_can_be_left_out(line):
     measured = MeasuredModes(line.frequency, ratio + std * random.standard_normal(ratio.size), std, line.group)
     fit = fit_damping_model(line.basis, measured)
     assert fit.values["contact_wire", "mass"] == 0.0
-    growth = {(one.kind, one.matrix): one.residual_without for one in compute_observability(line.basis, measured, fit)}
+    growth = {(row.kind, row.matrix): row.residual_without for row in compute_observability(line.basis, measured, fit)}
     assert growth["contact_wire", "mass"] == pytest.approx(1.0, rel=1e-9)
     assert growth["contact_wire", "stiffness"] > 1.0
 
 
-def test_modal_bands_give_the_first_groups_their_medians(line):
-    measured = measured_of(line, 0.0, np.random.default_rng(4))
+def test_modal_bands_give_the_first_groups_their_medians(line: Line) -> None:
+    measured = build_measured_modes(line, 0.0, np.random.default_rng(4))
     bands = fit_modal_bands(measured)
     assert len(bands) == 3
     assert all(a.to_frequency <= b.from_frequency for a, b in pairwise(bands))
@@ -168,13 +169,13 @@ def test_modal_bands_give_the_first_groups_their_medians(line):
     assert np.array_equal(changed[18:], measured.damping_ratio[18:])
 
 
-def test_too_few_modes_are_refused(line):
+def test_too_few_modes_are_refused(line: Line) -> None:
     measured = MeasuredModes(line.frequency[:4], np.full(4, 0.005), np.full(4, 1e-5), np.ones(4, dtype=np.int64))
     with pytest.raises(InputError, match="4 modes for 4 coefficients"):
         fit_damping_model(line.basis.select_modes(np.arange(4)), measured)
 
 
-def test_pairs_by_frequency_and_shape():
+def test_pairs_by_frequency_and_shape() -> None:
     """All computed frequencies are 2 % low and two neighbours have exchanged their order: the shapes decide."""
     random = np.random.default_rng(5)
     shapes = random.standard_normal((6, 4))
