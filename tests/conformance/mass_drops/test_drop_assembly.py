@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import pytest
-import tomli_w
 
 from helpers.drop_records import RATE
 from pantocheck.conformance.input_files.input_error import InputError
@@ -11,14 +10,12 @@ from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
 from pantocheck.conformance.mass_drops.drop_writing import write_drop_csv
 from tests.helpers.drop_records import assert_same_record
+from tests.helpers.toml_edit import edit_toml
 
 
 def test_units_and_directions_become_si_and_upward(tmp_path: Path, record: DropRecord) -> None:
     write_drop_csv(record, tmp_path / "r.csv")
-    sidecar = (
-        (tmp_path / "r.toml").read_text().replace('direction = "+z"\nunit = "m/s2"', 'direction = "-z"\nunit = "g"', 1)
-    )
-    (tmp_path / "r.toml").write_text(sidecar)
+    edit_toml(tmp_path / "r.toml", {"channel.0.direction": "-z", "channel.0.unit": "g"})
     (read,) = read_drop_records(tmp_path / "r.csv")
     assert read.signals[:, 0] == pytest.approx(-9.80665 * record.signals[:, 0], rel=1e-6)
     assert read.signals[:, 2] == pytest.approx(record.signals[:, 2], rel=1e-6)
@@ -42,8 +39,7 @@ def test_dead_channel_is_refused(tmp_path: Path, record: DropRecord) -> None:
         read_drop_records(tmp_path / "r.csv")
 
 
-def test_own_keys_of_a_team_are_left_alone(tmp_path: Path, record: DropRecord) -> None:
+def test_unknown_keys_of_a_measuring_team_are_ignored(tmp_path: Path, record: DropRecord) -> None:
     write_drop_csv(record, tmp_path / "r.csv")
-    text = (tmp_path / "r.toml").read_text()
-    (tmp_path / "r.toml").write_text(text + "\n" + tomli_w.dumps({"weather": {"wind_m_s": 2.0}}))
+    edit_toml(tmp_path / "r.toml", {"weather": {"wind_m_s": 2.0}})
     assert_same_record(read_drop_records(tmp_path / "r.csv")[0], record, 1e-8)

@@ -26,3 +26,14 @@ def test_hdf5_group_in_place_of_a_table_is_refused(tmp_path: Path, record: DropR
         file.create_group("run_1/acceleration")
     with pytest.raises(InputError, match="holds no table of samples"):
         read_drop_records(tmp_path / "r.h5")
+
+
+def test_hdf5_units_and_directions_become_si_and_upward(tmp_path: Path, record: DropRecord) -> None:
+    """The file describes its channels; the factor and the sign are exact."""
+    write_drop_hdf5((record,), tmp_path / "r.h5")
+    with h5py.File(tmp_path / "r.h5", "r+") as file:
+        file["channels/unit"][0] = "mm/s2"
+        file["channels/direction"][0] = f"-{record.channels[0].axis}"
+    (read,) = read_drop_records(tmp_path / "r.h5")
+    assert read.signals[:, 0] == pytest.approx(-1e-3 * record.signals[:, 0], rel=1e-12)
+    assert read.signals[:, 1] == pytest.approx(record.signals[:, 1], rel=1e-12)

@@ -1,28 +1,41 @@
-"""Records on disk: what is written is read back, and what is damaged is refused with its place."""
+"""Records on disk: a written record reads back, other units become SI, and damage is refused with its place."""
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+import tomli_w
 from numpy.testing import assert_allclose
 
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.library import library_folder
+from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record import Record
-from pantocheck.conformance.records.record_reading import read_record
+from pantocheck.conformance.records.record_reading import read_record, read_samples
 from pantocheck.conformance.records.record_writing import write_record
+from pantocheck.conformance.records.samples import complete_samples
+from tests.helpers.toml_edit import edit_toml
+
+if TYPE_CHECKING:
+    from tests.conformance.conftest import Wave
 
 Writer = Callable[[str], Path]
+CHANNELS = ("time", "position", "force", "contact_height", "support_position", "support_uplift")
 
 
 @pytest.fixture
-def record(wave, case_250):
+def record(wave: type["Wave"], case_250: Case) -> Record:
     return wave().record(case_250)
 
 
 @pytest.fixture
-def written(record, tmp_path):
-    def write(name: str):
+def written(record: Record, tmp_path: Path) -> Writer:
+    """Writer of the record; gives the path of the table."""
+
+    def write(name: str) -> Path:
         write_record(tmp_path / name, record, case="en50318-2002/250", run={"dt_s": 0.001, "wall_s": None})
         return tmp_path / name
 
@@ -30,11 +43,11 @@ def written(record, tmp_path):
 
 
 @pytest.mark.parametrize("name", ["a.csv", "a.h5", "a.hdf5"])
-def test_round_trip(written, record, name):
+def test_round_trip(written: Writer, record: Record, name: str) -> None:
     back, sidecar = read_record(written(name))
     assert sidecar.case == "en50318-2002/250"
     assert sidecar.run.dt_s == 0.001
-    for key in ("time", "position", "force", "contact_height", "support_position", "support_uplift"):
+    for key in CHANNELS:
         # Twelve significant digits are written.
         assert_allclose(getattr(back, key), getattr(record, key), rtol=1e-11, atol=1e-300)
     assert back.evaluated == record.evaluated
@@ -43,15 +56,47 @@ def test_round_trip(written, record, name):
     assert read_record(written(name).with_suffix(".toml"))[0].force.shape == record.force.shape
 
 
+def test_two_pantographs_in_other_units_are_read_in_si(converted_record: Path, two_pantograph_record: Record) -> None:
+    """Fifteen digits are written, and one factor is applied: the sample values agree to rounding."""
+    record, _ = read_record(converted_record)
+    samples, _, _ = read_samples(converted_record)
+    assert record.evaluated == two_pantograph_record.evaluated
+    for key in CHANNELS:
+        assert_allclose(getattr(record, key), getattr(two_pantograph_record, key), rtol=1e-13, atol=1e-15, err_msg=key)
+    assert_allclose(samples.force, two_pantograph_record.force, rtol=1e-13)
+
+
+def test_speed_in_kilometres_per_hour_is_integrated_to_positions(tmp_path: Path) -> None:
+    """At 216 km/h, 60 m/s, a hundred samples at 100 Hz move each pantograph by 59.4 m."""
+    time = np.arange(100) / 100
+    columns = [time, np.full(100, 216.0), np.full(100, 0.12), np.full(100, 0.11)]
+    write_csv_table(
+        tmp_path / "a.csv", ["time_s", "speed_km_h", "force_1_kN", "force_2_kN"], np.column_stack(columns), 9
+    )
+    sidecar = {
+        "schema": "pantocheck.record/1",
+        "file": "a.csv",
+        "speed_km_h": 216.0,
+        "pantographs": 2,
+        "filter_applied_Hz": "none",
+        "spacing_m": [100.0],
+    }
+    (tmp_path / "a.toml").write_text(tomli_w.dumps(sidecar))
+    samples, described, _ = read_samples(tmp_path / "a.csv")
+    _, position = complete_samples(samples, described)
+    assert_allclose(position[:, -1], [59.4, -40.6], rtol=1e-12)
+    assert_allclose(samples.force[:, 0], [120.0, 110.0])
+
+
 @pytest.mark.parametrize("name", ["a.csv", "a.h5"])
-def test_same_record_same_bytes(written, name):
+def test_same_record_same_bytes(written: Writer, name: str) -> None:
     first = written(name).read_bytes()
     assert written(name).read_bytes() == first
 
 
-def without_digest(path):
-    sidecar = path.with_suffix(".toml")
-    sidecar.write_text("\n".join(line for line in sidecar.read_text().splitlines() if not line.startswith("sha256")))
+def without_digest(path: Path) -> Path:
+    """A written record whose sidecar does not state the digest of the table."""
+    edit_toml(path.with_suffix(".toml"), {"sha256": None})
     return path
 
 
@@ -122,26 +167,25 @@ def test_decimal_commas_are_read(written: Writer, record: Record) -> None:
     assert_allclose(read_record(path)[0].force, record.force, rtol=1e-11)
 
 
-def test_csv_with_more_numbers_than_a_record_may_have_is_refused_not_cut(written, record, monkeypatch):
-    """The limit lowered to half of what is there: read up to it, the rest would be missing without a word."""
+def test_table_with_too_many_numbers_is_refused(
+    written: Writer, record: Record, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The limit is lowered below the size of the table, which must not be cut silently."""
     path = written("a.csv")
     monkeypatch.setattr("pantocheck.conformance.records.channel_rows.MAX_SAMPLES", record.time.size)
     with pytest.raises(InputError, match=f"more than {record.time.size} numbers"):
         read_record(path)
 
 
-def test_stretch_of_the_case_holds_where_the_sidecar_names_none(written, record):
+def test_section_of_the_case_is_used_if_the_sidecar_states_none(written: Writer, record: Record) -> None:
     sidecar = written("a.csv").with_suffix(".toml")
     assert read_record(sidecar, (200.0, 300.0))[0].evaluated == record.evaluated
-    lines = sidecar.read_text().splitlines(keepends=True)
-    start = next(i for i, line in enumerate(lines) if line.startswith("evaluated_m"))
-    end = start if "]" in lines[start] else next(i for i in range(start, len(lines)) if lines[i].startswith("]"))
-    sidecar.write_text("".join(lines[:start] + lines[end + 1 :]))
+    edit_toml(sidecar, {"evaluated_m": None})
     assert read_record(sidecar, (200.0, 300.0))[0].evaluated == (200.0, 300.0)
     assert read_record(sidecar)[0].evaluated != record.evaluated
 
 
-def test_truncated_or_foreign_hdf5(written, tmp_path):
+def test_truncated_or_empty_hdf5_is_refused(written: Writer) -> None:
     path = without_digest(written("a.h5"))
     path.write_bytes(path.read_bytes()[:3000])
     with pytest.raises(InputError, match="is damaged or not HDF5"):
@@ -151,7 +195,7 @@ def test_truncated_or_foreign_hdf5(written, tmp_path):
         read_record(path)
 
 
-def test_changed_table_contradicts_its_digest(written):
+def test_changed_table_contradicts_its_digest(written: Writer) -> None:
     path = written("a.csv")
     path.write_text(path.read_text().replace("119", "118", 1))
     with pytest.raises(InputError, match="sha256"):
@@ -159,28 +203,27 @@ def test_changed_table_contradicts_its_digest(written):
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "message"),
+    ("changes", "message"),
     [
-        ('filter_applied_Hz = "none"', "", "key filter_applied_Hz: missing"),
-        ('filter_applied_Hz = "none"', "filter_applied_Hz = -20.0", "-20 Hz is not a cut-off"),
-        ('schema = "pantocheck.record/1"', 'schema = "pantocheck.record/9"', "key schema: found 'pantocheck.record/9'"),
-        ('file = "a.csv"', 'file = "../a.csv"', "is a path"),
-        ('file = "a.csv"', 'file = "b.csv"', "record 'b.csv': cannot be read"),
-        ("speed_km_h = 250.0", "speed_m_s = 69.4", "key speed_m_s: unknown key"),
-        ("pantographs = 1", "pantographs = 2", "1 rows of position_m, expected 2"),
+        ({"filter_applied_Hz": None}, "key filter_applied_Hz: missing"),
+        ({"filter_applied_Hz": -20.0}, "-20 Hz is not a cut-off"),
+        ({"schema": "pantocheck.record/9"}, "key schema: found 'pantocheck.record/9'"),
+        ({"file": "../a.csv"}, "is a path"),
+        ({"file": "b.csv"}, "record 'b.csv': cannot be read"),
+        ({"speed_km_h": None, "speed_m_s": 69.4}, "key speed_m_s: unknown key"),
+        ({"pantographs": 2}, "1 rows of position_m, expected 2"),
     ],
 )
-def test_wrong_sidecar(written, old, new, message):
+def test_wrong_sidecar_is_refused(written: Writer, changes: dict[str, Any], message: str) -> None:
     path = without_digest(written("a.csv"))
-    sidecar = path.with_suffix(".toml")
-    assert old in sidecar.read_text()
-    sidecar.write_text(sidecar.read_text().replace(old, new))
+    edit_toml(path.with_suffix(".toml"), changes)
     with pytest.raises(InputError, match=message):
         read_record(path)
 
 
-def test_record_never_overwrites_a_case_file(record, own_case):
-    path = own_case("250.toml", "order = 6", "order = 4")
+def test_record_never_overwrites_a_case_file(record: Record, tmp_path: Path) -> None:
+    path = tmp_path / "250.toml"
+    path.write_bytes((library_folder() / "en50318-2002" / "250.toml").read_bytes())
     before = path.read_bytes()
     with pytest.raises(InputError, match=r"would overwrite 250\.toml, which is not a sidecar"):
         write_record(path.with_suffix(".csv"), record)
@@ -188,21 +231,21 @@ def test_record_never_overwrites_a_case_file(record, own_case):
     assert not path.with_suffix(".csv").exists()
 
 
-def test_unknown_suffix(record, tmp_path):
+def test_unknown_suffix_is_refused(record: Record, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"format '\.xls' is not known"):
         write_record(tmp_path / "a.xls", record)
 
 
-def test_fuzzed_tables_never_give_a_traceback(written):
-    """Bytes changed at random: read as a record with other numbers, or refused; nothing else."""
+def test_randomly_changed_tables_are_read_or_refused(written: Writer) -> None:
+    """Random bytes give a record with other numbers, or `InputError`; never another exception."""
     random = np.random.default_rng(7)
     for name in ("a.csv", "a.h5"):
         path = without_digest(written(name))
         content = path.read_bytes()
         for _ in range(60):
             changed = bytearray(content)
-            for at in random.integers(0, min(len(content), 4000), 4):
-                changed[at] = random.integers(256)
+            for place in random.integers(0, min(len(content), 4000), 4):
+                changed[place] = random.integers(256)
             path.write_bytes(bytes(changed))
             try:
                 record, _ = read_record(path)
