@@ -1,6 +1,7 @@
 """Preparation of measured records: cuts, resampling and filter detection, against signals in closed form."""
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,8 @@ from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.quantities.signals import LineSignals
 from pantocheck.conformance.records.measured.force_checks import find_outliers
 from pantocheck.conformance.records.measured.record_preparation import PreparedRecord, prepare_record
-from pantocheck.conformance.records.record import RecordInvalid
+from pantocheck.conformance.records.record import Record, RecordInvalid
+from pantocheck.conformance.records.record_reading import read_samples
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.records.samples import RecordSamples, build_record
@@ -52,6 +54,24 @@ def test_simulated_record_is_unchanged() -> None:
     keys = {"evaluated_m": [300.0, 1500.0]}
     expected = evaluate_record(build_record(samples, sidecar(**keys)), LowPass()).values[1]
     assert values(ready(samples, **keys)) == expected
+
+
+def test_record_in_other_units_is_prepared_in_si(converted_record: Path, two_pantograph_record: Record) -> None:
+    """The first pantograph crosses 150 m to 270 m, so that it covers the analysis section."""
+    samples, described, _ = read_samples(converted_record)
+    prepared = prepare_record(samples, described.model_copy(update={"evaluated_m": (160.0, 240.0)}), LowPass(), 5.0)
+    (part,) = prepared.pantographs[1].parts
+    assert part.section == pytest.approx((160.0, 240.0))
+    assert_allclose(part.force.delivered, two_pantograph_record.force[0], rtol=1e-12)
+
+
+def test_pantographs_that_share_no_track_leave_nothing_to_evaluate() -> None:
+    """After 100 m the second pantograph has just reached the start of the first: the section has no length."""
+    time = np.arange(129) / 64
+    force = np.full((2, 129), 120.0)
+    prepared = ready(RecordSamples(force=force, time=time), speed_km_h=180.0, pantographs=2, spacing_m=[100.0])
+    assert prepared.section == (0.0, 0.0)
+    assert not prepared.pantographs[1].parts
 
 
 def test_whole_record_is_evaluated_away_from_its_ends() -> None:
