@@ -56,6 +56,7 @@ PANTOGRAPH_QUANTITIES: tuple[PantographQuantity, ...] = (
         label="Mean contact force",
         definition="mean contact force over the analysis section",
         tables=("damping models",),
+        force_level="mean",
         compute=_mean,
     ),
     _en50318(
@@ -93,12 +94,14 @@ PANTOGRAPH_QUANTITIES: tuple[PantographQuantity, ...] = (
         name="statistical_max_N",
         label="Statistical maximum, mean + 3 σ",
         definition="mean_force_N plus three times std_force_N",
+        force_level="+3σ",
         compute=lambda *arguments: _extremes(*arguments)[1],
     ),
     _en50318(
         name="statistical_min_N",
         label="Statistical minimum, mean − 3 σ",
         definition="mean_force_N minus three times std_force_N",
+        force_level="−3σ",
         compute=lambda *arguments: _extremes(*arguments)[0],
     ),
     _en50318(
@@ -106,6 +109,7 @@ PANTOGRAPH_QUANTITIES: tuple[PantographQuantity, ...] = (
         label="Maximum of the 20 Hz force",
         definition="largest contact force, 0-20 Hz",
         tables=("damping models",),
+        force_level="max",
         compute=lambda signals, sampling: sampling.largest(signals.graded),
     ),
     _en50318(
@@ -113,6 +117,7 @@ PANTOGRAPH_QUANTITIES: tuple[PantographQuantity, ...] = (
         label="Minimum of the 20 Hz force",
         definition="smallest contact force, 0-20 Hz",
         tables=("damping models",),
+        force_level="min",
         compute=lambda signals, sampling: sampling.smallest(signals.graded),
     ),
     _en50318(

@@ -39,6 +39,8 @@ class Quantity:
         Whether a negative value is impossible.
     tables : tuple of str
         Fixed tables that show the quantity.
+    force_level : str
+        Short name of a level of the force, whose limits are drawn beside the force; empty: not such a level.
     """
 
     name: str
@@ -50,6 +52,7 @@ class Quantity:
     source: str = "pantocheck"
     never_negative: bool = False
     tables: tuple[QuantityTable, ...] = ()
+    force_level: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)

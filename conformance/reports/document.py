@@ -55,7 +55,6 @@ class Drawing:
 
 Inline = str | Code | Remark | Link | VerdictMark | TrustMark | Drawing
 RichText = Inline | tuple[Inline, ...]
-Record = dict[str, Any]
 
 
 @dataclass(frozen=True)
@@ -211,7 +210,7 @@ def to_plain(value: Any) -> Any:
     return value
 
 
-def make_grid(caption: str, records: Iterable[Record], cells: dict[str, Callable[[Record], str]]) -> Table:
+def make_grid(caption: str, records: Iterable[dict[str, Any]], cells: dict[str, Callable[[Any], str]]) -> Table:
     """A dense table of values: one row per record, one column per heading; the last takes the remaining width."""
     *headings, last = cells
     columns = (*map(Column, headings), Column(last, share=1))

@@ -57,8 +57,7 @@ def draw_comparison(data: dict[str, Any]) -> Figure:
         axes.plot(
             data["frequency_Hz"], [100 * value for value in ratios], style, color=shade, linewidth=1.1, label=name
         )
-    axes.set_ylim(0, 1.5 * max(100 * value for value in measured["damping_ratio"]))
-    axes.set_xlabel("frequency [Hz]")
-    axes.set_ylabel("damping ratio [%]")
+    top = 1.5 * max(100 * value for value in measured["damping_ratio"])
+    axes.set(ylim=(0, top), xlabel="frequency [Hz]", ylabel="damping ratio [%]")
     add_legend(axes)
     return figure

@@ -1,11 +1,13 @@
 """Contact force over the track, its spectrum and its histogram."""
 
+from collections.abc import Callable
 from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from pantocheck.conformance.quantities.bands import BANDS
+from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.reports.figures.figure_style import (
     FULL,
     GREY,
@@ -19,14 +21,8 @@ from pantocheck.conformance.reports.figures.figure_style import (
 )
 from pantocheck.conformance.reports.page_text import format_value
 
-# Statistics whose limits are drawn beside the force, in this order, under short names.
-FORCE_LIMITS = {
-    "mean_force_N": "mean",
-    "statistical_max_N": "+3σ",
-    "statistical_min_N": "−3σ",
-    "max_force_N": "max",
-    "min_force_N": "min",
-}
+# Levels of the force whose limits are drawn beside it, in this order, under short names.
+FORCE_LEVELS = {name: quantity.force_level for name, quantity in QUANTITIES.items() if quantity.force_level}
 
 
 @render_svg
@@ -47,29 +43,23 @@ def draw_force(trace: dict[str, Any], limited: list[dict[str, Any]]) -> Figure:
     else:
         left = figure.subplots()
     position = trace["position_m"]
-    if trace.get("force_N"):
+    if trace["force_N"]:
         left.plot(position, trace["force_N"], color=GREY, linewidth=0.6, label="unfiltered")
-    if trace.get("force_20_N"):
+    if trace["force_20_N"]:
         left.plot(position, trace["force_20_N"], color=INK, linewidth=1.2, label="0–20 Hz")
-    mean, std = trace.get("mean_N"), trace.get("std_N")
-    if mean is not None and std is not None:
-        left.axhline(mean, color=INK, linewidth=0.9, linestyle="-.", label="mean")
-        for level, label in ((mean + 3 * std, "mean ± 3 σ"), (mean - 3 * std, None)):
-            left.axhline(level, color=INK, linewidth=0.9, linestyle="--", label=label)
-    for number, support in enumerate(trace.get("supports_m") or []):
+    _draw_levels(left.axhline, trace)
+    for number, support in enumerate(trace["supports_m"]):
         left.axvline(support, color=INK, linewidth=0.8, linestyle=":", label=None if number else "support")
-    left.set_xlim(position[0], position[-1])
-    left.set_xlabel("position along the track [m]")
-    left.set_ylabel("contact force [N]")
+    left.set(xlim=(position[0], position[-1]), xlabel="position along the track [m]", ylabel="contact force [N]")
     add_legend(left)
     return figure
 
 
 def select_limited(criteria: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Criteria of a pantograph whose limits are drawn beside its force, in the order of `FORCE_LIMITS`."""
+    """Criteria of a pantograph whose limits are drawn beside its force, in the order of `FORCE_LEVELS`."""
     return [
         row
-        for name in FORCE_LIMITS
+        for name in FORCE_LEVELS
         for row in criteria
         if row["quantity"] == name and (row["lower"] is not None or row["upper"] is not None)
     ]
@@ -90,10 +80,9 @@ def _draw_limits(axes: Axes, rows: list[dict[str, Any]]) -> None:
         if row["value"] is not None:
             marker, face = {"pass": ("o", INK), "fail": ("X", INK)}.get(row["verdict"], ("o", "white"))
             axes.plot(column, row["value"], marker, color=INK, markerfacecolor=face, markersize=5)
-    axes.set_xlim(-0.7, len(rows) - 0.3)
-    axes.set_xticks(range(len(rows)), [FORCE_LIMITS[row["quantity"]] for row in rows])
+    axes.set(xlim=(-0.7, len(rows) - 0.3), xlabel="limits")
+    axes.set_xticks(range(len(rows)), [FORCE_LEVELS[row["quantity"]] for row in rows])
     axes.tick_params(axis="both", length=0, labelleft=False)
-    axes.set_xlabel("limits")
     axes.spines["left"].set_visible(False)
 
 
@@ -112,11 +101,8 @@ def draw_spectrum(trace: dict[str, Any], quantities: dict[str, Any]) -> Figure:
         text = f"{low}–{high}" + (f"\n{format_value(rms, 3)}" if rms is not None else "")
         axes.text((low + high) / 2, 1.02, text, ha="center", transform=axes.get_xaxis_transform(), **above)
     axes.text(-0.02, 1.02, "Hz\nrms [N]", ha="right", transform=axes.transAxes, **above)
-    axes.set_xlim(0, 50)
     axes.set_ylim(bottom=0)
-    axes.set_xticks([0, 5, 10, 20, 30, 40, 50])
-    axes.set_xlabel("frequency [Hz]")
-    axes.set_ylabel("amplitude [N]")
+    axes.set(xlim=(0, 50), xticks=[0, 5, 10, 20, 30, 40, 50], xlabel="frequency [Hz]", ylabel="amplitude [N]")
     return figure
 
 
@@ -128,13 +114,18 @@ def draw_histogram(trace: dict[str, Any]) -> Figure:
     axes = figure.subplots()
     axes.set_ylim(0, 1.08 * max(share))
     axes.stairs(share, edges, fill=True, facecolor=SHADES[3], edgecolor=INK, linewidth=0.6)
-    mean, std = trace.get("mean_N"), trace.get("std_N")
-    if mean is not None and std is not None:
-        axes.axvline(mean, color=INK, linewidth=0.9, linestyle="-.", label="mean")
-        axes.axvline(mean - 3 * std, color=INK, linewidth=0.9, linestyle="--", label="mean ± 3 σ")
-        axes.axvline(mean + 3 * std, color=INK, linewidth=0.9, linestyle="--")
+    if trace["std_N"] is not None:
+        _draw_levels(axes.axvline, trace)
         axes.margins(x=0.04)
         add_legend(axes)
-    axes.set_xlabel("contact force, 0–20 Hz [N]")
-    axes.set_ylabel("share of samples [%]")
+    axes.set(xlabel="contact force, 0–20 Hz [N]", ylabel="share of samples [%]")
     return figure
+
+
+def _draw_levels(draw_line: Callable[..., object], trace: dict[str, Any]) -> None:
+    """The mean and mean plus and minus three standard deviations, if they are known."""
+    mean, std = trace["mean_N"], trace["std_N"]
+    if std is not None:
+        draw_line(mean, color=INK, linewidth=0.9, linestyle="-.", label="mean")
+        for level, label in ((mean + 3 * std, "mean ± 3 σ"), (mean - 3 * std, None)):
+            draw_line(level, color=INK, linewidth=0.9, linestyle="--", label=label)

@@ -96,19 +96,16 @@ def draw_boxes(modes: list[dict[str, Any]]) -> Figure:
     axes = figure.subplots()
     for number in groups:
         members = [mode for mode in modes if mode["group"] == number and mode["certain"] and not mode["lateral"]]
-        values = np.array([100 * mode["damping_ratio"] for mode in members])
-        if not values.size:
-            continue
-        add_box(axes, values, number)
-        for mode, value in zip(members, values, strict=True):
-            axes.plot(
-                number + 0.36, value, "x" if mode["outlier"] else "o", color=INK, markersize=4, markerfacecolor="white"
-            )
+        if members:
+            add_box(axes, np.array([100 * mode["damping_ratio"] for mode in members]), number)
+        for mode in members:
+            marker = "x" if mode["outlier"] else "o"
+            ratio = 100 * mode["damping_ratio"]
+            axes.plot(number + 0.36, ratio, marker, color=INK, markersize=4, markerfacecolor="white")
     axes.set_xlim(0.4, (groups[-1] if groups else 1) + 0.8)
     axes.set_xticks(groups, [str(number) for number in groups])
     axes.set_ylim(bottom=0)
-    axes.set_xlabel("group of span modes (circles: modes; crosses: outliers)")
-    axes.set_ylabel("damping ratio [%]")
+    axes.set(xlabel="group of span modes (circles: modes; crosses: outliers)", ylabel="damping ratio [%]")
     return figure
 
 
@@ -140,7 +137,6 @@ def draw_damping(modes: list[dict[str, Any]]) -> Figure:
     # The scale follows the certain modes: one uncertain mode with a large ratio would flatten all others.
     axes.set_ylim(0, 1.4 * max(certain) if certain else None)
     axes.margins(x=0.02)
-    axes.set_xlabel("frequency [Hz]")
-    axes.set_ylabel("damping ratio [%]")
+    axes.set(xlabel="frequency [Hz]", ylabel="damping ratio [%]")
     add_legend(axes)
     return figure

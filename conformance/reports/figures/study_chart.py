@@ -37,8 +37,7 @@ def draw_chart(data: dict[str, Any]) -> Figure:
     """
     figure = Figure(figsize=(FULL, 2.9) if data["wide"] else (HALF, 2.4))
     axes = figure.subplots()
-    axes.set_xscale(data["x_scale"])
-    axes.set_yscale(data["y_scale"])
+    axes.set(xscale=data["x_scale"], yscale=data["y_scale"], xlabel=data["x_label"], ylabel=data["y_label"])
     bars = [series for series in data["series"] if series["style"] == "bars"]
     others = [series for series in data["series"] if series["style"] != "bars"]
     for number, series in enumerate(bars):
@@ -52,8 +51,6 @@ def draw_chart(data: dict[str, Any]) -> Figure:
         axes.set_xlim(-0.6, len(data["ticks"]) - 0.4)
     if data["y_scale"] == "linear" and all(min(series["y"], default=0) >= 0 for series in data["series"]):
         axes.set_ylim(bottom=0)
-    axes.set_xlabel(data["x_label"])
-    axes.set_ylabel(data["y_label"])
     if any(series["style"] != "boxes" for series in data["series"]) or data["marks"]:
         longest = max(len(entry["label"]) for entry in (*data["series"], *data["marks"]))
         add_legend(axes, columns=max(1, min(4, 100 // (longest + 8))))

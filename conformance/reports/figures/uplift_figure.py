@@ -42,14 +42,12 @@ def draw_uplift(supports: list[dict[str, Any]], criteria: list[dict[str, Any]]) 
         _draw_largest(axes, supports)
     limits = {(row["lower"], row["upper"]) for row in criteria if row["quantity"] == "max_uplift_at_support_mm"}
     for lower, upper in sorted(limits, key=str):
-        if lower is not None and upper is not None:
+        levels = [level for level in (lower, upper) if level is not None]
+        if len(levels) == 2:
             axes.axhspan(lower, upper, color=LIMIT_FILL, zorder=0, label="limits of the maximum")
-        else:
-            for level in (lower, upper):
-                if level is not None:
-                    axes.axhline(level, color=INK, linewidth=1.2, linestyle=LIMIT_LINE, label="limit of the maximum")
-    axes.set_xlabel("time [s]")
-    axes.set_ylabel("uplift [mm]")
+        elif levels:
+            axes.axhline(levels[0], color=INK, linewidth=1.2, linestyle=LIMIT_LINE, label="limit of the maximum")
+    axes.set(xlabel="time [s]", ylabel="uplift [mm]")
     add_legend(axes)
     return figure
 
