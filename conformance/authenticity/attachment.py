@@ -8,7 +8,7 @@ from pypdf.errors import PyPdfError
 
 from pantocheck.conformance.input_files.bounded_file import check_file
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.reports.formats.embedding import NAME
+from pantocheck.conformance.reports.formats.reproducibility import NAME
 from pantocheck.conformance.reports.page_text import clean_text
 from pantocheck.conformance.results.results_reading import parse_results
 

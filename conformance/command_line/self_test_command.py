@@ -12,7 +12,7 @@ from pantocheck.conformance.command_line.console import build_table, console, es
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.reports.formats.report_writers import write_report
-from pantocheck.conformance.self_test.bench import Row, SelfTest, run_self_test
+from pantocheck.conformance.self_test.bench import MutantResult, SelfTest, run_self_test
 from pantocheck.conformance.self_test.self_test_page import build_self_test_page
 
 DEFAULT_CASES = ("en50318-2002/250", "en50318-2002/300")
@@ -48,28 +48,32 @@ def self_test_command(
 
 def _print(self_test: SelfTest) -> None:
     output = console()
-    caught = sum(row.caught for row in self_test.rows)
+    missed = [result for result in self_test.severe if not result.detected]
+    detected = len(self_test.severe) - len(missed)
     output.print(
         style_verdict("pass" if self_test.passed else "fail"),
-        escape_text(f" {caught} of {len(self_test.rows)} mutants detected by the expected check"),
+        escape_text(f" {detected} of {len(self_test.severe)} mutants detected by the expected check"),
     )
-    for name, (verdict, reason) in self_test.right.items():
+    for result in missed:
+        text = f"NOT DETECTED: {result.mutant.name} on {result.case}, expected check: {result.mutant.expected_check}"
+        output.print(escape_text(text), soft_wrap=True)
+    for name, (verdict, reason) in self_test.reference.items():
         output.print(escape_text(f"reference simulator on {name}:"), style_verdict(verdict), escape_text(reason))
-    for title, rows in (("must be detected", self_test.rows), ("may pass", self_test.mild)):
+    for title, results in (("must be detected", self_test.severe), ("may remain undetected", self_test.mild)):
         output.print()
-        output.print(_build_mutant_table(title, rows))
+        output.print(_build_mutant_table(title, results))
 
 
-def _build_mutant_table(title: str, rows: Sequence[Row]) -> Table:
+def _build_mutant_table(title: str, results: Sequence[MutantResult]) -> Table:
     table = build_table("mutant", "case", "verdict", "limits alone", "detected by", "reason in the report", title=title)
-    for row in rows:
-        check = row.mutant.caught_by or ", ".join(row.checks)
+    for result in results:
+        check = result.mutant.expected_check or ", ".join(result.checks)
         table.add_row(
-            escape_text(row.mutant.name),
-            escape_text(row.case),
-            style_verdict(row.verdict),
-            style_verdict(row.by_limits),
-            escape_text(check if row.caught else f"NOT DETECTED, expected {check}"),
-            escape_text(row.reason[:160]),
+            escape_text(result.mutant.name),
+            escape_text(result.case),
+            style_verdict(result.verdict),
+            style_verdict(result.by_limits),
+            escape_text(check if result.detected else f"not by {check}"),
+            escape_text(result.reason[:160]),
         )
     return table

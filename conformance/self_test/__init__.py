@@ -1,1 +1,1 @@
-"""The suite tested: systems that are wrong on purpose must not pass, and the right one must."""
+"""Test of the suite itself: systems with known faults must not pass, and the reference simulator must."""

@@ -1,6 +1,6 @@
-"""Running mutants: every one is graded as any system is, and once more by the limits of the case alone."""
+"""Run of the mutants: each is graded like any system, and once more by the limits of the case alone."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -19,129 +19,115 @@ from pantocheck.conformance.systems.reference_simulator import ReferenceSimulato
 TRUST: Final = "secondary"
 
 
-class NothingToMutate(RuntimeError):
-    """The reference simulator delivered no record: without the right system, no mutant proves anything."""
-
-
 @dataclass(frozen=True)
-class Row:
-    """A mutant on a case.
-
-    Parameters
-    ----------
-    mutant : Mutant
-        Which one.
-    case : str
-        Id of the case.
-    verdict : Verdict
-        Of the whole suite.
-    by_limits : Verdict
-        Verdict of the limits of the case alone.
-    outside : tuple[str, ...]
-        Quantities outside their limits.
-    checks : tuple[str, ...]
-        Checks of the record that object, with what they say.
-    caught : bool
-        Whether it ended in fail or error for the reason it must, or may pass.
-    reason : str
-        What a user is told.
-    """
+class MutantResult:
+    """Result of a mutant on a case."""
 
     mutant: Mutant
     case: str
+    """Id of the case."""
     verdict: Verdict
+    """Verdict of the whole suite."""
     by_limits: Verdict
+    """Verdict of the limits of the case alone."""
     outside: tuple[str, ...]
+    """Quantities outside their limits."""
     checks: tuple[str, ...]
-    caught: bool
+    """Checks of the record that failed."""
+    detected: bool
+    """Whether the expected check detects the fault; true for a mild fault, which may remain undetected."""
     reason: str
+    """Reason of the verdict in the report."""
 
 
 @dataclass(frozen=True)
 class SelfTest:
-    """The right system and the mutants.
+    """Results of the reference simulator and of the mutants.
 
     Parameters
     ----------
-    right : dict[str, tuple[Verdict, str]]
-        Verdict of the right system on each case, with the reason if it did not pass.
-    rows : tuple[Row, ...]
-        Mutants that must be caught.
-    mild : tuple[Row, ...]
-        Mutants that may pass.
+    reference : dict of (Verdict, str)
+        Verdict of the reference simulator on each case, with the reason if it did not pass.
+    severe : tuple of MutantResult
+        Mutants that must be detected.
+    mild : tuple of MutantResult
+        Mutants that may remain undetected.
     """
 
-    right: dict[str, tuple[Verdict, str]]
-    rows: tuple[Row, ...]
-    mild: tuple[Row, ...]
+    reference: dict[str, tuple[Verdict, str]]
+    severe: tuple[MutantResult, ...]
+    mild: tuple[MutantResult, ...]
 
     @property
     def passed(self) -> bool:
-        """Whether the right system passes and every mutant is caught for its reason."""
-        return all(verdict == "pass" for verdict, _ in self.right.values()) and all(row.caught for row in self.rows)
+        """Whether the reference simulator passes and every severe fault is detected by the expected check."""
+        accepted = all(verdict == "pass" for verdict, _ in self.reference.values())
+        return accepted and all(result.detected for result in self.severe)
 
 
-def run_self_test(cases: Sequence[Case], progress: Callable[[str], None] | None = None) -> SelfTest:
-    """Run the right system and all mutants on cases.
+def run_self_test(cases: Sequence[Case], progress: Callable[[str], None]) -> SelfTest:
+    """Run the reference simulator and all mutants on cases.
 
     Parameters
     ----------
-    cases : Sequence[Case]
-        That the right system passes.
-    progress : Callable[[str], None] or None
-        Called with the name of each mutant before it runs.
+    cases : sequence of Case
+        Cases that the reference simulator passes.
+    progress : callable
+        Function that receives the name of each mutant before it runs.
 
     Raises
     ------
-    NothingToMutate
-        The right system delivers no record of a case.
+    RuntimeError
+        The reference simulator delivers no record of a case, so that there is nothing to mutate.
     """
-    right: dict[str, tuple[Verdict, str]] = {}
-    rows: dict[tuple[Mutant, ...], list[Row]] = {MUTANTS: [], MILD: []}
+    reference: dict[str, tuple[Verdict, str]] = {}
+    records: dict[str, Record] = {}
     for case in cases:
-        if progress:
-            progress("the right system")
+        progress("reference simulator")
         outcome = ReferenceSimulator().run_unrefined(case)
         if not isinstance(outcome, Delivered) or outcome.record is None:
-            raise NothingToMutate(f"{case.id}: the reference simulator delivered no record")
+            raise RuntimeError(f"{case.id}: the reference simulator delivered no record")
+        records[case.id] = outcome.record
         result = grade_case(case, outcome, TRUST)
-        right[case.id] = result.verdict, _reason(result)
-        for mutants, found in rows.items():
-            for mutant in mutants:
-                if progress:
-                    progress(mutant.name)
-                found.append(_row(mutant, case, outcome.record))
-    in_order = {mutants: tuple(row for m in mutants for row in rows[mutants] if row.mutant == m) for mutants in rows}
-    return SelfTest(right, in_order[MUTANTS], in_order[MILD])
+        reference[case.id] = result.verdict, _reason(result)
+
+    def run_mutants(mutants: Sequence[Mutant]) -> Iterator[MutantResult]:
+        for mutant in mutants:
+            progress(mutant.name)
+            for case in cases:
+                yield _run_mutant(mutant, case, records[case.id])
+
+    return SelfTest(reference, tuple(run_mutants(MUTANTS)), tuple(run_mutants(MILD)))
 
 
-def _row(mutant: Mutant, case: Case, right: Record) -> Row:
+def _run_mutant(mutant: Mutant, case: Case, record: Record) -> MutantResult:
     try:
-        outcome = mutant.make(case, right)
-    except InputError as error:  # what the suite refuses to read: the same as a case that ends in error
-        caught = mutant.caught_by == "record file"
-        return Row(mutant, case.id, "error", "skip", (), ("record file",), caught, f"{error.where}: {error.found}")
+        outcome = mutant.run(case, record)
+    except InputError as error:  # a file that the suite refuses to read ends like a case with an error
+        reason = f"{error.where}: {error.found}"
+        detected = mutant.expected_check == "record file"
+        return MutantResult(mutant, case.id, "error", "skip", (), ("record file",), detected, reason)
     evaluation = CaseEvaluation(case, outcome if isinstance(outcome, Delivered) else Delivered())
     result = grade_evaluation(evaluation, TRUST) if isinstance(outcome, Delivered) else grade_case(case, outcome, TRUST)
     criteria = evaluation.grade_limits(TRUST)
     outside = tuple(criterion.quantity for criterion in criteria if criterion.verdict == "fail")
     checks = tuple(name for name, finding in evaluation.findings.items() if finding.kind != "unchecked")
-    reasons: tuple[str, ...] = checks if result.verdict == "error" else (*checks, *(["limits"] if outside else []))
-    return Row(
+    # After an error the limits are not applied.
+    detecting = {*checks, "limits"} if outside and result.verdict != "error" else {*checks}
+    return MutantResult(
         mutant,
         case.id,
         result.verdict,
         worst_verdict(criterion.verdict for criterion in criteria),
         outside,
         checks,
-        mutant.caught_by is None or (result.verdict in {"fail", "error"} and mutant.caught_by in reasons),
+        mutant.expected_check is None or (result.verdict in {"fail", "error"} and mutant.expected_check in detecting),
         _reason(result),
     )
 
 
 def _reason(result: CaseResult) -> str:
     failed = [f"{item.quantity} {item.reason}" for item in result.criteria if item.verdict == "fail"]
-    own = [
-        warning for warning in result.warnings if not warning.startswith(WARNING_PREFIX)
-    ]  # those are said of any system
-    return result.reason or "; ".join([*failed, *own])
+    # Every system gets the warning of the extended band.
+    warnings = [warning for warning in result.warnings if not warning.startswith(WARNING_PREFIX)]
+    return result.reason or "; ".join([*failed, *warnings])

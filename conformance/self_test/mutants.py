@@ -1,4 +1,4 @@
-"""Systems that are wrong on purpose, each in one way that has happened to somebody."""
+"""Systems with one deliberate fault each, of a kind that has occurred in practice."""
 
 import tempfile
 from collections.abc import Callable
@@ -19,79 +19,89 @@ from pantocheck.conformance.systems.record_folder import open_record_folder
 from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
 from pantocheck.model import discretise, never_slack
 
-MakeMutant = Callable[[Case, Record], Outcome]
+RunMutant = Callable[[Case, Record], Outcome]
+"""Outcome of a faulty system on a case, made from the record of the reference simulator."""
 
 SAMPLE_CHANNELS = ("time", "position", "force", "contact_height", "support_uplift")
 
 
 @dataclass(frozen=True)
 class Mutant:
-    """A system that is wrong.
+    """A system with a fault.
 
     Parameters
     ----------
     name : str
-        Short.
-    wrong : str
-        What is wrong with it, one sentence.
-    make : MakeMutant
-        Gives what it delivers, from the case and the right record.
-    caught_by : Literal[coverage, support passing, roll-off, dynamics, limits, record file] or None
-        The check that must catch it; `limits`: those of the case alone; None: a mild fault that may pass.
+        Short name.
+    fault : str
+        The fault in one sentence.
+    run : RunMutant
+        Run of the faulty system.
+    expected_check : {"coverage", "support passing", "roll-off", "dynamics", "limits", "record file"} or None
+        Check that must detect the fault; `limits`: the limits of the case; None: a mild fault, which may remain
+        undetected.
     """
 
     name: str
-    wrong: str
-    make: MakeMutant
-    caught_by: Literal["coverage", "support passing", "roll-off", "dynamics", "limits", "record file"] | None
+    fault: str
+    run: RunMutant
+    expected_check: Literal["coverage", "support passing", "roll-off", "dynamics", "limits", "record file"] | None
 
 
-def _changed(**change: Callable[[Case, Record], Any]) -> MakeMutant:
-    """The right record with some of its fields replaced."""
-    return lambda case, record: Delivered(replace(record, **{name: of(case, record) for name, of in change.items()}))
+def _replace_channels(**changes: Callable[[Case, Record], Any]) -> RunMutant:
+    """The record with some of its fields replaced."""
+    return lambda case, record: Delivered(
+        replace(record, **{name: change(case, record) for name, change in changes.items()})
+    )
 
 
-def _filtered(order: int) -> MakeMutant:
-    """The force through a zero-phase filter of another order at the cut-off of the case, and said to be filtered."""
+def _filter_force(order: int) -> RunMutant:
+    """The record states the filter of the case, but its force passed a zero-phase filter of another order."""
 
-    def make(case: Case, record: Record) -> Outcome:
+    def run(case: Case, record: Record) -> Outcome:
         low_pass = replace(case.file.filter.low_pass, order=order)
         force = np.array([low_pass(force, record.rate) for force in record.force])
         return Delivered(replace(record, force=force, filter_applied_Hz=low_pass.cutoff_Hz))
 
-    return make
+    return run
 
 
-def _late(seconds: float) -> MakeMutant:
-    """The force held back against everything else; what runs over the end comes in at the beginning."""
-    return _changed(force=lambda _, record: np.roll(record.force, round(seconds * record.rate), axis=1))
+def _scale_force(factor: float) -> RunMutant:
+    return _replace_channels(force=lambda _, record: factor * record.force)
 
 
-def _coarse(element: float) -> MakeMutant:
-    def make(case: Case, record: Record) -> Outcome:
+def _delay_force(seconds: float, **changes: Callable[[Case, Record], Any]) -> RunMutant:
+    """The force is late against all other channels; its last samples move to the start."""
+    return _replace_channels(
+        force=lambda _, record: np.roll(record.force, round(seconds * record.rate), axis=1), **changes
+    )
+
+
+def _coarsen_mesh(element: float) -> RunMutant:
+    def run(case: Case, record: Record) -> Outcome:
         discretisation = case.file.discretisation.model_copy(update={"element_m": element})
         file = case.file.model_copy(update={"discretisation": discretisation})
         return ReferenceSimulator().run_unrefined(replace(case, file=file))
 
-    return make
+    return run
 
 
-def _bilateral(case: Case, record: Record) -> Outcome:
+def _run_bilateral_droppers(case: Case, record: Record) -> Outcome:
     steps = case.file.discretisation
     line = never_slack(discretise(build_catenary(case.line), steps.element_m))
     passage = run_passage(case, line, steps)
     return Delivered(passage.record, compute_static_quantities(case, line), passage.run)
 
 
-def _cut(case: Case, record: Record) -> Outcome:
+def _truncate_record(case: Case, record: Record) -> Outcome:
     """The record ends in the middle of the analysis section."""
     n = int(np.searchsorted(record.position[0], np.mean(case.analysis_section)))
     channels = {name: getattr(record, name) for name in SAMPLE_CHANNELS}
     return Delivered(replace(record, **{k: value[..., :n] for k, value in channels.items() if value is not None}))
 
 
-def _damaged(case: Case, record: Record) -> Outcome:
-    """The file of the record lost its last half; the sidecar is whole."""
+def _truncate_file(case: Case, record: Record) -> Outcome:
+    """The second half of the table is missing; the sidecar is complete."""
     with tempfile.TemporaryDirectory(prefix="pantocheck-") as name:
         table = Path(name) / "record.csv"
         write_record(table, record, case.id)
@@ -104,54 +114,47 @@ MUTANTS: tuple[Mutant, ...] = (
     Mutant(
         "gain 1.05",
         "The force is 5 % too large, as from a wrongly calibrated load cell.",
-        _changed(force=lambda _, record: 1.05 * record.force),
+        _scale_force(1.05),
         "dynamics",
     ),
     Mutant(
         "unfiltered",
         "The record states the filter of the case, but its force is unfiltered.",
-        _changed(filter_applied_Hz=lambda case, _: case.file.filter.cutoff_Hz),
+        _replace_channels(filter_applied_Hz=lambda case, _: case.file.filter.cutoff_Hz),
         "roll-off",
     ),
-    Mutant("filter order 2", "The order of the filter is 2 instead of 6.", _filtered(2), "roll-off"),
-    Mutant("time shift", "The force lags the other channels by 0.1 s.", _late(0.1), "dynamics"),
+    Mutant("filter order 2", "The order of the filter is 2 instead of 6.", _filter_force(2), "roll-off"),
+    Mutant("time shift", "The force lags the other channels by 0.1 s.", _delay_force(0.1), "dynamics"),
     Mutant(
         "position shift",
         "The positions are shifted by 10 m against all other channels.",
-        _changed(position=lambda _, record: record.position + 10.0),
+        _replace_channels(position=lambda _, record: record.position + 10.0),
         "support passing",
     ),
-    Mutant("no slackening", "Droppers push as well as they pull.", _bilateral, "limits"),
-    Mutant(
-        "units x1000",
-        "The force is in millinewtons.",
-        _changed(force=lambda _, record: 1000 * record.force),
-        "dynamics",
-    ),
+    Mutant("no slackening", "Droppers push as well as they pull.", _run_bilateral_droppers, "limits"),
+    Mutant("units x1000", "The force is in millinewtons.", _scale_force(1000), "dynamics"),
     Mutant(
         "uplift in mm",
         "The uplift of the supports is in millimetres.",
-        _changed(support_uplift=lambda _, record: None if (u := record.support_uplift) is None else 1000 * u),
+        _replace_channels(support_uplift=lambda _, record: None if (u := record.support_uplift) is None else 1000 * u),
         "limits",
     ),
-    Mutant("coarse mesh", "Elements are 4 m long.", _coarse(4.0), "limits"),
-    Mutant("truncated record", "The record ends in the middle of the analysis section.", _cut, "coverage"),
-    Mutant("truncated file", "The second half of the table of samples is missing.", _damaged, "record file"),
+    Mutant("coarse mesh", "Elements are 4 m long.", _coarsen_mesh(4.0), "limits"),
+    Mutant("truncated record", "The record ends in the middle of the analysis section.", _truncate_record, "coverage"),
+    Mutant("truncated file", "The second half of the table of samples is missing.", _truncate_file, "record file"),
 )
-"""Those that must not pass."""
+"""Mutants that must be detected."""
 
 MILD: tuple[Mutant, ...] = (
-    Mutant("gain 1.02", "The force is 2 % too large.", _changed(force=lambda _, record: 1.02 * record.force), None),
-    Mutant("filter order 4", "The order of the filter is 4 instead of 6.", _filtered(4), None),
-    Mutant("time shift 5 ms", "The force lags by 5 ms.", _late(0.005), None),
+    Mutant("gain 1.02", "The force is 2 % too large.", _scale_force(1.02), None),
+    Mutant("filter order 4", "The order of the filter is 4 instead of 6.", _filter_force(4), None),
+    Mutant("time shift 5 ms", "The force lags by 5 ms.", _delay_force(0.005), None),
     Mutant(
         "time shift, force alone",
         "The force lags by 0.1 s, and the record has no contact height.",
-        lambda case, record: Delivered(
-            replace(record, force=np.roll(record.force, round(0.1 * record.rate), axis=1), contact_height=None)
-        ),
+        _delay_force(0.1, contact_height=lambda *_: None),
         None,
     ),
-    Mutant("mesh of 2 m", "Elements are 2 m long.", _coarse(2.0), None),
+    Mutant("mesh of 2 m", "Elements are 2 m long.", _coarsen_mesh(2.0), None),
 )
-"""Smaller faults, to show where the suite stops seeing: they may pass."""
+"""Smaller faults, which show the limit of detection."""

@@ -2,7 +2,7 @@
 
 from pantocheck.conformance.consistency.record_checks import RECORD_CHECKS
 from pantocheck.conformance.reports import document as doc
-from pantocheck.conformance.self_test.bench import Row, SelfTest
+from pantocheck.conformance.self_test.bench import MutantResult, SelfTest
 
 LIMITS_ALONE_KEY = (
     "Limits alone: verdict without the checks. Where it is ",
@@ -20,11 +20,11 @@ UNDETECTED_FAULTS = (
 )
 
 
-def build_self_test_page(test: SelfTest) -> doc.Document:
+def build_self_test_page(self_test: SelfTest) -> doc.Document:
     """The page `docs/self-test.md`."""
-    right = tuple(
+    reference = tuple(
         ("The unchanged system on ", doc.Code(case), ": ", doc.Code(verdict))
-        for case, (verdict, _) in test.right.items()
+        for case, (verdict, _) in self_test.reference.items()
     )
     return doc.Document(
         title="Self-test",
@@ -52,13 +52,14 @@ def build_self_test_page(test: SelfTest) -> doc.Document:
                 ),
             ),
             doc.Section(
-                "Detected faults", (doc.BulletList(right), _mutants(test.rows), doc.Paragraph(LIMITS_ALONE_KEY))
+                "Detected faults",
+                (doc.BulletList(reference), _mutants(self_test.severe), doc.Paragraph(LIMITS_ALONE_KEY)),
             ),
             doc.Section(
                 "Faults that may remain undetected",
                 (
                     doc.Paragraph("Smaller faults of the same kinds show the limit of detection."),
-                    _mild_mutants(test.mild),
+                    _mild_mutants(self_test.mild),
                     doc.Paragraph(UNDETECTED_FAULTS),
                 ),
             ),
@@ -72,20 +73,20 @@ def _checks() -> doc.Table:
     return doc.Table(tuple(map(doc.Column, columns)), rows)
 
 
-def _mutants(rows: tuple[Row, ...]) -> doc.Table:
+def _mutants(rows: tuple[MutantResult, ...]) -> doc.Table:
     columns = ("Mutant", "Fault", "Case", "Verdict", "Detected by", "Limits alone", "Quantities outside their limits")
-    cells = tuple((*_fault(row), row.mutant.caught_by or "–", row.by_limits, _names(row.outside)) for row in rows)
+    cells = tuple((*_fault(row), row.mutant.expected_check or "–", row.by_limits, _names(row.outside)) for row in rows)
     return doc.Table(tuple(map(doc.Column, columns)), cells)
 
 
-def _mild_mutants(rows: tuple[Row, ...]) -> doc.Table:
+def _mild_mutants(rows: tuple[MutantResult, ...]) -> doc.Table:
     columns = ("Mutant", "Fault", "Case", "Verdict", "Objecting check", "Quantities outside their limits")
     cells = tuple((*_fault(row), ", ".join(row.checks) or "none", _names(row.outside)) for row in rows)
     return doc.Table(tuple(map(doc.Column, columns)), cells)
 
 
-def _fault(row: Row) -> tuple[doc.RichText, ...]:
-    return row.mutant.name, row.mutant.wrong, doc.Code(row.case), row.verdict
+def _fault(row: MutantResult) -> tuple[doc.RichText, ...]:
+    return row.mutant.name, row.mutant.fault, doc.Code(row.case), row.verdict
 
 
 def _names(quantities: tuple[str, ...]) -> doc.RichText:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
 from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.reports.formats.pdf import render_pdf
+from pantocheck.conformance.results.results_format import Results
 
 SOURCE = "Wang et al., An extended Habedank's equation-based EMTP model, IEEE Trans. Power Delivery, Table III"
 SPEED = 250 / 3.6
@@ -235,7 +236,7 @@ def skipped_case() -> dict[str, Any]:
 
 
 def example() -> dict[str, Any]:
-    return {
+    results = {
         "schema": "pantocheck.results/1",
         "suite": {"version": "0.1.0", "commit": "4f2c9d1e7a3b"},
         "system": {"name": "Pantocheck reference simulator", "version": "0.1.0", "kind": "builtin"},
@@ -253,6 +254,7 @@ def example() -> dict[str, Any]:
         },
         "cases": [passing_case(), failing_case(), skipped_case()],
     }
+    return Results.model_validate(results).to_dict()
 
 
 @pytest.fixture
@@ -264,7 +266,8 @@ def results() -> dict[str, Any]:
 @pytest.fixture
 def passing() -> dict[str, Any]:
     """The passing case alone."""
-    return example() | {"verdict": "pass", "cases": [passing_case()]}
+    results = example()
+    return results | {"verdict": "pass", "cases": results["cases"][:1]}
 
 
 HOSTILE = [

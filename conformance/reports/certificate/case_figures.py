@@ -18,16 +18,16 @@ from pantocheck.conformance.reports.page_text import format_plain, format_value
 
 def draw_case_figures(case: dict[str, Any]) -> Iterator[Figure]:
     """Charts of a study, then force, spectrum and histogram of each pantograph, then the uplift."""
-    for chart in case.get("charts") or []:
+    for chart in case["charts"]:
         yield Figure(draw_chart(chart), chart["alternative"], chart["caption"], chart["wide"])
-    for key, trace in sorted((case.get("traces") or {}).items(), key=lambda item: (len(item[0]), item[0])):
-        if trace.get("position_m"):
-            yield _force_figure(key, trace, [row for row in case["criteria"] if str(row.get("pantograph")) == key])
-        if (trace.get("spectrum") or {}).get("frequency_Hz"):
+    for key, trace in sorted(case["traces"].items(), key=lambda item: (len(item[0]), item[0])):
+        if trace["position_m"]:
+            yield _force_figure(key, trace, [row for row in case["criteria"] if str(row["pantograph"]) == key])
+        if trace["spectrum"]["frequency_Hz"]:
             yield _spectrum_figure(key, trace, case["quantities"].get(key, {}))
-        if (trace.get("histogram") or {}).get("share_pct"):
+        if trace["histogram"]:
             yield _histogram_figure(key, trace)
-    supports = [support for support in case.get("uplift") or [] if support["time_s"]]
+    supports = [support for support in case["uplift"] if support["time_s"]]
     if supports:
         peaks = ", ".join(
             f"{format_value(max(support['uplift_mm']), 3)} mm at {format_plain(support['support_m'])} m"
@@ -39,9 +39,9 @@ def draw_case_figures(case: dict[str, Any]) -> Iterator[Figure]:
 
 def _force_figure(key: str, trace: dict[str, Any], criteria: list[dict[str, Any]]) -> Figure:
     start, end = trace["position_m"][0], trace["position_m"][-1]
-    mean, std = trace.get("mean_N"), trace.get("std_N")
+    mean, std = trace["mean_N"], trace["std_N"]
     text = f"Pantograph {key}: contact force from {format_plain(start)} m to {format_plain(end)} m"
-    if mean is not None and std is not None:
+    if std is not None:
         low, high = format_value(mean - 3 * std), format_value(mean + 3 * std)
         text += f"; mean {format_value(mean)} N, mean ± 3 σ from {low} N to {high} N"
     limited = select_limited(criteria)

@@ -58,16 +58,15 @@ def build_certificate(results: dict[str, Any]) -> doc.Document:
 
 def build_header(results: dict[str, Any]) -> doc.VerdictHeader:
     """Head of the pages made from results.json."""
-    trust = results.get("trust") or ""
-    level = read_words()["trust"].get(trust)
+    level = read_words()["trust"].get(results["trust"])
     system, suite = name_system(results), name_suite(results)
-    counted = f" Lowest trust of the limits that count: {trust} ({level['meaning']})." if level else ""
+    trust = f" Lowest trust of the limits that count: {results['trust']} ({level['meaning']})." if level else ""
     return doc.VerdictHeader(
         heading=HEADING,
         verdict=results["verdict"],
-        statement=results.get("statement") or "",
+        statement=results["statement"],
         headline=build_headline(results),
-        subject=f"{system}, checked with {suite}.{counted}",
+        subject=f"{system}, checked with {suite}.{trust}",
         footer=f"{suite} · {system}",
     )
 
@@ -85,11 +84,11 @@ def _case_section(case: dict[str, Any], anchor: str) -> doc.Section:
         doc.Paragraph((doc.VerdictMark(case["verdict"]), "\N{EN SPACE}", doc.Code(case["id"]))),
         doc.Paragraph(summarise_case(case)),
     ]
-    if case.get("warnings"):
+    if case["warnings"]:
         blocks.append(doc.WarningBox(tuple(case["warnings"])))
     if case["criteria"]:
         blocks.append(doc.Section("Criteria", criteria_blocks(case, anchor)))
-    blocks += [doc.Section(table["caption"], (_study_table(table),)) for table in case.get("tables") or []]
+    blocks += [doc.Section(table["caption"], (_study_table(table),)) for table in case["tables"]]
     bands, quantities = build_band_table(case), build_quantity_table(case)
     if bands.rows:
         blocks.append(doc.Section("Extended band, up to 50 Hz", (bands,)))
@@ -98,13 +97,13 @@ def _case_section(case: dict[str, Any], anchor: str) -> doc.Section:
         blocks.append(doc.Section("Figures", (doc.Figures(figures),)))
     if quantities.rows:
         blocks.append(doc.Section("All quantities", (quantities,)))
-    for heading, sentences in (("Skipped", list_skipped(case)), ("Notes", tuple(case.get("notes") or ()))):
+    for heading, sentences in (("Skipped", list_skipped(case)), ("Notes", tuple(case["notes"]))):
         if sentences:
             blocks.append(doc.Section(heading, (doc.BulletList(sentences),)))
-    if case.get("inputs"):
+    if case["inputs"]:
         blocks.append(doc.Section("Inputs", (_input_table(case["inputs"]),)))
     blocks.append(doc.Section("Run", (list_case_facts(case),)))
-    return doc.Section(case.get("title") or case["id"], tuple(blocks), anchor=anchor, new_page=True)
+    return doc.Section(case["title"], tuple(blocks), anchor=anchor, new_page=True)
 
 
 def _study_table(table: dict[str, Any]) -> doc.Table:
@@ -115,7 +114,5 @@ def _study_table(table: dict[str, Any]) -> doc.Table:
 
 
 def _input_table(inputs: list[dict[str, Any]]) -> doc.Table:
-    rows = tuple(
-        (doc.Code(group["group"]), doc.TrustMark(group["trust"]), group.get("source") or "") for group in inputs
-    )
+    rows = tuple((doc.Code(group["group"]), doc.TrustMark(group["trust"]), group["source"]) for group in inputs)
     return doc.Table((doc.Column("Group", share=1), doc.Column("Trust"), doc.Column("Source", share=3)), rows)

@@ -23,7 +23,7 @@ def list_holders(case: dict[str, Any]) -> list[str]:
 def build_band_table(case: dict[str, Any]) -> Table:
     """Quantities of the bands up to 50 Hz, each with its verdict or marked informative."""
     verdicts = {
-        (criterion["quantity"], str(criterion.get("pantograph"))): criterion["verdict"]
+        (criterion["quantity"], str(criterion["pantograph"])): criterion["verdict"]
         for criterion in case["criteria"]
         if criterion["verdict"] != "info"
     }
@@ -50,7 +50,7 @@ def build_quantity_table(case: dict[str, Any]) -> Table:
         value = case["quantities"].get(key, {}).get(quantity)
         if value is None:
             return "skipped" if quantity in case["skipped"].get(key, {}) else "–"
-        error = (case.get("uncertainty") or {}).get(key, {}).get(quantity)
+        error = case["uncertainty"].get(key, {}).get(quantity)
         text = ", ".join(format_value(number, 5) for number in (value if isinstance(value, list) else [value]))
         return text if error is None else f"{text} ± {format_value(error, 2)}"
 

@@ -24,8 +24,8 @@ def build_summary(results: dict[str, Any]) -> doc.Document:
 
 
 def _case_section(case: dict[str, Any]) -> doc.Section:
-    blocks: list[doc.Block] = [doc.Paragraph(f"Case {case['id']}{': ' + case['reason'] if case.get('reason') else ''}")]
-    if case.get("warnings"):
+    blocks: list[doc.Block] = [doc.Paragraph(f"Case {case['id']}{': ' + case['reason'] if case['reason'] else ''}")]
+    if case["warnings"]:
         blocks.append(doc.WarningBox(tuple(case["warnings"])))
     if case["criteria"]:
         blocks.append(_criteria(case))
@@ -37,24 +37,12 @@ def _criteria(case: dict[str, Any]) -> doc.Table:
     rows = []
     for criterion in case["criteria"]:
         texts = describe_criterion(criterion)
-        limited = criterion["lower"] is not None or criterion["upper"] is not None
-        rows.append(
-            (
-                texts.label,
-                texts.pantograph,
-                texts.value,
-                texts.error,
-                texts.limits,
-                texts.margin,
-                doc.VerdictMark(criterion["verdict"]),
-                criterion["trust"] if limited else "",
-            )
-        )
+        numbers = (texts.value, texts.error, texts.limits, texts.margin)
+        rows.append((texts.label, texts.pantograph, *numbers, doc.VerdictMark(criterion["verdict"]), texts.trust))
+    numbers = ("Value", error_name(case), "Limits", "Margin")
     columns = (
-        doc.Column("Quantity"),
-        doc.Column("Pantograph"),
-        *(doc.Column(heading, number=True) for heading in ("Value", error_name(case), "Limits", "Margin")),
-        doc.Column("Verdict"),
-        doc.Column("Trust"),
+        *map(doc.Column, ("Quantity", "Pantograph")),
+        *(doc.Column(heading, number=True) for heading in numbers),
+        *map(doc.Column, ("Verdict", "Trust")),
     )
     return doc.Table(columns, tuple(rows))

@@ -57,7 +57,7 @@ def list_reasons(results: dict[str, Any]) -> tuple[Section, ...]:
 
 def summarise_case(case: dict[str, Any]) -> str:
     """The verdict of one case in one sentence."""
-    if case.get("reason"):
+    if case["reason"]:
         return str(case["reason"])
     verdicts = Counter(criterion["verdict"] for criterion in case["criteria"])
     words = read_words()["verdict"]
@@ -80,28 +80,26 @@ def _criteria(results: dict[str, Any]) -> Iterator[CaseCriterion]:
 def _select(results: dict[str, Any], verdict: str) -> list[CaseCriterion]:
     """Criteria with one verdict, the smallest margin first."""
     pairs = [pair for pair in _criteria(results) if pair[1]["verdict"] == verdict]
-    return sorted(pairs, key=lambda pair: pair[1].get("margin") or 0.0)
+    return sorted(pairs, key=lambda pair: pair[1]["margin"] or 0.0)
 
 
 def _case_reasons(results: dict[str, Any], verdict: str) -> list[str]:
     return [
-        f"{case['id']}: {case['reason']}"
-        for case in results["cases"]
-        if case["verdict"] == verdict and case.get("reason")
+        f"{case['id']}: {case['reason']}" for case in results["cases"] if case["verdict"] == verdict and case["reason"]
     ]
 
 
 def _value(pair: CaseCriterion) -> str:
     case, criterion = pair
     value = format_beside_limits(criterion["value"], criterion["lower"], criterion["upper"])
-    margin = "" if criterion.get("margin") is None else f", margin {format_signed(criterion['margin'])}"
-    text = f"{_subject(case, criterion)}: {value} {criterion.get('unit') or ''}".rstrip()
+    margin = "" if criterion["margin"] is None else f", margin {format_signed(criterion['margin'])}"
+    text = f"{_subject(case, criterion)}: {value} {criterion['unit']}".rstrip()
     return f"{text}, limits {format_limits(criterion['lower'], criterion['upper'])}{margin}."
 
 
 def _reason(pair: CaseCriterion) -> str:
     case, criterion = pair
-    return f"{_subject(case, criterion)}: {criterion.get('reason') or 'no reason given'}"
+    return f"{_subject(case, criterion)}: {criterion['reason'] or 'no reason given'}"
 
 
 def _subject(case: dict[str, Any], criterion: dict[str, Any]) -> str:

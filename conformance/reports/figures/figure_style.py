@@ -12,7 +12,7 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
 from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.reports.source_date import read_source_date
+from pantocheck.conformance.reports.formats.reproducibility import read_source_date
 from pantocheck.conformance.reports.words import TEMPLATES
 
 INK, GREY, PALE = "#1a1d21", "#8a929b", "#e9edf1"

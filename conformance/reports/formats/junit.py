@@ -1,5 +1,6 @@
 """JUnit XML: one test suite per case, one test case per criterion, so that any CI server shows the verdicts."""
 
+from collections import Counter
 from typing import Any
 from xml.etree import ElementTree
 
@@ -18,7 +19,7 @@ def render_junit(results: dict[str, Any]) -> bytes:
     """JUnit XML of results.json as a dictionary."""
     results = clean_tree(results)
     suites = [_suite(case, results) for case in results["cases"]]
-    total = {name: str(sum(int(suite.get(name, "0")) for suite in suites)) for name in COUNTERS}
+    total = {name: str(sum(int(suite.attrib[name]) for suite in suites)) for name in COUNTERS}
     root = ElementTree.Element("testsuites", {"name": "pantocheck", **total})
     root.extend(suites)
     ElementTree.indent(root)
@@ -28,27 +29,22 @@ def render_junit(results: dict[str, Any]) -> bytes:
 def _suite(case: dict[str, Any], results: dict[str, Any]) -> ElementTree.Element:
     # A case without criteria counts as one test, or the count would omit it.
     tests = [_test(case["id"], row) for row in case["criteria"]] or [_whole(case)]
-    count = {
-        "tests": len(tests),
-        "failures": sum(test.find("failure") is not None for test in tests),
-        "errors": sum(test.find("error") is not None for test in tests),
-        "skipped": sum(test.find("skipped") is not None for test in tests),
-    }
-    wall = (case.get("run") or {}).get("wall_s")
-    attributes = {"name": case["id"], **{name: str(count[name]) for name in COUNTERS}}
-    if wall is not None:
-        attributes["time"] = f"{wall:.3f}"
-    if results.get("started"):
+    elements = Counter(test[0].tag for test in tests)
+    counts = (len(tests), elements["failure"], elements["error"], elements["skipped"])
+    attributes = {"name": case["id"], **dict(zip(COUNTERS, map(str, counts), strict=True))}
+    if case["run"]["wall_s"] is not None:
+        attributes["time"] = f"{case['run']['wall_s']:.3f}"
+    if results["started"]:
         attributes["timestamp"] = results["started"].removesuffix("Z")
     suite = ElementTree.Element("testsuite", attributes)
     properties = ElementTree.SubElement(suite, "properties")
     for name, value in {
-        "statement": results.get("statement"),
-        "suite_version": results["suite"].get("version"),
-        "suite_commit": results["suite"].get("commit"),
+        "statement": results["statement"],
+        "suite_version": results["suite"]["version"],
+        "suite_commit": results["suite"]["commit"],
         "system": name_system(results),
-        "input_digest": case.get("input_digest"),
-        **{f"platform_{name}": text for name, text in (results.get("platform") or {}).items()},
+        "input_digest": case["input_digest"],
+        **{f"platform_{name}": text for name, text in results["platform"].items()},
     }.items():
         if value:
             ElementTree.SubElement(properties, "property", {"name": name, "value": str(value)})
@@ -58,17 +54,17 @@ def _suite(case: dict[str, Any], results: dict[str, Any]) -> ElementTree.Element
 
 def _whole(case: dict[str, Any]) -> ElementTree.Element:
     test = ElementTree.Element("testcase", {"classname": case["id"], "name": "case"})
-    _mark(test, case["verdict"], case.get("reason") or "no criteria")
+    _mark(test, case["verdict"], case["reason"] or "no criteria")
     return test
 
 
 def _test(case: str, row: dict[str, Any]) -> ElementTree.Element:
-    kind = "" if row.get("baseline") is None else "drift of "
+    kind = "" if row["baseline"] is None else "drift of "
     test = ElementTree.Element("testcase", {"classname": case, "name": f"{kind}{row['quantity']} of {name_owner(row)}"})
     value = "no value" if row["value"] is None else f"{row['value']:.8g} {row['unit']}".rstrip()
     bounds = f"limits {_bound(row['lower'])} to {_bound(row['upper'])}"
     margin = "" if row["margin"] is None else f", margin {row['margin']:.4g}"
-    reason = f" ({row['reason']})" if row.get("reason") else ""
+    reason = f" ({row['reason']})" if row["reason"] else ""
     _mark(test, row["verdict"], f"{value}, {bounds}{margin}, {row['trust']}{reason}")
     return test
 

@@ -12,8 +12,12 @@ import typst
 from matplotlib.ft2font import FT2Font
 
 from pantocheck.conformance.reports.document import Document, to_plain
-from pantocheck.conformance.reports.formats.embedding import NAME, encode_attachment, strip_times
-from pantocheck.conformance.reports.source_date import read_source_date
+from pantocheck.conformance.reports.formats.reproducibility import (
+    NAME,
+    encode_attachment,
+    read_source_date,
+    strip_times,
+)
 from pantocheck.conformance.reports.words import TEMPLATES, read_words
 
 # Typst brings Libertinus Serif and DejaVu Sans Mono, matplotlib DejaVu Sans. No font of the machine is used.

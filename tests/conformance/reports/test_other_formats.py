@@ -74,7 +74,7 @@ def test_summary_begins_with_the_verdict_and_escapes(results, hostile):
     assert "<script" not in text
     assert "`c`" not in text.replace(r"\`c\`", "")
     assert "https://" not in render_markdown(
-        build_summary(results | {"system": {"name": "see https://example.org", "version": ""}})
+        build_summary(results | {"system": {"name": "see https://example.org", "version": "", "kind": "record"}})
     )
 
 
