@@ -54,8 +54,8 @@ class DroppersAndContact:
         self.size = int(at[-1])
         place = bandwidth_order(line)
         self.mass, self.damping, self.stiffness = (
-            sp.csr_matrix(sp.block_diag([of_line, *of_pantographs]))
-            for of_line, of_pantographs in (
+            sp.csr_matrix(sp.block_diag([line_matrix, *pantograph_matrices]))
+            for line_matrix, pantograph_matrices in (
                 (stepping_mass(line, passage.time_step), [p.mass for p in passage.pantographs]),
                 (matrices.damping, [p.damping for p in passage.pantographs]),
                 (matrices.stiffness, [p.stiffness for p in passage.pantographs]),
@@ -82,7 +82,7 @@ class DroppersAndContact:
         self.preload = line.connectors.preload[unilateral]
 
     def force(self, t: float, q: Array, v: Array) -> Array:
-        """What comes on top of the linear system: what slack droppers would push is taken back, and the contact [N]."""
+        """Forces beside the linear system [N]: the contact forces, and the compensation of slack droppers."""
         force = np.asarray(self.bars @ np.minimum(self._tension(q, v), 0.0))
         for p in range(len(self.own)):
             touched, shares, stiffness, closing = self._contact(t, q, p)
@@ -95,7 +95,7 @@ class DroppersAndContact:
         return np.array([stiffness * max(closing, 0.0) for _, _, stiffness, closing in contacts])
 
     def tangent(self, t: float, q: Array, v: Array, on_q: float, on_v: float) -> sp.csr_matrix:
-        """Derivative of minus `force`, weighted: `on_q` times that by displacement, `on_v` times that by velocity."""
+        """Negative derivative of `force`: `on_q` times the one by q, plus `on_v` times the one by v."""
         slack = self._tension(q, v) < 0.0
         loose = np.where(slack, -on_q * self.dropper_stiffness - on_v * self.dropper_damping, 0.0)
         whole = self.bars @ sp.diags_array(loose) @ self.elongations
@@ -113,7 +113,7 @@ class DroppersAndContact:
         return np.asarray(elastic + self.dropper_damping * (self.elongations @ v))
 
     def _contact(self, t: float, q: Array, p: int) -> tuple[NDArray[np.int64], Array, float, float]:
-        """Unknowns that close a contact, their shares in it, its stiffness [N/m] and how far it is closed [m]."""
+        """Unknowns of a contact, their shares in its closing, its stiffness [N/m] and its closing [m]."""
         model, x = self.passage.pantographs[p], self.passage.start[p] + self.passage.speed * t
         share = point_load(self.line, self.line.contact_rows[0], x)
         direction = np.zeros(self.size)

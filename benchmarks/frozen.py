@@ -1,14 +1,14 @@
-"""Compare what the suite writes today with what commit 07ce9e7 wrote (`tests/data/frozen`).
+"""Compare results of the suite with the frozen results of commit 07ce9e7 (`tests/data/frozen`).
 
     python benchmarks/frozen.py write DIR [--drops DIR]     run every command of the comparison, results into DIR
     python benchmarks/frozen.py compare DIR                 compare DIR with the frozen files
 
-`--drops` names the folder of the mass-drop records T1.h5, T2.csv and T3.uff; without it their identification is left
-out. Every id, number and verdict of the frozen file must stand in the new one at the same place; a new file may hold
-more keys. Texts may differ. The lists `warnings` and `notes` are not compared: a remark may move to another key, as the
-near-limit remark moved from `warnings` to `close` of its criterion. Exit code 1 if a number differs by more than 1e-12
-of its size, an id or a verdict differs, or something is missing; numbers that differ by less are counted and the
-largest difference is printed.
+`--drops` names the folder of the mass-drop records T1.h5, T2.csv and T3.uff; without it they are not identified. The
+new file must hold every id, number and verdict of the frozen file at the same place. It may hold more keys. Texts may
+differ. The lists `warnings` and `notes` are not compared: a remark may move to another key, as the
+near-limit remark moved from `warnings` to `close` of its criterion. The exit code is 1 if a number differs by more than
+1e-12 of its size, if an id or a verdict differs, or if something is missing. Smaller differences are counted, and the
+largest is printed.
 """
 
 import argparse
@@ -109,7 +109,7 @@ def differences(frozen: Any, new: Any, path: str = "", key: str = "") -> Iterato
 
 
 def compare(folder: Path) -> bool:
-    """Compare a folder with the frozen files; whether all that must agree agrees."""
+    """Compare a folder with the frozen files; true if there is no fault."""
     agreed = True
     for path in sorted(FROZEN.rglob("*.json.xz")):
         name = path.relative_to(FROZEN).with_suffix("")

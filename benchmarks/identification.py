@@ -1,10 +1,11 @@
-"""Score the identification on records with known modes, beside the SSI of pyOMA-2 if it is installed.
+"""Score the identification on records with known modes, and for comparison the SSI of pyOMA-2 if it is installed.
 
-    python benchmarks/identification.py FOLDER            # records and truth.json of the mass-drop records
-    python benchmarks/identification.py --made-up 20      # random records of the tests' generator
+    python benchmarks/identification.py FOLDER            # folder with records and truth.json
+    python benchmarks/identification.py --made-up 20      # random records from the generator of the tests
 
-A mode counts as observable as truth.json says, or if its Cramer-Rao bound on damping is below 0.5 %. For each method:
-modes inside the bars (2 mHz; damping within 5 %, from group 4 on 10 %), worst and 90th percentile of the damping error.
+A mode is observable if truth.json says so, or if its Cramer-Rao bound on damping is below 0.5 %. Results per method:
+modes within the tolerances (2 mHz; damping 5 %, from group 4 on 10 %), largest and 90th percentile of the damping
+error.
 """
 
 import argparse

@@ -31,10 +31,10 @@ SPACING = 200.0
 
 
 def ac_simple(spans: int, stagger: float = 0.2, case: str = "en50318-2018/ac-simple/320") -> Case:
-    """Replace the number of spans and the stagger [m] of a case."""
-    found = next(selected for selected in select_cases([case]) if selected.id == case)
-    geometry = found.line.geometry.model_copy(update={"spans": spans, "stagger_contact_wire_m": stagger})
-    return replace(found, line=found.line.model_copy(update={"geometry": geometry}))
+    """Case of AC simple with another number of spans and another stagger [m]."""
+    selected = next(candidate for candidate in select_cases([case]) if candidate.id == case)
+    geometry = selected.line.geometry.model_copy(update={"spans": spans, "stagger_contact_wire_m": stagger})
+    return replace(selected, line=selected.line.model_copy(update={"geometry": geometry}))
 
 
 def staggered(case: Case) -> Catenary:

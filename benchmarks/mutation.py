@@ -1,4 +1,4 @@
-"""Mutation run: do the tests notice single changes of the code? docs/mutation.md explains the method.
+"""Mutation run: share of single changes of the code that the tests detect. docs/mutation.md explains the method.
 
     python benchmarks/mutation.py OUT [--mutants 600] [--areas verdict,kernels] [--jobs 2] [--seconds 7200]
     python benchmarks/mutation.py OUT --list survived     list the mutants with an outcome
@@ -33,9 +33,9 @@ LEAST_KILLED = 0.9
 COMPILE_S = 180.0
 """Time allowed for the compilation of kernels, on top of the start and of three times the tests."""
 SURVIVED = ("survived", "untested")
-"""Outcomes of a mutant that the tests do not notice; no test at all reaches an untested one."""
+"""Outcomes of a mutant that no test detects; no test executes the code of an untested mutant."""
 UNRELIABLE_TESTS = 5
-"""A mutant whose run meets more tests that also fail without it is given up."""
+"""Largest number of tests that fail with and without a mutant; the mutant is left out if there are more."""
 
 
 def main() -> int:
@@ -212,7 +212,7 @@ def try_mutant(
 
 
 def _mutate(mutant: Mutant, sources: Sources, tree: Path) -> None:
-    """Write the mutated file, and remove what numba has compiled from it or from files that use it."""
+    """Write the mutated file, and remove the compiled kernels of this file and of its users."""
     path = tree / mutant.file
     path.write_bytes(mutant.apply(path.read_bytes()))
     for cached in (path.parent / "__pycache__").glob(f"{path.stem}.*.pyc"):

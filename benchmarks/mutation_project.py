@@ -177,7 +177,7 @@ class Sources:
 
 
 def imported_names(module: ast.Module) -> Iterator[str]:
-    """Names of modules, and of what may be a module, that a file imports."""
+    """Names of the modules that a file imports, with imported names that may be modules."""
     for node in ast.walk(module):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)

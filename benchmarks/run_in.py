@@ -15,7 +15,7 @@ from pantocheck.model import discretise, simulate_passage
 EVALUATED = 10
 CHOSEN = {275: 24, 320: 30}
 """Spans before the analysis section of the cases, by speed [km/h]."""
-FIRST = (3, 6, 10, 14, 17, 20, 24, 27, 30, 35, 40, 48)
+LENGTHS = (3, 6, 10, 14, 17, 20, 24, 27, 30, 35, 40, 48)
 RESERVE = 10
 """Spans after the last analysis section, so that reflections from the end of the line do not reach it."""
 
@@ -26,23 +26,23 @@ def print_table(speed: int, spans: int) -> None:
     geometry = case.line.geometry
     line = discretise(staggered(case), 0.5)
     use = case.file.pantograph[0]
-    own = build_passage(case, line, case.file.discretisation, (use.uplift_force_N,)).pantographs
-    way = replace(passage(case, line, 1e-3, 1, geometry.span(spans - RESERVE + 1)[1], 660.0), pantographs=own)
+    pantographs = build_passage(case, line, case.file.discretisation, (use.uplift_force_N,)).pantographs
+    way = replace(passage(case, line, 1e-3, 1, geometry.span(spans - RESERVE + 1)[1], 660.0), pantographs=pantographs)
     history = simulate_passage(line, way)
 
-    def after(first: int) -> np.ndarray:
+    def quantities_after(first: int) -> np.ndarray:
         """Quantities over ten spans after a number of spans."""
         return np.array(list(figures(way, history, geometry.section(first + 1, first + EVALUATED)).values()))
 
     print(f"\n### {speed} km/h\n\n| run-in [spans] | {' | '.join(QUANTITIES)} |")
     print(f"| --: |{' --: |' * len(QUANTITIES)}")
-    for first in FIRST:
+    for first in LENGTHS:
         if first + EVALUATED <= spans - RESERVE:
-            print(f"| {first - 1} | {' | '.join(f'{value:.2f}' for value in after(first))} |")
+            print(f"| {first - 1} | {' | '.join(f'{value:.2f}' for value in quantities_after(first))} |")
     chosen = CHOSEN[speed]
     twice = min(2 * chosen - 1, spans - RESERVE - EVALUATED)
-    moved = 100 * (after(twice) / after(chosen) - 1)
-    print(f"| from {chosen - 1} to {twice - 1}: change [%] | {' | '.join(f'{value:+.2f}' for value in moved)} |")
+    change = 100 * (quantities_after(twice) / quantities_after(chosen) - 1)
+    print(f"| from {chosen - 1} to {twice - 1}: change [%] | {' | '.join(f'{value:+.2f}' for value in change)} |")
 
 
 def main() -> None:

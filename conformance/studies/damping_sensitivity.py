@@ -68,12 +68,12 @@ def _comparison_table(values: Mapping[str, ValuesByOwner]) -> TextTable:
     owners = sorted({owner for model in values.values() for owner in model}, key=lambda owner: (owner == LINE, owner))
     rows = []
     for owner in owners:
+        name = "line" if owner == LINE else f"pantograph {owner}"
         for quantity in TABLE_ROWS:
-            cells = [model.get(owner, {}).get(quantity) for model in values.values()]
-            if any(isinstance(cell, float) for cell in cells):
-                name = "line" if owner == LINE else f"pantograph {owner}"
-                texts = [f"{cell:.4g}" if isinstance(cell, float) else "-" for cell in cells]
-                rows.append([quantity, name, *texts])
+            numbers = [model.get(owner, {}).get(quantity) for model in values.values()]
+            cells = [f"{number:.4g}" if isinstance(number, float) else "-" for number in numbers]
+            if set(cells) != {"-"}:
+                rows.append([quantity, name, *cells])
     return TextTable(
         caption="Damping sensitivity: the same run under several damping models",
         columns=["Quantity", "Pantograph or line", *values],

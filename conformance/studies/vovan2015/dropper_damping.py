@@ -157,13 +157,13 @@ def _draw_forces(case: Case, study: DropperDamping, force: dict[str, RealArray])
         for limit in case.limits
         if limit.quantity == "dropper_transition_middle_s" and limit.lower is not None
     ]
-    chosen = case.line.damping.droppers.stiffness_coefficient_s
-    if chosen > 0:
-        marks.append(Mark(label="value of the paper", axis="x", low=chosen))
+    coefficient = case.line.damping.droppers.stiffness_coefficient_s
+    if coefficient > 0:
+        marks.append(Mark(label="value of the paper", axis="x", low=coefficient))
     return Chart(
         caption=f"Largest compensation force of the dropper at {study.x_m:g} m against its stiffness coefficient; "
         f"values below {SMALLEST_DRAWN_FORCE:g} N are drawn at this value.",
-        alternative="; ".join(f"{name}: {v[0]:.4g} N to {v[-1]:.4g} N" for name, v in force.items()),
+        alternative="; ".join(f"{law}: {values[0]:.4g} N to {values[-1]:.4g} N" for law, values in force.items()),
         x_label="stiffness coefficient [s]",
         y_label="largest compensation force [N]",
         x_scale="log",

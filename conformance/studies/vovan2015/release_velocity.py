@@ -65,8 +65,8 @@ def run_release_velocity(case: Case, study: ReleaseVelocity) -> Delivered:
 def _rms_table(drops: dict[str, SimulatedDrop], study: ReleaseVelocity, place: str) -> TextTable:
     rows = []
     for name, drop in drops.items():
-        rms = [float(np.sqrt(np.mean(_cut_window(drop, study, window)[1] ** 2))) for window in study.windows_s]
-        rows.append([name, *(f"{1e3 * value:.4g} mm/s" for value in rms)])
+        squares = [np.mean(_cut_window(drop, study, window)[1] ** 2) for window in study.windows_s]
+        rows.append([name, *(f"{1e3 * float(np.sqrt(square)):.4g} mm/s" for square in squares)])
     return TextTable(
         caption=f"RMS of the velocity of the {place}",
         columns=["Damping", *(f"{start:g} s to {end:g} s" for start, end in study.windows_s)],
