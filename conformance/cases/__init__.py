@@ -1,1 +1,1 @@
-"""Case files: what is simulated or measured, what is evaluated, and the limits, each number with its source."""
+"""Case files: line, pantographs, analysis section and limits, each number with its source."""

@@ -1,4 +1,4 @@
-"""A case as systems under test get it: the case file with its line and pantographs read."""
+"""Case: the content of a case file with its line, pantographs and damping models."""
 
 import hashlib
 import json
@@ -12,20 +12,22 @@ from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.cases.study_tables import DampingSensitivity
-from pantocheck.conformance.input_files.sourced_table import PROVENANCE, SourcedTable
+from pantocheck.conformance.input_files.sourced_table import PROVENANCE, InputTable, SourcedTable
 from pantocheck.conformance.input_files.trust import Trust
 
 
 @dataclass(frozen=True)
 class InputProvenance:
-    """Where a group of inputs comes from.
+    """Source of a group of inputs.
 
     Parameters
     ----------
     group : str
-        Dotted name of the table, or of one key of it.
-    trust, source : Trust or tuple[str, ...]
-        As the file says; source keys.
+        Dotted name of a table, or of one of its keys.
+    trust : Trust
+        Trust that the file states.
+    source : tuple of str
+        Source keys.
     """
 
     group: str
@@ -35,22 +37,22 @@ class InputProvenance:
 
 @dataclass(frozen=True)
 class Case:
-    """What is simulated, what is evaluated, and the limits.
+    """Reference case: line, pantographs, analysis section and limits.
 
     Parameters
     ----------
     file : CaseFile
-        The case file.
+        Content of the case file.
     line : LineFile
-        Its line.
-    pantographs : tuple[PantographFile, ...]
-        One per [[pantograph]] table, in running order.
-    limits : tuple[Limit, ...]
-        Those of the file, or a user's in their place.
-    static_pantograph : PantographFile or None
-        Pantograph whose apparent mass a static case takes.
-    dampings : Mapping[str, Damping]
-        Other damping models that a study or a comparison needs, by name.
+        Line of the case.
+    pantographs : tuple of PantographFile
+        One pantograph per [[pantograph]] table, in running order.
+    limits : tuple of Limit
+        Limits of the file, merged with those of a user.
+    static_pantograph : PantographFile, optional
+        Pantograph whose apparent mass a static case computes.
+    dampings : mapping of str to Damping
+        Further damping models of a study or a comparison, by name.
     """
 
     file: CaseFile
@@ -62,17 +64,17 @@ class Case:
 
     @property
     def pantograph_files(self) -> tuple[PantographFile, ...]:
-        """Pantographs of the run, or the one of a static case."""
+        """Pantographs of the run, or the pantograph of a static case."""
         return self.pantographs if self.static_pantograph is None else (*self.pantographs, self.static_pantograph)
 
     @property
     def id(self) -> str:
-        """Path-like name."""
+        """Id of the case, a path-like name."""
         return self.file.id
 
     @property
     def is_static(self) -> bool:
-        """Whether nothing runs: a check of the line at rest."""
+        """Whether the case checks the line at rest, without a train."""
         return self.file.speed_km_h is None
 
     @property
@@ -82,40 +84,40 @@ class Case:
 
     @property
     def analysis_section(self) -> tuple[float, float]:
-        """Start and end of the evaluated stretch [m]; the line begins at 0."""
+        """Start and end of the analysis section [m]; the line begins at 0."""
         spans = self.file.evaluated_spans or (1, self.line.geometry.spans)
         return self.line.geometry.section(spans[0], spans[-1])
 
     @property
     def shifted_sections(self) -> tuple[tuple[float, float], ...]:
-        """The evaluated stretch shifted span by span along the compared spans, itself among them [m]."""
+        """Analysis section shifted span by span along the compared spans, its own position included [m]."""
         if self.file.compared_spans is None or self.file.evaluated_spans is None:
             return ()
         (first, last), spans = self.file.compared_spans, self.file.evaluated_spans
-        further = spans[-1] - spans[0]
-        return tuple(self.line.geometry.section(i, i + further) for i in range(first, last + 1 - further))
+        length = spans[-1] - spans[0]
+        return tuple(self.line.geometry.section(i, i + length) for i in range(first, last + 1 - length))
 
     @property
     def recorded_section(self) -> tuple[float, float]:
-        """Start and end of the section that a record has to cover: the compared spans, or the analysis section [m]."""
+        """Start and end of the section that a record must cover: the compared spans or the analysis section [m]."""
         if self.file.compared_spans is None:
             return self.analysis_section
         return self.line.geometry.section(*self.file.compared_spans)
 
     @property
     def offsets(self) -> tuple[float, ...]:
-        """How far each pantograph runs behind the first [m]."""
+        """Distance of each pantograph behind the first [m]."""
         spacing = self.file.spacing_m or ()
         return tuple(sum(spacing[:i]) for i in range(len(self.pantographs)))
 
     @property
     def start(self) -> float:
-        """Where the last pantograph is at the beginning of a run [m]."""
+        """Position of the last pantograph at the start of the run [m]."""
         return self.line.geometry.span(1)[1] if self.file.start_m is None else self.file.start_m
 
     @property
     def end(self) -> float:
-        """Where the last pantograph is at the end of a run [m]; by default up to a span past the evaluated stretch."""
+        """Position of the last pantograph at the end of the run [m]; by default at most a span beyond the section."""
         geometry, (_, section_end) = self.line.geometry, self.recorded_section
         if self.file.run_out_m is not None:
             return section_end + self.file.run_out_m
@@ -126,98 +128,93 @@ class Case:
 
     @property
     def start_positions(self) -> tuple[float, ...]:
-        """Position of every pantograph at the beginning of a run, from the front [m]."""
+        """Position of every pantograph at the start of the run, from the front [m]."""
         return tuple(self.start + self.offsets[-1] - offset for offset in self.offsets)
 
     @property
     def end_positions(self) -> tuple[float, ...]:
-        """Position of every pantograph at the end of a run, from the front [m]."""
+        """Position of every pantograph at the end of the run, from the front [m]."""
         return tuple(self.end + self.offsets[-1] - offset for offset in self.offsets)
 
     @cached_property
     def digest(self) -> str:
-        """SHA-256 of everything a system is told: the inputs without provenance, title and limits."""
+        """SHA-256 of all inputs of a system: without provenance, title and limits."""
+        pantograph, unused = self.static_pantograph, self._keys_outside_digest
         inputs = {
-            "line": _numbers(self.line.model_dump(mode="json")),
-            "pantographs": [_numbers(pantograph.model_dump(mode="json")) for pantograph in self.pantographs],
-            "case": _numbers(self.file.model_dump(mode="json", exclude=self._not_told)),
-            "measured": None
-            if self.static_pantograph is None
-            else _numbers(self.static_pantograph.model_dump(mode="json")),
+            "line": _numbers(self.line),
+            "pantographs": [_numbers(pantograph) for pantograph in self.pantographs],
+            "case": _numbers(self.file, unused),
+            "measured": None if pantograph is None else _numbers(pantograph),
         }
-        if self.dampings and "study" not in self._not_told:
-            inputs["dampings"] = {name: _numbers(d.model_dump(mode="json")) for name, d in self.dampings.items()}
+        if self.dampings and "study" not in unused:
+            inputs["dampings"] = {name: _numbers(damping) for name, damping in self.dampings.items()}
         text = json.dumps(inputs, sort_keys=True, separators=(",", ":"), allow_nan=False)
         return "sha256:" + hashlib.sha256(text.encode()).hexdigest()
 
     @property
-    def _not_told(self) -> set[str]:
-        """Keys of the file that tell a system nothing, or nothing that the line does not tell already."""
+    def _keys_outside_digest(self) -> set[str]:
+        """Keys of the case file that no system uses, or that repeat the content of the line."""
         unused = {key for key in ("mass_drop", "study") if getattr(self.file, key) is None}
         if isinstance(self.file.study, DampingSensitivity):
-            unused.add("study")  # it runs the case as it is, and says more about it
+            unused.add("study")  # The study runs the case unchanged.
         return {"limit", "line", "requires", "damping", "on_request"} | unused
 
     @property
     def sourced_tables(self) -> dict[str, SourcedTable]:
-        """Every group of inputs that names its source, by dotted name: of the case, the line, and the pantographs."""
-        tables: dict[str, object] = {"case": self.file}
-        tables |= {f"line.{name}": getattr(self.line, name) for name in type(self.line).model_fields}
+        """Every table with a source, by dotted name: of the case, its line and its pantographs."""
+        tables: dict[str, object] = {"case": self.file} | _tables("line", self.line)
         for i, (use, model) in enumerate(zip(self.file.pantograph, self.pantographs, strict=True), 1):
-            tables |= {f"pantograph {i}": use}
-            tables |= {f"pantograph {i}.{name}": getattr(model, name) for name in type(model).model_fields}
+            tables |= {f"pantograph {i}": use} | _tables(f"pantograph {i}", model)
         tables |= {"mass_drop": self.file.mass_drop, "study": self.file.study}
         tables |= {f"damping '{name}'": damping for name, damping in self.dampings.items()}
         if self.static_pantograph is not None:
-            tables |= {
-                f"pantograph.{name}": getattr(self.static_pantograph, name)
-                for name in type(self.static_pantograph).model_fields
-            }
+            tables |= _tables("pantograph", self.static_pantograph)
         return {name: table for name, table in tables.items() if isinstance(table, SourcedTable)}
 
     @property
     def inputs(self) -> tuple[InputProvenance, ...]:
-        """Where every group of inputs comes from; keys that are less certain than their group follow it."""
-        found = []
+        """Source of every group of inputs, followed by those of its keys that are less certain."""
+        inputs = []
         for name, table in self.sourced_tables.items():
             source = (table.source,) if isinstance(table.source, str) else tuple(table.source)
-            found.append(InputProvenance(name, table.trust, source))
-            found += [InputProvenance(f"{name}.{key}", "provisional", ("untraced",)) for key in table.provisional]
-        return tuple(found)
+            inputs.append(InputProvenance(name, table.trust, source))
+            inputs += [InputProvenance(f"{name}.{key}", "provisional", ("untraced",)) for key in table.provisional]
+        return tuple(inputs)
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What the files want a reader to know: on the whole, then group by group."""
+        """Notes of the files for the reader: on the whole file, then group by group."""
         notes = [self.line.note, *(pantograph.note for pantograph in self.pantograph_files)]
         notes += [f"{name}: {table.note}" for name, table in self.sourced_tables.items() if table.note]
         return tuple(dict.fromkeys(note.strip() for note in notes if note))
 
     def with_limits(self, limits: tuple[Limit, ...]) -> "Case":
-        """The same case under other limits: one replaces that of the same quantity, the rest are added."""
+        """Same case with further limits; a limit replaces the one with the same target."""
         merged = {limit.target: limit for limit in (*self.limits, *limits)}
         return replace(self, limits=tuple(merged.values()))
 
     def without_study(self) -> "Case":
-        """The same case as a system under test gets it: a plain run."""
+        """Same case without its study: a plain run, as a system receives it."""
         return replace(self, file=self.file.model_copy(update={"study": None}), dampings={})
 
     def with_damping(self, name: str, damping: Damping) -> "Case":
-        """The same case without limits and study, another damping laid over its line; its id ends in the name."""
+        """Same case without limits and study, with a damping laid over that of its line; its id ends in the name."""
         file = self.file.model_copy(update={"id": f"{self.id}/{name}", "study": None, "limit": (), "requires": ()})
         line = self.line.model_copy(update={"damping": overlay_damping(self.line.damping, damping)})
         return replace(self, file=file, line=line, limits=(), dampings={})
 
 
-_SAID_OF_NUMBERS = frozenset({*PROVENANCE, "title", "id", "model"})
+def _tables(prefix: str, file: InputTable) -> dict[str, object]:
+    return {f"{prefix}.{name}": getattr(file, name) for name in type(file).model_fields}
 
 
-def _numbers(tree: object) -> object:
-    """A file without what is said about its numbers, so that a corrected source leaves the digest as it is."""
-    return drop_keys(tree, _SAID_OF_NUMBERS)
+def _numbers(table: InputTable, exclude: set[str] | None = None) -> object:
+    """Content of a table without provenance and names, so that a corrected source leaves the digest unchanged."""
+    return drop_keys(table.model_dump(mode="json", exclude=exclude), PROVENANCE | {"title", "id", "model"})
 
 
 def drop_keys(tree: object, keys: frozenset[str]) -> object:
-    """Nested tables and lists without some keys, wherever they stand."""
+    """Nested tables and lists without certain keys, at every level."""
     if isinstance(tree, dict):
         return {key: drop_keys(value, keys) for key, value in tree.items() if key not in keys}
     if isinstance(tree, list):

@@ -1,4 +1,4 @@
-"""Case files: which line, which pantographs, what is evaluated, and the limits."""
+"""Case files: line, pantographs, analysis section and limits."""
 
 from typing import Annotated, Literal
 
@@ -15,12 +15,12 @@ FileName = Annotated[str, Field(min_length=1, max_length=500)]
 
 
 class PantographUse(SourcedTable):
-    """One pantograph of a run."""
+    """Pantograph of a run."""
 
     model: Annotated[FileName, Field(description="pantograph file, relative to the case file")]
     uplift_force_N: Annotated[
         float | None,
-        Field(gt=0, le=2000, description="constant uplift force; the start value if a mean is aimed at [N]"),
+        Field(gt=0, le=2000, description="constant uplift force; start value if it is tuned to a mean force [N]"),
     ] = None
     target_mean_force_N: Annotated[
         float | None, Field(gt=0, le=2000, description="mean contact force to which the uplift force is tuned [N]")
@@ -32,7 +32,7 @@ class PantographUse(SourcedTable):
             raise validation_problem(
                 "uplift_force_N",
                 "the pantograph has no uplift force",
-                "Give uplift_force_N, or target_mean_force_N to have it tuned.",
+                "Give uplift_force_N, or target_mean_force_N to tune it.",
             )
         return self
 
@@ -40,10 +40,12 @@ class PantographUse(SourcedTable):
 class Filter(InputTable):
     """Filter of the graded contact force."""
 
-    kind: Annotated[Literal["butterworth"], Field(description="family of the filter")] = "butterworth"
-    order: Annotated[int, Field(ge=1, le=12, description="total order, forward and backward run together")] = 6
-    cutoff_Hz: Annotated[float, Field(gt=0, le=1000, description="-3 dB of the whole filter [Hz]")] = 20.0
-    phase: Annotated[Literal["zero", "causal"], Field(description="zero: forwards and backwards")] = "zero"
+    kind: Annotated[Literal["butterworth"], Field(description="filter type")] = "butterworth"
+    order: Annotated[int, Field(ge=1, le=12, description="total order of the forward and the backward pass")] = 6
+    cutoff_Hz: Annotated[float, Field(gt=0, le=1000, description="frequency of -3 dB of the whole filter [Hz]")] = 20.0
+    phase: Annotated[
+        Literal["zero", "causal"], Field(description="zero: forward and backward pass; causal: forward only")
+    ] = "zero"
 
     @model_validator(mode="after")
     def _exists(self) -> "Filter":
@@ -51,27 +53,27 @@ class Filter(InputTable):
             raise validation_problem(
                 "order",
                 f"{self.order} is odd",
-                "A zero-phase filter runs half its order forwards and half backwards: give an even order.",
+                "A zero-phase filter splits its order between two passes: give an even order.",
             )
         return self
 
     @property
     def low_pass(self) -> LowPass:
-        """The filter itself."""
+        """Low-pass with these parameters."""
         return LowPass(self.kind, self.order, self.cutoff_Hz, self.phase)
 
 
 class Discretisation(InputTable):
-    """Mesh and time step of the reference simulator; a refinement pair halves both."""
+    """Mesh and time step of the reference simulator; its refined run halves both."""
 
-    element_m: Annotated[float, Field(ge=0.02, le=5, description="largest length of an element [m]")] = 0.5
+    element_m: Annotated[float, Field(ge=0.02, le=5, description="longest element [m]")] = 0.5
     time_step_s: Annotated[float, Field(ge=1e-5, le=0.01, description="time step [s]")] = 0.001
     reach_m: Annotated[
         float | None,
         Field(
             ge=20,
-            description="what lies farther than this from every pantograph stands still [m]; left out: all moves that "
-            "can come back to a pantograph before the end of the run",
+            description="half-width of the active window around a pantograph [m]; default: all stations from which a "
+            "wave can return before the end of the run",
         ),
     ] = None
 
@@ -81,28 +83,26 @@ class Discretisation(InputTable):
 
 
 class ApparentMass(InputTable):
-    """Frequency response of a pantograph at its head, taken in a static case."""
+    """Apparent mass at the head of a pantograph, computed in a static case."""
 
     model: Annotated[FileName, Field(description="pantograph file, relative to the case file")]
-    frequency_Hz: Annotated[PositiveList, Field(max_length=100, description="where it is taken [Hz]")]
+    frequency_Hz: Annotated[PositiveList, Field(max_length=100, description="frequencies of the apparent mass [Hz]")]
 
 
 class CaseFile(SourcedTable):
-    """A case as it stands in its file. Without a speed it is a static check of the line."""
+    """Content of a case file. A case without a speed is a static check of the line."""
 
     id: Annotated[
         str, Field(pattern=r"^[A-Za-z0-9._-]+(/[A-Za-z0-9._-]+)*$", max_length=200, description="path-like name")
     ]
-    title: Annotated[str, Field(max_length=200, description="what it is")]
+    title: Annotated[str, Field(max_length=200, description="title in reports")]
     line: Annotated[FileName, Field(description="line file, relative to the case file")]
     damping: Annotated[
         FileName | Damping | None,
-        Field(
-            description="laid over the line's damping: a damping file, relative to the case file, or the table itself"
-        ),
+        Field(description="damping laid over that of the line: a file, relative to the case file, or a table"),
     ] = None
     on_request: Annotated[
-        bool, Field(description="left out of a run that names no case: it takes minutes, or is expected to fail")
+        bool, Field(description="whether only a run that names the case includes it (slow, or expected to fail)")
     ] = False
     requires: Annotated[
         tuple[str, ...], Field(strict=False, max_length=100, description="ids of cases that must pass first")
@@ -114,33 +114,31 @@ class CaseFile(SourcedTable):
             strict=False,
             min_length=1,
             max_length=1000,
-            description="spans that are evaluated, numbered from 1: the first and the last, or all of them",
+            description="spans of the analysis section, numbered from 1: the first and the last, or all",
         ),
     ] = None
     compared_spans: Annotated[
         tuple[int, int] | None,
         Field(
             strict=False,
-            description="first and last of the spans along which the evaluated stretch is shifted, span by span, to "
-            "see how much the figures depend on where it lies",
+            description="first and last span of a longer section along which the analysis section is shifted, span by "
+            "span, to show how much the results depend on its position",
         ),
     ] = None
     start_m: Annotated[
         float | None,
-        Field(ge=0, description="where the last pantograph starts [m]; left out: at the end of the first span"),
+        Field(ge=0, description="start position of the last pantograph [m]; default: end of the first span"),
     ] = None
     run_out_m: Annotated[
         float | None,
-        Field(
-            ge=0, description="how far the last pantograph runs past the evaluated spans [m]; left out: up to a span"
-        ),
+        Field(ge=0, description="run-out of the last pantograph beyond the section [m]; default: at most a span"),
     ] = None
     spacing_m: Annotated[
         PositiveList | None, Field(description="distances between the pantographs, from the front [m]")
     ] = None
     pantograph: Annotated[tuple[PantographUse, ...], Field(strict=False, max_length=20)] = ()
-    mass_drop: Annotated[MassDrop | None, Field(description="drops of a mass, in place of a train")] = None
-    study: Annotated[Study | None, Field(description="several runs that are compared")] = None
+    mass_drop: Annotated[MassDrop | None, Field(description="mass drops instead of a train")] = None
+    study: Annotated[Study | None, Field(description="comparison of several runs")] = None
     apparent_mass: ApparentMass | None = None
     filter: Filter = Filter()
     discretisation: Discretisation = Discretisation()
@@ -156,26 +154,26 @@ class CaseFile(SourcedTable):
                 )
         elif self.apparent_mass is not None:
             raise validation_problem(
-                "apparent_mass", "in a case that runs", "Put it into a static case, one without a speed."
+                "apparent_mass", "in a case with a speed", "Move it to a static case (without a speed)."
             )
         elif not self.pantograph:
             raise validation_problem("pantograph", "missing", "A run needs at least one [[pantograph]] table.")
         elif self.evaluated_spans is None:
             raise validation_problem(
-                "evaluated_spans", "missing", "Say which spans are evaluated, e.g. evaluated_spans = [5, 6] ."
+                "evaluated_spans", "missing", "Give the spans of the analysis section, e.g. evaluated_spans = [5, 6] ."
             )
         if self.pantograph and len(self.spacing_m or ()) != len(self.pantograph) - 1:
             raise validation_problem(
                 "spacing_m",
                 f"{len(self.spacing_m or ())} distances for {len(self.pantograph)} pantographs",
-                "Give one distance between each two neighbours, from the front.",
+                "Give the distance of every pantograph to the next, from the front.",
             )
         spans = self.evaluated_spans or (1,)
         ranged = len(spans) == 2 and spans[0] < spans[1]
         if spans[0] < 1 or not (ranged or list(spans) == list(range(spans[0], spans[0] + len(spans)))):
             raise validation_problem(
                 "evaluated_spans",
-                f"{list(spans)} is not a stretch of neighbouring spans",
+                f"{list(spans)} are not neighbouring spans",
                 "Give the first and the last span, numbered from 1, e.g. [5, 6].",
             )
         if self.compared_spans is not None and not (
@@ -183,15 +181,15 @@ class CaseFile(SourcedTable):
         ):
             raise validation_problem(
                 "compared_spans",
-                f"{list(self.compared_spans)} does not hold the evaluated spans {list(spans)}",
-                "Give the first and the last span of a longer stretch.",
+                f"{list(self.compared_spans)} does not contain the evaluated spans {list(spans)}",
+                "Give the first and the last span of a longer section.",
             )
         self._check_limits()
         return self
 
     def _check_study(self) -> None:
         if self.mass_drop is not None and self.speed_km_h is not None:
-            raise validation_problem("mass_drop", "a train and a mass drop in one case", "Make two cases of it.")
+            raise validation_problem("mass_drop", "a train and a mass drop in one case", "Write two cases.")
         if self.study is None:
             return
         drops = self.study.kind in {"release-velocity", "steady-arm-damper"}

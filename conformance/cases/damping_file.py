@@ -1,6 +1,6 @@
-"""Damping of a line: per component kind, and per mode.
+"""Damping of a line: per kind of component, and per mode.
 
-The names say what is multiplied, because papers disagree on which of alpha and beta belongs to the stiffness.
+The keys name the multiplied matrix, because papers use alpha and beta for either matrix.
 """
 
 from itertools import pairwise
@@ -15,18 +15,18 @@ from pantocheck.conformance.input_files.trust import LEVELS
 class ComponentDamping(InputTable):
     """Rayleigh damping of one kind of component: C = mass_coefficient M + stiffness_coefficient K."""
 
-    mass_coefficient_1_s: Annotated[float, Field(ge=0, le=100, description="multiplies the mass matrix [1/s]")] = 0.0
-    stiffness_coefficient_s: Annotated[float, Field(ge=0, le=10, description="multiplies the stiffness matrix [s]")] = (
+    mass_coefficient_1_s: Annotated[float, Field(ge=0, le=100, description="factor of the mass matrix [1/s]")] = 0.0
+    stiffness_coefficient_s: Annotated[float, Field(ge=0, le=10, description="factor of the stiffness matrix [s]")] = (
         0.0
     )
 
 
 class ModalDamping(InputTable):
-    """Damping ratio of all modes of the undamped line in a frequency band; Rayleigh damping is compensated there."""
+    """Damping ratio of all modes of the undamped line in a frequency band; it replaces Rayleigh damping there."""
 
     from_Hz: Annotated[float, Field(ge=0, le=1000, description="lower edge of the band [Hz]")]
     to_Hz: Annotated[float, Field(gt=0, le=1000, description="upper edge of the band [Hz]")]
-    damping_ratio: Annotated[float, Field(ge=0, lt=1, description="share of critical damping [-]")]
+    damping_ratio: Annotated[float, Field(ge=0, lt=1, description="ratio to critical damping [-]")]
 
     @model_validator(mode="after")
     def _ordered(self) -> "ModalDamping":
@@ -38,7 +38,7 @@ class ModalDamping(InputTable):
 
 
 class Damping(SourcedTable):
-    """Damping of the line at rest; a component kind that is left out has none."""
+    """Damping of the line at rest; a kind of component that is left out is undamped."""
 
     contact_wire: ComponentDamping = ComponentDamping()
     messenger_wire: ComponentDamping = ComponentDamping()
@@ -47,39 +47,35 @@ class Damping(SourcedTable):
     steady_arms: ComponentDamping = ComponentDamping()
     modal: Annotated[
         tuple[ModalDamping, ...],
-        Field(strict=False, max_length=1000, description="bands with a damping ratio of their own"),
+        Field(strict=False, max_length=1000, description="frequency bands with a damping ratio"),
     ] = ()
 
     @model_validator(mode="after")
     def _bands_apart(self) -> "Damping":
-        ordered = sorted(self.modal, key=lambda band: band.from_Hz)
-        for before, after in pairwise(ordered):
+        for before, after in pairwise(sorted(self.modal, key=lambda band: band.from_Hz)):
             if after.from_Hz < before.to_Hz:
                 raise validation_problem(
                     "modal",
-                    f"the bands {before.from_Hz:g}-{before.to_Hz:g} Hz and {after.from_Hz:g}-"
-                    f"{after.to_Hz:g} Hz overlap",
+                    f"the bands {before.from_Hz:g}-{before.to_Hz:g} Hz, {after.from_Hz:g}-{after.to_Hz:g} Hz overlap",
                     "A mode can only have one damping ratio.",
                 )
         return self
 
 
 class DampingFile(InputTable):
-    """A damping model in a file of its own, as `pantocheck fit-damping` writes it."""
+    """File of a damping model, as `pantocheck fit-damping` writes it."""
 
     damping: Damping
 
 
 def overlay_damping(damping: Damping, over: Damping) -> Damping:
-    """Damping of a line with another laid over it: the kinds and modal bands of `over` replace its own."""
-    said = over.model_fields_set - PROVENANCE
-    kinds = {"contact_wire", "messenger_wire", "stitch_wire", "droppers", "steady_arms"}
-    kept = kinds & damping.model_fields_set - said
-    changes: dict[str, object] = {key: getattr(over, key) for key in (*said, *PROVENANCE)}
-    if kept:
+    """Damping of a line with another laid over it: the kinds and modal bands of `over` replace those of the line."""
+    replaced = over.model_fields_set - PROVENANCE
+    changes: dict[str, object] = {key: getattr(over, key) for key in replaced | PROVENANCE}
+    if damping.model_fields_set - PROVENANCE - replaced - {"modal"}:  # Some kinds of the line remain.
         changes["trust"] = max(damping.trust, over.trust, key=LEVELS.index)
         changes["source"] = list(dict.fromkeys((*_listed(over.source), *_listed(damping.source))))
-    # A modal band keeps its meaning only with the model it was fitted with.
+    # A modal band is only valid with the Rayleigh damping with which it was fitted.
     return damping.model_copy(update={"modal": (), **changes})
 
 

@@ -1,4 +1,4 @@
-"""Mass drops of a case: what is hung where, how it is let go, and what is recorded."""
+"""Mass drops of a case: mass, position, release and sensors."""
 
 from typing import Annotated, Literal
 
@@ -13,49 +13,47 @@ from pantocheck.conformance.input_files.sourced_table import (
 )
 
 WireName = Annotated[Literal["contact_wire", "messenger_wire"], Field(description="wire, as in the line file")]
-Place = Annotated[NonNegative, Field(le=1e5, description="place along the line, from its beginning [m]")]
-DampingFileName = Annotated[str, Field(min_length=1, max_length=500)]
+Place = Annotated[NonNegative, Field(le=1e5, description="position along the line [m]")]
 DampingModels = Annotated[
-    dict[str, DampingFileName],
-    Field(max_length=10, description="damping files, relative to the case, by the name they have in the report"),
+    dict[str, Annotated[str, Field(min_length=1, max_length=500)]],
+    Field(max_length=10, description="damping files, relative to the case file, by their name in the report"),
 ]
 
 
 class Sensor(InputTable):
-    """A sensor on a wire; it feels the vertical motion."""
+    """Sensor clamped to a wire; it measures vertical motion."""
 
     wire: WireName
     x_m: Place
 
 
 class DropTest(InputTable):
-    """One drop."""
+    """Drop of a mass."""
 
-    mass_kg: Annotated[Positive, Field(le=200, description="mass that hangs on the wire until it is released [kg]")]
+    mass_kg: Annotated[Positive, Field(le=200, description="mass on the wire before the release [kg]")]
     wire: WireName
     x_m: Place
     release_s: Annotated[
-        NonNegative, Field(le=5, description="time over which the weight fades linearly; 0: at once [s]")
+        NonNegative, Field(le=5, description="duration of the linear decay of the weight; 0: at once [s]")
     ] = 0.0
 
 
 class MassDrop(SourcedTable):
-    """Drops of one line with one set of sensors, and up to which frequency their modes are identified."""
+    """Drops on a line with one set of sensors, and the frequency range of the identification."""
 
     drop: Annotated[tuple[DropTest, ...], Field(strict=False, min_length=1, max_length=20)]
     sensor: Annotated[tuple[Sensor, ...], Field(strict=False, min_length=1, max_length=100)]
     record_s: Annotated[Positive, Field(le=900, description="length of the record after the release [s]")]
-    hanging_s: Annotated[Positive, Field(ge=1, le=60, description="rest recorded before the release [s]")] = 5.0
-    rate_Hz: Annotated[Positive, Field(ge=10, le=5000, description="samples per second of the record [Hz]")] = 100.0
+    hanging_s: Annotated[Positive, Field(ge=1, le=60, description="recorded rest before the release [s]")] = 5.0
+    rate_Hz: Annotated[Positive, Field(ge=10, le=5000, description="sampling rate of the record [Hz]")] = 100.0
     quantity: Annotated[
-        Literal["acceleration", "velocity", "displacement"], Field(description="what the sensors measure")
+        Literal["acceleration", "velocity", "displacement"], Field(description="quantity that the sensors measure")
     ] = "acceleration"
     noise_rms: Annotated[
         NonNegative,
-        Field(le=10, description="white noise added to every sensor, rms, in the SI unit of the quantity; the same "
-              "case has the same noise"),
-    ] = 0.0  # fmt: skip
-    highest_Hz: Annotated[Positive, Field(le=200, description="modes are identified up to here [Hz]")] = 10.0
+        Field(le=10, description="rms of the white noise of every sensor, in SI; always the same for the same drop"),
+    ] = 0.0
+    highest_Hz: Annotated[Positive, Field(le=200, description="highest frequency of identified modes [Hz]")] = 10.0
     compared: Annotated[DampingModels, Field(default_factory=dict)]
 
     @model_validator(mode="after")
@@ -63,7 +61,7 @@ class MassDrop(SourcedTable):
         if self.highest_Hz > 0.4 * self.rate_Hz:
             raise validation_problem(
                 "highest_Hz",
-                f"{self.highest_Hz:g} Hz cannot be seen at {self.rate_Hz:g} samples per second",
+                f"{self.highest_Hz:g} Hz cannot be observed at {self.rate_Hz:g} samples per second",
                 f"Give at most {0.4 * self.rate_Hz:g} Hz, or a rate_Hz of {2.5 * self.highest_Hz:g}.",
             )
         return self

@@ -1,4 +1,4 @@
-"""The library of reference cases, and a user's own case files: finding them by id, glob or path."""
+"""Library of reference cases, and reading of case files by id, glob or path."""
 
 import re
 from collections.abc import Sequence
@@ -9,9 +9,8 @@ from pathlib import Path
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import CaseFile
-from pantocheck.conformance.cases.damping_file import Damping, DampingFile
-from pantocheck.conformance.cases.damping_file import overlay_damping as overlaid_damping
-from pantocheck.conformance.cases.limits import LimitOverride, LimitsFile
+from pantocheck.conformance.cases.damping_file import Damping, DampingFile, overlay_damping
+from pantocheck.conformance.cases.limits import Limit, LimitOverride, LimitsFile
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.input_files.input_error import InputError
@@ -22,35 +21,43 @@ _ID = re.compile(r"^id\s*=", re.MULTILINE)
 
 
 def library_folder() -> Path:
-    """Folder of the reference cases that come with the suite."""
+    """Folder of the reference cases of the suite."""
     return Path(str(files("pantocheck.reference_cases")))
 
 
 @cache
 def list_library(folder: Path) -> dict[str, Path]:
-    """Ids of all cases below a folder, from the folder structure, each with its file."""
-    found = {}
-    for path in sorted(folder.rglob("*.toml")):
-        # Lines, pantographs and the bibliography lie beside the cases, but only a case has an id.
-        if _ID.search(path.read_text(encoding="utf-8")):
-            found[path.relative_to(folder).with_suffix("").as_posix()] = path
-    return found
+    """Files of all cases below a folder, by id; the id of a case is its path."""
+    # Lines, pantographs and the bibliography are in the same folders, but only a case has an id.
+    return {
+        path.relative_to(folder).with_suffix("").as_posix(): path
+        for path in sorted(folder.rglob("*.toml"))
+        if _ID.search(path.read_text(encoding="utf-8"))
+    }
 
 
 def select_cases(patterns: Sequence[str]) -> list[Case]:
-    """Cases for ids, globs and paths of case files, in the order asked, those they require put before them.
+    """Read the cases for ids, globs and paths of case files, in this order, each after the cases that it requires.
 
-    Without a pattern: every case of the library that has limits and is not marked to be run on request only.
+    Parameters
+    ----------
+    patterns : sequence of str
+        Ids, globs and paths; empty: every case of the library with limits and without `on_request`.
+
+    Returns
+    -------
+    list of Case
+        Every case once.
 
     Raises
     ------
     InputError
-        a pattern matches nothing (the nearest ids are named), or a file is wrong.
+        A pattern matches no case (the message names the nearest ids), or a file is invalid.
     """
     known = list_library(library_folder())
     chosen: dict[str, Case] = {}
     for pattern in patterns or ["*"]:
-        for path in _matching(pattern, known):
+        for path in _match_pattern(pattern, known):
             _add(load_case(path), known, chosen, ())
     if not patterns:
         graded = {case.id for case in chosen.values() if case.limits and not case.file.on_request}
@@ -59,7 +66,7 @@ def select_cases(patterns: Sequence[str]) -> list[Case]:
     return list(chosen.values())
 
 
-def _matching(pattern: str, known: dict[str, Path]) -> list[Path]:
+def _match_pattern(pattern: str, known: dict[str, Path]) -> list[Path]:
     if pattern in known:
         return [known[pattern]]
     if pattern.endswith(".toml"):
@@ -75,88 +82,87 @@ def _matching(pattern: str, known: dict[str, Path]) -> list[Path]:
 
 
 def _add(case: Case, known: dict[str, Path], chosen: dict[str, Case], above: tuple[str, ...]) -> None:
+    """Add a case and all cases that it requires; `above` are the cases that require it."""
+    where = f"case '{case.id}', key requires"
     if case.id in above:
-        raise InputError(
-            f"case '{case.id}', key requires",
-            f"requires itself ({' > '.join((*above, case.id))})",
-            "Take one of these out.",
-        )
+        raise InputError(where, f"requires itself ({' > '.join((*above, case.id))})", "Remove one of these keys.")
     for required in case.file.requires:
         if required not in known:
-            raise InputError(
-                f"case '{case.id}', key requires",
-                f"there is no case {required!r}",
-                suggest_names(required, list(known)),
-            )
+            raise InputError(where, f"there is no case {required!r}", suggest_names(required, list(known)))
         _add(load_case(known[required]), known, chosen, (*above, case.id))
     if chosen.setdefault(case.id, case) != case:
-        raise InputError(f"case '{case.id}'", "two different files have this id", "Give each case an id of its own.")
+        raise InputError(f"case '{case.id}'", "two different files have this id", "Give each case a different id.")
 
 
 def load_case(path: Path) -> Case:
-    """Read a case file with its line and pantographs, and check that they fit together.
+    """Read a case file with its line and pantographs, and check their consistency.
+
+    Parameters
+    ----------
+    path : Path
+        Case file.
+
+    Returns
+    -------
+    Case
+        The case.
 
     Raises
     ------
     InputError
-        a file cannot be read, or is wrong.
+        A file cannot be read, or is invalid.
     """
     file = read_model(path, CaseFile, "case")
-    line = read_model(_beside(path, file.line, "line"), LineFile, "reference line")
+    line = read_model(_locate(path, file.line, "line"), LineFile, "reference line")
     if file.damping is not None:
-        over = _damping(path, file.damping, "damping") if isinstance(file.damping, str) else file.damping
-        line = line.model_copy(update={"damping": overlaid_damping(line.damping, over)})
+        damping = _read_damping(path, file.damping, "damping") if isinstance(file.damping, str) else file.damping
+        line = line.model_copy(update={"damping": overlay_damping(line.damping, damping)})
     pantographs = tuple(
-        read_model(_beside(path, use.model, f"pantograph[{i}].model"), PantographFile, "pantograph")
-        for i, use in enumerate(file.pantograph, 1)
+        _read_pantograph(path, use.model, f"pantograph[{i}].model") for i, use in enumerate(file.pantograph, 1)
     )
-    measured = None
+    static_pantograph = None
     if file.apparent_mass is not None:
-        beside = _beside(path, file.apparent_mass.model, "apparent_mass.model")
-        measured = read_model(beside, PantographFile, "pantograph")
-    case = Case(file, line, pantographs, file.limit, measured, _dampings(path, file))
-    _check_geometry(case, path)
-    _check_drops(case, path)
+        static_pantograph = _read_pantograph(path, file.apparent_mass.model, "apparent_mass.model")
+    models = dict(file.mass_drop.compared) if file.mass_drop is not None else {}
+    models |= getattr(file.study, "models", {}) | getattr(file.study, "before", {})
+    dampings = {name: _read_damping(path, model, f"damping model {name!r}") for name, model in models.items()}
+    case = Case(file, line, pantographs, file.limit, static_pantograph, dampings)
+    _check_geometry(case, f"case '{path.name}', key ")
+    _check_drops(case, f"case '{path.name}', key mass_drop.")
     return case
 
 
-def _damping(case_path: Path, name: str, key: str) -> Damping:
-    return read_model(_beside(case_path, name, key), DampingFile, "damping").damping
+def _read_damping(case_path: Path, name: str, key: str) -> Damping:
+    return read_model(_locate(case_path, name, key), DampingFile, "damping").damping
 
 
-def _dampings(path: Path, file: CaseFile) -> dict[str, Damping]:
-    """The other damping models that a case names, read."""
-    named = dict(file.mass_drop.compared) if file.mass_drop is not None else {}
-    if file.study is not None:
-        named |= getattr(file.study, "models", {}) | getattr(file.study, "before", {})
-    return {name: _damping(path, found, f"damping model {name!r}") for name, found in named.items()}
+def _read_pantograph(case_path: Path, name: str, key: str) -> PantographFile:
+    return read_model(_locate(case_path, name, key), PantographFile, "pantograph")
 
 
-def _beside(case_path: Path, name: str, key: str) -> Path:
-    """A file named by a case: relative to the case, or else to the library."""
+def _locate(case_path: Path, name: str, key: str) -> Path:
+    """File that a case names, relative to the case or else to the library."""
     for folder in (case_path.parent, library_folder()):
         if (folder / name).is_file():
             return folder / name
     raise InputError(
         f"case '{case_path.name}', key {key}",
         f"there is no file {name!r}",
-        f"Name a file relative to {case_path.parent}, or one of the library, e.g. en50318-2002/line.toml .",
+        f"Name a file relative to {case_path.parent}, or of the library, e.g. en50318-2002/line.toml .",
     )
 
 
-def _check_geometry(case: Case, path: Path) -> None:
+def _check_geometry(case: Case, where: str) -> None:
     if case.is_static:
         return
-    geometry, where = case.line.geometry, f"case '{path.name}'"
+    geometry = case.line.geometry
     for key in ("evaluated_spans", "compared_spans"):
         last = (getattr(case.file, key) or (1,))[-1]
         if last > geometry.spans:
-            raise InputError(
-                f"{where}, key {key}", f"span {last} does not exist", f"The line has {geometry.spans} spans."
-            )
+            raise InputError(f"{where}{key}", f"span {last} does not exist", f"The line has {geometry.spans} spans.")
     if case.start >= case.recorded_section[0]:
         raise InputError(
-            f"{where}, key start_m",
+            f"{where}start_m",
             f"the last pantograph starts at {case.start:g} m, not before the evaluated "
             f"spans, which begin at {case.recorded_section[0]:g} m",
             "Start earlier, or evaluate later spans.",
@@ -164,77 +170,70 @@ def _check_geometry(case: Case, path: Path) -> None:
     front = case.end_positions[0]
     if front >= geometry.length:
         raise InputError(
-            f"{where}, key run_out_m",
+            f"{where}run_out_m",
             f"the first pantograph would run to {front:g} m on a line of {geometry.length:g} m",
             "Add spans, evaluate earlier ones, or shorten run_out_m.",
         )
 
 
-def _check_drops(case: Case, path: Path) -> None:
+def _check_drops(case: Case, where: str) -> None:
     drops = case.file.mass_drop
     if drops is None:
         return
-    length, where = case.line.geometry.length, f"case '{path.name}'"
-    places = {"drop": [test.x_m for test in drops.drop], "sensor": [sensor.x_m for sensor in drops.sensor]}
-    for name, along in places.items():
+    length = case.line.geometry.length
+    positions = {"drop": [drop.x_m for drop in drops.drop], "sensor": [sensor.x_m for sensor in drops.sensor]}
+    for name, along in positions.items():
         for i, x in enumerate(along, 1):
             if not 0 < x < length:
                 raise InputError(
-                    f"{where}, key mass_drop.{name}[{i}].x_m",
+                    f"{where}{name}[{i}].x_m",
                     f"{x:g} m is not on the line",
-                    f"The line goes from 0 to {length:g} m, its ends anchored.",
+                    f"Give a position between the anchors at 0 and {length:g} m.",
                 )
     step, every = case.file.discretisation.time_step_s, 1 / drops.rate_Hz
     if abs(every / step - round(every / step)) > 1e-6:
         raise InputError(
-            f"{where}, key mass_drop.rate_Hz",
+            f"{where}rate_Hz",
             f"a sample every {every:g} s is not a whole number of time steps of {step:g} s",
             f"Give a rate that divides {1 / step:g} Hz, e.g. {1 / step / max(1, round(every / step)):g} .",
         )
 
 
 def read_limits(path: Path) -> tuple[LimitOverride, ...]:
-    """A user's own limits, to be laid over cases."""
+    """Read a limits file."""
     return read_model(path, LimitsFile, "limits").limit
 
 
 def overlay_limits(cases: Sequence[Case], limits: Sequence[LimitOverride]) -> list[Case]:
-    """Cases with a user's limits laid over them.
+    """Lay the limits of a user over cases.
 
     Raises
     ------
     InputError
-        a limit is for none of the cases, or for a pantograph that its case has not.
+        A limit matches none of the cases, or none of the cases has its pantograph.
     """
+    added: dict[str, list[Limit]] = {case.id: [] for case in cases}
     for i, limit in enumerate(limits, 1):
-        where, meant = f"limits, key limit[{i}]", [case for case in cases if fnmatchcase(case.id, limit.case)]
-        if not meant:
-            raise InputError(
-                f"{where}.case",
-                f"no case that is run matches {limit.case!r}",
-                suggest_names(limit.case, [case.id for case in cases]),
-            )
-        if limit.owner > max(len(case.pantographs) for case in meant):
-            raise InputError(
-                f"{where}.pantograph", f"there is no pantograph {limit.owner}", "They are numbered from 1 at the front."
-            )
-    return [
-        case.with_limits(
-            tuple(
-                limit for limit in limits if fnmatchcase(case.id, limit.case) and limit.owner <= len(case.pantographs)
-            )
-        )
-        for case in cases
-    ]
+        where, matching = f"limits, key limit[{i}]", [case for case in cases if fnmatchcase(case.id, limit.case)]
+        if not matching:
+            names = suggest_names(limit.case, list(added))
+            raise InputError(f"{where}.case", f"no case of this run matches {limit.case!r}", names)
+        with_owner = [case for case in matching if limit.owner <= len(case.pantographs)]
+        if not with_owner:
+            hint = "Pantographs are numbered from 1 at the front."
+            raise InputError(f"{where}.pantograph", f"there is no pantograph {limit.owner}", hint)
+        for case in with_owner:
+            added[case.id].append(limit)
+    return [case.with_limits(tuple(added[case.id])) for case in cases]
 
 
 @cache
 def read_bibliography() -> dict[str, str]:
-    """Source keys and the publications they stand for."""
+    """Publications by source key."""
     return {str(key): str(text) for key, text in read_toml(library_folder() / "sources.toml", "bibliography").items()}
 
 
 def source_text(source: str | Sequence[str]) -> str:
-    """Sources as a reader wants them: each key replaced by its publication, free text kept."""
+    """Text of sources: the publication of every key, free text unchanged."""
     keys = (source,) if isinstance(source, str) else source
     return "; ".join(read_bibliography().get(key, key) for key in keys)

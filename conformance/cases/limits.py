@@ -1,8 +1,8 @@
-"""Limits: a quantity, its bounds, and who says so."""
+"""Limits: a quantity, its bounds and their source."""
 
 from typing import Annotated
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from pantocheck.conformance.input_files.sourced_table import InputTable, validation_problem
 from pantocheck.conformance.input_files.suggestions import suggest_names
@@ -12,16 +12,32 @@ from pantocheck.conformance.quantities.registry import QUANTITIES
 FiniteBound = Annotated[float, Field(ge=-1e12, le=1e12)]
 
 
-class Limit(InputTable):
-    """Bounds of one quantity; a quantity of the line or of a static check belongs to no pantograph."""
+def _check_quantity(name: str) -> str:
+    if name not in QUANTITIES:
+        raise validation_problem("", f"there is no quantity {name[:80]!r}", suggest_names(name[:80], list(QUANTITIES)))
+    return name
 
-    quantity: Annotated[str, Field(description="name of a quantity", json_schema_extra={"enum": list(QUANTITIES)})]
+
+QuantityName = Annotated[
+    str,
+    AfterValidator(_check_quantity),
+    Field(description="name of a quantity", json_schema_extra={"enum": list(QUANTITIES)}),
+]
+"""Name of a quantity of the suite."""
+
+
+class Limit(InputTable):
+    """Bounds of a quantity; a quantity of the line or of a static check has no pantograph."""
+
+    quantity: QuantityName
     pantograph: Annotated[
         int | None,
-        Field(ge=1, le=20, description="number in running order; left out: the first, or none for a line quantity"),
+        Field(
+            ge=1, le=20, description="number in running order; default: the first, or none for a quantity of the line"
+        ),
     ] = None
     item: Annotated[
-        int | None, Field(ge=1, description="which one of a list-valued quantity (dropper, mode), from 1")
+        int | None, Field(ge=1, description="item of a quantity with several values (dropper, mode), from 1")
     ] = None
     lower: Annotated[
         FiniteBound | None, Field(description="smallest value that passes, in the unit of the quantity")
@@ -29,16 +45,9 @@ class Limit(InputTable):
     upper: Annotated[
         FiniteBound | None, Field(description="largest value that passes, in the unit of the quantity")
     ] = None
-    trust: Annotated[Trust, Field(description="how far the limit can be trusted")]
-    source: Annotated[str | list[str], Field(description="where it was read: keys of sources.toml, or free text")]
-    note: Annotated[str | None, Field(description="what a reader should know about it", max_length=4000)] = None
-
-    @field_validator("quantity")
-    @classmethod
-    def _known(cls, name: str) -> str:
-        if name not in QUANTITIES:
-            raise validation_problem("", f"there is no quantity {name!r}", suggest_names(name, list(QUANTITIES)))
-        return name
+    trust: Annotated[Trust, Field(description="trust in the limit")]
+    source: Annotated[str | list[str], Field(description="source of the limit: keys of sources.toml, or free text")]
+    note: Annotated[str | None, Field(description="remark for the reader", max_length=4000)] = None
 
     @model_validator(mode="after")
     def _consistent(self) -> "Limit":
@@ -54,24 +63,24 @@ class Limit(InputTable):
 
     @property
     def owner(self) -> int:
-        """Number of the pantograph that the limit is for, from 1; 0 for the line."""
+        """Number of the pantograph of this limit, from 1; 0 for the line."""
         if QUANTITIES[self.quantity].scope != "pantograph":
             return 0
         return self.pantograph or 1
 
     @property
     def target(self) -> tuple[str, int, int | None]:
-        """What is limited; a limit for the same target replaces another."""
+        """Quantity, pantograph and item of this limit; a later limit with the same target replaces it."""
         return self.quantity, self.owner, self.item
 
 
 class LimitOverride(Limit):
-    """A limit that a user lays over cases."""
+    """Limit of a user for some cases."""
 
-    case: Annotated[str, Field(description="id or glob of the cases it is for", max_length=200)] = "*"
+    case: Annotated[str, Field(description="id or glob of the cases", max_length=200)] = "*"
 
 
 class LimitsFile(InputTable):
-    """A file of a user's own limits, for `--limits`."""
+    """File with the limits of a user, for `--limits`."""
 
     limit: Annotated[tuple[LimitOverride, ...], Field(strict=False, min_length=1, max_length=10_000)]

@@ -1,4 +1,4 @@
-"""Profiles: rules by which a record is assessed without a case, as data: acceptance of a line, or a line test."""
+"""Profiles: rules for the assessment of a record without a case, e.g. for the acceptance of a line."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -8,6 +8,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from pantocheck.conformance.cases.case_file import Filter
 from pantocheck.conformance.cases.library import library_folder
+from pantocheck.conformance.cases.limits import QuantityName
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.sourced_table import InputTable, validation_problem
 from pantocheck.conformance.input_files.suggestions import suggest_names
@@ -19,28 +20,28 @@ PROFILE_SCHEMA = "pantocheck.profile/1"
 
 
 class SpeedFormula(InputTable):
-    """A bound that follows the speed v [km/h]: per_speed_squared v^2 + constant."""
+    """Bound as a function of the speed v [km/h]: per_speed_squared v^2 + constant."""
 
     per_speed_squared: Annotated[
         float, Field(ge=-1e6, le=1e6, description="factor of v^2, in the unit of the quantity per (km/h)^2")
     ]
     constant: Annotated[float, Field(ge=-1e9, le=1e9, description="bound at rest, in the unit of the quantity")]
-    above_km_h: Annotated[float | None, Field(ge=0, description="the formula holds above this speed")] = None
+    above_km_h: Annotated[float | None, Field(ge=0, description="the formula is valid above this speed")] = None
 
     def at(self, speed_km_h: float) -> float:
-        """The bound at a speed."""
+        """Bound at a speed [km/h]."""
         return self.per_speed_squared * speed_km_h**2 + self.constant
 
 
 class NamedBound(InputTable):
-    """A bound that comes with the record: a key of its `line` table, times a factor."""
+    """Bound that the record gives: a key of its `line` table, times a factor."""
 
     given: Annotated[Literal["uplift_space_mm"], Field(description="key of the record's line table")]
-    factor: Annotated[float, Field(gt=0, le=100, description="what it is multiplied by")] = 1.0
+    factor: Annotated[float, Field(gt=0, le=100, description="factor of this value")] = 1.0
 
 
 def _kind_of_bound(bound: object) -> str:
-    """Which bound a file means: only that one is then checked, and complained of."""
+    """Kind of a bound, so that only this kind is validated and reported."""
     if isinstance(bound, SpeedFormula | NamedBound):
         return type(bound).__name__
     if isinstance(bound, dict):
@@ -60,123 +61,121 @@ Tolerance = Annotated[float, Field(gt=0, le=1e9)]
 class Rule(InputTable):
     """Bounds of one quantity, for every pantograph: stated, or around the value of a measured record."""
 
-    quantity: Annotated[str, Field(description="name of a quantity", json_schema_extra={"enum": list(QUANTITIES)})]
+    quantity: QuantityName
     lower: Annotated[RuleBound | None, Field(description="smallest value that passes, or a formula")] = None
     upper: Annotated[RuleBound | None, Field(description="largest value that passes, or a formula")] = None
     tolerance: Annotated[
-        Tolerance | None, Field(description="how far off the measured value it may be, in the unit of the quantity")
+        Tolerance | None, Field(description="largest difference from the measured value, in the unit of the quantity")
     ] = None
-    tolerance_pct: Annotated[Tolerance | None, Field(description="the same in percent of the measured value")] = None
+    tolerance_pct: Annotated[
+        Tolerance | None, Field(description="largest difference in percent of the measured value")
+    ] = None
     need: Annotated[
         Literal["required", "if_known"],
-        Field(description="required: without the quantity or its bound the verdict is skip; if_known: it is left out"),
+        Field(description="rule without its quantity or bound; required: verdict skip; if_known: no verdict"),
     ] = "required"
-    trust: Annotated[Trust, Field(description="how far the rule can be trusted")]
-    source: Annotated[str | list[str], Field(description="where it was read: keys of sources.toml, or free text")]
-    note: Annotated[str | None, Field(description="what a reader should know about it", max_length=4000)] = None
+    trust: Annotated[Trust, Field(description="trust in the rule")]
+    source: Annotated[str | list[str], Field(description="source of the rule: keys of sources.toml, or free text")]
+    note: Annotated[str | None, Field(description="remark for the reader", max_length=4000)] = None
 
     @model_validator(mode="after")
     def _consistent(self) -> "Rule":
-        if self.quantity not in QUANTITIES:
-            raise validation_problem(
-                "quantity",
-                f"there is no quantity {self.quantity[:80]!r}",
-                suggest_names(self.quantity[:80], list(QUANTITIES)),
-            )
         if QUANTITIES[self.quantity].scope == "mass_drop":
-            raise validation_problem("quantity", f"{self.quantity} is not of a run", "Choose another quantity.")
+            raise validation_problem("quantity", f"{self.quantity} is no quantity of a run", "Choose another quantity.")
         stated = self.lower is not None or self.upper is not None
         if stated + (self.tolerance is not None) + (self.tolerance_pct is not None) != 1:
             raise validation_problem(
                 "",
-                f"{self.quantity} has not exactly one kind of bound",
+                f"{self.quantity} needs exactly one kind of bound",
                 "Give lower/upper, tolerance or tolerance_pct.",
             )
         return self
 
     @property
     def compares(self) -> bool:
-        """Whether the bounds are taken from a measured record."""
+        """Whether the bounds come from a measured record."""
         return self.tolerance is not None or self.tolerance_pct is not None
 
 
 class Profile(InputTable):
-    """Rules for a record."""
+    """Rules for the assessment of a record."""
 
     schema_: Annotated[Literal["pantocheck.profile/1"], Field(alias="schema", description="version of the format")]
-    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9._-]+$", max_length=100, description="what it is called")]
-    title: Annotated[str, Field(max_length=200, description="what it is")]
-    note: Annotated[str | None, Field(description="what a reader should know about it", max_length=4000)] = None
+    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9._-]+$", max_length=100, description="name of the profile")]
+    title: Annotated[str, Field(max_length=200, description="title in reports")]
+    note: Annotated[str | None, Field(description="remark for the reader", max_length=4000)] = None
     speed_tolerance_pct: Annotated[
-        float, Field(gt=0, le=50, description="where the speed is farther off the nominal one, the record is cut [%]")
+        float, Field(gt=0, le=50, description="deviation from the nominal speed beyond which the record is cut [%]")
     ] = 5.0
     filter: Filter = Filter()
     rule: Annotated[tuple[Rule, ...], Field(strict=False, min_length=1, max_length=1000)]
 
     @property
     def compares(self) -> bool:
-        """Whether a measured record is needed to compare with."""
+        """Whether the profile needs a measured record for comparison."""
         return any(rule.compares for rule in self.rule)
 
 
 class BoundMissing(ValueError):
-    """A rule has no bound for this record: guessed, it would be a limit that nobody stated."""
+    """A rule has no bound for this record, and a guessed bound would be a limit without a source."""
 
 
 def resolve_bounds(
-    rule: Rule, speed_km_h: float, given: Mapping[str, float | None], measured: float | None
+    rule: Rule, speed_km_h: float, line_values: Mapping[str, float | None], measured: float | None
 ) -> tuple[float | None, float | None]:
-    """Lower and upper limit of a rule for a record.
+    """Lower and upper bound of a rule for a record.
 
     Parameters
     ----------
     rule : Rule
-        To be resolved.
+        Rule of a profile.
     speed_km_h : float
-        Of the record [km/h].
-    given : Mapping[str, float or None]
-        What the record says of its line, by key.
+        Speed of the record [km/h].
+    line_values : mapping of str to float or None
+        Line table of the record, by key.
     measured : float or None
-        Value of the measured record, for a rule that compares.
+        Value of the measured record, for a rule with a tolerance.
+
+    Returns
+    -------
+    tuple of (float or None)
+        Lower and upper bound, in the unit of the quantity.
 
     Raises
     ------
-    NoBound
-        The speed is out of the formula's range, what the bound refers to is not known, or nothing lies between.
+    BoundMissing
+        The speed is out of range of the formula, a value is missing, or the lower bound is above the upper bound.
     """
     if rule.compares:
         if measured is None:
             raise BoundMissing("the measured record has no such quantity")
         reach = rule.tolerance or abs(measured) * (rule.tolerance_pct or 0.0) / 100
         return measured - reach, measured + reach
-    lower, upper = (_resolved(bound, speed_km_h, given) for bound in (rule.lower, rule.upper))
+    lower, upper = (_resolve_bound(bound, speed_km_h, line_values) for bound in (rule.lower, rule.upper))
     if lower is not None and upper is not None and lower > upper:
         raise BoundMissing(f"its lower bound of {lower:g} lies above its upper bound of {upper:g}")
     return lower, upper
 
 
-def _resolved(bound: RuleBound | None, speed_km_h: float, given: Mapping[str, float | None]) -> float | None:
+def _resolve_bound(bound: RuleBound | None, speed_km_h: float, line_values: Mapping[str, float | None]) -> float | None:
     if isinstance(bound, SpeedFormula):
         if bound.above_km_h is not None and speed_km_h <= bound.above_km_h:
             raise BoundMissing(f"the rule holds above {bound.above_km_h:g} km/h, the record is of {speed_km_h:g} km/h")
-        value = bound.at(speed_km_h)
-    elif isinstance(bound, NamedBound):
-        known = given.get(bound.given)
-        if known is None:
+        return bound.at(speed_km_h)
+    if isinstance(bound, NamedBound):
+        if (value := line_values.get(bound.given)) is None:
             raise BoundMissing(f"the record does not give {bound.given}")
-        value = bound.factor * known
-    else:
-        return bound
-    return value
+        return bound.factor * value
+    return bound
 
 
 def load_profile(name: str) -> Profile:
-    """A profile of the library, or of a user's own file (a name that ends in .toml).
+    """Read a profile of the library by its name, or of a file (name ending in .toml).
 
     Raises
     ------
     InputError
-        There is no such profile, or it is wrong.
+        There is no such profile, or it is invalid.
     """
     if name.endswith(".toml"):
         return read_model(Path(name), Profile, "profile")

@@ -1,4 +1,4 @@
-"""Studies: cases that compare several runs, and grade what the comparison shows."""
+"""Tables of studies: cases that compare several runs and grade the comparison."""
 
 from typing import Annotated, Literal
 
@@ -13,35 +13,35 @@ from pantocheck.conformance.input_files.sourced_table import (
     validation_problem,
 )
 
-Interval = Annotated[tuple[float, float], Field(strict=False, description="from and to")]
+Interval = Annotated[tuple[float, float], Field(strict=False, description="start and end")]
 
 
 class Printed(InputTable):
-    """Values that a publication prints for one pantograph under one damping model, laid beside the computed ones."""
+    """Published values of a pantograph under a damping model, shown beside the computed values."""
 
     model: Annotated[str, Field(max_length=100, description="name of the damping model")]
     pantograph: Annotated[int, Field(ge=1, le=20, description="number in running order")]
-    values: Annotated[dict[str, float], Field(min_length=1, max_length=50, description="by name of quantity")]
+    values: Annotated[dict[str, float], Field(min_length=1, max_length=50, description="values by name of quantity")]
 
 
 class DampingChange(SourcedTable):
-    """The same passage with the damping before and with the damping of the case: what changes."""
+    """Change of a passage from an earlier damping to the damping of the case."""
 
     kind: Literal["damping-change"]
-    before: Annotated[DampingModels, Field(min_length=1, max_length=1, description="damping file of the run before")]
-    after: Annotated[str, Field(max_length=100, description="what the damping of the case is called")]
-    span: Annotated[int, Field(ge=1, description="span over which the force is drawn, from 1")]
+    before: Annotated[DampingModels, Field(min_length=1, max_length=1, description="damping file of the earlier run")]
+    after: Annotated[str, Field(max_length=100, description="name of the damping of the case")]
+    span: Annotated[int, Field(ge=1, description="span of the force diagram, from 1")]
     printed: Annotated[tuple[Printed, ...], Field(strict=False, max_length=40)] = ()
 
 
 class ReleaseVelocity(SourcedTable):
-    """Velocity of one sensor after one release under several damping models, in windows of time."""
+    """Velocity of a sensor after a release under several damping models, in time windows."""
 
     kind: Literal["release-velocity"]
     models: Annotated[DampingModels, Field(min_length=2)]
     windows_s: Annotated[
         tuple[Interval, ...],
-        Field(strict=False, min_length=1, max_length=6, description="from and to, after the release [s]"),
+        Field(strict=False, min_length=1, max_length=6, description="start and end, after the release [s]"),
     ]
     sensor: Annotated[int, Field(ge=1, description="number of the sensor, from 1")] = 1
 
@@ -56,7 +56,7 @@ class ReleaseVelocity(SourcedTable):
 
 
 class DropperDamping(SourcedTable):
-    """The passage of the case with the droppers' stiffness coefficient going through many orders of magnitude."""
+    """Passage of the case for stiffness coefficients of the droppers over many orders of magnitude."""
 
     kind: Literal["dropper-damping"]
     coefficients_s: Annotated[PositiveList, Field(min_length=4, description="stiffness coefficients, ascending [s]")]
@@ -65,23 +65,25 @@ class DropperDamping(SourcedTable):
     @model_validator(mode="after")
     def _ascending(self) -> "DropperDamping":
         if list(self.coefficients_s) != sorted(set(self.coefficients_s)):
-            raise validation_problem("coefficients_s", "not in ascending order", "List each once, from small to large.")
+            raise validation_problem(
+                "coefficients_s", "not in ascending order", "List every value once, from small to large."
+            )
         return self
 
 
 class SteadyArmDamper(SourcedTable):
-    """Identified damping with and without a vertical damper at every steady arm's claw, band by band."""
+    """Identified damping with and without a vertical damper at every steady arm, by frequency band."""
 
     kind: Literal["steady-arm-damper"]
-    damper_N_s_m: Annotated[Positive, Field(le=1e6, description="vertical damper between claw and ground [N s/m]")]
+    damper_N_s_m: Annotated[Positive, Field(le=1e6, description="vertical damper between wire and ground [N s/m]")]
     bands_Hz: Annotated[
         tuple[Interval, ...],
-        Field(strict=False, min_length=1, max_length=40, description="from and to of each band [Hz]"),
+        Field(strict=False, min_length=1, max_length=40, description="edges of each band [Hz]"),
     ]
 
 
 class DampingSensitivity(SourcedTable):
-    """The same passage under several damping models, side by side; nothing of it is graded."""
+    """Passage of the case under several damping models, for comparison without verdict."""
 
     kind: Literal["damping-sensitivity"]
     models: Annotated[DampingModels, Field(min_length=1)]
@@ -89,5 +91,5 @@ class DampingSensitivity(SourcedTable):
 
 Study = Annotated[
     DampingChange | DampingSensitivity | ReleaseVelocity | DropperDamping | SteadyArmDamper,
-    Field(discriminator="kind", description="what is compared"),
+    Field(discriminator="kind", description="kind of comparison"),
 ]

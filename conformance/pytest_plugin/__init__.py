@@ -1,6 +1,6 @@
-"""pytest plugin: every criterion of a plan is a test, and a certificate is written at the end of the session.
+"""pytest plugin: every criterion of a plan is a test; the session ends with a certificate.
 
-Every pytest of an environment imports this module, so it imports nothing but pytest until a plan is named.
+Every pytest session imports this module, so it imports only pytest until a plan is named.
 """
 
 from collections.abc import Callable
@@ -18,7 +18,7 @@ _LINES = pytest.StashKey[list[str]]()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Options of the plugin."""
+    """Add the options of the plugin."""
     group = parser.getgroup("pantocheck", "conformance of pantograph-catenary simulators (pytest PLAN.toml)")
     group.addoption("--pantocheck-out", metavar="DIR", help="folder of the certificate; replaces that of the plan")
     group.addoption("--pantocheck-formats", metavar="LIST", help="e.g. html,json; replaces the formats of the plan")
@@ -30,8 +30,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
-    """Collect a plan if it is named: as an argument, or in `testpaths`."""
-    if file_path.suffix != ".toml" or not _named(file_path, parent.config):
+    """Collect a plan that is named as an argument or in `testpaths`."""
+    if file_path.suffix != ".toml" or not _is_named(file_path, parent.config):
         return None
     from pantocheck.conformance.pytest_plugin.collection import PlanFile
 
@@ -39,8 +39,8 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Col
     return plan
 
 
-def _named(path: Path, config: pytest.Config) -> bool:
-    # pytest drops an argument that lies inside another one, so the paths it collects cannot be used here.
+def _is_named(path: Path, config: pytest.Config) -> bool:
+    # pytest omits an argument inside another argument from its collected paths, so they cannot be used here.
     arguments = (argument.partition("::")[0] for argument in config.args)
     return any((config.invocation_params.dir / argument).resolve() == path.resolve() for argument in arguments)
 
@@ -52,7 +52,7 @@ def pytest_configure_node(node: Any) -> None:
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:
-    """Write the certificate of every plan of which a case was run, after all workers have finished."""
+    """Write the certificate of every plan with a finished case, after all workers have finished."""
     config, folder = session.config, created_folder(session.config)
     if folder is not None and any(folder.iterdir()):
         from pantocheck.conformance.input_files.input_error import InputError
@@ -67,7 +67,7 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
 
 
 def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
-    """Print where the certificates are."""
+    """Print the paths of the certificates."""
     if lines := config.stash.get(_LINES, []):
         terminalreporter.section("pantocheck")
         for line in lines:

@@ -1,4 +1,4 @@
-"""Run of a plan over a pytest session: each case runs once, in the first process that needs it."""
+"""Run of a plan in a pytest session: each case runs once, in the first process that needs it."""
 
 import hashlib
 import json
@@ -20,7 +20,7 @@ from pantocheck.conformance.systems.system import System
 
 @dataclass
 class PlanSession:
-    """Run of a plan over a session.
+    """Run of a plan in a session.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class PlanSession:
         return self.shared / _hash(str(self.path.resolve()))
 
     def result(self, case: Case) -> CaseResult:
-        """Result of a case: read if another process has it, else computed after the cases that it requires."""
+        """Result of a case: read from another process, or computed after the cases that it requires."""
         for required in self.cases:
             if required.id in case.file.requires:
                 self.result(required)
@@ -64,9 +64,9 @@ class PlanSession:
         return self._finished[case.id]
 
     def results(self) -> tuple[Results, int] | None:
-        """Results of the plan and the number of values that drifted from its baseline; None if no case was run.
+        """Results of the plan and number of values that drifted from its baseline; None if no case ran.
 
-        A deselected case is skipped.
+        A deselected case has the verdict `skip`.
         """
         session_file = self.folder / "session.json"
         if not session_file.is_file():
@@ -103,7 +103,7 @@ class PlanSession:
 
 
 def list_registered(shared: Path) -> Iterator[Path]:
-    """Plans of which a case was run in a session, by name."""
+    """Plans with a finished case in a session, sorted by name."""
     plans = [json.loads(path.read_text(encoding="utf-8"))["plan"] for path in shared.glob("*/session.json")]
     return map(Path, sorted(plans))
 

@@ -1,4 +1,4 @@
-"""A plan in pytest: file, cases, pantographs, criteria. A case runs when the first of its criteria is due."""
+"""Plan in pytest: file, cases, pantographs, criteria. A case runs with the first of its criteria."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -18,17 +18,11 @@ from pantocheck.conformance.results.results_format import CaseResult
 
 
 class CriterionNotMet(Exception):
-    """A criterion is not met, or its case ended in error: shown as one line, without a traceback."""
+    """A criterion is not met, or its case ended in error: reported in one line without a traceback."""
 
 
-def open_session(config: pytest.Config, path: Path, folder: Path) -> PlanSession:
-    """Read and prepare a plan; an option of the session replaces that of the plan.
-
-    Raises
-    ------
-    InputError
-        The plan is wrong, or one of the files that it names.
-    """
+def _open_session(config: pytest.Config, path: Path, folder: Path) -> PlanSession:
+    """Read and prepare a plan; the options of the session replace those of the plan."""
     options: dict[str, object] = {}
     if (out := config.getoption("pantocheck_out")) is not None:
         options["out"] = str(config.invocation_params.dir / out)
@@ -45,7 +39,7 @@ class PlanFile(pytest.File):
     def collect(self) -> "Iterator[CaseNode]":
         """Cases of the plan."""
         try:
-            session = open_session(self.config, self.path, shared_folder(self.config))
+            session = _open_session(self.config, self.path, shared_folder(self.config))
         except InputError as error:
             raise self.CollectError(str(error)) from None
         for case in session.cases:
@@ -59,18 +53,18 @@ class CaseNode(pytest.Collector):
         super().__init__(**kwargs)
         self.campaign, self.case = campaign, case
         if self.config.pluginmanager.hasplugin("xdist"):
-            # With --dist loadgroup one worker takes all criteria of a case, so that no worker waits for another.
+            # With --dist loadgroup one worker takes all criteria of a case, so no worker waits for another.
             self.add_marker(pytest.mark.xdist_group(case.id))
 
-    def collect(self) -> "Iterator[PantographNode | WholeCase]":
-        """Pantographs of the case and, for quantities of the line, the line."""
+    def collect(self) -> "Iterator[PantographNode | CaseItem]":
+        """Pantographs of the case, and the line if a quantity of the line has a limit."""
         for number in dict.fromkeys(limit.owner for limit in self.case.limits):
             yield PantographNode.from_parent(self, name=str(number) if number else "line", number=number)
         if not self.case.limits:
-            yield WholeCase.from_parent(self, name="run")
+            yield CaseItem.from_parent(self, name="run")
 
     def result(self) -> CaseResult:
-        """Result of the case, computed once in a session.
+        """Result of the case, computed once per session.
 
         Raises
         ------
@@ -102,11 +96,11 @@ class PantographNode(pytest.Collector):
                 yield CriterionItem.from_parent(self, name=name, case_node=self.parent, limit=limit)
 
 
-class OneLine(pytest.Item):
-    """Test that fails with one line."""
+class OneLineItem(pytest.Item):
+    """Test whose failure is reported in one line."""
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
-        """One line for a verdict or a wrong input; any other exception is a defect and keeps its traceback."""
+        """One line for a verdict or an invalid input; another exception is a defect and keeps its traceback."""
         if isinstance(excinfo.value, CriterionNotMet | InputError):
             return str(excinfo.value)
         return super().repr_failure(excinfo, style)
@@ -116,8 +110,8 @@ class OneLine(pytest.Item):
         return self.path, None, self.nodeid.partition("::")[2]
 
 
-class WholeCase(OneLine):
-    """Test of a case without limits: it passes if the case runs."""
+class CaseItem(OneLineItem):
+    """Test of a case without limits: passed if the case runs."""
 
     def runtest(self) -> None:
         """Run the case."""
@@ -125,7 +119,7 @@ class WholeCase(OneLine):
             self.parent.result()
 
 
-class CriterionItem(OneLine):
+class CriterionItem(OneLineItem):
     """Test of one criterion of a case."""
 
     def __init__(self, case_node: CaseNode, limit: Limit, **kwargs: Any) -> None:
@@ -133,13 +127,13 @@ class CriterionItem(OneLine):
         self.case_node, self.limit = case_node, limit
 
     def runtest(self) -> None:
-        """Run the case if necessary and take the verdict of the criterion."""
+        """Run the case if necessary and report the verdict of the criterion."""
         criteria = self.case_node.result().criteria
-        item = next(c for c in criteria if (c.quantity, c.pantograph, c.item) == self.limit.target)
-        if item.verdict == "fail":
-            raise CriterionNotMet(criterion_line(item))
-        if item.verdict in {"skip", "info"}:
-            pytest.skip(item.reason or item.verdict)
+        criterion = next(c for c in criteria if (c.quantity, c.pantograph, c.item) == self.limit.target)
+        if criterion.verdict == "fail":
+            raise CriterionNotMet(criterion_line(criterion))
+        if criterion.verdict in {"skip", "info"}:
+            pytest.skip(criterion.reason or criterion.verdict)
 
 
 def write_certificates(config: pytest.Config, folder: Path) -> tuple[list[str], bool]:
@@ -159,7 +153,7 @@ def write_certificates(config: pytest.Config, folder: Path) -> tuple[list[str], 
     """
     lines, drifted_anywhere = [], False
     for path in list_registered(folder):
-        session = open_session(config, path, folder)
+        session = _open_session(config, path, folder)
         if (session_results := session.results()) is None:
             continue
         (results, drifted), prepared = session_results, session.prepared

@@ -1,4 +1,4 @@
-"""Folder that all processes of a pytest session share; like the plugin itself, it imports nothing but pytest."""
+"""Folder that all processes of a pytest session share; like the plugin, this module imports only pytest."""
 
 import shutil
 import tempfile

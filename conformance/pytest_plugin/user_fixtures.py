@@ -1,5 +1,6 @@
-"""Grading inside a user's own tests: the functions behind the fixtures `pantocheck_run` and `pantocheck_assess`."""
+"""Grading in the tests of a user: functions of the fixtures `pantocheck_run` and `pantocheck_assess`."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -24,60 +25,60 @@ from pantocheck.conformance.systems.system_choice import TIMEOUT_S, choose_syste
 
 @dataclass(frozen=True)
 class GradedCase:
-    """A case that was graded.
+    """Graded case.
 
     Parameters
     ----------
     result : CaseResult
-        All of it, as in results.json.
+        Result of the case, as in results.json.
     """
 
     result: CaseResult
 
     @property
     def verdict(self) -> Verdict:
-        """Of the case."""
+        """Verdict of the case."""
         return self.result.verdict
 
     @property
     def reasons(self) -> tuple[str, ...]:
-        """One line for the case, if it was not graded, and for every criterion that is not met."""
-        whole = (self.result.reason,) if self.result.reason else ()
-        return (
-            *whole,
-            *(criterion_line(item) for item in self.result.criteria if item.verdict not in {"pass", "info"}),
-        )
+        """Lines for the case, if it was not graded, and for every criterion that is not met."""
+        return (*((self.result.reason,) if self.result.reason else ()), *_unmet(self.result.criteria))
 
     def value(self, quantity: str, pantograph: int = 1) -> float | list[float]:
-        """A quantity of a pantograph (0: of the line), whether it has limits or not."""
+        """Value of a quantity of a pantograph (0: line), with or without limits."""
         return self.result.quantities[str(pantograph)][quantity]
 
     def check(self, *quantities: str) -> None:
-        """Fail the test, with one line per reason, if a criterion of these quantities (none given: any) is not met.
+        """Fail the test, with a line per reason, if a criterion of these quantities (default: all) is not met.
 
         Raises
         ------
         AssertionError
-            One is not met, or has no limits.
+            A criterion is not met, or a quantity has no limits.
         """
         __tracebackhide__ = True
-        wanted = [item for item in self.result.criteria if not quantities or item.quantity in quantities]
-        reasons = [criterion_line(item) for item in wanted if item.verdict not in {"pass", "info"}]
-        if self.result.reason:
-            reasons.insert(0, f"{self.result.verdict}: {self.result.reason}")
-        reasons += [f"{name} has no limits" for name in quantities if name not in {item.quantity for item in wanted}]
+        reasons = [f"{self.result.verdict}: {self.result.reason}"] if self.result.reason else []
+        reasons += _unmet(c for c in self.result.criteria if not quantities or c.quantity in quantities)
+        limited = {criterion.quantity for criterion in self.result.criteria}
+        reasons += [f"{name} has no limits" for name in quantities if name not in limited]
         if reasons:
             raise AssertionError(f"{self.result.id}: " + "\n".join(reasons))
 
 
-def criterion_line(item: Criterion) -> str:
-    """A criterion on one line: what, its value, its limits, and why it is not met."""
-    of = criterion_name(item)
-    if item.value is None:
-        return f"{of}: {item.verdict}, {item.reason}"
-    bounds = " to ".join("any" if bound is None else f"{bound:g}" for bound in (item.lower, item.upper))
-    text = f"{of} = {item.value:.4g} {item.unit}".rstrip() + f", limits {bounds}"
-    return f"{text}: {item.reason}" if item.reason else text
+def _unmet(criteria: Iterable[Criterion]) -> list[str]:
+    """Lines of the criteria that are not met."""
+    return [criterion_line(criterion) for criterion in criteria if criterion.verdict not in {"pass", "info"}]
+
+
+def criterion_line(criterion: Criterion) -> str:
+    """Line of a criterion: name, value, limits, and the reason if it is not met."""
+    name = criterion_name(criterion)
+    if criterion.value is None:
+        return f"{name}: {criterion.verdict}, {criterion.reason}"
+    bounds = " to ".join("any" if bound is None else f"{bound:g}" for bound in (criterion.lower, criterion.upper))
+    text = f"{name} = {criterion.value:.4g} {criterion.unit}".rstrip() + f", limits {bounds}"
+    return f"{text}: {criterion.reason}" if criterion.reason else text
 
 
 def run_and_grade(
@@ -90,11 +91,16 @@ def run_and_grade(
     case : str
         Id, or path of a case file.
     system : str or System
-        As `--system` takes it, or an object with `name`, `version`, `kind` and `run(case)`.
+        Value as for `--system`, or an object with `name`, `version`, `kind` and `run(case)`.
     trust : Trust
         Lowest trust of limits that count.
     timeout_s : float
-        Time a program may take [s].
+        Time limit of a program [s].
+
+    Returns
+    -------
+    GradedCase
+        Verdict, reasons and values.
 
     Raises
     ------
@@ -102,7 +108,7 @@ def run_and_grade(
         There is no such case or system.
     """
     tested = choose_system(system, timeout_s) if isinstance(system, str) else system
-    return GradedCase(run_case(_one(case), tested, trust))
+    return GradedCase(run_case(_select_case(case), tested, trust))
 
 
 def grade_arrays(
@@ -124,39 +130,46 @@ def grade_arrays(
     ----------
     case : str
         Id, or path of a case file.
-    record : Record or str or Path or None
-        a record, or the path of one; None: the arrays below.
-    time_s : array_like or None
-        (n,) evenly spaced [s].
-    position_m, force_N : array_like or None
-        (n,) or (p, n) contact point along the track [m] and contact force [N] of p pantographs.
-    contact_height_m : array_like or None
-        (n,) or (p, n) [m].
-    support_position_m, support_uplift_m : array_like or None
-        (s,) and (s, n) [m].
-    filter_applied_Hz : float or None
-        Cut-off of a low-pass the force has been through [Hz].
+    record : Record or str or Path, optional
+        Record or path of a record; default: the arrays below.
+    time_s : (n,) array_like, optional
+        Equidistant times [s].
+    position_m, force_N : (n,) or (p, n) array_like, optional
+        Contact point along the track [m] and contact force [N] of p pantographs.
+    contact_height_m : (n,) or (p, n) array_like, optional
+        Height of the contact point [m].
+    support_position_m : (s,) array_like, optional
+        Positions of the supports [m].
+    support_uplift_m : (s, n) array_like, optional
+        Uplift at the supports [m].
+    filter_applied_Hz : float, optional
+        Cut-off frequency of a low-pass that was applied to the force [Hz].
     trust : Trust
         Lowest trust of limits that count.
+
+    Returns
+    -------
+    GradedCase
+        Verdict, reasons and values.
 
     Raises
     ------
     InputError
-        There is no such case, or the record is wrong.
+        There is no such case, or the record is invalid.
     """
-    asked = _one(case)
+    graded_case = _select_case(case)
     if isinstance(record, str | Path):
-        record, _ = read_record(Path(record), None if asked.is_static else asked.analysis_section)
+        record, _ = read_record(Path(record), None if graded_case.is_static else graded_case.analysis_section)
     if record is None:
         if time_s is None or position_m is None or force_N is None:
             raise InputError("pantocheck_assess", "no record", "Give a record, or time_s, position_m and force_N.")
         try:
             record = Record(
                 time=np.asarray(time_s, dtype=np.float64),
-                speed=asked.speed,
+                speed=graded_case.speed,
                 position=np.atleast_2d(np.asarray(position_m, dtype=np.float64)),
                 force=np.atleast_2d(np.asarray(force_N, dtype=np.float64)),
-                evaluated=asked.analysis_section,
+                evaluated=graded_case.analysis_section,
                 filter_applied_Hz=filter_applied_Hz,
                 contact_height=None if contact_height_m is None else np.atleast_2d(np.asarray(contact_height_m)),
                 support_position=None if support_position_m is None else np.asarray(support_position_m),
@@ -164,11 +177,11 @@ def grade_arrays(
             )
         except RecordInvalid as error:
             raise InputError(f"pantocheck_assess, {error.channel}", error.found, "See the docstring.") from None
-    return GradedCase(grade_case(asked, Delivered(record), trust))
+    return GradedCase(grade_case(graded_case, Delivered(record), trust))
 
 
-def _one(name: str) -> Case:
-    found = [case for case in select_cases([name]) if case.id == name or name.endswith(".toml")]
-    if len(found) != 1:
-        raise InputError(f"case '{name}'", f"{len(found)} cases", "Name one case by its id or its file.")
-    return found[0]
+def _select_case(name: str) -> Case:
+    cases = [case for case in select_cases([name]) if case.id == name or name.endswith(".toml")]
+    if len(cases) != 1:
+        raise InputError(f"case '{name}'", f"{len(cases)} cases", "Name one case by its id or its file.")
+    return cases[0]

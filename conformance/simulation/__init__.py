@@ -1,1 +1,1 @@
-"""From a case to the reference simulator: catenary, passage, static quantities, tuning, mass drops."""
+"""Translation of a case for the reference simulator: catenary, passage, static quantities, tuning, mass drops."""

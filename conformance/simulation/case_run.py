@@ -1,4 +1,4 @@
-"""Run of a case: from the case to the passage that is simulated, and from its history to a record."""
+"""Run of a case on the reference simulator: passage, simulation and record."""
 
 import time
 from dataclasses import dataclass, replace
@@ -48,20 +48,25 @@ def run_passage(
     case : Case
         Case with a speed.
     line : DiscretisedLine
-        Its line, discretised with the element length of `steps`.
+        Line of the case, discretised with the element length of `steps`.
     steps : Discretisation
         Element length and time step.
     uplift_forces : tuple of float, optional
-        Uplift force of every pantograph [N]; default: those of the case, tuned where it asks for a mean contact force.
+        Uplift force of every pantograph [N]; default: forces of the case, tuned if a mean contact force is required.
+
+    Returns
+    -------
+    PassageRun
+        Record, run facts and uplift forces.
 
     Raises
     ------
     TuningFailed
-        No uplift force gives the mean contact force that the case asks for.
+        No uplift force gives the mean contact force that the case requires.
     """
     uses = case.file.pantograph
     start = uplift_forces or tuple(use.uplift_force_N or use.target_mean_force_N or 0.0 for use in uses)
-    # Compiles the kernels, which is not part of the computing time.
+    # The computing time must not include the compilation of the kernels.
     simulate_passage(line, replace(build_passage(case, line, steps, start), duration=0.0))
     return tune_uplift(
         lambda forces: _run_once(case, line, steps, forces),
@@ -80,7 +85,7 @@ def _run_once(case: Case, line: DiscretisedLine, steps: Discretisation, uplift_f
 
 
 def build_run_table(steps: Discretisation, simulated_s: float, begin: float) -> RunTable:
-    """Run facts of a simulation that began at `begin` of `time.perf_counter` [s] and ends now."""
+    """Run facts of a simulation that began at `begin` on the clock `time.perf_counter` [s] and ends now."""
     wall_s = time.perf_counter() - begin
     return RunTable(simulated_s=simulated_s, wall_s=wall_s, dt_s=steps.time_step_s, element_m=steps.element_m)
 

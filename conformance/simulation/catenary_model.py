@@ -1,11 +1,10 @@
-"""From a line file to the reference simulator's terms."""
+"""Catenary of the reference simulator from a line file."""
 
 from collections.abc import Iterator
 from dataclasses import replace
 
 from pantocheck.conformance.cases.damping_file import ComponentDamping
 from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.cases.line_file import WireTable as WireFile
 from pantocheck.model import (
     Catenary,
     Clamp,
@@ -21,153 +20,138 @@ from pantocheck.model import (
 )
 
 COARSE = 5.0
-"""Element length that is good enough for dropper lengths, from which their masses follow [m]."""
+"""Element length for the dropper lengths from which the dropper masses follow [m]."""
+
+_DAMPING_KEYS = {
+    Kind.CONTACT_WIRE: "contact_wire",
+    Kind.MESSENGER_WIRE: "messenger_wire",
+    Kind.STITCH_WIRE: "stitch_wire",
+    Kind.DROPPER: "droppers",
+    Kind.STEADY_ARM: "steady_arms",
+}
+"""Damping table of each kind of component."""
 
 
 def build_catenary(line: LineFile) -> Catenary:
-    """The line of a line file.
+    """Catenary of a line file.
 
     Parameters
     ----------
     line : LineFile
-        As read.
+        Content of the line file.
 
     Returns
     -------
     Catenary
-        The line in the simulator's terms.
+        Catenary for the simulator.
     """
-    built = Catenary(
-        wires=(*_wires(line, "contact wire", Kind.CONTACT_WIRE), *_messenger_wires(line), *_stitch_wires(line)),
+    catenary = Catenary(
+        wires=(
+            *_wires(line, Kind.CONTACT_WIRE),
+            *_wires(line, Kind.MESSENGER_WIRE),
+            *(wire for _, wire in _stitch_wires(line)),
+        ),
         droppers=tuple(_droppers(line)),
         steady_arms=tuple(_steady_arms(line)),
         messenger_supports=tuple(_messenger_supports(line)),
         clamps=tuple(_clamps(line)),
-        damping={
-            Kind.CONTACT_WIRE: _rayleigh(line.damping.contact_wire),
-            Kind.MESSENGER_WIRE: _rayleigh(line.damping.messenger_wire),
-            Kind.STITCH_WIRE: _rayleigh(line.damping.stitch_wire),
-            Kind.DROPPER: _rayleigh(line.damping.droppers),
-            Kind.STEADY_ARM: _rayleigh(line.damping.steady_arms),
-        },
+        damping={kind: _rayleigh(getattr(line.damping, key)) for kind, key in _DAMPING_KEYS.items()},
         modal_damping=tuple(ModalBand(band.from_Hz, band.to_Hz, band.damping_ratio) for band in line.damping.modal),
     )
     if not line.droppers.mass_kg_m:
-        return built
-    # The lengths depend on the weights a little: two passes settle them to a micrometre.
+        return catenary
+    # The lengths depend slightly on the weights: after two passes they are accurate to a micrometre.
     for _ in range(2):
-        masses = line.droppers.mass_kg_m * discretise(built, COARSE).state.dropper_length
-        droppers = zip(built.droppers, masses, strict=True)
-        built = replace(built, droppers=tuple(replace(dropper, mass=float(mass)) for dropper, mass in droppers))
-    return built
+        masses = line.droppers.mass_kg_m * discretise(catenary, COARSE).state.dropper_length
+        droppers = zip(catenary.droppers, masses, strict=True)
+        catenary = replace(catenary, droppers=tuple(replace(dropper, mass=float(mass)) for dropper, mass in droppers))
+    return catenary
 
 
-def _names(line: LineFile, name: str) -> list[str]:
-    number = (line.contact_wire if name == "contact wire" else line.messenger_wire).number
-    return [name] if number == 1 else [f"{name} {i + 1}" for i in range(number)]
+def _names(line: LineFile, kind: Kind) -> list[str]:
+    """Names of the parallel wires of a kind."""
+    name, table = (
+        ("contact wire", line.contact_wire) if kind is Kind.CONTACT_WIRE else ("messenger wire", line.messenger_wire)
+    )
+    return [name] if table.number == 1 else [f"{name} {i + 1}" for i in range(table.number)]
 
 
-def _wires(line: LineFile, name: str, kind: Kind) -> list[Wire]:
-    file: WireFile = line.contact_wire if kind is Kind.CONTACT_WIRE else line.messenger_wire
-    geometry = line.geometry
-    stagger = geometry.stagger_contact_wire_m if kind is Kind.CONTACT_WIRE else geometry.stagger_messenger_m
+def _wires(line: LineFile, kind: Kind) -> Iterator[Wire]:
+    geometry, stitch = line.geometry, line.stitch_wire
+    changes: tuple[TensionChange, ...] = ()
+    if kind is Kind.CONTACT_WIRE:
+        table, stagger = line.contact_wire, geometry.stagger_contact_wire_m
+    else:
+        table, stagger = line.messenger_wire, geometry.stagger_messenger_m
+        if stitch is not None:
+            # The messenger and the stitch wire share the tension between the clamps.
+            half = stitch.length_m / 2
+            changes = tuple(TensionChange(x - half, x + half, -stitch.tension_N) for x in geometry.supports)
     lateral = geometry.stagger_contact_wire_m != 0.0 or geometry.stagger_messenger_m != 0.0
-    names = _names(line, name)
-    wires = []
-    for i, own in enumerate(names):
-        beside = (file.spacing_m or 0.0) * (i - (len(names) - 1) / 2)
-        plan = tuple((x, (stagger if n % 2 == 0 else -stagger) + beside) for n, x in enumerate(geometry.span_limits))
-        wires.append(
-            Wire(
-                own,
-                kind,
-                0.0,
-                geometry.length,
-                file.tension_N,
-                file.mass_kg_m,
-                file.bending_stiffness_N_m2,
-                stagger=plan if lateral else None,
-            )
+    for i, name in enumerate(_names(line, kind)):
+        offset = (table.spacing_m or 0.0) * (i - (table.number - 1) / 2)
+        plan = tuple((x, (stagger if n % 2 == 0 else -stagger) + offset) for n, x in enumerate(geometry.span_limits))
+        yield Wire(
+            name,
+            kind,
+            0.0,
+            geometry.length,
+            table.tension_N,
+            table.mass_kg_m,
+            table.bending_stiffness_N_m2,
+            tension_changes=changes,
+            stagger=plan if lateral else None,
         )
-    return wires
 
 
-def _messenger_wires(line: LineFile) -> list[Wire]:
-    """Messengers; between the clamps of a stitch wire they are relieved of its tension."""
-    wires = _wires(line, "messenger wire", Kind.MESSENGER_WIRE)
-    if line.stitch_wire is None:
-        return wires
-    half, relief = line.stitch_wire.length_m / 2, -line.stitch_wire.tension_N
-    changes = tuple(TensionChange(x - half, x + half, relief) for x in line.geometry.supports)
-    return [replace(wire, tension_changes=changes) for wire in wires]
-
-
-def _stitch_wires(line: LineFile) -> Iterator[Wire]:
+def _stitch_wires(line: LineFile) -> list[tuple[str, Wire]]:
+    """Stitch wires, each with the name of its messenger."""
     stitch = line.stitch_wire
-    if stitch is not None:
-        half = stitch.length_m / 2
-        for messenger in _names(line, "messenger wire"):
-            for i, x in enumerate(line.geometry.supports, 1):
-                name = _stitch_name(messenger, i)
-                yield Wire(
-                    name,
-                    Kind.STITCH_WIRE,
-                    x - half,
-                    x + half,
-                    stitch.tension_N,
-                    stitch.mass_kg_m,
-                    stitch.bending_stiffness_N_m2,
-                )
-
-
-def _stitch_name(messenger: str, support: int) -> str:
-    return f"stitch wire of {messenger} at support {support}"
+    if stitch is None:
+        return []
+    half = stitch.length_m / 2
+    section = (stitch.tension_N, stitch.mass_kg_m, stitch.bending_stiffness_N_m2)
+    return [
+        (messenger, Wire(f"stitch wire of {messenger} at support {i}", Kind.STITCH_WIRE, x - half, x + half, *section))
+        for messenger in _names(line, Kind.MESSENGER_WIRE)
+        for i, x in enumerate(line.geometry.supports, 1)
+    ]
 
 
 def _clamps(line: LineFile) -> Iterator[Clamp]:
-    stitch = line.stitch_wire
-    if stitch is not None:
-        for messenger in _names(line, "messenger wire"):
-            for i, x in enumerate(line.geometry.supports, 1):
-                for end in (x - stitch.length_m / 2, x + stitch.length_m / 2):
-                    yield Clamp(end, messenger, _stitch_name(messenger, i), stitch.clamp_kg)
+    if line.stitch_wire is not None:
+        for messenger, wire in _stitch_wires(line):
+            for end in (wire.start, wire.end):
+                yield Clamp(end, messenger, wire.name, line.stitch_wire.clamp_kg)
 
 
 def _droppers(line: LineFile) -> Iterator[Dropper]:
-    file, messengers = line.droppers, _names(line, "messenger wire")
-    presag = file.presag_m or (0.0,) * len(file.x_m)
+    table, messengers, stitch_wires = line.droppers, _names(line, Kind.MESSENGER_WIRE), _stitch_wires(line)
+    presag = table.presag_m or (0.0,) * len(table.x_m)
     for span_start in line.geometry.span_limits[:-1]:
-        for x, sag in zip(file.x_m, presag, strict=True):
-            for i, contact in enumerate(_names(line, "contact wire")):
-                position = span_start + x
+        for x, sag in zip(table.x_m, presag, strict=True):
+            for i, contact in enumerate(_names(line, Kind.CONTACT_WIRE)):
+                position, messenger = span_start + x, messengers[min(i, len(messengers) - 1)]
+                stitch = (w.name for name, w in stitch_wires if name == messenger and w.start < position < w.end)
                 yield Dropper(
                     position,
-                    _upper_wire(line, messengers[min(i, len(messengers) - 1)], position),
+                    next(stitch, messenger),
                     contact,
-                    stiffness=file.stiffness_N_m,
-                    axial_stiffness=file.axial_stiffness_EA_N,
-                    mass=file.mass_kg or 0.0,
-                    upper_clamp_mass=file.clamp_on_messenger_kg,
-                    lower_clamp_mass=file.clamp_on_contact_kg,
+                    stiffness=table.stiffness_N_m,
+                    axial_stiffness=table.axial_stiffness_EA_N,
+                    mass=table.mass_kg or 0.0,
+                    upper_clamp_mass=table.clamp_on_messenger_kg,
+                    lower_clamp_mass=table.clamp_on_contact_kg,
                     contact_wire_height=-sag,
                 )
 
 
-def _upper_wire(line: LineFile, messenger: str, position: float) -> str:
-    """What a dropper hangs on: the stitch wire if one passes there, else the messenger."""
-    if line.stitch_wire is not None:
-        for i, x in enumerate(line.geometry.supports, 1):
-            if abs(position - x) < line.stitch_wire.length_m / 2:
-                return _stitch_name(messenger, i)
-    return messenger
-
-
 def _steady_arms(line: LineFile) -> Iterator[SteadyArm]:
     arm = line.steady_arm
-    # A bar that turns about its hinge moves a third of its mass with the claw.
+    # A bar that rotates about its hinge acts at the claw with a third of its mass.
     mass = arm.mass_kg_m * (arm.length_m or 0.0) / 3 + arm.clamp_kg
     for x in line.geometry.supports:
-        for contact in _names(line, "contact wire"):
+        for contact in _names(line, Kind.CONTACT_WIRE):
             yield SteadyArm(
                 x,
                 contact,
@@ -183,7 +167,7 @@ def _steady_arms(line: LineFile) -> Iterator[SteadyArm]:
 def _messenger_supports(line: LineFile) -> Iterator[MessengerSupport]:
     support = line.messenger_support
     for x in line.geometry.supports:
-        for messenger in _names(line, "messenger wire"):
+        for messenger in _names(line, Kind.MESSENGER_WIRE):
             yield MessengerSupport(
                 x, messenger, line.geometry.encumbrance_m, support.stiffness_N_m, support.damping_N_s_m
             )

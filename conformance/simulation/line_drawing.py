@@ -1,4 +1,4 @@
-"""A line at rest drawn to scale: seen from the side, and from above."""
+"""Drawing of a line at rest: side view and plan view."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,22 +10,22 @@ from pantocheck.conformance.reports.figures.figure_style import FULL, GREY, INK,
 from pantocheck.model import DiscretisedLine, Kind, Wire
 
 SPANS = 2
-"""Spans drawn, half way along the line."""
+"""Number of spans of the drawing, in the middle of the line."""
 EXAGGERATED = 10
-"""Heights and lateral places are drawn so many times as large as lengths along the track."""
+"""Scale of heights and lateral positions relative to lengths along the track."""
 WIDTHS = {Kind.CONTACT_WIRE: 1.8, Kind.MESSENGER_WIRE: 1.2, Kind.STITCH_WIRE: 0.9}
 
 
 @render_svg
 def draw_line(line: DiscretisedLine, title: str, geometry: Geometry) -> Figure:
-    """Side view and plan view of two spans, half a span more on either side.
+    """Side view and plan view of two spans and half a span on either side.
 
     Parameters
     ----------
     line : DiscretisedLine
-        The discretised line.
+        Discretised line.
     title : str
-        What it is.
+        Title of the figure.
     geometry : Geometry
         Spans of the line.
     """
@@ -46,7 +46,7 @@ def draw_line(line: DiscretisedLine, title: str, geometry: Geometry) -> Figure:
         _view(axes[1], line, "y", shown, labelled)
         axes[1].set_ylabel("lateral [m]")
         axes[1].set_title("plan view", fontsize=8, loc="left")
-    axes[-1].set_xlabel(f"along the track [m]; heights and lateral places drawn {EXAGGERATED} times as large")
+    axes[-1].set_xlabel(f"along the track [m]; heights and lateral positions {EXAGGERATED} times enlarged")
     return figure
 
 
@@ -62,7 +62,7 @@ def _view(
     for n, dropper in enumerate(line.catenary.droppers):
         if not start <= dropper.position <= end:
             continue
-        ends = [_at(line, name, field, dropper.position) for name in (dropper.lower, dropper.upper)]
+        ends = [_deflection(line, name, field, dropper.position) for name in (dropper.lower, dropper.upper)]
         axes.plot([dropper.position] * 2, ends, color=GREY, linewidth=0.8)
         if field == "z" and labelled[0] <= dropper.position < labelled[1]:
             length = f"{line.state.dropper_length[n]:.3f}"
@@ -70,14 +70,16 @@ def _view(
     for support in line.catenary.messenger_supports:
         if not start <= support.position <= end:
             continue
-        axes.plot(support.position, _at(line, support.wire, field, support.position), "^", color=INK, markersize=4)
+        axes.plot(
+            support.position, _deflection(line, support.wire, field, support.position), "^", color=INK, markersize=4
+        )
     for arm, force in zip(line.catenary.steady_arms, line.state.arm_force, strict=True):
         if not start <= arm.position <= end:
             continue
-        claw = _at(line, arm.wire, field, arm.position)
+        claw = _deflection(line, arm.wire, field, arm.position)
         axes.plot(arm.position, claw, "o", color=INK, markersize=3, markerfacecolor="white")
         if field == "y" and force[0] != 0.0 and arm.length is not None:
-            # The hinge lies where the arm pulls to; an arm that pushes has it on the other side.
+            # An arm that pulls has its hinge on the side of its force; an arm that pushes, on the other side.
             towards = np.sign(force[0]) * (1 if arm.acts == "pull" else -1)
             axes.plot([arm.position] * 2, [claw, claw + towards * arm.length], color=INK, linewidth=1.0)
     axes.set_xlim(start, end)
@@ -89,5 +91,5 @@ def _shape(line: DiscretisedLine, wire: Wire, field: str) -> tuple[RealArray, Re
     return line.mesh.position[inside], line.state.deflection[line.mesh.row_of[wire.name, field], inside, 0]
 
 
-def _at(line: DiscretisedLine, wire: str, field: str, position: float) -> float:
+def _deflection(line: DiscretisedLine, wire: str, field: str, position: float) -> float:
     return float(line.state.deflection[line.mesh.row_of[wire, field], line.mesh.station(position), 0])

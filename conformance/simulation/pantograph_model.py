@@ -7,21 +7,21 @@ from pantocheck.model.pantograph import Pantograph, chain, from_matrices, from_m
 
 
 def build_pantograph(file: PantographFile, uplift_force: float, working_height: float) -> Pantograph:
-    """A pantograph pressing with an uplift force.
+    """Pantograph with an uplift force and a static working height.
 
     Parameters
     ----------
     file : PantographFile
-        As read.
+        Content of the pantograph file.
     uplift_force : float
-        [N].
+        Uplift force [N].
     working_height : float
-        Of the head over the contact wire at the supports, at rest and pressing with that force [m].
+        Static height of the head under this force, above the contact wire at the supports [m].
 
     Returns
     -------
     Pantograph
-        The pantograph in the simulator's terms.
+        Pantograph for the simulator.
     """
     contact = file.contact.stiffness_N_m
     if file.chain is not None:
@@ -37,14 +37,14 @@ def build_pantograph(file: PantographFile, uplift_force: float, working_height: 
         unstretched = working_height if parts.base_spring_unstretched == "working_height" else 0.0
         return preload_springs(model, np.full(len(parts.masses_kg), unstretched))
     if file.matrices is not None:
-        given = file.matrices
-        matrices = (np.array(given.mass_kg), np.array(given.damping_N_s_m), np.array(given.stiffness_N_m))
-        model = from_matrices(*matrices, np.array(given.head), uplift_force, contact)
-        # Any unknowns with the head at the working height are suitable: the spring forces there become preload.
+        table = file.matrices
+        matrices = (np.array(table.mass_kg), np.array(table.damping_N_s_m), np.array(table.stiffness_N_m))
+        model = from_matrices(*matrices, np.array(table.head), uplift_force, contact)
+        # Any displacement with the head at the working height is suitable: its spring forces become preload.
         return preload_springs(model, model.head * working_height / (model.head @ model.head))
     modes = file.modes
     if modes is None:
-        raise ValueError("a pantograph without a model")  # which no file passes as
+        raise ValueError("a pantograph without a model")  # No valid file has this content.
     omega, shape = 2 * np.pi * np.array(modes.frequency_Hz), np.array(modes.head_shape)
     preload = omega**2 * shape * working_height / (shape @ shape)
     force = uplift_force * shape + preload

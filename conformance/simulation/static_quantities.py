@@ -1,4 +1,4 @@
-"""What the reference simulator says of a line at rest."""
+"""Quantities of a line at rest from the reference simulator."""
 
 import numpy as np
 
@@ -17,72 +17,80 @@ from pantocheck.model.statics.string_statics import in_vertical_plane, string_st
 from pantocheck.model.statics.wave_factors import amplification_coefficient, doppler_factor, reflection_coefficient
 
 SAMPLES_PER_SPAN = 24
-"""Places along a span at which the elasticity is taken."""
+"""Positions along a span at which the elasticity is computed."""
 SMALL_LOAD = 1.0
-"""Slackens no dropper [N]."""
+"""Load that slackens no dropper [N]."""
 LARGE_LOAD = 200.0
-"""Slackens droppers [N]."""
+"""Load that slackens droppers [N]."""
 SPANS_OF_MODES = 10
-"""Natural frequencies are those of so many spans: they crowd together with every span that is added."""
+"""Number of spans for the natural frequencies: with more spans the frequencies lie closer together."""
 MODES = 10
-"""Natural frequencies that are given."""
+"""Number of natural frequencies."""
 
 
 def compute_static_quantities(case: Case, line: DiscretisedLine) -> dict[str, Value]:
-    """Quantities of a line at rest, in a span half way along it.
+    """Quantities of a line at rest, in its middle span.
 
     Parameters
     ----------
     case : Case
-        With the line as its file has it.
+        Case of the line.
     line : DiscretisedLine
-        The same in finite elements.
+        Line of the case in finite elements.
+
+    Returns
+    -------
+    dict of str to Value
+        Values by name of quantity.
     """
-    found: dict[str, Value] = {"presag_mm": _presag(case.line, line)}
-    found |= _dropper_lengths(case.line, line)
-    found |= _elasticity(case.line, line)
-    found |= _waves(case, line.catenary)
+    quantities: dict[str, Value] = {"presag_mm": _presag(case.line, line)}
+    quantities |= _dropper_lengths(case.line, line) | _elasticity(case.line, line) | _waves(case, line.catenary)
     if case.is_static:
         if case.static_pantograph is not None and case.file.apparent_mass is not None:
             pantograph = build_pantograph(case.static_pantograph, 0.0, 0.0)
             response = apparent_mass(pantograph, np.array(case.file.apparent_mass.frequency_Hz))
-            found["apparent_mass_kg"] = tuple(map(float, np.abs(response)))
-        found["natural_frequency_Hz"] = tuple(map(float, first_modes(case.line, _element(line)).frequency))
-    return found
+            quantities["apparent_mass_kg"] = tuple(map(float, np.abs(response)))
+        quantities["natural_frequency_Hz"] = tuple(map(float, first_modes(case.line, _element(line)).frequency))
+    return quantities
 
 
 def sample_span(start: float, end: float) -> RealArray:
-    """Equidistant positions along a span, its end left out [m]."""
+    """Equidistant positions along a span, without its end [m]."""
     return start + (end - start) * np.arange(SAMPLES_PER_SPAN) / SAMPLES_PER_SPAN
 
 
 def first_modes(line: LineFile, element: float) -> Modes:
-    """The first modes of a few spans of a line in which more than half of the motion is vertical.
+    """First modes of a shortened line whose motion is mainly vertical.
 
     Parameters
     ----------
     line : LineFile
-        As its file has it.
+        Content of the line file.
     element : float
         Longest element [m].
+
+    Returns
+    -------
+    Modes
+        Modes of the first spans of the line.
     """
     few_spans = line.model_copy(update={"geometry": line.geometry.shorten(SPANS_OF_MODES)})
     short = discretise(build_catenary(few_spans), element)
     lateral = [row for row in range(short.mesh.rows) if short.mesh.row_field[row] == "y"]
     count = MODES * (2 if lateral else 1)
     while True:
-        found = compute_modes(short, count)
-        size = (found.shape[..., 0] ** 2).sum(axis=2)
+        modes = compute_modes(short, count)
+        size = (modes.shape[..., 0] ** 2).sum(axis=2)
         vertical = np.flatnonzero(size[:, lateral].sum(axis=1) < size.sum(axis=1) / 2)[:MODES]
         if vertical.size == MODES:
-            return Modes(found.frequency[vertical], found.shape[vertical])
+            return Modes(modes.frequency[vertical], modes.shape[vertical])
         count *= 2
 
 
-def _droppers(line: LineFile, built: Catenary) -> list[int]:
-    """Droppers of the middle span."""
+def _droppers(line: LineFile, catenary: Catenary) -> list[int]:
+    """Indices of the droppers of the middle span."""
     start, end = line.geometry.span(line.geometry.middle_span)
-    return [i for i, dropper in enumerate(built.droppers) if start <= dropper.position < end]
+    return [i for i, dropper in enumerate(catenary.droppers) if start <= dropper.position < end]
 
 
 def _element(line: DiscretisedLine) -> float:
@@ -96,41 +104,40 @@ def _presag(file: LineFile, line: DiscretisedLine) -> tuple[float, ...]:
 
 
 def _dropper_lengths(file: LineFile, line: DiscretisedLine) -> dict[str, Value]:
-    """By string statics, with bending, and with bending and stagger, so that each effect can be seen."""
+    """Lengths by string statics, with bending, and with bending and stagger, to show each effect."""
     droppers = _droppers(file, line.catenary)
-    found = {"dropper_length_m": string_state(line.catenary).dropper_length}
+    lengths = {"dropper_length_m": string_state(line.catenary).dropper_length}
     if line.catenary.has_lateral_field:
-        found["dropper_length_bending_m"] = discretise(
-            in_vertical_plane(line.catenary), _element(line)
-        ).state.dropper_length
-        found["dropper_length_stagger_m"] = line.state.dropper_length
+        straight = discretise(in_vertical_plane(line.catenary), _element(line))
+        lengths["dropper_length_bending_m"] = straight.state.dropper_length
+        lengths["dropper_length_stagger_m"] = line.state.dropper_length
     else:
-        found["dropper_length_bending_m"] = line.state.dropper_length
-    return {name: tuple(map(float, length[droppers])) for name, length in found.items()}
+        lengths["dropper_length_bending_m"] = line.state.dropper_length
+    return {name: tuple(map(float, length[droppers])) for name, length in lengths.items()}
 
 
 def _elasticity(file: LineFile, line: DiscretisedLine) -> dict[str, Value]:
     positions = sample_span(*file.geometry.span(file.geometry.middle_span))
-    found: dict[str, Value] = {}
+    quantities: dict[str, Value] = {}
     for name, load in (("elasticity", SMALL_LOAD), ("elasticity_200_N", LARGE_LOAD)):
         elasticity = 1e3 * static_uplift(line, positions, load) / load
-        found[f"{name}_mm_N"] = float(elasticity.max())
-        found[f"{name}_non_uniformity_pct"] = 100 * non_uniformity(elasticity)
-        found[f"{name}_along_span_mm_N"] = tuple(map(float, elasticity))
-    return found
+        quantities[f"{name}_mm_N"] = float(elasticity.max())
+        quantities[f"{name}_non_uniformity_pct"] = 100 * non_uniformity(elasticity)
+        quantities[f"{name}_along_span_mm_N"] = tuple(map(float, elasticity))
+    return quantities
 
 
-def _waves(case: Case, built: Catenary) -> dict[str, Value]:
-    contact = built.contact_wires
-    messengers = [wire for wire in built.wires if wire.kind is Kind.MESSENGER_WIRE]
+def _waves(case: Case, catenary: Catenary) -> dict[str, Value]:
+    contact = catenary.contact_wires
+    messengers = [wire for wire in catenary.wires if wire.kind is Kind.MESSENGER_WIRE]
     c = wave_speed(contact[0].tension, contact[0].mass_per_length)
     reflection = reflection_coefficient(contact, messengers)
-    found: dict[str, Value] = {"wave_speed_m_s": c, "reflection_coefficient": reflection}
+    quantities: dict[str, Value] = {"wave_speed_m_s": c, "reflection_coefficient": reflection}
     if not case.is_static and case.speed < c:
         doppler = doppler_factor(case.speed, c)
-        found |= {
+        quantities |= {
             "speed_over_wave_speed": case.speed / c,
             "doppler_factor": doppler,
             "amplification_coefficient": amplification_coefficient(reflection, doppler),
         }
-    return found
+    return quantities

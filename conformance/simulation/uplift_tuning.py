@@ -1,4 +1,4 @@
-"""Uplift forces that give the mean contact forces a case asks for."""
+"""Tuning of the uplift forces to the mean contact forces that a case requires."""
 
 from collections.abc import Callable, Sequence
 from typing import TypeVar
@@ -14,7 +14,7 @@ MAX_RUNS = 12
 
 
 class TuningFailed(SimulationError):
-    """No uplift force gives the target: any other mean contact force would be that of a different run."""
+    """No uplift force gives the target; a run with another mean contact force must not be graded."""
 
 
 TunedRun = TypeVar("TunedRun")
@@ -31,13 +31,13 @@ def tune_uplift(
     Parameters
     ----------
     run : callable
-        Function that runs the passage with the given uplift forces [N].
+        Function that simulates the passage for given uplift forces [N].
     mean_forces : callable
         Function that gives the mean contact force of every pantograph of a run [N].
     start : sequence of float
         Uplift forces of the first run [N].
     targets : sequence of float or None
-        Target of every mean contact force [N]; None keeps the uplift force of this pantograph.
+        Target of every mean contact force [N]; None: the uplift force remains.
 
     Returns
     -------
@@ -47,12 +47,12 @@ def tune_uplift(
     Raises
     ------
     TuningFailed
-        None of the first runs meets the targets.
+        None of the first `MAX_RUNS` runs meets the targets.
     """
     target = np.array([np.nan if value is None else value for value in targets])
     has_target = np.isfinite(target)
     forces = np.array(start, dtype=float)
-    # The mean contact force follows the uplift force nearly one to one.
+    # The mean contact force changes nearly as much as the uplift force.
     slope = np.ones(forces.size)
     tuned = run(tuple(map(float, forces)))
     means = mean_forces(tuned)
@@ -66,7 +66,7 @@ def tune_uplift(
         forces = forces + change
         tuned = run(tuple(map(float, forces)))
         new_means = mean_forces(tuned)
-        # A quotient far from one is caused by the change of another pantograph's force.
+        # A quotient far from 1 is an effect of the other pantographs, hence the clip.
         moved = np.abs(change) > TOLERANCE / 10
         quotient = np.divide(new_means - means, change, out=slope.copy(), where=moved)
         slope, means = np.clip(quotient, 0.5, 2.0), new_means

@@ -1,1 +1,1 @@
-"""Systems under test: the reference simulator, a record on disk, a command."""
+"""Systems under test: the reference simulator, a folder of records, a command."""

@@ -1,4 +1,4 @@
-"""The reference simulator as a system under test, in process."""
+"""Reference simulator as a system under test, in the same process."""
 
 from dataclasses import dataclass, replace
 from importlib.metadata import version
@@ -16,7 +16,7 @@ from pantocheck.model import discretise
 
 @dataclass(frozen=True)
 class ReferenceSimulator:
-    """Runs a case at its own discretisation and, for the discretisation error, with both steps halved."""
+    """System that runs a case with its discretisation and, for the discretisation error, with half of both steps."""
 
     name: str = "Pantocheck reference simulator"
     version: str = version("pantocheck")
@@ -30,14 +30,14 @@ class ReferenceSimulator:
         return replace(delivered, refined=refined)
 
     def run_unrefined(self, case: Case) -> Delivered:
-        """Run a case once, at its own discretisation."""
+        """Run a case once, with the discretisation of the case."""
         return _deliver(case, case.file.discretisation)[0]
 
 
 def _deliver(
     case: Case, steps: Discretisation, uplift_forces: tuple[float, ...] | None = None
 ) -> tuple[Delivered, tuple[float, ...] | None]:
-    """Delivery of one discretisation, and the uplift forces of its passage [N]."""
+    """Simulate a case; result, and uplift forces of its passage [N]."""
     line = discretise(build_catenary(case.line), steps.element_m)
     static = compute_static_quantities(case, line)
     if case.is_static:

@@ -1,4 +1,4 @@
-"""System under test: the interface that every simulator and record folder meets."""
+"""System under test: interface of every simulator and record folder."""
 
 from typing import Literal, Protocol
 
@@ -7,19 +7,19 @@ from pantocheck.conformance.results.outcome import Outcome
 
 
 class System(Protocol):
-    """Anything that can be graded. It is sent to other processes, so it holds plain data only."""
+    """Interface of a system under test. Systems are sent to other processes, so they contain plain data only."""
 
     @property
     def name(self) -> str:
-        """As printed in reports."""
+        """Name in reports."""
 
     @property
     def version(self) -> str:
-        """As printed in reports."""
+        """Version in reports."""
 
     @property
     def kind(self) -> Literal["builtin", "record", "command"]:
-        """How it is spoken to."""
+        """Kind of the system."""
 
     def run(self, case: Case) -> Outcome:
-        """Run a case. An exception it raises becomes the verdict `error` of that case alone."""
+        """Run a case. An exception becomes the verdict `error` of this case only."""

@@ -1,4 +1,4 @@
-"""The system that `--system` names."""
+"""Choice of the system under test by the option `--system`."""
 
 from importlib import import_module
 from pathlib import Path
@@ -7,18 +7,23 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.systems.system import System
 
 TIMEOUT_S = 600.0
-"""Time a program may take for a case [s], if nothing else is said."""
+"""Default time limit of a program for a case [s]."""
 
 
 def choose_system(text: str, timeout_s: float = TIMEOUT_S) -> System:
-    """The system under test for `builtin`, `record:DIR` or `command:PROGRAM ARGUMENTS`.
+    """Choose the system under test: `builtin`, `record:DIR` or `command:PROGRAM ARGUMENTS`.
 
     Parameters
     ----------
     text : str
-        As `--system` takes it.
+        Value of `--system`.
     timeout_s : float
-        Time that a program may take for a case [s].
+        Time limit of a program for a case [s].
+
+    Returns
+    -------
+    System
+        The system under test.
 
     Raises
     ------
@@ -27,7 +32,7 @@ def choose_system(text: str, timeout_s: float = TIMEOUT_S) -> System:
     """
     kind, _, rest = text.partition(":")
     if text == "builtin":
-        # Compiled kernels are only loaded when they are used.
+        # Only the reference simulator needs the compiled kernels.
         system: System = import_module("pantocheck.conformance.systems.reference_simulator").ReferenceSimulator()
         return system
     if kind == "record" and rest:
@@ -39,5 +44,5 @@ def choose_system(text: str, timeout_s: float = TIMEOUT_S) -> System:
 
         return parse_command(rest, Path(), timeout_s)
     raise InputError(
-        f"system '{text}'", "there is no such system", "Known are builtin, record:DIR and command:PROGRAM ARGUMENTS ."
+        f"system '{text}'", "there is no such system", "Choose builtin, record:DIR and command:PROGRAM ARGUMENTS ."
     )

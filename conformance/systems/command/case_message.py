@@ -1,4 +1,4 @@
-"""What a program is told of a case: every number of it, and none of its limits."""
+"""Case in the `run` message of a program: all numbers, without limits."""
 
 from typing import Any
 
@@ -7,9 +7,9 @@ from pantocheck.conformance.input_files.sourced_table import PROVENANCE
 
 
 def build_case_message(case: Case) -> object:
-    """A case as its `run` message holds it, see `messages.GivenCase`.
+    """Build the case of a `run` message, see `protocol_messages.GivenCase`.
 
-    Notes and sources are withheld with the limits, because they speak of results.
+    Notes and sources are left out, because they mention results.
     """
     file = case.file
     content: dict[str, Any] = {

@@ -1,4 +1,4 @@
-"""A program as a system under test: one process and one working folder for each case."""
+"""Program as a system under test: a process and a working folder for each case."""
 
 import tempfile
 import time
@@ -26,25 +26,25 @@ from pantocheck.conformance.systems.command.protocol_messages import (
 )
 
 START_LIMIT = 120.0
-"""Time a program has for its first answer [s]; large environments take half a minute to start."""
+"""Time limit of the first answer of a program [s]; large environments need half a minute to start."""
 RUN = 1
-"""Number of the only run of a process; the protocol leaves room for more."""
+"""Number of the only run of a process; the protocol allows more."""
 
 
 @dataclass(frozen=True)
 class CommandSystem:
-    """A program that speaks the protocol.
+    """Program that answers the messages of the protocol.
 
     Parameters
     ----------
-    arguments : tuple[str, ...]
+    arguments : tuple of str
         Program and arguments.
     timeout_s : float
-        Time a case may take [s].
+        Time limit of a case [s].
     name, version : str
-        As the program gives them.
-    broken : str or None
-        Why it cannot run any case; None if it started.
+        Name and version that the program states.
+    broken : str, optional
+        Reason why the program cannot run any case; None if it started.
     """
 
     arguments: tuple[str, ...]
@@ -55,28 +55,23 @@ class CommandSystem:
     kind: Literal["command"] = "command"
 
     def run(self, case: Case) -> Outcome:
-        """Run a case in a fresh process; whatever goes wrong there is the error of this case alone."""
+        """Run a case in a new process; every failure there is the error of this case only."""
         if self.broken is not None:
             return Errored(self.broken)
         with tempfile.TemporaryDirectory(prefix="pantocheck-", ignore_cleanup_errors=True) as name:
             folder = Path(name)
             try:
                 with Program(self.arguments, folder) as program:
-                    start_program(program, self.timeout_s)
+                    _start_program(program, self.timeout_s)
                     begin = time.monotonic()
-                    program.send(
-                        encode_message(
-                            "run",
-                            id=RUN,
-                            folder=str(folder),
-                            time_limit_s=self.timeout_s,
-                            case=build_case_message(case),
-                        )
-                    )
-                    answer = _answer(program.line(self.timeout_s))
+                    limit, content = self.timeout_s, build_case_message(case)
+                    program.send(encode_message("run", id=RUN, folder=name, time_limit_s=limit, case=content))
+                    answer = _parse_answer(program.line(limit))
                     wall = time.monotonic() - begin
                     program.send(encode_message("stop"))
-                    warnings = () if program.ended() else (f"{self.name} did not end when told to, and was ended",)
+                    warnings = (
+                        () if program.ended() else (f"{self.name} did not end after the message stop, and was ended",)
+                    )
                 match answer:
                     case SkippedAnswer():
                         return Skipped(answer.reason)
@@ -90,43 +85,42 @@ class CommandSystem:
                 return Errored(f"{self.name}: {error.where}: {error.found}")
 
 
-def _answer(line: bytes) -> DeliveredAnswer | SkippedAnswer | ErroredAnswer:
+def _parse_answer(line: bytes) -> DeliveredAnswer | SkippedAnswer | ErroredAnswer:
     answer = parse_message(line)
     if isinstance(answer, Started):
         raise AnswerRefused("its answer to 'run' is 'started'")
     if answer.id != RUN:
-        raise AnswerRefused(f"its answer is to run {answer.id}, asked was run {RUN}")
+        raise AnswerRefused(f"it answered run {answer.id} in place of run {RUN}")
     return answer
 
 
-def start_program(program: Program, limit: float) -> Started:
-    """Greet a program.
-
-    Raises
-    ------
-    ProgramFailed, AnswerRefused
-        It did not answer as it should.
-    """
+def _start_program(program: Program, limit: float) -> Started:
+    """Send the message `start`; answer of the program."""
     program.send(encode_message("start", protocol=PROTOCOL, suite_version=version("pantocheck")))
     answer = parse_message(program.line(min(limit, START_LIMIT)))
     if not isinstance(answer, Started):
         raise AnswerRefused(f"its first answer is {answer.message!r}, not 'started'")
     if answer.protocol != PROTOCOL:
-        raise AnswerRefused(f"it speaks {answer.protocol!r}, the suite {PROTOCOL!r}")
+        raise AnswerRefused(f"it uses {answer.protocol!r}, the suite {PROTOCOL!r}")
     return answer
 
 
 def parse_command(text: str, base: Path, timeout: float) -> CommandSystem:
-    """The program of a command line, started once to learn its name.
+    """Build the system of a command, and start the program once for its name.
 
     Parameters
     ----------
     text : str
-        What follows `command:`.
+        Text after `command:`.
     base : Path
-        Folder that file names in it are relative to.
+        Base folder of relative file names.
     timeout : float
-        Time a case may take [s].
+        Time limit of a case [s].
+
+    Returns
+    -------
+    CommandSystem
+        The program as a system under test.
 
     Raises
     ------
@@ -140,7 +134,7 @@ def parse_command(text: str, base: Path, timeout: float) -> CommandSystem:
             tempfile.TemporaryDirectory(prefix="pantocheck-", ignore_cleanup_errors=True) as folder,
             Program(parts, Path(folder)) as program,
         ):
-            identity = start_program(program, timeout)
+            identity = _start_program(program, timeout)
             program.send(encode_message("stop"))
             program.ended()
     except (ProgramFailed, AnswerRefused) as error:

@@ -1,4 +1,4 @@
-"""The files that a program says it wrote: inside its folder, unchanged, and of the case that was asked."""
+"""Files of a program: check that they are in its folder, unchanged, and of the requested case."""
 
 from pathlib import Path
 
@@ -13,45 +13,50 @@ from pantocheck.conformance.systems.command.protocol_messages import DeliveredAn
 
 
 class DeliveryRefused(ValueError):
-    """Files are missing, changed, out of place or of another case: graded, they would speak for a run they are not."""
+    """Files are missing, changed, outside the folder or of another case: they do not represent the requested run."""
 
 
 def read_delivery(case: Case, answer: DeliveredAnswer, folder: Path, wall: float) -> Delivered:
-    """Read what was delivered; to be called when the program has ended and can change its files no more.
+    """Read the delivered files, after the program has ended and cannot change them any more.
 
     Parameters
     ----------
     case : Case
-        That was asked.
+        Requested case.
     answer : DeliveredAnswer
-        Of the program.
+        Answer of the program.
     folder : Path
-        Of the run.
+        Folder of the run.
     wall : float
-        Time from question to answer [s].
+        Time from request to answer [s].
+
+    Returns
+    -------
+    Delivered
+        Record, static quantities and run facts.
 
     Raises
     ------
     DeliveryRefused
-        a file is not what the answer says.
+        A file does not agree with the answer.
     InputError
-        The record itself is wrong.
+        The record is invalid.
     """
     if answer.record is None:
         return Delivered(static=dict(answer.static), run=RunTable(wall_s=wall), notes=answer.notes)
-    sidecar_path, table_path = (_checked(file, folder) for file in (answer.record.sidecar, answer.record.table))
+    sidecar_path, table_path = (_check_file(file, folder) for file in (answer.record.sidecar, answer.record.table))
     record, sidecar = read_record(sidecar_path, None if case.is_static else case.analysis_section)
     if sidecar_path.parent / sidecar.file != table_path:
         raise DeliveryRefused(f"the sidecar is of {sidecar.file!r}, the answer names {answer.record.table.file!r}")
     if sidecar.case != case.id:
-        raise DeliveryRefused(f"the record is of case {sidecar.case!r}, asked was {case.id!r}")
+        raise DeliveryRefused(f"the record is of case {sidecar.case!r} in place of {case.id!r}")
     run = sidecar.run
     if run.wall_s is None:
         run = run.model_copy(update={"wall_s": wall})
     return Delivered(record, dict(answer.static), run, answer.notes)
 
 
-def _checked(file: File, folder: Path) -> Path:
+def _check_file(file: File, folder: Path) -> Path:
     root = folder.resolve()
     try:
         path = (root / file.file).resolve()
@@ -67,5 +72,5 @@ def _checked(file: File, folder: Path) -> Path:
             raise
         raise DeliveryRefused(f"the file {file.file!r} cannot be read ({error})") from None
     if digest != file.sha256:
-        raise DeliveryRefused(f"the content of {file.file!r} is not what its sha256 says")
+        raise DeliveryRefused(f"the content of {file.file!r} does not agree with its sha256")
     return path

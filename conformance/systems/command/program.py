@@ -1,4 +1,4 @@
-"""A program at the other end of three pipes: lines with a time limit, and an end that is always reached."""
+"""Process of a program: lines with a time limit over pipes, and a safe end of all its children."""
 
 import contextlib
 import os
@@ -14,35 +14,35 @@ from types import TracebackType
 from typing import IO
 
 LONGEST_LINE = 1_000_000
-"""Bytes of an answer: numbers belong into record files."""
+"""Largest size of an answer [bytes]; numbers belong into record files."""
 MOST_OUTPUT = 10_000_000
-"""Bytes of standard output in all."""
+"""Largest size of the whole standard output [bytes]."""
 LAST_WORDS = 4000
-"""Bytes of standard error that are kept for the reason of a failure."""
+"""Size of the end of standard error that a failure quotes [bytes]."""
 PATIENCE = 5.0
-"""Time a program has to end by itself [s]."""
+"""Time limit of a program to end by itself [s]."""
 MARK = "PANTOCHECK_PROGRAM"
-"""Environment variable by which the children of a program are known, wherever they have moved."""
+"""Environment variable that marks the children of a program, also in other sessions."""
 
 
 class ProgramFailed(Exception):
-    """A program died, was late or talked nonsense: its case cannot be graded, and the others must go on."""
+    """A program ended, was late or wrote too much: its case cannot be graded, but the other cases can."""
 
 
 class Program:
-    """A running program; leaving its context ends it with all its children.
+    """Running program; the end of its context ends it with all its children.
 
     Parameters
     ----------
-    arguments
-        Program and arguments, never seen by a shell.
-    folder
-        Its working folder.
+    arguments : sequence of str
+        Program and arguments; no shell interprets them.
+    folder : Path
+        Working folder.
 
     Raises
     ------
     ProgramFailed
-        It cannot be started.
+        The program cannot be started.
     """
 
     def __init__(self, arguments: Sequence[str], folder: Path) -> None:
@@ -62,7 +62,7 @@ class Program:
             raise ProgramFailed(f"cannot be started ({error.strerror})") from None
         self._lines: queue.SimpleQueue[bytes | ProgramFailed | None] = queue.SimpleQueue()
         self._errors = bytearray()
-        # Each pipe has a thread: none of them can block the others, whatever the program reads or writes.
+        # A thread per pipe: no pipe can block another one.
         self._readers = [
             threading.Thread(target=_read_lines, args=(self._process.stdout, self._lines), daemon=True),
             threading.Thread(target=_keep_tail, args=(self._process.stderr, self._errors), daemon=True),
@@ -73,32 +73,34 @@ class Program:
     def __enter__(self) -> "Program":
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
         self._end()
 
     def send(self, line: bytes) -> None:
-        """Send one line; a program that does not read is found out by its missing answer."""
+        """Send a line. A program that does not read it gives no answer."""
         threading.Thread(target=self._write, args=(line,), daemon=True).start()
 
     def _write(self, line: bytes) -> None:
         if self._process.stdin is not None:
-            # The reason of a broken pipe is what the program leaves behind, not the pipe.
+            # The end of the program is reported, not the broken pipe.
             with contextlib.suppress(OSError, ValueError):
                 self._process.stdin.write(line + b"\n")
                 self._process.stdin.flush()
 
     def line(self, limit: float) -> bytes:
-        """The next line of its standard output.
+        """Next line of the standard output.
 
         Parameters
         ----------
         limit : float
-            Time to wait for it [s].
+            Time limit [s].
 
         Raises
         ------
         ProgramFailed
-            None came.
+            No line within the time limit.
         """
         try:
             line = self._lines.get(timeout=limit)
@@ -111,7 +113,7 @@ class Program:
         return line
 
     def ended(self, patience: float | None = None) -> bool:
-        """Wait until it ends by itself, for `PATIENCE` if nothing else is said; whether it does."""
+        """Wait for the end of the program, by default for `PATIENCE` [s]; False if it still runs."""
         try:
             self._process.wait(PATIENCE if patience is None else patience)
         except subprocess.TimeoutExpired:
@@ -139,11 +141,11 @@ class Program:
             for _ in range(10):
                 with contextlib.suppress(ProcessLookupError, PermissionError):
                     os.killpg(self._process.pid, signal.SIGKILL)
-                strays = _marked(self._mark)
-                for stray in strays:
+                children = _find_marked(self._mark)
+                for child in children:
                     with contextlib.suppress(ProcessLookupError, PermissionError):
-                        os.kill(stray, signal.SIGKILL)
-                if not strays:
+                        os.kill(child, signal.SIGKILL)
+                if not children:
                     break
                 time.sleep(0.02)
         else:
@@ -162,18 +164,18 @@ class Program:
                     pipe.close()
 
 
-def _marked(mark: str) -> list[int]:
-    """Living processes that carry the mark in their environment; Linux alone can tell."""
-    found = []
+def _find_marked(mark: str) -> list[int]:
+    """Running processes with the mark in their environment; on Linux only."""
+    processes = []
     for path in Path("/proc").glob("[0-9]*/environ"):
         with contextlib.suppress(OSError):
             if f"{MARK}={mark}".encode() in path.read_bytes():
-                found.append(int(path.parent.name))
-    return found
+                processes.append(int(path.parent.name))
+    return processes
 
 
 def _read_lines(stream: IO[bytes], lines: "queue.SimpleQueue[bytes | ProgramFailed | None]") -> None:
-    """Hand over lines as they come; None at the end, or a `ProgramFailed` at too much or at half a line."""
+    """Put every line into the queue, finally None, or a `ProgramFailed` after too much output or half a line."""
     line, total = bytearray(), 0
     while chunk := os.read(stream.fileno(), 65536):
         total += len(chunk)
@@ -183,8 +185,8 @@ def _read_lines(stream: IO[bytes], lines: "queue.SimpleQueue[bytes | ProgramFail
             line.clear()
         line += rest
         if len(line) > LONGEST_LINE or total > MOST_OUTPUT:
-            what = f"a line of more than {LONGEST_LINE}" if len(line) > LONGEST_LINE else f"more than {MOST_OUTPUT}"
-            lines.put(ProgramFailed(f"wrote {what} bytes to its standard output: numbers belong into record files"))
+            size = f"a line of more than {LONGEST_LINE}" if len(line) > LONGEST_LINE else f"more than {MOST_OUTPUT}"
+            lines.put(ProgramFailed(f"wrote {size} bytes to its standard output: numbers belong into record files"))
             return
     lines.put(ProgramFailed(f"ended in the middle of a line, after {bytes(line[-60:])!r}") if line else None)
 

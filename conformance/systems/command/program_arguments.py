@@ -1,4 +1,4 @@
-"""The argument list of a program, from the text after `command:`. No shell ever sees it."""
+"""Argument list of a program from the text after `command:`, without a shell."""
 
 import os
 import shlex
@@ -9,16 +9,21 @@ from pantocheck.conformance.input_files.input_error import InputError
 
 
 def split_arguments(text: str, base: Path) -> tuple[str, ...]:
-    """Split a command as a shell would, without its expansions, and find its files.
+    """Split a command by the quoting rules of a shell, without expansions, and resolve file names.
 
-    A program runs in a working folder of its own, so an argument that names an existing file is made absolute.
+    An argument that names an existing file becomes an absolute path, because the program runs in a new working folder.
 
     Parameters
     ----------
     text : str
-        What follows `command:`.
+        Text after `command:`.
     base : Path
-        Folder that relative names are relative to.
+        Base folder of relative file names.
+
+    Returns
+    -------
+    tuple of str
+        Program and arguments.
 
     Raises
     ------
@@ -30,29 +35,25 @@ def split_arguments(text: str, base: Path) -> tuple[str, ...]:
         words = shlex.shlex(text, posix=True, punctuation_chars=False)
         words.whitespace_split, words.commenters = True, ""
         if os.name == "nt":
-            words.escape = ""  # the backslashes of its paths are no escapes
+            words.escape = ""  # Backslashes separate folders.
         parts = list(words)
     except ValueError as error:
         raise InputError(where, f"cannot be split into arguments ({error})", hint) from None
     if not parts or "\0" in text:
         raise InputError(where, "names no program", hint)
-    program = parts[0] if not (base / parts[0]).is_file() or _bare(parts[0]) else str((base / parts[0]).resolve())
-    found = shutil.which(program)
-    if found is None:
+    has_folder = Path(parts[0]).name != parts[0]
+    program = shutil.which((base / parts[0]).resolve() if has_folder and _is_file(base / parts[0]) else parts[0])
+    if program is None:
         raise InputError(where, f"there is no program {parts[0]!r} that can be run", hint)
-    # The name on the search path is kept as it is found: the link of a virtual environment is what makes it one.
+    # Links are kept: a virtual environment depends on the link to its interpreter.
     return (
-        os.path.abspath(found),
+        os.path.abspath(program),
         *(str((base / part).resolve()) if _is_file(base / part) else part for part in parts[1:]),
     )
-
-
-def _bare(name: str) -> bool:
-    return Path(name).name == name
 
 
 def _is_file(path: Path) -> bool:
     try:
         return path.is_file()
-    except OSError:  # too long for a name, which is then no file
+    except OSError:  # The name is too long for a file.
         return False

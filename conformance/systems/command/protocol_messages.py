@@ -1,4 +1,4 @@
-"""The messages: what is sent, what may come back, and the JSON Schema of both."""
+"""Messages to and from a program, and their JSON Schemas."""
 
 import json
 from typing import Annotated, Any, Final, Literal
@@ -17,11 +17,11 @@ Text = Annotated[str, Field(min_length=1, max_length=2000)]
 
 
 class AnswerRefused(ValueError):
-    """A program answered with something that is no message: whatever it meant must not become a number."""
+    """An answer of a program is no valid message, so it must not be graded."""
 
 
 class Start(InputTable):
-    """The first message."""
+    """First message."""
 
     message: Literal["start"] = "start"
     protocol: Annotated[Literal["pantocheck.command/1"], Field(description="version of the protocol")] = PROTOCOL
@@ -29,46 +29,50 @@ class Start(InputTable):
 
 
 class GivenPantograph(InputTable):
-    """One pantograph of a run, in running order; one of chain, matrices and modes says what it is."""
+    """Pantograph of a run, in running order, by one of chain, matrices and modes."""
 
     chain: ChainTable | None
     matrices: MatricesTable | None
     modes: ModesTable | None
     contact: ContactTable
-    uplift_force_N: Annotated[float | None, Field(description="constant uplift force, or where tuning starts [N]")]
+    uplift_force_N: Annotated[
+        float | None, Field(description="constant uplift force, or start value of the tuning [N]")
+    ]
     target_mean_force_N: Annotated[
         float | None,
-        Field(description="mean contact force over the evaluated stretch to tune the uplift force to [N]; null: none"),
+        Field(description="mean contact force over the analysis section for the tuning [N]; null: no tuning"),
     ]
-    start_m: Annotated[float, Field(description="where it is at the beginning of the run [m]")]
-    end_m: Annotated[float, Field(description="where it is at the end of the run [m]")]
+    start_m: Annotated[float, Field(description="position at the start of the run [m]")]
+    end_m: Annotated[float, Field(description="position at the end of the run [m]")]
 
 
 class GivenCase(InputTable):
-    """A case without its limits: all of its numbers, defaults filled in."""
+    """Case without limits: all numbers, defaults included."""
 
-    id: Annotated[str, Field(description="to be named in the sidecar of the record")]
+    id: Annotated[str, Field(description="id of the case, to be repeated in the sidecar of the record")]
     title: str
-    speed_km_h: Annotated[float | None, Field(description="speed of the train; null: a check of the line at rest")]
-    evaluated_m: Annotated[tuple[float, float], Field(description="start and end of the evaluated stretch [m]")]
-    filter: Annotated[Filter, Field(description="filter of the graded force; best deliver the force unfiltered")]
-    discretisation: Annotated[Discretisation, Field(description="that of the reference simulator, as a hint")]
+    speed_km_h: Annotated[float | None, Field(description="speed of the train; null: check of the line at rest")]
+    evaluated_m: Annotated[tuple[float, float], Field(description="start and end of the analysis section [m]")]
+    filter: Annotated[Filter, Field(description="filter of the graded force; deliver the force unfiltered if possible")]
+    discretisation: Annotated[
+        Discretisation, Field(description="discretisation of the reference simulator, for information")
+    ]
     line: LineFile
     pantographs: tuple[GivenPantograph, ...]
 
 
 class RunRequest(InputTable):
-    """A case to run."""
+    """Request to run a case."""
 
     message: Literal["run"] = "run"
-    id: Annotated[int, Field(ge=1, description="to be repeated in the answer")]
-    folder: Annotated[str, Field(description="where record files go: the working folder of the program")]
-    time_limit_s: Annotated[float, Field(gt=0, description="time until the answer is due [s]")]
+    id: Annotated[int, Field(ge=1, description="number of the run, to be repeated in the answer")]
+    folder: Annotated[str, Field(description="folder for record files: the working folder of the program")]
+    time_limit_s: Annotated[float, Field(gt=0, description="time limit of the answer [s]")]
     case: GivenCase
 
 
 class Stop(InputTable):
-    """The last message: the program ends."""
+    """Last message: the program ends."""
 
     message: Literal["stop"] = "stop"
 
@@ -78,47 +82,49 @@ class Started(InputTable):
 
     message: Literal["started"]
     protocol: Annotated[
-        str, Field(max_length=100, description='version that the program speaks: "pantocheck.command/1"')
+        str, Field(max_length=100, description='version of the protocol of the program: "pantocheck.command/1"')
     ]
-    name: Annotated[str, Field(min_length=1, max_length=200, description="of the simulator, as printed in reports")]
-    version: Annotated[str, Field(max_length=200, description="of the simulator")]
+    name: Annotated[str, Field(min_length=1, max_length=200, description="name of the simulator in reports")]
+    version: Annotated[str, Field(max_length=200, description="version of the simulator")]
 
 
 class File(InputTable):
-    """A file that was written."""
+    """Delivered file."""
 
-    file: Annotated[str, Field(min_length=1, max_length=500, description="its name, relative to the run's folder")]
-    sha256: Annotated[str, Field(pattern="^[0-9a-f]{64}$", description="digest of its content")]
+    file: Annotated[str, Field(min_length=1, max_length=500, description="name, relative to the folder of the run")]
+    sha256: Annotated[str, Field(pattern="^[0-9a-f]{64}$", description="digest of the content")]
 
 
 class RecordFiles(InputTable):
-    """A record: its table of samples and the sidecar; see `pantocheck schema record`."""
+    """Record: table of samples and sidecar, see `pantocheck schema record`."""
 
     sidecar: File
     table: File
 
 
 class DeliveredAnswer(InputTable):
-    """Answer to `run`: it was done."""
+    """Answer to `run`: results."""
 
     message: Literal["delivered"]
     id: int
-    record: Annotated[RecordFiles | None, Field(description="null for a check of the line at rest")] = None
+    record: Annotated[
+        RecordFiles | None, Field(description="files of the record; null for a check of the line at rest")
+    ] = None
     static: Annotated[
         dict[str, float | Annotated[tuple[float, ...], Field(strict=False, max_length=1000)]],
         Field(
             default_factory=dict,
             max_length=100,
-            description="quantities of the line at rest, by name; a list has one value per dropper",
+            description="quantities of the line at rest, by name; lists have a value per dropper",
         ),
     ]
     notes: Annotated[
-        tuple[Text, ...], Field(strict=False, max_length=20, description="for the reader of a report")
+        tuple[Text, ...], Field(strict=False, max_length=20, description="notes for the reader of the report")
     ] = ()
 
 
 class SkippedAnswer(InputTable):
-    """Answer to `run`: the system does not do such cases."""
+    """Answer to `run`: the system does not support the case."""
 
     message: Literal["skipped"]
     id: int
@@ -126,7 +132,7 @@ class SkippedAnswer(InputTable):
 
 
 class ErroredAnswer(InputTable):
-    """Answer to `run`: it was tried and went wrong."""
+    """Answer to `run`: the simulation failed."""
 
     message: Literal["errored"]
     id: int
@@ -142,17 +148,17 @@ _REQUEST: TypeAdapter[Start | RunRequest | Stop] = TypeAdapter(
 
 
 def encode_message(message: str, **content: object) -> bytes:
-    """A message to a program, on one line."""
+    """Encode a message to a program on one line."""
     return json.dumps({"message": message, **content}, allow_nan=False).encode()
 
 
 def parse_message(line: bytes) -> Answer:
-    """A line of a program as a message.
+    """Parse a line of a program as a message.
 
     Raises
     ------
     AnswerRefused
-        It is not one.
+        The line is no valid message.
     """
     try:
         return _ANSWER.validate_python(json.loads(line))
@@ -162,13 +168,13 @@ def parse_message(line: bytes) -> Answer:
         raise AnswerRefused(
             f"its answer is no message of {PROTOCOL}: {key + ': ' if key else ''}{first['msg']}"
         ) from None
-    except (ValueError, RecursionError):  # not UTF-8, not JSON, or nested too deep
+    except (ValueError, RecursionError):  # Not UTF-8, not JSON, or nested too deeply.
         shown = line[:80].decode("utf-8", "replace").strip()
         raise AnswerRefused(f"its answer is not JSON: {shown!r} (a log belongs on standard error)") from None
 
 
 def request_schema(generator: type[GenerateJsonSchema]) -> dict[str, Any]:
-    """JSON Schema of the messages to a program; the tables of a case have no provenance."""
+    """JSON Schema of the messages to a program; its tables have no provenance."""
     schema = _REQUEST.json_schema(schema_generator=generator)
     for table in schema["$defs"].values():
         table["properties"] = {key: value for key, value in table["properties"].items() if key not in PROVENANCE}
@@ -177,5 +183,5 @@ def request_schema(generator: type[GenerateJsonSchema]) -> dict[str, Any]:
 
 
 def answer_schema(generator: type[GenerateJsonSchema]) -> dict[str, Any]:
-    """JSON Schema of the messages of a program."""
+    """JSON Schema of the answers of a program."""
     return _ANSWER.json_schema(schema_generator=generator)

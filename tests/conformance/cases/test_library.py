@@ -151,5 +151,5 @@ def test_own_limits_replace_and_add(tmp_path, case_250):
     assert (limits["std_force_N"].lower, limits["std_force_N"].upper) == (None, 30.0)
     assert limits["std_force_N"].source == "my copy"
     path.write_text(entry.format("std_force_N", 30.0).replace("*/250", "*/251"))
-    with pytest.raises(InputError, match=r"no case that is run matches '\*/251'"):
+    with pytest.raises(InputError, match=r"no case of this run matches '\*/251'"):
         overlay_limits([case_250], read_limits(path))

@@ -279,10 +279,10 @@ def test_bad_options_end_with_one_message_and_exit_code_2(
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("upper = 0.3", "upper = 0.3\ntolerance = 1.0", "has not exactly one kind of bound"),
-        ("upper = 0.3", "", "has not exactly one kind of bound"),
+        ("upper = 0.3", "upper = 0.3\ntolerance = 1.0", "needs exactly one kind of bound"),
+        ("upper = 0.3", "", "needs exactly one kind of bound"),
         ('quantity = "cov_20"', 'quantity = "cov_2"', "there is no quantity 'cov_2'"),
-        ('quantity = "cov_20"', 'quantity = "damping_ratio"', "damping_ratio is not of a run"),
+        ('quantity = "cov_20"', 'quantity = "damping_ratio"', "damping_ratio is no quantity of a run"),
         ("constant = 70.0", "constant_kN = 0.07", "constant_kN"),
         ('given = "uplift_space_mm"', 'given = "luck"', "found 'luck', expected 'uplift_space_mm'"),
     ],

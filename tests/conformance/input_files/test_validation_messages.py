@@ -42,7 +42,7 @@ LINE, PANTOGRAPH, CASE = "line.toml", "pantograph.toml", "250.toml"
             LINE,
             "tension_N = 20e3",
             "",
-            "reference line 'line.toml', key contact_wire.tension_N: missing.\n  It is: axial tension, one wire [N].",
+            "reference line 'line.toml', key contact_wire.tension_N: missing.\n  It is: axial tension of one wire [N].",
         ),
         (
             LINE,
@@ -66,8 +66,8 @@ LINE, PANTOGRAPH, CASE = "line.toml", "pantograph.toml", "250.toml"
             PANTOGRAPH,
             'uplift_force_on = "frame"',
             'uplift_force_on = "knee"',
-            "pantograph 'pantograph.toml', key chain.uplift_force_on: no mass is called 'knee'.\n"
-            "  Names are: frame, head.",
+            "pantograph 'pantograph.toml', key chain.uplift_force_on: no mass has the name 'knee'.\n"
+            "  The names are: frame, head.",
         ),
         (
             LINE,
@@ -109,7 +109,7 @@ LINE, PANTOGRAPH, CASE = "line.toml", "pantograph.toml", "250.toml"
             LINE,
             "mass_kg = 0.0",
             "mass_kg = 0.0\naxial_stiffness_EA_N = 2e5",
-            "reference line 'line.toml', key droppers.stiffness_N_m: the stiffness of a dropper must be said once.",
+            "reference line 'line.toml', key droppers.stiffness_N_m: the stiffness of a dropper must be given once.",
         ),
         (
             LINE,
@@ -139,7 +139,7 @@ LINE, PANTOGRAPH, CASE = "line.toml", "pantograph.toml", "250.toml"
             CASE,
             "evaluated_spans = [5, 6]",
             "evaluated_spans = [5, 7, 6]",
-            "case '250.toml', key evaluated_spans: [5, 7, 6] is not a stretch of neighbouring spans.",
+            "case '250.toml', key evaluated_spans: [5, 7, 6] are not neighbouring spans.",
         ),
         (
             CASE,

@@ -179,12 +179,12 @@ def test_answers_of_the_program_follow_their_schema():
         ("long line", "error", "p: wrote a line of more than 1000000 bytes"),
         ("flood", "error", "p: its answer to 'run' is 'started'"),
         ("nan", "error", "finite number"),
-        ("wrong id", "error", "p: its answer is to run 7, asked was run 1"),
+        ("wrong id", "error", "p: it answered run 7 in place of run 1"),
         ("closes", "error", "p: closed its output before it answered"),
         ("outside", "error", "p: the file '../stray.toml' lies outside the folder of the run"),
         ("link", "error", "p: the file 'record.csv' lies outside the folder of the run"),
         ("absent", "error", "p: there is no file 'record.csv' in the folder of the run"),
-        ("changed", "error", "p: the content of 'record.csv' is not what its sha256 says"),
+        ("changed", "error", "p: the content of 'record.csv' does not agree with its sha256"),
         ("other table", "error", "p: the sidecar is of 'record.csv', the answer names 'b.csv'"),
     ],
 )
@@ -201,7 +201,7 @@ def test_misbehaviour_is_the_verdict_of_its_case(program, case_250, how, verdict
 def test_crash_with_its_last_words_leaves_the_other_cases_and_a_record_of_another_case_is_refused(program, cases):
     first, second = run_cases(cases, program("crash")).cases
     assert first.reason == "p: ended with exit code 1 before it answered; its last words: no licence left"
-    assert second.reason == "p: the record is of case 'en50318-2002/250', asked was 'en50318-2002/300'"
+    assert second.reason == "p: the record is of case 'en50318-2002/250' in place of 'en50318-2002/300'"
 
 
 def living(text):
@@ -227,14 +227,14 @@ def test_program_that_does_not_stop_is_ended_and_warned_of(program, case_250, mo
     monkeypatch.setattr("pantocheck.conformance.systems.command.program.PATIENCE", 0.2)
     outcome = program("deaf").run(case_250)
     assert outcome.record is not None
-    assert outcome.warnings == ("p did not end when told to, and was ended",)
+    assert outcome.warnings == ("p did not end after the message stop, and was ended",)
 
 
 @pytest.mark.parametrize(
     ("how", "reason"),
     [
         ("slow start", "gave no answer within 1 s"),
-        ("old", "it speaks 'pantocheck.command/0', the suite 'pantocheck.command/1'"),
+        ("old", "it uses 'pantocheck.command/0', the suite 'pantocheck.command/1'"),
     ],
 )
 def test_program_that_does_not_start_is_the_error_of_every_case(program, cases, how, reason):
