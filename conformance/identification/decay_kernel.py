@@ -32,8 +32,7 @@ def decay_kernel(poles: ComplexArray, omega: RealArray, dt: float, n: int) -> Co
     (k, m) ndarray
         The finite geometric sum, without unit.
     """
-    decayed = -np.expm1(poles * (n * dt))
-    return np.asarray(decayed / -_ratio(poles, omega, dt))
+    return np.asarray(-np.expm1(poles * (n * dt)) / _one_minus_q(poles, omega, dt))
 
 
 def kernel_and_derivative(
@@ -41,15 +40,15 @@ def kernel_and_derivative(
 ) -> tuple[ComplexArray, ComplexArray]:
     """The kernel and its derivative with respect to lambda [s], each (k, m); parameters as in `decay_kernel`."""
     grown = np.exp(poles * (n * dt))
-    one_minus_q = -_ratio(poles, omega, dt)
+    one_minus_q = _one_minus_q(poles, omega, dt)
     value = (1 - grown) / one_minus_q
     slope = (-n * dt * grown + value * dt * (1 - one_minus_q)) / one_minus_q
     return np.asarray(value), np.asarray(slope)
 
 
-def _ratio(poles: ComplexArray, omega: RealArray, dt: float) -> ComplexArray:
-    """q - 1, (k, m), by expm1: near a pole q is close to one."""
-    return np.asarray(np.expm1((poles[None, :] - 1j * omega[:, None]) * dt))
+def _one_minus_q(poles: ComplexArray, omega: RealArray, dt: float) -> ComplexArray:
+    """1 - q, (k, m), by expm1: near a pole q is close to one."""
+    return np.asarray(-np.expm1((poles[None, :] - 1j * omega[:, None]) * dt))
 
 
 def real_columns(towards_pole: ComplexArray, towards_conjugate: ComplexArray) -> RealArray:

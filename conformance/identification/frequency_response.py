@@ -20,16 +20,10 @@ POWER_OF_OMEGA = {"acceleration": 0, "velocity": 1, "displacement": 2}
 
 @dataclass(frozen=True)
 class FrequencyResponse:
-    """Accelerance of the sensors of one record.
+    """Accelerance of the sensors of one record [m/s2/N], each (k, c), at k frequencies [Hz].
 
-    Parameters
-    ----------
-    frequency : (k,) ndarray
-        Frequencies [Hz].
-    measured : (k, c) complex ndarray
-        Response from the release to the end of the linear decay [m/s2/N].
-    identified : (k, c) complex ndarray
-        Response of the identified poles, extrapolated back to the release [m/s2/N].
+    The measured one extends from the release to the end of the linear decay. The identified one is that of the poles,
+    extrapolated back to the release.
     """
 
     frequency: RealArray

@@ -1,4 +1,4 @@
-"""Model order: poles are added where the residual demands one, and removed where the data do without.
+"""Model order: poles are added where the residual demands one, and removed where the data can do without them.
 
 A pole is kept if it reduces the squared error by more than noise would in one of a thousand records (chi-square with
 two parameters for the pole and two for each channel). Every trial is a local fit.
@@ -48,17 +48,7 @@ class PoleSelection:
 
 
 def select_poles(poles: ComplexArray, blocks: list[DataBlock], rounds: int = 8) -> PoleSelection:
-    """Refine, add and remove poles until they stay the same.
-
-    Parameters
-    ----------
-    poles : (m,) complex ndarray
-        Start values [1/s].
-    blocks : list of DataBlock
-        Data in physical units.
-    rounds : int
-        Largest number of rounds.
-    """
+    """Refine start poles [1/s], and add and remove poles, until they stay the same or the rounds are used up."""
     noise = estimate_block_noise(poles, blocks)
     previous: ComplexArray | None = None
     for _ in range(rounds):

@@ -1,7 +1,5 @@
 """Repeatability of a mass drop: its records are compared at the start and a minute later."""
 
-from typing import Literal
-
 import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
@@ -38,17 +36,15 @@ CURVE_STEP = 0.025
 def compare_records(repeats: tuple[PreparedDecay, ...]) -> Repeatability:
     """Compare every further record of a drop with the first one, at each sensor."""
     comparisons = [comparison for other in repeats[1:] for comparison in _compare_pair(repeats[0], other)]
-    verdict: Literal["repeatable", "not repeatable"]
     failed = next((c for c in comparisons if not _is_repeatable(c)), None)
-    if failed is not None:
-        later = "" if failed.correlation_later is None else f", {failed.correlation_later:.3f} a minute later"
-        start = f"correlation {failed.correlation_at_start:.3f} at the start"
-        verdict, reason = "not repeatable", f"{failed.second}, channel {failed.channel}: {start}{later}"
-    else:
+    if failed is None:
         worst = min(comparisons, key=lambda c: c.correlation_at_start / c.possible_at_start)
         reason = f"lowest correlation at the start {worst.correlation_at_start:.4f} ({worst.channel})"
-        verdict = "repeatable"
-    return Repeatability(verdict=verdict, reason=reason, comparisons=tuple(comparisons))
+        return Repeatability(verdict="repeatable", reason=reason, comparisons=tuple(comparisons))
+    later = "" if failed.correlation_later is None else f", {failed.correlation_later:.3f} a minute later"
+    start = f"correlation {failed.correlation_at_start:.3f} at the start"
+    reason = f"{failed.second}, channel {failed.channel}: {start}{later}"
+    return Repeatability(verdict="not repeatable", reason=reason, comparisons=tuple(comparisons))
 
 
 def overlay_records(repeats: tuple[PreparedDecay, ...]) -> Overlay:

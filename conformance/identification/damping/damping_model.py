@@ -37,16 +37,10 @@ WIRES: tuple[str, ...] = (Kind.CONTACT_WIRE, Kind.MESSENGER_WIRE)
 
 @dataclass(frozen=True)
 class MeasuredModes:
-    """Measured modes that have a computed counterpart.
+    """Measured modes that have a computed counterpart, each (m,).
 
-    Parameters
-    ----------
-    frequency : (m,) ndarray
-        Natural frequencies [Hz].
-    damping_ratio, std : (m,) ndarray
-        Shares of critical damping and their standard deviations [-].
-    group : (m,) ndarray
-        Numbers of their groups of span modes; 0 for none.
+    They have a frequency [Hz], a damping ratio [-] with its standard deviation, and the number of their group of span
+    modes, 0 for none.
     """
 
     frequency: RealArray
@@ -57,18 +51,10 @@ class MeasuredModes:
 
 @dataclass(frozen=True)
 class DampingFit:
-    """Piecewise Rayleigh damping.
+    """Fitted piecewise Rayleigh damping, and the damping ratios that it predicts at the measured modes, (m,) [-].
 
-    Parameters
-    ----------
-    coefficients : tuple of Coefficient
-        Coefficients of the fitted kinds.
-    predicted : (m,) ndarray
-        Damping ratios of the fit at the measured modes [-].
-    used : (m,) ndarray
-        Modes that enter the fit; outliers of their group do not.
-    residual : float
-        Root mean square of (measured - predicted) / measured over the modes used [-].
+    Outliers of their group are not `used`. `residual` is the root mean square of (measured - predicted) / measured over
+    the modes used [-].
     """
 
     coefficients: tuple[Coefficient, ...]

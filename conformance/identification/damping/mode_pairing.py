@@ -15,14 +15,14 @@ from pantocheck.model.modal.modes import Modes, deflection_at
 LARGEST_FREQUENCY_GAP = 0.05
 """Largest relative difference of the frequencies of a pair [-]."""
 
+MIN_MAC = 0.5
+"""Smallest modal assurance criterion of a pair [-]."""
+
 KIND_OF_WIRE = {"CW": Kind.CONTACT_WIRE, "MW": Kind.MESSENGER_WIRE, "SW": Kind.STITCH_WIRE}
 """Kinds of wire by their names in mass-drop records."""
 
 Positions = set[tuple[str, float]]
 """Wire and position along the line [m] of sensors."""
-
-MIN_MAC = 0.5
-"""Smallest modal assurance criterion of a pair [-]."""
 
 
 @dataclass(frozen=True)
@@ -82,6 +82,7 @@ def pair_modes(
 
 
 def _common_factor(measured: RealArray, computed: RealArray, similarity: RealArray) -> float:
+    """Factor on the computed frequencies that brings them closest to the measured ones."""
     trials = np.linspace(1 - LARGEST_FREQUENCY_GAP, 1 + LARGEST_FREQUENCY_GAP, 201)
 
     def misfit(factor: float) -> float:
@@ -128,21 +129,17 @@ def compute_sensor_shapes(
 
     Parameters
     ----------
-    modes : sequence of Mode
-        Identified modes.
+    modes, positions
+        As in `find_sensor_positions`, and its result.
     mesh : DiscretisedLine
         The line, with a station at each sensor.
     shapes : Modes
         Its n computed modes.
-    positions : Positions
-        Sensors on wires of the line.
 
     Returns
     -------
-    list of (s,) complex ndarray
-        Identified shape of each mode at its s sensors.
-    list of (n, s) ndarray
-        Computed shapes at the same sensors.
+    list of (s,) complex ndarray, list of (n, s) ndarray
+        Identified shape of each mode at its s sensors, and the computed shapes there.
     """
     rows = {name: mesh.mesh.row_of[_wire_name(mesh.catenary, KIND_OF_WIRE[name]), "z"] for name, _ in positions}
     deflections = {(wire, x): deflection_at(mesh, shapes, rows[wire], x) for wire, x in positions}
@@ -156,6 +153,7 @@ def compute_sensor_shapes(
 
 
 def _wire_name(line: Catenary, kind: Kind) -> str:
+    """Name of the first wire of a kind."""
     for wire in line.wires:
         if wire.kind is kind:
             return wire.name
