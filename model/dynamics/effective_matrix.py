@@ -11,10 +11,10 @@ from pantocheck.model.fem.beams import Beams, element_stiffness
 
 def factorise(beams: Beams, time_step: float) -> Factor:
     """Block factors of A for all rows of beams and a time step [s]."""
-    return factorise_blocks(*build_effective_blocks(beams, time_step), beams.free)
+    return factorise_blocks(*_effective_blocks(beams, time_step), beams.free)
 
 
-def build_effective_blocks(beams: Beams, time_step: float) -> tuple[Array, Array]:
+def _effective_blocks(beams: Beams, time_step: float) -> tuple[Array, Array]:
     """Diagonal and sub-diagonal blocks of A, (B, S, 2, 2) each; fixed unknowns have the identity on the diagonal.
 
     Entry s of the sub-diagonal blocks couples station s to station s - 1.

@@ -16,7 +16,7 @@ NEGLIGIBLE_SHARE = 1e-12
 
 
 @njit(cache=True)
-def inverse_column(factor: Factor, row: int, station: int, slope: int, column: Array) -> float:
+def _inverse_column(factor: Factor, row: int, station: int, slope: int, column: Array) -> float:
     """Compute one column of the inverse, for a unit force (slope 0) or a unit moment (slope 1) at a station.
 
     Fills `column`, (2, 2H), with deflection and slope: the loaded station is at index H, and both are zero beyond the
@@ -43,7 +43,7 @@ def column_half_width(factor: Factor, loads: list[tuple[int, int]]) -> int:
     width = 8
     while width < factor.meeting.shape[1]:
         column = np.zeros((2, 2 * width))
-        tails = (inverse_column(factor, row, s, slope, column) for row, s in loads for slope in (0, 1))
+        tails = (_inverse_column(factor, row, s, slope, column) for row, s in loads for slope in (0, 1))
         if all(tail < NEGLIGIBLE_SHARE for tail in tails):
             break
         width += 8  # whole vector registers
@@ -52,10 +52,13 @@ def column_half_width(factor: Factor, loads: list[tuple[int, int]]) -> int:
 
 @njit(cache=True)
 def inverse_columns(factor: Factor, rows: Indices, stations: Indices, slopes: Indices, half_width: int) -> Array:
-    """Columns of the inverse for L unit loads as in `inverse_column`, (L, 2, 2H), with H stations on either side."""
+    """Columns of the inverse for L unit forces (slope 0) or moments (slope 1), with H stations on either side.
+
+    The shape is (L, 2, 2H): deflection and slope, with the loaded station at index H.
+    """
     columns = np.zeros((rows.size, 2, 2 * half_width))
     for n in range(rows.size):
-        inverse_column(factor, rows[n], stations[n], slopes[n], columns[n])
+        _inverse_column(factor, rows[n], stations[n], slopes[n], columns[n])
     return columns
 
 

@@ -69,7 +69,7 @@ def simulate_steps(
             motion=recording.motion[block],
             slack=recording.slack[block],
         )
-        steps = march(kernel, motion, train, work, load[block], part)
+        steps = _march(kernel, motion, train, work, load[block], part)
         if steps < block.stop - first:
             raise DidNotConverge(
                 f"the contact, dropper and damping forces of the time step at"
@@ -80,7 +80,7 @@ def simulate_steps(
 
 
 @njit(cache=True)
-def march(
+def _march(
     kernel: KernelArrays, motion: Motion, train: Train, work: Workspace, load: Array, recording: Recording
 ) -> int:
     """Advance by one step per value of the load and record; return the number of completed steps."""

@@ -35,8 +35,8 @@ class GlobalMatrices:
     free: Indices
 
 
-def unknown(line: DiscretisedLine, row: int, station: int, slope: int = 0) -> int:
-    """Index of an unknown in global order."""
+def _unknowns(line: DiscretisedLine, row: int | Indices, station: Indices, slope: int | Indices = 0) -> Indices:
+    """Indices of unknowns in global order."""
     return 2 * (station * line.mesh.rows + row) + slope
 
 
@@ -90,11 +90,9 @@ def connector_directions(line: DiscretisedLine) -> sp.csr_array:
     """Elongation of each connector per unknown, (unknowns, connectors)."""
     connectors = line.connectors
     number, row = np.nonzero(connectors.coefficient)
-    unknowns = [unknown(line, int(r), int(connectors.station[n])) for n, r in zip(number, row, strict=True)]
-    size = line.beams.free.size
-    return sp.csr_array(
-        (connectors.coefficient[number, row], (unknowns, number)), shape=(size, len(connectors.station))
-    )
+    indices = (_unknowns(line, row, connectors.station[number]), number)
+    shape = (line.beams.free.size, connectors.station.size)
+    return sp.csr_array((connectors.coefficient[number, row], indices), shape=shape)
 
 
 def point_load(line: DiscretisedLine, row: int, position: float) -> Array:
@@ -104,10 +102,8 @@ def point_load(line: DiscretisedLine, row: int, position: float) -> Array:
     """
     element, length, s = find_element(line.mesh.position, position)
     share = np.zeros(line.beams.free.size)
-    n = beam.shape(s, length)
-    for i in range(2):
-        share[unknown(line, row, element + i, 0)] = n[2 * i]
-        share[unknown(line, row, element + i, 1)] = n[2 * i + 1]
+    unknowns = _unknowns(line, row, element + np.arange(2)[:, None], np.arange(2))
+    share[unknowns] = beam.shape(s, length).reshape(2, 2)
     return share
 
 

@@ -82,9 +82,9 @@ def compute_modes_below(line: DiscretisedLine, frequency: float) -> Modes:
         count *= 2
 
 
-def free_vectors(line: DiscretisedLine, shapes: Modes) -> Array:
+def free_vectors(line: DiscretisedLine, modes: Modes) -> Array:
     """Mode shapes as vectors of the free unknowns in global order, (n, unknowns)."""
-    return shapes.shape.reshape(len(shapes.frequency), -1)[:, bandwidth_order(line)[free_unknowns(line)]]
+    return modes.shape.reshape(len(modes.frequency), -1)[:, bandwidth_order(line)[free_unknowns(line)]]
 
 
 def _normalise_sign(vectors: Array) -> Array:
@@ -93,19 +93,19 @@ def _normalise_sign(vectors: Array) -> Array:
     return np.asarray(vectors * np.sign(largest))
 
 
-def deflection_at(line: DiscretisedLine, shapes: Modes, row: int, position: float) -> Array:
+def deflection_at(line: DiscretisedLine, modes: Modes, row: int, position: float) -> Array:
     """Deflection of every mode at a station [m] of one row, (n,) [kg^-1/2]."""
-    return np.asarray(shapes.shape[:, row, line.mesh.station(position), 0])
+    return np.asarray(modes.shape[:, row, line.mesh.station(position), 0])
 
 
-def component_energies(line: DiscretisedLine, shapes: Modes) -> ComponentEnergies:
+def component_energies(line: DiscretisedLine, modes: Modes) -> ComponentEnergies:
     """Compute the share of every kind of component in the energies of the modes.
 
     Parameters
     ----------
     line : DiscretisedLine
         Discretised line.
-    shapes : Modes
+    modes : Modes
         Modes of the line.
 
     Returns
@@ -113,7 +113,7 @@ def component_energies(line: DiscretisedLine, shapes: Modes) -> ComponentEnergie
     ComponentEnergies
         Energies. The damping C = sum of a_e K_e + b_e M_e gives mode j the ratio sum (a_e k_ej + b_e m_ej) / (2 w_j).
     """
-    vectors = free_vectors(line, shapes)
+    vectors = free_vectors(line, modes)
     kinds = tuple(Kind)
     stiffness, mass = (np.zeros((len(vectors), len(kinds))) for _ in range(2))
     constant = _energy(with_damping(line, {}), vectors)
@@ -129,14 +129,14 @@ def _energy(line: DiscretisedLine, vectors: Array) -> Array:
     return np.asarray(np.einsum("ji,ij->j", vectors, assemble_matrices(line).damping @ vectors.T))
 
 
-def damping_ratios(line: DiscretisedLine, shapes: Modes) -> Array:
+def damping_ratios(line: DiscretisedLine, modes: Modes) -> Array:
     """Damping ratio of every mode, phi' C phi / (2 w), without the coupling of modes through the damping.
 
     Parameters
     ----------
     line : DiscretisedLine
         Discretised line with its damping.
-    shapes : Modes
+    modes : Modes
         Modes of the line.
 
     Returns
@@ -144,4 +144,4 @@ def damping_ratios(line: DiscretisedLine, shapes: Modes) -> Array:
     (n,) ndarray
         Damping ratios [-].
     """
-    return _energy(line, free_vectors(line, shapes)) / (4 * np.pi * shapes.frequency)
+    return _energy(line, free_vectors(line, modes)) / (4 * np.pi * modes.frequency)

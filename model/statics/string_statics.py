@@ -36,7 +36,7 @@ def string_state(catenary: Catenary) -> InitialState:
     """
     vertical = in_vertical_plane(catenary)
     mesh = build_mesh(vertical, math.inf)
-    return compute_initial_state(vertical, mesh, build_beams(vertical, mesh), string_stiffness)
+    return compute_initial_state(vertical, mesh, build_beams(vertical, mesh), _string_stiffness)
 
 
 def in_vertical_plane(catenary: Catenary) -> Catenary:
@@ -44,6 +44,6 @@ def in_vertical_plane(catenary: Catenary) -> Catenary:
     return replace(catenary, wires=tuple(replace(wire, stagger=None) for wire in catenary.wires))
 
 
-def string_stiffness(beams: Beams, row: int) -> sp.csr_array:
+def _string_stiffness(beams: Beams, row: int) -> sp.csr_array:
     """Stiffness of the wires of one row as strings; the slopes have no stiffness."""
     return assemble_row(beam.springs(beams.tension[row] / beams.length))
