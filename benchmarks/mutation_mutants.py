@@ -14,7 +14,7 @@ class Mutant:
     """One change of one file.
 
     `id` is made of the file, the source line without its white space, the operator and the change, so that it survives
-    line shifts. `first_line` and `last_line` are those of the statement, without the body of a compound one.
+    line shifts. `first_line` and `last_line` enclose the statement, without the body of a compound statement.
     `compiled` is true for code that numba may compile and for values of modules and classes.
     """
 

@@ -227,7 +227,7 @@ def _descendants(process: int) -> list[int]:
 
 
 def preload(modules: Iterable[str]) -> None:
-    """Import modules of other projects, which every forked child then has; one that is not installed is passed over."""
+    """Import modules of other projects once for all forked processes; skip modules that are not installed."""
     for library in ("OMP", "OPENBLAS", "MKL"):
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
     for module in modules:

@@ -27,7 +27,7 @@ class Traces:
     lines: dict[str, dict[str, int]] = field(default_factory=dict)
 
     def add(self, run: dict[str, Any]) -> None:
-        """Add the run of one test file; its tests that did not pass are left out."""
+        """Add the run of one test file, without the tests that did not pass."""
         users: dict[str, list[str]] = {}
         for test, facts in run["tests"].items():
             if facts["passed"]:

@@ -35,7 +35,7 @@ if os.environ.get("MUTATION_CONTEXT"):
 
 
 class _Tracer:
-    """Pytest plugin: one coverage context per test and per fixture that tests share, with the time of each."""
+    """Pytest plugin: one coverage context and one time per test and per fixture that tests share."""
 
     def __init__(self, coverage: Any) -> None:
         self.coverage = coverage

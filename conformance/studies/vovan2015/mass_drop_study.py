@@ -107,8 +107,6 @@ def _draw_groups(identified: IdentifiedDrops, bound: list[Mark]) -> Chart:
         alternative="Box plot of damping ratios by group; the medians are in the table of quantities.",
         x_label="group of span modes",
         y_label="damping ratio [%]",
-        series=[
-            Series(label="identified", style="boxes", x=[float(mode.group or 0) for mode in grouped], y=ratios),
-        ],
+        series=[Series(label="identified", style="boxes", x=[float(mode.group or 0) for mode in grouped], y=ratios)],
         marks=bound,
     )

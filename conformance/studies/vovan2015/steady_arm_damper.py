@@ -89,11 +89,8 @@ def damping_gains(without: list[float], damped: list[float]) -> dict[str, Value]
 
 def _band_medians(modes: Sequence[Mode], bands: FrequencyBands) -> list[float]:
     """Median damping ratio of every band; NaN for a band without modes."""
-    medians = []
-    for low, high in bands:
-        inside = [mode.damping_ratio for mode in modes if low <= mode.frequency_Hz < high]
-        medians.append(float(np.median(inside)) if inside else float("nan"))
-    return medians
+    ratios = [[mode.damping_ratio for mode in modes if low <= mode.frequency_Hz < high] for low, high in bands]
+    return [float(np.median(inside)) if inside else math.nan for inside in ratios]
 
 
 def _band_table(bands: FrequencyBands, without: list[float], damped: list[float]) -> TextTable:
