@@ -31,7 +31,7 @@ def self_test_command(
 
     Example: pantocheck self-test --markdown self-test.md
     """
-    cases = [each for each in select_cases(case or DEFAULT_CASES) if not each.is_static]
+    cases = [selected for selected in select_cases(case or DEFAULT_CASES) if not selected.is_static]
     if not cases:
         raise InputError("case", "no case with a train is selected", "Select cases such as en50318-2002/250.")
     if markdown is not None:

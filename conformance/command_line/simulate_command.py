@@ -26,20 +26,20 @@ def simulate_command(
     """
     check_record_path(out)
     check_writable(out.parent)
-    passage = choose_case(case, lambda each: not each.is_static, "with a train")
+    chosen = choose_case(case, lambda each: not each.is_static, "with a train")
     simulator = choose_system(system)
     # A record holds one run, so the refined run of the reference simulator is not needed.
     run = simulator.run_unrefined if isinstance(simulator, ReferenceSimulator) else simulator.run
     output = console()
-    with output.status(f"simulating {passage.id}"):
-        outcome = run(passage)
+    with output.status(f"simulating {chosen.id}"):
+        outcome = run(chosen)
     if not isinstance(outcome, Delivered) or outcome.record is None:
         reason = missing_record_reason(outcome)
-        raise InputError(f"case '{passage.id}'", f"no record: {reason}", "Choose another case or system.")
+        raise InputError(f"case '{chosen.id}'", f"no record: {reason}", "Choose another case or system.")
     sidecar = write_record(
         out,
         outcome.record,
-        case=passage.id,
+        case=chosen.id,
         system={"name": simulator.name, "version": simulator.version},
         run=outcome.run.model_dump(),
     )

@@ -158,9 +158,8 @@ def _compared_samples(pantograph: PantographSignals) -> slice:
 def _diagnose(number: int, fit: ResponseFit, step: float, filter_applied_Hz: float | None) -> Finding:
     mismatch = f"pantograph {number}: contact force and contact height do not belong together"
     if fit.unexplained < CLEAR:
-        gain = 1 / fit.gain
-        text = f"{mismatch}: the height follows from {gain:.3g} times the force; check its gain and unit"
-        return Finding("contradiction", text)
+        cause = f"the height follows from {1 / fit.gain:.3g} times the force; check its gain and unit"
+        return Finding("contradiction", f"{mismatch}: {cause}")
     samples, correlation = _lag(fit, round(LONGEST_LAG_S / step))
     delay = -samples * step
     if not samples or not correlation >= 1 - CLEAR:  # the correlation with a constant force is nan
@@ -176,8 +175,9 @@ def _diagnose(number: int, fit: ResponseFit, step: float, filter_applied_Hz: flo
 def _lag(fit: ResponseFit, longest: int) -> tuple[int, float]:
     """Lag of the motion behind the response [samples], and their correlation at this lag."""
     n = fit.motion.size
+    limit = min(longest, n // 3)
     correlation = {}
-    for lag in range(-min(longest, n // 3), min(longest, n // 3) + 1):
+    for lag in range(-limit, limit + 1):
         motion, response = fit.motion[max(0, lag) : n + min(0, lag)], fit.response[max(0, -lag) : n - max(0, lag)]
         with np.errstate(invalid="ignore"):
             correlation[lag] = float(np.corrcoef(motion, response)[0, 1])

@@ -47,22 +47,20 @@ def compare_with_baseline(results: Results, baseline: Results, drift_pct: float,
 
 def _compare_case(case: CaseResult, earlier: CaseResult | None, drift_pct: float, name: str) -> CaseResult:
     if not case.quantities:
-        return case  # skipped or in error as a whole: that is its verdict already
+        return case  # skipped or in error as a whole
     if earlier is None:
         return case.model_copy(update={"warnings": [*case.warnings, f"baseline {name} has no case {case.id}"]})
     values, earlier_values = dict(_numbers(case)), dict(_numbers(earlier))
     source = f"baseline {name}, from which a value may drift by {drift_pct:g} %"
-    criteria = [
-        _grade_drift(case, key, (value, values.get(key)), drift_pct, source) for key, value in earlier_values.items()
-    ]
-    drifted = [criterion for criterion in criteria if criterion.verdict != "pass"]
+    graded = (_grade_drift(case, key, (old, values.get(key)), drift_pct, source) for key, old in earlier_values.items())
+    drifted = [criterion for criterion in graded if criterion.verdict != "pass"]
     warnings = list(case.warnings)
     if case.input_digest != earlier.input_digest:
         warnings.append(f"the inputs of the case have changed since baseline {name}: their digests differ")
     if not earlier_values:
         warnings.append(f"baseline {name} has no values of this case: its verdict was {earlier.verdict}")
     note = (
-        f"Compared with baseline {name}: {len(criteria)} values, of which {len(drifted)} drifted by more than "
+        f"Compared with baseline {name}: {len(earlier_values)} values, of which {len(drifted)} drifted by more than "
         f"{drift_pct:g} % or are missing."
     )
     return case.model_copy(

@@ -5,6 +5,7 @@ from functools import cached_property
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.bands import EXTENDED_BAND, band_rms
@@ -195,7 +196,7 @@ class LineSignals:
     @property
     def supports(self) -> RealArray:
         """Positions of the k supports of the analysis section, both ends included (k,) [m]; see `uplift`."""
-        return self._select()[0]
+        return self._at_supports[0]
 
     @property
     def uplift(self) -> RealArray:
@@ -206,14 +207,20 @@ class LineSignals:
         ChannelMissing
             The record has no uplift, or none inside the analysis section.
         """
-        return self._select()[1]
+        return self._at_supports[1]
 
-    def _select(self) -> tuple[RealArray, RealArray]:
+    @cached_property
+    def _at_supports(self) -> tuple[RealArray, RealArray]:
         if self.support_position is None or self.support_uplift is None:
             raise ChannelMissing("the record has no uplift at supports")
-        start, end = self.section
-        tolerance = SUPPORT_TOLERANCE_M
-        inside = (self.support_position >= start - tolerance) & (self.support_position <= end + tolerance)
+        inside = supports_inside(self.support_position, self.section)
         if not inside.any():
+            start, end = self.section
             raise ChannelMissing(f"the record has no support between {start:g} m and {end:g} m")
         return self.support_position[inside], self.support_uplift[inside]
+
+
+def supports_inside(supports: RealArray, section: tuple[float, float]) -> NDArray[np.bool_]:
+    """Whether each support lies inside a section, both ends included; positions [m]."""
+    start, end = section
+    return (supports >= start - SUPPORT_TOLERANCE_M) & (supports <= end + SUPPORT_TOLERANCE_M)

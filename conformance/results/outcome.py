@@ -63,26 +63,14 @@ class Delivered:
 
 @dataclass(frozen=True)
 class Skipped:
-    """The system does not run this case.
-
-    Parameters
-    ----------
-    reason : str
-        One line for the report.
-    """
+    """The system does not run this case; `reason` is one line for the report."""
 
     reason: str
 
 
 @dataclass(frozen=True)
 class Errored:
-    """The system failed on this case.
-
-    Parameters
-    ----------
-    reason : str
-        One line for the report.
-    """
+    """The system failed on this case; `reason` is one line for the report."""
 
     reason: str
 

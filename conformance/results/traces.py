@@ -10,9 +10,9 @@ from pantocheck.conformance.quantities.bands import amplitude_spectrum
 from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE
 from pantocheck.conformance.quantities.signals import (
     EXTENDED_CUTOFF_HZ,
-    SUPPORT_TOLERANCE_M,
     ForceSignals,
     PantographSignals,
+    supports_inside,
 )
 from pantocheck.conformance.quantities.statistics import force_histogram
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
@@ -44,14 +44,14 @@ def build_pantograph_traces(signals: RecordSignals, supports: Sequence[float]) -
             position = pantograph.position[pantograph.inside]
         except QuantityUnavailable:
             continue
-        within = select_supports(supports, pantograph.section)
+        within = _select_supports(supports, pantograph.section)
         traces[str(number)] = _build_traces(pantograph, position, within, _spectrum(pantograph))
     return traces
 
 
 def build_measured_traces(prepared: PreparedRecord, supports: Sequence[float]) -> dict[str, Traces]:
     """Force, spectrum and histogram of every pantograph of a measured record; see `build_pantograph_traces`."""
-    within = select_supports(supports, prepared.section)
+    within = _select_supports(supports, prepared.section)
     return {
         str(number): _build_traces(pooled, pooled.position, within, _pooled_spectrum(pooled))
         for number, pooled in prepared.pantographs.items()
@@ -71,10 +71,10 @@ def build_uplift_traces(signals: RecordSignals) -> list[UpliftTrace]:
     ]
 
 
-def select_supports(supports: Sequence[float], section: tuple[float, float]) -> list[float]:
+def _select_supports(supports: Sequence[float], section: tuple[float, float]) -> list[float]:
     """Positions of the supports inside a section, both ends included [m]."""
-    start, end = section
-    return [x for x in supports if start - SUPPORT_TOLERANCE_M <= x <= end + SUPPORT_TOLERANCE_M]
+    positions = np.asarray(supports, dtype=np.float64)
+    return list(map(float, positions[supports_inside(positions, section)]))
 
 
 def thin_series(series: RealArray) -> list[float]:

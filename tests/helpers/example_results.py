@@ -1,7 +1,7 @@
 """Realistic results.json of a synthetic contact force.
 
-Margin, bands and statistics are computed here a second time, on purpose: the example is an independent route, so that a
-fault in `quantities` or `grading` shows as a discrepancy. It covers numbers only; texts and layout are not repeated.
+Margin, bands and statistics are computed here independently of `quantities` and `grading`, so that a fault there shows
+as a discrepancy. Texts and layout are not repeated.
 """
 
 import math
@@ -182,15 +182,9 @@ def failing_case() -> dict[str, Any]:
     provisional = criterion(q, 1, "rms_5_20_N", "N", 20, 22)
     provisional |= {"verdict": "info", "trust": "provisional", "source": "not traced to a printed source"}
     provisional["reason"] = "a provisional limit does not count; it would be fail"
-    skipped = criterion(q, 1, "std_force_N", "N", 10, 20)
-    skipped |= {
-        "quantity": "rms_20_50_N",
-        "value": None,
-        "verdict": "skip",
-        "margin": None,
-        "discretisation_error": None,
-    }
-    skipped["reason"] = "the record is already filtered at 20 Hz; it says nothing about 20-50 Hz"
+    skipped = criterion(q, 1, "std_force_N", "N", 10, 20) | {"quantity": "rms_20_50_N", "verdict": "skip"}
+    skipped |= dict.fromkeys(("value", "margin", "discretisation_error"))
+    skipped["reason"] = "the record is already filtered at 20 Hz; its content in 20-50 Hz is unknown"
     return {
         "id": "en50318-2002/300",
         "title": "EN 50318:2002 reference model, 300 km/h",
@@ -283,7 +277,7 @@ HOSTILE = [
 
 
 def with_hostile_text() -> dict[str, Any]:
-    """Every free text of the example replaced by text that tries to leave its place."""
+    """Example whose free texts contain markup, code and control characters."""
     results = example()
     results["system"] |= {"name": HOSTILE[0], "version": HOSTILE[1]}
     for number, case in enumerate(results["cases"]):
@@ -294,9 +288,9 @@ def with_hostile_text() -> dict[str, Any]:
         for row in case["criteria"][-1:]:
             row["quantity"] = "a|b<i>"
         case["inputs"] = [{"group": text, "trust": "secondary", "source": text} for text in HOSTILE]
-        for at, row in enumerate(case["criteria"]):
-            row["source"] = HOSTILE[at % len(HOSTILE)]
-            row["reason"] = HOSTILE[(at + 1) % len(HOSTILE)]
+        for i, row in enumerate(case["criteria"]):
+            row["source"] = HOSTILE[i % len(HOSTILE)]
+            row["reason"] = HOSTILE[(i + 1) % len(HOSTILE)]
     return results
 
 

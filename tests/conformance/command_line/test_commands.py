@@ -1,4 +1,4 @@
-"""The commands as a user meets them: exit codes, messages and files."""
+"""Commands: exit codes, messages and files."""
 
 import json
 import os
@@ -41,7 +41,7 @@ def pantocheck(*arguments: object) -> Result:
 
 @pytest.fixture
 def records(wave: Any, tmp_path: Path) -> Path:
-    """Records of both cases: sines, whose extremes fail."""
+    """Records of both cases with a sinusoidal force, which fails the limits of the extremes."""
     for case in select_cases(["en50318-2002/*"]):
         write_record(tmp_path / "records" / f"{case.file.speed_km_h:g}.csv", wave().record(case), case.id)
     return tmp_path / "records"
@@ -49,7 +49,7 @@ def records(wave: Any, tmp_path: Path) -> Path:
 
 @pytest.fixture
 def lenient(tmp_path: Path) -> Path:
-    """Limits that the sine of 250 km/h meets."""
+    """Limits that the sinusoidal force at 250 km/h meets."""
     path = tmp_path / "lenient.toml"
     entry = '[[limit]]\nquantity = "{}"\nlower = 0.0\nupper = 300.0\ntrust = "primary"\nsource = "own"\n'
     path.write_text("".join(entry.format(name) for name in ("max_force_N", "min_force_N")))
@@ -58,11 +58,11 @@ def lenient(tmp_path: Path) -> Path:
 
 def test_run_grades_records_and_writes_results(records: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
-    done = pantocheck("run", "en50318-2002/*", "--system", f"record:{records}", "--out", out, "--formats", "json")
-    assert done.exit_code == 1
-    assert done.output.startswith("FAIL ")
-    assert "16.4 N below the lower limit" in done.output
-    assert str(out / "results.json") in done.output
+    result = pantocheck("run", "en50318-2002/*", "--system", f"record:{records}", "--out", out, "--formats", "json")
+    assert result.exit_code == 1
+    assert result.output.startswith("FAIL ")
+    assert "16.4 N below the lower limit" in result.output
+    assert str(out / "results.json") in result.output
     results = json.loads((out / "results.json").read_text())
     jsonschema.validate(results, build_schema("results"))
     assert [case["id"] for case in results["cases"]] == ["en50318-2002/250", "en50318-2002/300"]
@@ -70,26 +70,24 @@ def test_run_grades_records_and_writes_results(records: Path, tmp_path: Path) ->
 
 
 def test_run_passes_with_exit_code_0(records: Path, lenient: Path, tmp_path: Path) -> None:
-    done = pantocheck(
+    result = pantocheck(
         "run", "en50318-2002/250", "--system", f"record:{records}", "--out", tmp_path / "out", "--formats", "json",
         "--limits", lenient,
     )  # fmt: skip
-    assert (done.exit_code, done.output.split()[0]) == (0, "PASS")
+    assert (result.exit_code, result.output.split()[0]) == (0, "PASS")
 
 
-def test_skipped_case_does_not_open_the_gate(records: Path, lenient: Path, tmp_path: Path) -> None:
+def test_skipped_case_gives_exit_code_1(records: Path, lenient: Path, tmp_path: Path) -> None:
     (records / "300.toml").unlink()
-    done = pantocheck(
+    result = pantocheck(
         "run", "--system", f"record:{records}", "--out", tmp_path / "out", "--formats", "json", "--limits", lenient,
         "en50318-2002/250", "en50318-2002/300",
     )  # fmt: skip
-    assert (done.exit_code, done.output.split()[0]) == (1, "SKIP")
-    assert "there is no record of this case" in done.output
+    assert (result.exit_code, result.output.split()[0]) == (1, "SKIP")
+    assert "there is no record of this case" in result.output
 
 
-def test_plan_holds_the_options_and_the_command_line_goes_before_it(
-    records: Path, lenient: Path, tmp_path: Path
-) -> None:
+def test_option_of_the_command_line_replaces_that_of_the_plan(records: Path, lenient: Path, tmp_path: Path) -> None:
     plan = tmp_path / "plan.toml"
     plan.write_text(
         'cases = ["en50318-2002/250"]\nsystem = "record:records"\nout = "planned"\n'
@@ -97,8 +95,8 @@ def test_plan_holds_the_options_and_the_command_line_goes_before_it(
     )
     assert pantocheck("run", "--plan", plan).exit_code == 0
     assert (tmp_path / "planned" / "results.json").exists()
-    assert pantocheck("run", "--plan", plan, "--out", tmp_path / "asked", "en50318-2002/300").exit_code == 1
-    assert json.loads((tmp_path / "asked" / "results.json").read_text())["cases"][0]["id"] == "en50318-2002/300"
+    assert pantocheck("run", "--plan", plan, "--out", tmp_path / "replaced", "en50318-2002/300").exit_code == 1
+    assert json.loads((tmp_path / "replaced" / "results.json").read_text())["cases"][0]["id"] == "en50318-2002/300"
 
 
 @pytest.mark.parametrize(
@@ -128,18 +126,18 @@ def test_bad_input_ends_with_one_message_and_exit_code_2(
     arguments: list[str], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    done = pantocheck(*arguments)
-    assert done.exit_code == 2
-    assert message in done.stderr
-    assert done.stdout == ""
+    result = pantocheck(*arguments)
+    assert result.exit_code == 2
+    assert message in result.stderr
+    assert result.stdout == ""
     assert list(tmp_path.iterdir()) == []
 
 
-def test_self_test_without_a_passage_does_not_pass() -> None:
-    """A static case gives no mutants, so that 0 of 0 would be detected."""
-    done = pantocheck("self-test", "en50318-2018/ac-simple/static")
-    assert done.exit_code == 2
-    assert "no case with a train is selected" in done.output
+def test_self_test_needs_a_case_with_a_train() -> None:
+    """A static case has no mutants: 0 of 0 detected must not pass."""
+    result = pantocheck("self-test", "en50318-2018/ac-simple/static")
+    assert result.exit_code == 2
+    assert "no case with a train is selected" in result.output
 
 
 def test_self_test_notices_a_folder_that_cannot_be_written_before_it_computes(
@@ -147,30 +145,30 @@ def test_self_test_notices_a_folder_that_cannot_be_written_before_it_computes(
 ) -> None:
     monkeypatch.setattr(self_test_command, "run_self_test", lambda *_: pytest.fail("computed"))
     (tmp_path / "file").write_text("")
-    done = pantocheck("self-test", "--markdown", tmp_path / "file" / "page.md")
-    assert done.exit_code == 2
-    assert "cannot be written" in done.output
+    result = pantocheck("self-test", "--markdown", tmp_path / "file" / "page.md")
+    assert result.exit_code == 2
+    assert "cannot be written" in result.output
 
 
 def test_self_test_prints_no_control_characters_of_a_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(self_test_command, "run_self_test", lambda *_: SelfTest({}, (), ()))
-    done = pantocheck("self-test", "--markdown", tmp_path / "[red]page\x1b.md")
-    assert "[red]page?.md" in done.output
+    result = pantocheck("self-test", "--markdown", tmp_path / "[red]page\x1b.md")
+    assert "[red]page?.md" in result.output
 
 
 @pytest.mark.parametrize("command", [("show", "--at-rest"), ("show", "--drawing"), ("simulate", "--out")])
 def test_line_without_an_equilibrium_ends_with_one_message_and_exit_code_2(
     command: tuple[str, str], tmp_path: Path
 ) -> None:
-    """A contact wire that is to hang 2 m low in every span would have droppers that push."""
+    """A pre-sag of 2 m in every span requires droppers in compression: there is no equilibrium."""
     for name in ("line.toml", "250.toml", "pantograph.toml"):
         text = (library_folder() / "en50318-2002" / name).read_text()
         (tmp_path / name).write_text(re.sub(r"presag_m *= .*", f"presag_m = {[2.0] * 9}", text))
     name, option = command
     file = () if option == "--at-rest" else (tmp_path / ("line.svg" if name == "show" else "out.csv"),)
-    done = pantocheck(name, tmp_path / "250.toml", option, *file)
-    assert done.exit_code == 2
-    assert "Check the data of the line" in done.output
+    result = pantocheck(name, tmp_path / "250.toml", option, *file)
+    assert result.exit_code == 2
+    assert "Check the data of the line" in result.output
 
 
 def fail_with(error: BaseException) -> Callable[[], None]:
@@ -226,12 +224,12 @@ def test_folder_that_cannot_be_written_is_noticed_before_anything_is_computed(
 ) -> None:
     (tmp_path / "file").write_text("in the way")
     monkeypatch.setattr(run_command, "run_cases", lambda *_: pytest.fail("computed"))
-    done = pantocheck("run", "--system", f"record:{records}", "--out", tmp_path / "file" / "out")
-    assert done.exit_code == 2
-    assert "cannot be written" in done.stderr
+    result = pantocheck("run", "--system", f"record:{records}", "--out", tmp_path / "file" / "out")
+    assert result.exit_code == 2
+    assert "cannot be written" in result.stderr
 
 
-def test_interrupted_run_writes_what_was_finished(
+def test_interrupted_run_writes_the_finished_cases(
     records: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     read = RecordFolder.run
@@ -242,9 +240,11 @@ def test_interrupted_run_writes_what_was_finished(
         return read(self, case)
 
     monkeypatch.setattr(RecordFolder, "run", interrupted)
-    done = pantocheck("run", "en50318-2002/*", "--system", f"record:{records}", "--out", tmp_path, "--formats", "json")
-    assert done.exit_code == 130
-    assert "Interrupted" in done.stderr
+    result = pantocheck(
+        "run", "en50318-2002/*", "--system", f"record:{records}", "--out", tmp_path, "--formats", "json"
+    )
+    assert result.exit_code == 130
+    assert "Interrupted" in result.stderr
     results = json.loads((tmp_path / "results.json").read_text())
     assert [case["verdict"] for case in results["cases"]] == ["fail", "skip"]
     assert len(results["cases"][0]["criteria"]) == 8
@@ -252,13 +252,13 @@ def test_interrupted_run_writes_what_was_finished(
 
 def test_simulate_writes_a_record_that_can_be_graded(records: Path, tmp_path: Path) -> None:
     out = tmp_path / "again" / "a.h5"
-    done = pantocheck("simulate", "en50318-2002/250", "--system", f"record:{records}", "--out", out)
-    assert done.exit_code == 0
+    result = pantocheck("simulate", "en50318-2002/250", "--system", f"record:{records}", "--out", out)
+    assert result.exit_code == 0
     record, sidecar = read_record(tmp_path / "again" / "a.h5")
     assert (sidecar.case, record.pantographs) == ("en50318-2002/250", 1)
 
 
-def test_cases_and_show_tell_trust_and_source() -> None:
+def test_cases_and_show_state_trust_and_source() -> None:
     listed = pantocheck("cases").output
     assert "en50318-2002/250" in listed
     assert "8 secondary" in listed
@@ -276,11 +276,11 @@ def test_control_characters_of_a_file_do_not_reach_the_terminal(own_case: Callab
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_help_of_a_command_fits_80_columns(name: str) -> None:
-    done = pantocheck(name, "--help")
-    assert done.exit_code == 0
-    assert max(map(len, done.output.splitlines())) <= 80
-    assert COMMANDS[name] in " ".join(done.output.split()), "the summary is the first line of the docstring"
-    assert re.search(r"^ +(Example: )?pantocheck " + name, done.output, re.MULTILINE), "an example on one line"
+    result = pantocheck(name, "--help")
+    assert result.exit_code == 0
+    assert max(map(len, result.output.splitlines())) <= 80
+    assert COMMANDS[name] in " ".join(result.output.split()), "the summary is the first line of the docstring"
+    assert re.search(r"^ +(Example: )?pantocheck " + name, result.output, re.MULTILINE), "an example on one line"
 
 
 def test_help_imports_no_command_and_nothing_heavy() -> None:
@@ -291,11 +291,11 @@ def test_help_imports_no_command_and_nothing_heavy() -> None:
         "print(sorted(heavy), [name for name in sys.modules if name.endswith('_command')])"
     )
     environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment, check=True)
-    assert done.stdout.splitlines()[-1] == "[] []"
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment, check=True)
+    assert result.stdout.splitlines()[-1] == "[] []"
 
 
 def test_unknown_command_suggests_a_known_one() -> None:
-    done = pantocheck("simulat")
-    assert done.exit_code == 2
-    assert "Did you mean 'simulate'?" in done.output
+    result = pantocheck("simulat")
+    assert result.exit_code == 2
+    assert "Did you mean 'simulate'?" in result.output

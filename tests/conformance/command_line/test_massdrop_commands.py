@@ -26,8 +26,8 @@ RATE, RELEASE = 25.0, 4.0
 
 def run_identify(folder: Path, name: str) -> None:
     command = ["identify", str(folder / "T.csv"), "--out", str(folder / name), "--highest", "2.2"]
-    done = CliRunner(env={"SOURCE_DATE_EPOCH": "0"}).invoke(app, command)
-    assert done.exit_code == 0, done.output
+    result = CliRunner(env={"SOURCE_DATE_EPOCH": "0"}).invoke(app, command)
+    assert result.exit_code == 0, result.output
 
 
 @pytest.fixture(scope="module")
@@ -103,8 +103,8 @@ def test_fit_damping_recovers_the_damping_of_the_line(folder: Path) -> None:
         "--element",
         "2",
     ]
-    done = CliRunner().invoke(app, command)
-    assert done.exit_code == 0, done.output
+    result = CliRunner().invoke(app, command)
+    assert result.exit_code == 0, result.output
     block = tomllib.loads((folder / "fit" / "damping.toml").read_text())["damping"]
     damping = Damping.model_validate(block)
     assert damping.contact_wire.mass_coefficient_1_s + damping.messenger_wire.mass_coefficient_1_s > 0.0125
@@ -130,14 +130,14 @@ def test_fit_damping_recovers_the_damping_of_the_line(folder: Path) -> None:
 )
 def test_bad_modes_are_refused(tmp_path: Path, content: bytes, message: str) -> None:
     (tmp_path / "modes.json").write_bytes(content)
-    done = CliRunner().invoke(
+    result = CliRunner().invoke(
         app, ["fit-damping", str(tmp_path / "modes.json"), "--line", CASE, "--out", str(tmp_path)]
     )
-    assert done.exit_code == 2
-    assert message in done.output
+    assert result.exit_code == 2
+    assert message in result.output
 
 
 def test_missing_record_is_refused(tmp_path: Path) -> None:
-    done = CliRunner().invoke(app, ["identify", str(tmp_path / "none.csv"), "--out", str(tmp_path)])
-    assert done.exit_code == 2
-    assert "cannot be read" in done.output
+    result = CliRunner().invoke(app, ["identify", str(tmp_path / "none.csv"), "--out", str(tmp_path)])
+    assert result.exit_code == 2
+    assert "cannot be read" in result.output

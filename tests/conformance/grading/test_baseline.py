@@ -98,9 +98,9 @@ def test_baseline_on_the_command_line_and_in_a_plan(results: Results, tmp_path: 
     base.write_bytes(changed(results, "std_force_N", 27.0).to_json())
     command = ["run", "en50318-2002/*", "--system", PASSING, "--out", tmp_path / "out", "--formats", "json,badge"]
     assert pantocheck(*command).exit_code == 0
-    done = pantocheck(*command, "--baseline", base)
-    assert done.exit_code == 1
-    assert "drifted by +2.22 % from the baseline of 27 N" in done.output
+    result = pantocheck(*command, "--baseline", base)
+    assert result.exit_code == 1
+    assert "drifted by +2.22 % from the baseline of 27 N" in result.output
     assert "fail" in (tmp_path / "out" / "badge.svg").read_text().lower()
     assert pantocheck(*command, "--baseline", base, "--drift", "3").exit_code == 0
     plan = tmp_path / "plan.toml"
@@ -133,9 +133,9 @@ def test_wrong_baseline_is_rejected(
 
 
 def test_baseline_is_read_before_anything_is_computed(tmp_path: Path) -> None:
-    done = pantocheck("run", "--system", PASSING, "--baseline", tmp_path / "none.json", "--out", tmp_path / "out")
-    assert done.exit_code == 2
-    assert "results 'none.json': cannot be read" in done.stderr
+    result = pantocheck("run", "--system", PASSING, "--baseline", tmp_path / "none.json", "--out", tmp_path / "out")
+    assert result.exit_code == 2
+    assert "results 'none.json': cannot be read" in result.stderr
     assert not (tmp_path / "out").exists()
 
 

@@ -133,7 +133,7 @@ def test_negative_statistical_minimum_fails(train: Train) -> None:
 
 
 def test_negative_force_never_passes(train: Train) -> None:
-    """A wrong sign makes the mean small and its variation negative: neither may be taken for a good line."""
+    """A wrong sign gives a low mean and a negative coefficient of variation; neither may pass."""
     rows = by_quantity(graded(train(mean=-125.0)))
     assert rows["cov_20"].verdict == "skip"
     assert "is -125 N" in rows["cov_20"].reason
@@ -226,7 +226,7 @@ def test_same_record_gives_the_same_results(train: Train) -> None:
 
 
 def test_peak_of_a_long_record_is_drawn(train: Train) -> None:
-    """One sample of 60 000: thinned evenly, the figure would not show what the warning and the maximum are about."""
+    """The peak is one sample of 60 000; a curve of every k-th sample would not show it."""
     path = train(spans=200)
     lines = path.with_suffix(".csv").read_text().splitlines()
     lines[30_001] = re.sub(r",[-0-9.e]+,", ",700.0,", lines[30_001], count=1)
@@ -243,10 +243,10 @@ def pantocheck(*arguments: str | Path) -> Result:
 
 def test_assess_writes_the_same_files_as_run(train: Train, tmp_path: Path) -> None:
     out = tmp_path / "out"
-    done = pantocheck(
+    result = pantocheck(
         "assess", train(), "--profile", "acceptance-ac", "--out", out, "--formats", "html,json,junit,md,badge"
     )
-    assert (done.exit_code, done.output.split()[0]) == (0, "PASS")
+    assert (result.exit_code, result.output.split()[0]) == (0, "PASS")
     assert sorted(path.name for path in out.iterdir()) == [
         "badge.svg", "certificate.html", "junit.xml", "results.json", "summary.md",
     ]  # fmt: skip
@@ -271,9 +271,9 @@ def test_assess_writes_the_same_files_as_run(train: Train, tmp_path: Path) -> No
 def test_bad_options_end_with_one_message_and_exit_code_2(
     train: Train, tmp_path: Path, arguments: list[str], message: str
 ) -> None:
-    done = pantocheck("assess", train(), *arguments, "--out", tmp_path / "out")
-    assert done.exit_code == 2
-    assert message in done.stderr
+    result = pantocheck("assess", train(), *arguments, "--out", tmp_path / "out")
+    assert result.exit_code == 2
+    assert message in result.stderr
 
 
 @pytest.mark.parametrize(

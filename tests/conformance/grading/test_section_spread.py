@@ -35,9 +35,9 @@ def test_sections_are_shifted_span_by_span(growing: tuple[Case, Record]) -> None
 def test_spread_is_the_largest_difference(growing: tuple[Case, Record]) -> None:
     """Spans 3-4 to 7-8 about 5-6: two spans, 2 N, either way; a sample of 0.07 m more or less gives 1e-3 N."""
     case, record = growing
-    found = section_spread(RecordSignals(record, case.file.filter.low_pass), case.shifted_sections)
-    assert found[1]["mean_force_N"] == pytest.approx(2.0, abs=5e-3)
-    assert found[1]["contact_loss_pct"] == 0.0
+    spread = section_spread(RecordSignals(record, case.file.filter.low_pass), case.shifted_sections)
+    assert spread[1]["mean_force_N"] == pytest.approx(2.0, abs=5e-3)
+    assert spread[1]["contact_loss_pct"] == 0.0
 
 
 def test_record_that_covers_too_few_sections_has_no_spread(growing: tuple[Case, Record]) -> None:

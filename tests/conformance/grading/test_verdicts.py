@@ -10,7 +10,7 @@ from pantocheck.conformance.input_files.trust import limit_counts
 
 NAMES = """mean_force_N std_force_N statistical_max_N statistical_min_N
 max_force_N min_force_N max_uplift_at_support_mm contact_loss_pct"""
-KNOWN_PASSING_CODE = {  # Wang et al., Table III: one published code's own results
+KNOWN_PASSING_CODE = {  # Wang et al., Table III: results of a published code
     "250": (118.2, 27.6, 201.1, 35.5, 193.7, 70.3, 52.2, 0.0),
     "300": (118.7, 32.8, 213.2, 19.2, 195.4, 54.7, 59.7, 0.0),
 }
@@ -59,7 +59,7 @@ def test_margin_needs_a_limit() -> None:
 
 
 @pytest.mark.parametrize("speed", ["250", "300"])
-def test_published_passing_code_passes_and_each_value_pushed_outside_fails_alone(speed: str) -> None:
+def test_published_results_pass_and_each_value_outside_its_limits_fails_alone(speed: str) -> None:
     limits = {limit.quantity: limit for limit in load_case(library_folder() / "en50318-2002" / f"{speed}.toml").limits}
     known = dict(zip(NAMES.split(), KNOWN_PASSING_CODE[speed], strict=True))
     assert set(limits) == set(known)
