@@ -18,6 +18,6 @@ def edit_toml(path: Path, changes: dict[str, Any]) -> Path:
         if value is None:
             del table[last]
         else:
-            table[last] = value
+            table[int(last) if isinstance(table, list) else last] = value
     path.write_text(tomli_w.dumps(content), encoding="utf-8")
     return path
