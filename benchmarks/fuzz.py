@@ -77,33 +77,33 @@ class Target(NamedTuple):
     use: Callable[[Path], object]
 
 
-def damaged(content: bytes, chance: random.Random) -> bytes:
+def damage(content: bytes, chance: random.Random) -> bytes:
     """Damage a file at one or more random places."""
     data = bytearray(content)
     for _ in range(chance.choice((1, 1, 1, 2, 4, 16))):
-        at = chance.randrange(len(data) + 1)
+        place = chance.randrange(len(data) + 1)
         span = chance.choice((1, 1, 4, 30, 1000))
         match chance.randrange(8):
             case 0:
-                data[at : at + 1] = bytes([chance.randrange(256)])
+                data[place : place + 1] = bytes([chance.randrange(256)])
             case 1:
-                del data[at : at + span]
+                del data[place : place + span]
             case 2:
-                data = data[:at]
+                data = data[:place]
             case 3:
-                data[at:at] = data[at : at + span] * chance.choice((1, 2, 50))
+                data[place:place] = data[place : place + span] * chance.choice((1, 2, 50))
             case 4:
-                data[at : at + chance.choice((0, 1, 3))] = chance.choice(TOKENS)
+                data[place : place + chance.choice((0, 1, 3))] = chance.choice(TOKENS)
             case 5:
-                data[at : at + span] = chance.randbytes(min(span, 50))
+                data[place : place + span] = chance.randbytes(min(span, 50))
             case 6:
-                data = _number_replaced(data, chance)
+                data = _replace_number(data, chance)
             case _:
-                data = _lines_swapped(data, chance)
+                data = _swap_lines(data, chance)
     return bytes(data)
 
 
-def _number_replaced(data: bytearray, chance: random.Random) -> bytearray:
+def _replace_number(data: bytearray, chance: random.Random) -> bytearray:
     """Replace a number by another one, which random bytes seldom do."""
     found = list(re.finditer(rb"-?\d+(\.\d+)?([eE][-+]?\d+)?", data))
     if not found:
@@ -113,14 +113,14 @@ def _number_replaced(data: bytearray, chance: random.Random) -> bytearray:
     return data[: number.start()] + other + data[number.end() :]
 
 
-def _lines_swapped(data: bytearray, chance: random.Random) -> bytearray:
+def _swap_lines(data: bytearray, chance: random.Random) -> bytearray:
     lines = data.split(b"\n")
     i, j = chance.randrange(len(lines)), chance.randrange(len(lines))
     lines[i], lines[j] = lines[j], lines[i]
     return bytearray(b"\n".join(lines))
 
 
-def targets(folder: Path) -> list[Target]:
+def build_targets(folder: Path) -> list[Target]:
     """Every reader with a small sound file."""
     tables: dict[str, dict[str, bytes]] = {}
     for suffix in ("csv", "h5"):
@@ -202,7 +202,7 @@ def use_digested(folder: Path) -> None:
 
 
 def use_limits(folder: Path) -> None:
-    """Lay limits over the case, and grade the passing code."""
+    """Replace the limits of the case, and grade the passing code."""
     check(run_cases(overlay_limits(select_cases([CASE]), read_limits(folder / "l.toml")), open_record_folder(PASSING)))
 
 
@@ -236,9 +236,9 @@ def check(results: Results) -> None:
             raise Falsehood("a criterion without a value passed")
 
 
-def one_round(target: Target, folder: Path, chance: random.Random) -> str:
+def run_round(target: Target, folder: Path, chance: random.Random) -> str:
     """Give a damaged file to its reader; the outcome is `read`, `refused` or an exception."""
-    content = damaged(target.files[target.damaged], chance)
+    content = damage(target.files[target.damaged], chance)
     for name, original in target.files.items():
         (folder / name).write_bytes(content if name == target.damaged else original)
     if target.use is use_digested and content == target.files[target.damaged]:
@@ -266,7 +266,7 @@ def campaign(seconds: float, seed: int, keep: Path) -> int:
     signal.signal(signal.SIGALRM, _hang)
     with tempfile.TemporaryDirectory() as name:
         seeds, scratch = Path(name, "seeds"), Path(name, "scratch")
-        all_targets = targets(seeds)
+        all_targets = build_targets(seeds)
         end = time.monotonic() + seconds
         rounds = 0
         while time.monotonic() < end:
@@ -276,7 +276,7 @@ def campaign(seconds: float, seed: int, keep: Path) -> int:
             scratch.mkdir()
             signal.alarm(SLOWEST_S)
             try:
-                outcomes[target.name, one_round(target, scratch, chance)] += 1
+                outcomes[target.name, run_round(target, scratch, chance)] += 1
             except (Exception, Hang) as error:
                 failures += 1
                 outcomes[target.name, "FAILED"] += 1

@@ -40,10 +40,10 @@ class RecordSamples:
     uplift: RealArray | None = None
     support_position: RealArray | None = None
 
-    def at(self, chosen: NDArray[np.bool_]) -> "RecordSamples":
-        """The samples that a mask chooses."""
+    def select(self, mask: NDArray[np.bool_]) -> "RecordSamples":
+        """Samples inside a mask."""
         parts = {name: getattr(self, name) for name in _SAMPLED}
-        return replace(self, **{name: value[..., chosen] for name, value in parts.items() if value is not None})
+        return replace(self, **{name: value[..., mask] for name, value in parts.items() if value is not None})
 
 
 _SAMPLED = ("force", "time", "speed", "position", "contact_height", "uplift")
@@ -78,6 +78,13 @@ def _integral(rate: RealArray, over: RealArray) -> RealArray:
     return np.concatenate([[0.0], np.cumsum((rate[1:] + rate[:-1]) / 2 * np.diff(over))])
 
 
+def analysis_section(sidecar: RecordSidecar, position: RealArray) -> tuple[float, float]:
+    """Section of the sidecar, or the track that all pantographs cross [m, m]; positions (p, n) [m]."""
+    if sidecar.evaluated_m is not None:
+        return sidecar.evaluated_m[0], sidecar.evaluated_m[1]
+    return float(position[:, 0].max()), float(position[:, -1].min())
+
+
 def build_record(samples: RecordSamples, sidecar: RecordSidecar) -> Record:
     """Build a record from samples that are complete and evenly spaced in time.
 
@@ -92,13 +99,12 @@ def build_record(samples: RecordSamples, sidecar: RecordSidecar) -> Record:
             bad = np.argwhere(~np.isfinite(value.T))[:, 0]
             raise RecordInvalid(name, f"{bad.size} values are not finite, the first at sample {bad[0] + 1}")
     time, position = complete_samples(samples, sidecar)
-    covered = float(position[:, 0].max()), float(position[:, -1].min())
     return Record(
         time=time,
         speed=sidecar.speed_km_h / 3.6,
         position=position,
         force=samples.force,
-        evaluated=covered if sidecar.evaluated_m is None else (sidecar.evaluated_m[0], sidecar.evaluated_m[1]),
+        evaluated=analysis_section(sidecar, position),
         filter_applied_Hz=sidecar.low_passed_Hz,
         contact_height=samples.contact_height,
         support_position=samples.support_position,

@@ -20,7 +20,7 @@ from pantocheck.conformance.records.measured.usable_sections import (
 )
 from pantocheck.conformance.records.record import MAX_SAMPLES, RecordInvalid
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
-from pantocheck.conformance.records.samples import RecordSamples
+from pantocheck.conformance.records.samples import RecordSamples, analysis_section
 
 SETTLING_PERIODS = 2.0
 """Periods of the cut-off after which the filter transient at the end of a section has decayed."""
@@ -112,7 +112,7 @@ def prepare_record(
             f"{missing_share(~steady)} of the record was cut: the speed differs by more than {speed_tolerance_pct:g} % "
             f"from {sidecar.speed_km_h:g} km/h, first at {position[0][np.argmin(steady)]:.1f} m"
         )
-    section = _analysis_section(sidecar, position)
+    section = analysis_section(sidecar, position)
     settings = _Settings(rate, section, low_pass, sidecar.low_passed_Hz, steady)
     pantographs = {}
     for row in range(samples.force.shape[0]):
@@ -130,13 +130,6 @@ def prepare_record(
         notes=(*_resampling_notes(placed, rate), *_length_note(first, nominal)),
         warnings=(*warnings, *remarks),
     )
-
-
-def _analysis_section(sidecar: RecordSidecar, position: RealArray) -> tuple[float, float]:
-    """Section of the sidecar, or the track that all pantographs cross [m, m]."""
-    if sidecar.evaluated_m is not None:
-        return sidecar.evaluated_m[0], sidecar.evaluated_m[1]
-    return float(position[:, 0].max()), float(position[:, -1].min())
 
 
 def _prepare_pantograph(placed: PlacedSamples, row: int, settings: _Settings) -> tuple[PooledSignals, list[str]]:

@@ -55,10 +55,10 @@ def place_samples(samples: RecordSamples, sidecar: RecordSidecar) -> PlacedSampl
         raise RecordInvalid("time", "fewer than two samples have a time or position")
     if not known.all():
         warnings.append(f"{missing_share(~known)} of the samples have no time or position and were discarded")
-        samples = samples.at(known)
+        samples = samples.select(known)
     if samples.time is None and samples.speed is not None and not (samples.speed > 0).all():
         warnings.append(f"{missing_share(samples.speed <= 0)} of the samples were discarded: the train stands still")
-        samples = samples.at(samples.speed > 0)
+        samples = samples.select(samples.speed > 0)
     if samples.force.shape[1] < 2:
         raise RecordInvalid("speed", "the train stands still at nearly every sample")
     time, position = complete_samples(samples, sidecar)
@@ -81,7 +81,7 @@ def _smooth_steps(
     # The position after the last step is unknown.
     within = np.arange(time.size) <= np.flatnonzero(stepped)[-1]
     smooth = np.vstack([np.interp(time[within], time[stepped], row[stepped]) for row in position])
-    return samples.at(within), time[within], smooth
+    return samples.select(within), time[within], smooth
 
 
 def missing_share(mask: NDArray[np.bool_]) -> str:

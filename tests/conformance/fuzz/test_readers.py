@@ -57,7 +57,7 @@ def fuzz() -> ModuleType:
 @pytest.fixture(scope="module")
 def targets(fuzz: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     """Readers under fuzz by name."""
-    return {target.name: target for target in fuzz.targets(tmp_path_factory.mktemp("seeds"))}
+    return {target.name: target for target in fuzz.build_targets(tmp_path_factory.mktemp("seeds"))}
 
 
 def test_every_reader_is_fuzzed(targets: dict[str, Any]) -> None:
@@ -68,7 +68,7 @@ def test_every_reader_is_fuzzed(targets: dict[str, Any]) -> None:
 def test_damaged_file_is_read_or_refused(fuzz: ModuleType, targets: dict[str, Any], name: str, tmp_path: Path) -> None:
     logging.getLogger("pypdf").setLevel(logging.CRITICAL)
     chance = random.Random(name)
-    outcomes = [fuzz.one_round(targets[name], tmp_path, chance) for _ in range(ROUNDS)]
+    outcomes = [fuzz.run_round(targets[name], tmp_path, chance) for _ in range(ROUNDS)]
     assert "refused" in outcomes
 
 

@@ -107,7 +107,7 @@ def test_speed_channel_makes_time_from_distance() -> None:
 def test_gap_in_time_is_cut_and_both_sides_are_pooled() -> None:
     samples = by_time()
     kept = (samples.time < 10) | (samples.time > 11)
-    found = ready(samples.at(kept))
+    found = ready(samples.select(kept))
     assert len(found.pantographs[1].parts) == 2
     assert_allclose(values(found)["std_force_N"], values(ready(samples))["std_force_N"], rtol=0.02)
     assert found.seconds == pytest.approx(29 - 4 * 0.1, abs=0.02)
