@@ -53,7 +53,8 @@ LINE, PANTOGRAPH, CASE = "line.toml", "pantograph.toml", "250.toml"
             LINE,
             {"contact_wire.tension_N": None},
             (
-                "reference line 'line.toml', key contact_wire.tension_N: missing.\n  It is: axial tension of one wire [N]."
+                "reference line 'line.toml', key contact_wire.tension_N: missing.\n"
+                "  It is: axial tension of one wire [N]."
             ),
         ),
         (
