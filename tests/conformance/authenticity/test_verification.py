@@ -1,9 +1,12 @@
-"""Verification: a consistent certificate is found consistent, a tampered one is not, and garbage is refused."""
+"""Verification: a consistent certificate is accepted, tampering is reported, and other files are refused."""
 
 import copy
 import io
 import json
 import random
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import pytest
 from pypdf import PdfWriter
@@ -12,6 +15,7 @@ from typer.testing import CliRunner
 from pantocheck.conformance.authenticity import attachment
 from pantocheck.conformance.authenticity.recomputation import find_discrepancies
 from pantocheck.conformance.authenticity.verification import verify_certificate
+from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
@@ -21,27 +25,28 @@ from pantocheck.conformance.runner import run_cases
 
 
 @pytest.fixture
-def certificate_file(certificate, tmp_path):
+def certificate_file(certificate: bytes, tmp_path: Path) -> Path:
     path = tmp_path / "certificate.pdf"
     path.write_bytes(certificate)
     return path
 
 
-def test_consistent(certificate_file):
+def test_unchanged_certificate_is_consistent(certificate_file: Path) -> None:
     found = verify_certificate(certificate_file)
     assert found.consistent
     assert (found.verdict, found.cases, found.criteria) == ("fail", 3, 22)
 
 
-def test_what_the_runner_grades_is_consistent(wave, case_250):
+def test_results_of_the_runner_are_consistent(wave: Any, case_250: Case) -> None:
     """Results of the suite's own grading, spectrum and thinned traces included, contradict themselves nowhere."""
     results = run_cases([case_250], wave(), "secondary").to_dict()
     assert len(results["cases"][0]["criteria"]) == 8
     assert find_discrepancies(results) == []
 
 
-def row(results, case=0, at=0):
-    return results["cases"][case]["criteria"][at]
+def row(results: dict[str, Any], case: int = 0, number: int = 0) -> dict[str, Any]:
+    criterion: dict[str, Any] = results["cases"][case]["criteria"][number]
+    return criterion
 
 
 TAMPERINGS = {
@@ -59,29 +64,29 @@ TAMPERINGS = {
     "failed rows removed": (lambda r: r["cases"][1].update(criteria=[]), "'info' follows from the criteria"),
     "suite verdict": (lambda r: r.update(verdict="pass"), "'fail' follows from the cases"),
     "trust": (lambda r: r.update(trust="primary"), "'info' follows"),
-    "statistical maximum": (lambda r: quantity(r, "statistical_max_N", 190.0), "statistical_max_N 190 stated"),
-    "coefficient of variation": (lambda r: quantity(r, "cov_50", 0.2), "cov_50 0.2 stated"),
-    "mean": (lambda r: quantity(r, "mean_force_N", 119.0), "drawn"),
-    "deviation": (lambda r: quantity(r, "std_force_N", 25.0), "std_force_N 25 stated"),
-    "maximum below what is drawn": (lambda r: quantity(r, "max_force_N", 165.0), "max_force_N 165 stated"),
-    "minimum above what is drawn": (lambda r: quantity(r, "min_force_N", 70.0), "min_force_N 70 stated"),
-    "band": (lambda r: quantity(r, "rms_20_50_N", 9.0), "follows from the spectrum"),
+    "statistical maximum": (lambda r: set_quantity(r, "statistical_max_N", 190.0), "statistical_max_N 190 stated"),
+    "coefficient of variation": (lambda r: set_quantity(r, "cov_50", 0.2), "cov_50 0.2 stated"),
+    "mean": (lambda r: set_quantity(r, "mean_force_N", 119.0), "drawn"),
+    "deviation": (lambda r: set_quantity(r, "std_force_N", 25.0), "std_force_N 25 stated"),
+    "maximum below what is drawn": (lambda r: set_quantity(r, "max_force_N", 165.0), "max_force_N 165 stated"),
+    "minimum above what is drawn": (lambda r: set_quantity(r, "min_force_N", 70.0), "min_force_N 70 stated"),
+    "band": (lambda r: set_quantity(r, "rms_20_50_N", 9.0), "follows from the spectrum"),
 }
 
 
-def quantity(results, name, value):
+def set_quantity(results: dict[str, Any], name: str, value: float) -> None:
     results["cases"][0]["quantities"]["1"][name] = value
 
 
 @pytest.mark.parametrize("name", TAMPERINGS)
-def test_tampering_is_found(results, name):
+def test_tampering_is_reported(results: dict[str, Any], name: str) -> None:
     assert find_discrepancies(results) == []
     tamper, expected = TAMPERINGS[name]
     tamper(results)
     assert any(expected in text for text in find_discrepancies(results))
 
 
-def test_a_whole_certificate_made_from_changed_results(results, tmp_path):
+def test_certificate_made_from_changed_results(results: dict[str, Any], tmp_path: Path) -> None:
     row(results, 1, 1)["verdict"] = "pass"
     results["cases"][1]["verdict"] = "pass"
     (tmp_path / "a.pdf").write_bytes(pdf.render_pdf(build_certificate(results)))
@@ -89,7 +94,9 @@ def test_a_whole_certificate_made_from_changed_results(results, tmp_path):
     assert len(found.discrepancies) == 3  # the row, its case, the suite
 
 
-def test_pages_that_say_other_than_the_results(results, passing, tmp_path, monkeypatch):
+def test_pages_that_contradict_the_embedded_results(
+    results: dict[str, Any], passing: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Pages of a failing run with the results of a passing one: consistent in themselves, but not with each other."""
     encode_attachment = pdf.encode_attachment
     monkeypatch.setattr(pdf, "encode_attachment", lambda _: encode_attachment(passing))
@@ -100,7 +107,7 @@ def test_pages_that_say_other_than_the_results(results, passing, tmp_path, monke
     assert all("PASS" in text for text in found.discrepancies)
 
 
-def pdf_with(*attachments):
+def pdf_with(*attachments: tuple[str, bytes]) -> bytes:
     writer = PdfWriter()
     writer.add_blank_page(width=100, height=100)
     for name, content in attachments:
@@ -110,24 +117,24 @@ def pdf_with(*attachments):
     return buffer.getvalue()
 
 
-def changed(results, change):
+def change_results(results: dict[str, Any], change: Callable[[dict[str, Any]], object]) -> bytes:
     results = copy.deepcopy(results)
     change(results)
     return json.dumps(results).encode()
 
 
-def without_pages():
+def pdf_without_pages() -> bytes:
     buffer = io.BytesIO()
     PdfWriter().write(buffer)
     return buffer.getvalue()
 
 
 @pytest.mark.parametrize(
-    ("content", "found"),
+    ("content", "message"),
     [
         (b"", "not a PDF"),
         (b"%PDF-1.7\ngarbage", "damaged PDF"),
-        (without_pages(), "a PDF without pages"),
+        (pdf_without_pages(), "a PDF without pages"),
         (pdf_with(), "no attachment named results.json"),
         (pdf_with(("other.json", b"{}")), "no attachment named results.json"),
         (pdf_with(("results.json", b"{}"), ("results.json", b"{}")), "2 attachments? named results.json"),
@@ -138,10 +145,10 @@ def without_pages():
         (pdf_with(("results.json", b"{}")), "key suite"),
     ],
 )
-def test_garbage_is_refused(tmp_path, content, found):
+def test_other_files_are_refused(tmp_path: Path, content: bytes, message: str) -> None:
     path = tmp_path / "a.pdf"
     path.write_bytes(content)
-    with pytest.raises(InputError, match=found):
+    with pytest.raises(InputError, match=message):
         verify_certificate(path)
 
 
@@ -156,14 +163,18 @@ def test_garbage_is_refused(tmp_path, content, found):
         (lambda r: row(r).update(value="<script>"), r"cases\[1\]\.criteria\[1\]\.value"),
     ],
 )
-def test_results_of_another_format_are_refused(results, tmp_path, change, key):
+def test_results_of_another_format_are_refused(
+    results: dict[str, Any], tmp_path: Path, change: Callable[[dict[str, Any]], object], key: str
+) -> None:
     path = tmp_path / "a.pdf"
-    path.write_bytes(pdf_with(("results.json", changed(results, change))))
+    path.write_bytes(pdf_with(("results.json", change_results(results, change))))
     with pytest.raises(InputError, match=key):
         verify_certificate(path)
 
 
-def test_no_file_and_too_large_a_file(certificate_file, tmp_path, monkeypatch):
+def test_missing_and_too_large_files_are_refused(
+    certificate_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     with pytest.raises(InputError, match="cannot be read"):
         verify_certificate(tmp_path / "none.pdf")
     with pytest.raises(InputError, match="cannot be read"):
@@ -176,7 +187,7 @@ def test_no_file_and_too_large_a_file(certificate_file, tmp_path, monkeypatch):
         verify_certificate(certificate_file)
 
 
-def test_damage_never_ends_in_a_traceback(certificate, tmp_path):
+def test_damage_never_ends_in_a_traceback(certificate: bytes, tmp_path: Path) -> None:
     """Either the damage hits nothing that is read, or it is refused by name."""
     path = tmp_path / "a.pdf"
     refused = 0
@@ -193,7 +204,7 @@ def test_damage_never_ends_in_a_traceback(certificate, tmp_path):
     assert refused > 5
 
 
-def test_command(certificate_file, results, tmp_path):
+def test_verify_command(certificate_file: Path, results: dict[str, Any], tmp_path: Path) -> None:
     runner = CliRunner()
     good = runner.invoke(app, ["verify", str(certificate_file)])
     assert (good.exit_code, good.stdout.split(":")[0]) == (0, "consistent")

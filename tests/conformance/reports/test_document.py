@@ -3,6 +3,7 @@
 import re
 import time
 from operator import itemgetter
+from pathlib import Path
 
 import pytest
 from pypdf import PdfReader
@@ -22,7 +23,7 @@ DOCUMENT = Document(
 )
 
 
-def test_html_tables_and_figures_scroll_and_numbers_stay_whole():
+def test_html_tables_and_figures_scroll_and_numbers_stay_whole() -> None:
     """A table wider than a phone broke its numbers into single digits and widened the page."""
     page = render_html(DOCUMENT)
     assert re.findall(r'<div class="scroll"[^>]*>\s*<(\w+)', page) == ["img", "table"]
@@ -31,7 +32,7 @@ def test_html_tables_and_figures_scroll_and_numbers_stay_whole():
     assert '<table class="grid"' in page
 
 
-def test_html_security_policy():
+def test_html_security_policy() -> None:
     """A browser refuses anything active that reached a figure through the data."""
     policy = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
     page = render_html(DOCUMENT)
@@ -40,7 +41,7 @@ def test_html_security_policy():
 
 
 @pytest.mark.parametrize("epoch", [None, "1700000000"])
-def test_pdf_without_results_bears_no_date(epoch, tmp_path, monkeypatch):
+def test_pdf_without_results_bears_no_date(epoch: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The date of a drop is unknown; the date of today would change the bytes."""
     monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
     if epoch is not None:

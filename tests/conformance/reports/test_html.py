@@ -3,6 +3,7 @@
 import re
 from html.parser import HTMLParser
 from itertools import pairwise
+from typing import Any
 
 import pytest
 
@@ -16,34 +17,36 @@ VOID = {"meta", "img", "line", "rect", "path", "circle", "link", "br"}
 class Outline(HTMLParser):
     """Tags, attributes and text of a page, and whether every tag is closed."""
 
-    def __init__(self, text):
+    def __init__(self, text: str) -> None:
         super().__init__()
-        self.tags, self.texts, self.open = [], [], []
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.texts: list[str] = []
+        self.open: list[str] = []
         self.feed(text)
         self.close()
 
-    def handle_starttag(self, tag, attrs):
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         self.tags.append((tag, dict(attrs)))
         if tag not in VOID:
             self.open.append(tag)
 
-    def handle_endtag(self, tag):
+    def handle_endtag(self, tag: str) -> None:
         if tag not in VOID:
             assert self.open.pop() == tag
 
-    def handle_data(self, data):
+    def handle_data(self, data: str) -> None:
         self.texts.append(data)
 
-    def values(self, attribute):
+    def values(self, attribute: str) -> list[str | None]:
         return [attrs[attribute] for _, attrs in self.tags if attribute in attrs]
 
 
-def test_html_is_deterministic(results, page_text):
+def test_html_is_deterministic(results: dict[str, Any], page_text: str) -> None:
     assert render_html(build_certificate(results)) == page_text
 
 
 @pytest.mark.parametrize("name", ["page_text", "hostile_text"])
-def test_html_fetches_and_runs_nothing(name, request):
+def test_html_fetches_and_runs_nothing(name: str, request: pytest.FixtureRequest) -> None:
     text = request.getfixturevalue(name)
     outline = Outline(text)
     assert {tag for tag, _ in outline.tags} & {"script", "link", "iframe", "object", "embed", "base", "form"} == set()
@@ -57,7 +60,7 @@ def test_html_fetches_and_runs_nothing(name, request):
 
 
 @pytest.mark.parametrize("name", ["page_text", "hostile_text"])
-def test_html_has_a_valid_structure(name, request):
+def test_html_has_a_valid_structure(name: str, request: pytest.FixtureRequest) -> None:
     outline = Outline(request.getfixturevalue(name))
     assert outline.open == []
     identities = outline.values("id")
@@ -73,7 +76,7 @@ def test_html_has_a_valid_structure(name, request):
     assert all(attrs.get("aria-label") for _, attrs in outline.tags if attrs.get("role") == "img")
 
 
-def test_html_begins_with_the_verdict(page_text):
+def test_html_begins_with_the_verdict(page_text: str) -> None:
     seen = " ".join(Outline(page_text).texts)
     seen = seen[seen.index("self-declared") :]  # after the style sheet
     order = ["FAIL", "1 of 21 counted", "Failed", "Smallest margins", "Criteria", "Extended band", "All quantities"]
@@ -81,7 +84,7 @@ def test_html_begins_with_the_verdict(page_text):
     assert places == sorted(places)
 
 
-def test_html_escapes_hostile_text(hostile_text):
+def test_html_escapes_hostile_text(hostile_text: str) -> None:
     assert "<script" not in hostile_text
     assert "&lt;script&gt;alert(1)&lt;/script&gt;" in hostile_text
     assert "{{ 7*7 }} {% raw %}" in hostile_text
@@ -89,7 +92,7 @@ def test_html_escapes_hostile_text(hostile_text):
     hostile_text.encode("utf-8")
 
 
-def test_html_criteria_show_trust_verdict_and_bar(results, page_text):
+def test_html_criteria_show_trust_verdict_and_bar(results: dict[str, Any], page_text: str) -> None:
     tables = re.findall(r'<table class="cards".*?</table>', page_text, re.S)
     rows = re.findall(r'<tr role="row">\n<th role="rowheader".*?</tr>', "".join(tables), re.S)
     criteria = [row for case in results["cases"] for row in case["criteria"]]
@@ -101,19 +104,19 @@ def test_html_criteria_show_trust_verdict_and_bar(results, page_text):
         assert text.count("<svg") == (row["value"] is not None)
 
 
-def test_html_states_self_declaration_and_no_certification(page_text):
+def test_html_states_self_declaration_and_no_certification(page_text: str) -> None:
     assert "self-declared conformance report, in the style of EN 50318" in page_text
     assert "not a certification" in page_text
 
 
-def luminance(colour):
+def luminance(colour: str) -> float:
     """Relative luminance of a colour [-], WCAG 2.1."""
     channels = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
     linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in channels]
     return sum(weight * channel for weight, channel in zip((0.2126, 0.7152, 0.0722), linear, strict=True))
 
 
-def test_css_colours_have_contrast_against_white():
+def test_css_colours_have_contrast_against_white() -> None:
     """WCAG AA requires 4.5 for small text; the warning box is nearly white, hence 5."""
     style = (TEMPLATES / "page.css").read_text("utf-8")
     inks = re.findall(r"--(?:accent|ink|soft): (#[0-9a-f]{6})", style) + re.findall(r"[ ;]color: (#[0-9a-f]{6})", style)

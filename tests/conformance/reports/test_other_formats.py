@@ -1,6 +1,8 @@
 """JUnit, Markdown summary and badge."""
 
 import re
+from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import pytest
@@ -29,7 +31,7 @@ from pantocheck.conformance.reports.formats.markdown import render_markdown
 from pantocheck.conformance.reports.formats.report_writers import FILES, write_pages
 
 
-def test_junit_counts_what_the_results_say(results):
+def test_junit_counts_what_the_results_say(results: dict[str, Any]) -> None:
     root = ElementTree.fromstring(render_junit(results))
     suites = root.findall("testsuite")
     assert [suite.get("name") for suite in suites] == [case["id"] for case in results["cases"]]
@@ -45,28 +47,28 @@ def test_junit_counts_what_the_results_say(results):
     assert properties["system"] == "Pantocheck reference simulator 0.1.0 (builtin)"
 
 
-def test_junit_holds_an_error_of_a_case(passing):
+def test_junit_holds_an_error_of_a_case(passing: dict[str, Any]) -> None:
     passing["cases"][0] |= {"verdict": "error", "reason": "the solver diverged", "criteria": []}
     root = ElementTree.fromstring(render_junit(passing))
     assert root.get("errors") == "1"
     assert next(root.iter("error")).get("message") == "the solver diverged"
 
 
-def test_junit_is_valid_xml_for_any_text(hostile):
+def test_junit_is_valid_xml_for_any_text(hostile: dict[str, Any]) -> None:
     root = ElementTree.fromstring(render_junit(hostile))
     assert root.find("testsuite[2]").get("name") == "en50318-2002/300a|b `c` *d* [e](f) \\ _g_"
     assert all("\n" not in value for element in root.iter() for value in element.attrib.values())
 
 
 @pytest.mark.parametrize("name", ["results", "hostile"])
-def test_summary_tables_keep_their_columns(name, request):
+def test_summary_tables_keep_their_columns(name: str, request: pytest.FixtureRequest) -> None:
     results = request.getfixturevalue(name)
     rows = [line for line in render_markdown(build_summary(results)).splitlines() if line.startswith("|")]
     assert len(rows) == 2 * 2 + 22
     assert {len(re.findall(r"(?<!\\)\|", row)) for row in rows} == {9}
 
 
-def test_summary_begins_with_the_verdict_and_escapes(results, hostile):
+def test_summary_begins_with_the_verdict_and_escapes(results: dict[str, Any], hostile: dict[str, Any]) -> None:
     assert render_markdown(build_summary(results)).startswith(
         "# FAIL: 1 of 21 counted criteria in 3 cases lie outside their limits.\n"
     )
@@ -78,17 +80,17 @@ def test_summary_begins_with_the_verdict_and_escapes(results, hostile):
     )
 
 
-def test_badge(results):
+def test_badge(results: dict[str, Any]) -> None:
     root = ElementTree.fromstring(render_badge(results))
     assert root.get("aria-label") == "EN 50318 style: fail 19/21"
 
 
-def test_write_pages_leaves_one_file_per_format(passing, tmp_path):
+def test_write_pages_leaves_one_file_per_format(passing: dict[str, Any], tmp_path: Path) -> None:
     write_pages(passing, tmp_path, list(FILES))
     assert {path.name for path in tmp_path.iterdir()} == set(FILES.values()) - {"results.json"}
 
 
-def test_markdown_renders_every_element():
+def test_markdown_renders_every_element() -> None:
     text = (Code("a_b"), " ", Code("a`b"), Remark("*r*"), Link("[1]", "x"), TrustMark(""), Drawing("<svg/>", "bar"))
     blocks = (
         Paragraph(text),

@@ -8,6 +8,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 from pypdf import PdfReader
@@ -27,7 +28,9 @@ def squeeze_text(content: bytes) -> str:
     return re.sub(r"[\s\u200b]", "", text)
 
 
-def test_pdf_does_not_depend_on_the_time_of_the_run(passing, tmp_path, monkeypatch):
+def test_pdf_does_not_depend_on_the_time_of_the_run(
+    passing: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
     write_report(build_certificate(passing), tmp_path / "a.pdf")
     later = passing | {"started": "2031-01-01T00:00:00Z"}
@@ -36,7 +39,7 @@ def test_pdf_does_not_depend_on_the_time_of_the_run(passing, tmp_path, monkeypat
     assert (tmp_path / "a.pdf").read_bytes() == (tmp_path / "b.pdf").read_bytes()
 
 
-def test_html_and_pdf_do_not_depend_on_the_process(passing, tmp_path):
+def test_html_and_pdf_do_not_depend_on_the_process(passing: dict[str, Any], tmp_path: Path) -> None:
     """Another interpreter with another hash seed and time zone writes the same HTML and PDF."""
     source = tmp_path / "results.json"
     source.write_text(json.dumps(passing))
@@ -60,21 +63,25 @@ def test_html_and_pdf_do_not_depend_on_the_process(passing, tmp_path):
     assert other.stdout.strip() == here.hexdigest()
 
 
-def test_pdf_date_is_the_start_of_the_run(passing, tmp_path, monkeypatch):
+def test_pdf_date_is_the_start_of_the_run(
+    passing: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
     write_report(build_certificate(passing), tmp_path / "a.pdf")
     assert PdfReader(tmp_path / "a.pdf").metadata["/CreationDate"] == "D:20261120235000Z"
 
 
-@pytest.mark.parametrize("given", ["soon", "-1", "1.5", "9" * 40, "", "٣"])
-def test_pdf_refuses_a_wrong_source_date(passing, tmp_path, monkeypatch, given):
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", given)
+@pytest.mark.parametrize("epoch", ["soon", "-1", "1.5", "9" * 40, "", "٣"])
+def test_pdf_refuses_a_wrong_source_date(
+    passing: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, epoch: str
+) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", epoch)
     with pytest.raises(InputError, match="SOURCE_DATE_EPOCH"):
         write_report(build_certificate(passing), tmp_path / "a.pdf")
     assert list(tmp_path.iterdir()) == []
 
 
-def test_pdf_attachment_is_the_results_without_times(results, certificate):
+def test_pdf_attachment_is_the_results_without_times(results: dict[str, Any], certificate: bytes) -> None:
     reader = PdfReader(io.BytesIO(certificate))
     [content] = reader.attachments["results.json"]
     assert json.loads(content) == json.loads(json.dumps(strip_times(results)))
@@ -83,7 +90,7 @@ def test_pdf_attachment_is_the_results_without_times(results, certificate):
     assert not re.search(rb'"wall_s": [0-9]', content)
 
 
-def test_pdf_is_archival_a4_with_title(certificate):
+def test_pdf_is_archival_a4_with_title(certificate: bytes) -> None:
     reader = PdfReader(io.BytesIO(certificate))
     metadata = reader.xmp_metadata.stream.get_data().decode()
     assert "<pdfaid:part>3</pdfaid:part>" in metadata
@@ -94,7 +101,7 @@ def test_pdf_is_archival_a4_with_title(certificate):
         assert [float(side) * 25.4 / 72 for side in page.mediabox[2:]] == pytest.approx([210, 297], abs=0.1)
 
 
-def test_pdf_pages_show_verdict_and_number(certificate):
+def test_pdf_pages_show_verdict_and_number(certificate: bytes) -> None:
     pages = PdfReader(io.BytesIO(certificate)).pages
     for at, page in enumerate(pages, start=1):
         text = page.extract_text()
@@ -102,7 +109,7 @@ def test_pdf_pages_show_verdict_and_number(certificate):
         assert f"{at} / {len(pages)}" in text
 
 
-def test_pdf_prints_every_criterion(results, certificate):
+def test_pdf_prints_every_criterion(results: dict[str, Any], certificate: bytes) -> None:
     text = squeeze_text(certificate)
     for case in results["cases"]:
         for row in case["criteria"]:
@@ -112,14 +119,14 @@ def test_pdf_prints_every_criterion(results, certificate):
             assert expected.replace(" ", "") in text
 
 
-def test_pdf_prints_hostile_text_literally(hostile):
+def test_pdf_prints_hostile_text_literally(hostile: dict[str, Any]) -> None:
     text = squeeze_text(render_pdf(build_certificate(hostile)))
     assert '#import"x.typ":*"])#panic()' in text
     assert "<script>alert(1)</script>" in text
     assert "x" * 300 in text
 
 
-def test_pdf_embeds_its_fonts(certificate):
+def test_pdf_embeds_its_fonts(certificate: bytes) -> None:
     fonts = {
         font.get_object()["/BaseFont"].split("+")[-1]
         for page in PdfReader(io.BytesIO(certificate)).pages
@@ -129,7 +136,7 @@ def test_pdf_embeds_its_fonts(certificate):
     assert all(name.startswith(("LibertinusSerif", "DejaVuSans")) for name in fonts)
 
 
-def test_write_report_into_an_unwritable_folder_is_an_input_error(passing, tmp_path):
+def test_write_report_into_an_unwritable_folder_is_an_input_error(passing: dict[str, Any], tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError):
         write_report(build_certificate(passing), Path(tmp_path, "file", "a.pdf"))

@@ -1,6 +1,12 @@
 """Charts and tables of studies."""
 
+import inspect
+from collections.abc import Callable
+from typing import Any
+
 import pytest
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from numpy.testing import assert_allclose
 
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
@@ -15,22 +21,22 @@ LINE = Series(label="computed", style="line", x=[1e-6, 1e-3, 1.0], y=[3.0, 2.0, 
 POINTS = LINE.model_copy(update={"style": "points"})
 
 
-def data(**parts):
-    given = {"caption": "c", "alternative": "a", "x_label": "x [s]", "y_label": "y [N]", "series": [LINE]}
-    return Chart.model_validate(given | parts).model_dump()
+def data(**parts: Any) -> dict[str, Any]:
+    default = {"caption": "c", "alternative": "a", "x_label": "x [s]", "y_label": "y [N]", "series": [LINE]}
+    return Chart.model_validate(default | parts).model_dump()
 
 
-def draw(**parts):
+def draw(**parts: Any) -> str:
     return draw_chart(data(**parts))
 
 
-def axes_of(**parts):
+def axes_of(**parts: Any) -> Axes:
     """The axes of the chart before they are rendered."""
-    (axes,) = draw_chart.__wrapped__(data(**parts)).axes
-    return axes
+    painter: Callable[..., Figure] = inspect.unwrap(draw_chart)
+    return painter(data(**parts)).axes[0]
 
 
-def test_chart_is_deterministic():
+def test_chart_is_deterministic() -> None:
     assert draw() == draw()
 
 
@@ -49,17 +55,17 @@ def test_chart_is_deterministic():
         {"wide": False},
     ],
 )
-def test_chart_draws_every_element(change):
+def test_chart_draws_every_element(change: dict[str, Any]) -> None:
     assert draw(**change) != draw()
 
 
-def test_chart_axis_includes_negative_values():
+def test_chart_axis_includes_negative_values() -> None:
     """An axis that starts at zero would hide half of a velocity; positive values start there."""
     assert axes_of().get_ylim()[0] == 0
     assert axes_of(series=[LINE.model_copy(update={"y": [-3.0, 2.0, 1.0]})]).get_ylim()[0] < -3
 
 
-def test_chart_error_bars_have_their_length():
+def test_chart_error_bars_have_their_length() -> None:
     (container,) = axes_of(series=[POINTS.model_copy(update={"error": [0.1, 0.2, 0.3]})]).containers
     (bars,) = container.lines[2]
     lengths = [upper - lower for (_, lower), (_, upper) in bars.get_segments()]
@@ -67,7 +73,7 @@ def test_chart_error_bars_have_their_length():
     assert draw(series=[POINTS.model_copy(update={"error": [0.1, 0.2, 0.3]})]) != draw(series=[POINTS])
 
 
-def test_certificate_shows_tables_and_charts_of_a_study_escaped(results):
+def test_certificate_shows_tables_and_charts_of_a_study_escaped(results: dict[str, Any]) -> None:
     case = results["cases"][0]
     case["charts"] = [Chart(caption="Figure of a study", alternative="what it shows", x_label="x", y_label="y",
                             series=[LINE]).model_dump()]  # fmt: skip
