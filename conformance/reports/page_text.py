@@ -2,6 +2,7 @@
 
 import re
 import unicodedata
+from collections.abc import Callable
 from typing import Any
 
 LONGEST = 2000
@@ -24,12 +25,17 @@ def clean_text(text: str) -> str:
 
 def clean_tree(value: Any) -> Any:
     """Dictionaries and lists with every text, keys included, cleaned by `clean_text`."""
+    return change_texts(value, clean_text)
+
+
+def change_texts(value: Any, change: Callable[[str], str]) -> Any:
+    """Dictionaries and lists with every text, keys included, changed by a function."""
     if isinstance(value, str):
-        return clean_text(value)
+        return change(value)
     if isinstance(value, dict):
-        return {clean_text(str(key)): clean_tree(item) for key, item in value.items()}
+        return {change(str(key)): change_texts(item, change) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [clean_tree(item) for item in value]
+        return [change_texts(item, change) for item in value]
     return value
 
 

@@ -57,16 +57,12 @@ def draw_margin_bar(value: float, lower: float | None, upper: float | None, erro
 
 
 def _scale(lower: float | None, upper: float | None) -> tuple[float, float]:
-    """Middle of the drawing and the distance that fills `REACH` of its half, in the unit of the quantity."""
+    """Middle of the drawing and the distance that fills `BAR_REACH` of its half, in the unit of the quantity."""
     if lower is not None and upper is not None:
         return (lower + upper) / 2, (upper - lower) / 2 or max(abs(lower), 1.0)
     if upper is not None:
-        half = abs(upper) or 1.0
-        return upper - half, half
-    if lower is not None:
-        half = abs(lower) or 1.0
-        return lower + half, half
-    return 0.0, 1.0
+        return upper - (abs(upper) or 1.0), abs(upper) or 1.0
+    return (0.0, 1.0) if lower is None else (lower + (abs(lower) or 1.0), abs(lower) or 1.0)
 
 
 def _marker(x: float, verdict: str) -> str:

@@ -28,7 +28,9 @@ def render_junit(results: dict[str, Any]) -> bytes:
 
 def _suite(case: dict[str, Any], results: dict[str, Any]) -> ElementTree.Element:
     # A case without criteria counts as one test, or the count would omit it.
-    tests = [_test(case["id"], row) for row in case["criteria"]] or [_whole(case)]
+    tests = [_criterion_test(case["id"], row) for row in case["criteria"]] or [
+        _test(case["id"], "case", case["verdict"], case["reason"] or "no criteria")
+    ]
     elements = Counter(test[0].tag for test in tests)
     counts = (len(tests), elements["failure"], elements["error"], elements["skipped"])
     attributes = {"name": case["id"], **dict(zip(COUNTERS, map(str, counts), strict=True))}
@@ -52,28 +54,23 @@ def _suite(case: dict[str, Any], results: dict[str, Any]) -> ElementTree.Element
     return suite
 
 
-def _whole(case: dict[str, Any]) -> ElementTree.Element:
-    test = ElementTree.Element("testcase", {"classname": case["id"], "name": "case"})
-    _mark(test, case["verdict"], case["reason"] or "no criteria")
-    return test
-
-
-def _test(case: str, row: dict[str, Any]) -> ElementTree.Element:
+def _criterion_test(case: str, row: dict[str, Any]) -> ElementTree.Element:
     kind = "" if row["baseline"] is None else "drift of "
-    test = ElementTree.Element("testcase", {"classname": case, "name": f"{kind}{row['quantity']} of {name_owner(row)}"})
     value = "no value" if row["value"] is None else f"{row['value']:.8g} {row['unit']}".rstrip()
     bounds = f"limits {_bound(row['lower'])} to {_bound(row['upper'])}"
     margin = "" if row["margin"] is None else f", margin {row['margin']:.4g}"
     reason = f" ({row['reason']})" if row["reason"] else ""
-    _mark(test, row["verdict"], f"{value}, {bounds}{margin}, {row['trust']}{reason}")
-    return test
+    name = f"{kind}{row['quantity']} of {name_owner(row)}"
+    return _test(case, name, row["verdict"], f"{value}, {bounds}{margin}, {row['trust']}{reason}")
 
 
-def _mark(test: ElementTree.Element, verdict: str, text: str) -> None:
+def _test(case: str, name: str, verdict: str, text: str) -> ElementTree.Element:
+    test = ElementTree.Element("testcase", {"classname": case, "name": name})
     if verdict in ELEMENTS:
         ElementTree.SubElement(test, ELEMENTS[verdict], {"message": text})
     else:
         ElementTree.SubElement(test, "system-out").text = f"{verdict}: {text}"
+    return test
 
 
 def _bound(limit: float | None) -> str:

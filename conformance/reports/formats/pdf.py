@@ -18,6 +18,7 @@ from pantocheck.conformance.reports.formats.reproducibility import (
     read_source_date,
     strip_times,
 )
+from pantocheck.conformance.reports.page_text import change_texts
 from pantocheck.conformance.reports.words import TEMPLATES, read_words
 
 # Typst brings Libertinus Serif and DejaVu Sans Mono, matplotlib DejaVu Sans. No font of the machine is used.
@@ -36,30 +37,26 @@ def render_pdf(document: Document) -> bytes:
     InputError
         `SOURCE_DATE_EPOCH` is not a number of seconds.
     """
-    if document.results is None:
-        return _compile(document, {}, attachment=None, date="")
-    seconds = _find_date(document.results)
-    date = f"{datetime.fromtimestamp(seconds, UTC):%Y-%m-%d %H:%M:%S} UTC" if seconds else ""
-    files = {NAME: encode_attachment(strip_times(document.results))}
-    return _compile(document, files, attachment=NAME, date=date, pdf_standards="a-3a", timestamp=seconds)
-
-
-def _compile(document: Document, files: dict[str, bytes], attachment: str | None, date: str, **options: Any) -> bytes:
     words = read_words()
     data = {
         "document": to_plain(replace(document, results=None)),
-        "attachment": attachment,
-        "date": date,
+        "attachment": None,
+        "date": "",
         "verdicts": words["verdict"],
         "trusts": words["trust"],
     }
     # typst takes a dictionary of files, which its type hints do not know.
-    sources: Any = files | {
-        "main.typ": (TEMPLATES / "page.typ").read_bytes(),
-        "elements.typ": (TEMPLATES / "elements.typ").read_bytes(),
-        "page.json": json.dumps(replace_missing_glyphs(data)).encode("ascii"),
-    }
-    return bytes(typst.compile(sources, ignore_system_fonts=True, font_paths=[str(FONTS)], **options))
+    files: Any = {name: (TEMPLATES / name).read_bytes() for name in ("page.typ", "elements.typ")}
+    options: dict[str, Any] = {}
+    if document.results is not None:
+        seconds = _find_date(document.results)
+        data["attachment"] = NAME
+        data["date"] = f"{datetime.fromtimestamp(seconds, UTC):%Y-%m-%d %H:%M:%S} UTC" if seconds else ""
+        files[NAME] = encode_attachment(strip_times(document.results))
+        options = {"pdf_standards": "a-3a", "timestamp": seconds}
+    files["main.typ"] = files.pop("page.typ")
+    files["page.json"] = json.dumps(change_texts(data, _replace_missing_glyphs)).encode("ascii")
+    return bytes(typst.compile(files, ignore_system_fonts=True, font_paths=[str(FONTS)], **options))
 
 
 def _find_date(results: dict[str, Any]) -> int:
@@ -76,14 +73,6 @@ def _glyphs() -> frozenset[int]:
     return frozenset(FT2Font(str(FONTS / "DejaVuSans.ttf")).get_charmap())
 
 
-def replace_missing_glyphs(value: Any) -> Any:
-    """Dictionaries and lists with every character that has no glyph replaced by U+FFFD."""
-    if isinstance(value, str):
-        if value.isascii():
-            return value
-        return "".join(c if c.isascii() or ord(c) in _glyphs() else "\N{REPLACEMENT CHARACTER}" for c in value)
-    if isinstance(value, dict):
-        return {key: replace_missing_glyphs(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [replace_missing_glyphs(item) for item in value]
-    return value
+def _replace_missing_glyphs(text: str) -> str:
+    """A text with every character that has no glyph replaced by U+FFFD."""
+    return "".join(c if c.isascii() or ord(c) in _glyphs() else "\N{REPLACEMENT CHARACTER}" for c in text)

@@ -25,9 +25,6 @@ FILES = {
 }
 """File that each format is written to."""
 
-CERTIFICATE = ("html", "pdf")
-"""Formats of the certificate."""
-
 
 def write_report(document: Document, path: Path) -> None:
     """Write a document as HTML, PDF or Markdown, by the suffix of the file name.
@@ -88,7 +85,7 @@ def write_all(results: Results, folder: Path, formats: Sequence[str]) -> list[Pa
 
 def write_pages(results: dict[str, Any], folder: Path, formats: Sequence[str]) -> None:
     """Write every format but results.json; the certificate is composed once for all its formats."""
-    pages = [name for name in formats if name in CERTIFICATE]
+    pages = [name for name in formats if name in ("html", "pdf")]
     if pages:
         from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
 
