@@ -24,13 +24,7 @@ HEADING = "Conformance report"
 
 
 def build_certificate(results: dict[str, Any]) -> doc.Document:
-    """The certificate of a run.
-
-    Parameters
-    ----------
-    results : dict
-        results.json as a dictionary.
-    """
+    """The certificate of a run, from results.json as a dictionary."""
     cleaned = clean_tree(results)
     header = build_header(cleaned)
     cases = cleaned["cases"]

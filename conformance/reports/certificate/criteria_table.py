@@ -51,15 +51,7 @@ def describe_criterion(criterion: dict[str, Any]) -> CriterionTexts:
 
 
 def criteria_blocks(case: dict[str, Any], anchor: str) -> tuple[doc.Block, ...]:
-    """The table of criteria, its key and the sources of the limits.
-
-    Parameters
-    ----------
-    case : dict
-        One entry of `cases` of results.json.
-    anchor : str
-        Anchor of the section of the case.
-    """
+    """The table of criteria of a case, its key and the sources of the limits; the anchor is that of the case."""
     sources = list(dict.fromkeys(criterion["source"] for criterion in case["criteria"] if criterion["source"]))
     error = error_name(case)
     columns = (

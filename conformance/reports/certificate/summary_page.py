@@ -11,13 +11,7 @@ from pantocheck.conformance.reports.words import read_words
 
 
 def build_summary(results: dict[str, Any]) -> doc.Document:
-    """Verdict, reasons and criteria of a run.
-
-    Parameters
-    ----------
-    results : dict
-        results.json as a dictionary.
-    """
+    """Verdict, reasons and criteria of a run, from results.json as a dictionary."""
     results = clean_tree(results)
     header = build_header(results)
     return doc.Document(header.heading, header, (*list_reasons(results), *map(_case_section, results["cases"])))

@@ -10,15 +10,7 @@ from pantocheck.conformance.reports.figures.figure_style import FULL, GREY, INK,
 
 @render_svg
 def draw_observability(rows: list[dict[str, Any]], thresholds: dict[str, float]) -> Figure:
-    """Largest share of each coefficient in the damping of a mode, and its plausible value over its uncertainty.
-
-    Parameters
-    ----------
-    rows : list of dict
-        `observability` of damping.json.
-    thresholds : dict
-        `thresholds` of damping.json.
-    """
+    """Largest share of each coefficient in the damping of a mode, and its plausible value over its uncertainty."""
     names = [f"{row['kind'].replace('_', ' ')}, {row['matrix']}" for row in rows]
     places = np.arange(len(rows))
     figure = Figure(figsize=(FULL, 0.9 + 0.24 * len(rows)))

@@ -27,15 +27,7 @@ FORCE_LEVELS = {name: quantity.force_level for name, quantity in QUANTITIES.item
 
 @render_svg
 def draw_force(trace: dict[str, Any], limited: list[dict[str, Any]]) -> Figure:
-    """Contact force over the analysis section; on the right, limits and values of its statistics.
-
-    Parameters
-    ----------
-    trace : dict
-        One pantograph's entry of a case's `traces`.
-    limited : list of dict
-        The criteria of that pantograph that `select_limited` selects.
-    """
+    """Contact force of one pantograph from its `traces`; on the right, limits and values that `select_limited` returns."""
     figure = Figure(figsize=(FULL, 2.6))
     if limited:
         left, right = figure.subplots(1, 2, sharey=True, width_ratios=(1, 0.062 * (len(limited) + 1)))

@@ -19,17 +19,7 @@ from pantocheck.conformance.reports.figures.figure_style import (
 
 @render_svg
 def draw_overlay(runs: list[dict[str, Any]], channel: str, unit: str) -> Figure:
-    """Repeats of one drop laid over each other at the start and a minute later.
-
-    Parameters
-    ----------
-    runs : list of dict
-        Each {"name", "windows": [{"time_s", "signal"}, ...]}.
-    channel : str
-        Name of the channel.
-    unit : str
-        Unit of the signal.
-    """
+    """Repeats of one drop laid over each other at the start and a minute later; one entry of `overlays` of a line."""
     windows = max(len(run["windows"]) for run in runs)
     figure = Figure(figsize=(FULL, 2.4 * windows))
     panels = np.atleast_1d(figure.subplots(windows, 1))

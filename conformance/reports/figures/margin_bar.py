@@ -17,19 +17,7 @@ EDGE = 6.0
 
 
 def draw_margin_bar(value: float, lower: float | None, upper: float | None, error: float | None, verdict: str) -> str:
-    """SVG of the bar without text, size `WIDTH` by `HEIGHT`.
-
-    Parameters
-    ----------
-    value : float
-        Graded value.
-    lower, upper : float or None
-        Limits; None: no limit on that side.
-    error : float or None
-        Half-length of the whisker; None: no whisker.
-    verdict : str
-        Verdict of the criterion, which selects the marker.
-    """
+    """SVG of the bar without text; the error is half the length of the whisker, the verdict selects the marker."""
     centre, half = _scale(lower, upper)
 
     def across(x: float) -> float:

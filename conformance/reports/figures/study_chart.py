@@ -28,13 +28,7 @@ TICK_WIDTH = 10
 
 @render_svg
 def draw_chart(data: dict[str, Any]) -> Figure:
-    """A chart of a study.
-
-    Parameters
-    ----------
-    data : dict
-        One entry of a case's `charts`.
-    """
+    """A chart of a study: one entry of a case's `charts`."""
     figure = Figure(figsize=(FULL, 2.9) if data["wide"] else (HALF, 2.4))
     axes = figure.subplots()
     axes.set(xscale=data["x_scale"], yscale=data["y_scale"], xlabel=data["x_label"], ylabel=data["y_label"])

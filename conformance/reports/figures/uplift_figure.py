@@ -22,15 +22,7 @@ MOST_NAMED = 4
 
 @render_svg
 def draw_uplift(supports: list[dict[str, Any]], criteria: list[dict[str, Any]]) -> Figure:
-    """Uplift at each support over time, with the limits of the maximum where it is graded.
-
-    Parameters
-    ----------
-    supports : list of dict
-        `uplift` of a case.
-    criteria : list of dict
-        `criteria` of the same case.
-    """
+    """Uplift over time at the supports of a case, with the limits of the maximum where its criteria grade it."""
     figure = Figure(figsize=(FULL, 2.1))
     axes = figure.subplots()
     if len(supports) <= MOST_NAMED:

@@ -14,15 +14,7 @@ COMPARISON = "The line as it is has the damping of its present file."
 
 
 def build_damping_document(results: dict[str, Any], block: str) -> doc.Document:
-    """The report.
-
-    Parameters
-    ----------
-    results : dict
-        damping.json as a dictionary.
-    block : str
-        The result as a TOML block for the line file.
-    """
+    """The report on damping.json as a dictionary; the block is its result as TOML for the line file."""
     results = clean_tree(results)
     kinds = dict.fromkeys(_component(row) for row in results["observability"] if row["observable"])
     headline = (

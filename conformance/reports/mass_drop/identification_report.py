@@ -16,13 +16,7 @@ MODES_TEXT = (
 
 
 def build_identification_document(lines: list[dict[str, Any]]) -> doc.Document:
-    """The report.
-
-    Parameters
-    ----------
-    lines : list of dict
-        `lines` of identification.json.
-    """
+    """The report on the `lines` of identification.json."""
     lines = clean_tree(lines)
     modes = [mode for line in lines for mode in line["modes"]]
     certain = sum(mode["certain"] and not mode["lateral"] for mode in modes)
