@@ -17,22 +17,14 @@ from pantocheck.conformance.reports.words import read_words
 
 @dataclass(frozen=True)
 class Verification:
-    """Result of the verification of a certificate.
-
-    Parameters
-    ----------
-    verdict : Verdict
-        Verdict stated in the embedded results.
-    cases, criteria : int
-        Numbers of cases and criteria.
-    discrepancies : tuple[str, ...]
-        Discrepancies, one line each; none if the certificate is consistent.
-    """
+    """Result of the verification of a certificate."""
 
     verdict: Verdict
+    """Verdict stated in the embedded results."""
     cases: int
     criteria: int
     discrepancies: tuple[str, ...]
+    """One line each; none if the certificate is consistent."""
 
     @property
     def consistent(self) -> bool:
@@ -58,17 +50,17 @@ def verify_certificate(path: Path) -> Verification:
     """
     reader = open_document(path)
     results = read_embedded_results(path, reader)
-    found = find_discrepancies(results)
+    discrepancies = find_discrepancies(results)
     word = read_words()["verdict"][results["verdict"]]["word"]
     title, first_page = read_title_and_first_page(path, reader)
     if not title.startswith(word):
-        found.append(f"the document's title does not begin with the verdict {word}: '{title}'")
+        discrepancies.append(f"the document's title does not begin with the verdict {word}: '{title}'")
     heading = next((line for line in first_page.splitlines() if line.startswith(HEADING)), "")
     if word not in heading.split():
-        found.append(f"the first page does not print the verdict {word} in its heading: '{heading}'")
+        discrepancies.append(f"the first page does not print the verdict {word} in its heading: '{heading}'")
     return Verification(
         verdict=results["verdict"],
         cases=len(results["cases"]),
         criteria=sum(len(case["criteria"]) for case in results["cases"]),
-        discrepancies=tuple(clean_text(text) for text in found),
+        discrepancies=tuple(clean_text(text) for text in discrepancies),
     )

@@ -4,11 +4,7 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import Any
 
-from pantocheck.conformance.reports.certificate.criteria_table import (
-    criterion_title,
-    format_signed,
-    is_close,
-)
+from pantocheck.conformance.reports.certificate.criteria_table import criterion_title, format_signed, is_close
 from pantocheck.conformance.reports.document import BulletList, Section
 from pantocheck.conformance.reports.page_text import format_beside_limits, format_limits
 from pantocheck.conformance.reports.words import name_owner, read_words

@@ -27,7 +27,7 @@ FORCE_LEVELS = {name: quantity.force_level for name, quantity in QUANTITIES.item
 
 @render_svg
 def draw_force(trace: dict[str, Any], limited: list[dict[str, Any]]) -> Figure:
-    """Contact force of one pantograph from its `traces`; on the right, limits and values that `select_limited` returns."""
+    """Contact force of one pantograph from its `traces`; on the right, the levels that `select_limited` returns."""
     figure = Figure(figsize=(FULL, 2.6))
     if limited:
         left, right = figure.subplots(1, 2, sharey=True, width_ratios=(1, 0.062 * (len(limited) + 1)))
