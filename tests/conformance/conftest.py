@@ -1,9 +1,10 @@
 """Fixtures: a system whose quantities are known by hand, copies of a case, and records with known samples."""
 
+import shutil
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -87,6 +88,26 @@ def own_case(tmp_path: Path) -> Callable[..., Path]:
         return tmp_path / "250.toml"
 
     return copy
+
+
+@pytest.fixture
+def edited_case(tmp_path: Path) -> Callable[[str, dict[str, Any]], Path]:
+    """Copy of the 250 km/h case with values changed in one of its files; gives the path of the case."""
+
+    def copy(file: str, changes: dict[str, Any]) -> Path:
+        for name in ("250.toml", "line.toml", "pantograph.toml"):
+            shutil.copy(library_folder() / "en50318-2002" / name, tmp_path / name)
+        edit_toml(tmp_path / file, changes)
+        return tmp_path / "250.toml"
+
+    return copy
+
+
+@pytest.fixture
+def two_pantograph_case(case_250: Case) -> Case:
+    """The 250 km/h case with a second pantograph 150 m behind the first."""
+    file = case_250.file.model_copy(update={"spacing_m": (150.0,), "pantograph": case_250.file.pantograph * 2})
+    return replace(case_250, file=file, pantographs=case_250.pantographs * 2)
 
 
 @pytest.fixture

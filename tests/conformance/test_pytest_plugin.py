@@ -1,8 +1,9 @@
-"""The pytest plugin as users meet it: in a session of their own."""
+"""pytest plugin in sessions of a user."""
 
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -28,7 +29,7 @@ for line in sys.stdin:
 """
 
 
-# Another plugin takes a second to load; it has nothing to do here.
+# This plugin takes a second to load and is not needed here.
 ALONE = ("-p", "no:hypothesispytest")
 
 
@@ -42,7 +43,7 @@ def process(pytester, *arguments):
 
 @pytest.fixture
 def plan(pytester, wave):
-    """A plan on records of both cases: sines, whose extremes fail."""
+    """Plan for records of both cases: sines, whose extremes are outside the limits."""
     pytester.path.joinpath("records").mkdir()
     for case in select_cases(["en50318-2002/*"]):
         write_record(pytester.path / "records" / f"{case.file.speed_km_h:g}.csv", wave().record(case), case.id)
@@ -57,7 +58,7 @@ def outcomes_250(verdicts):
     return [f"conformance.toml::en50318-2002/250::{name} {verdict}*" for name, verdict in verdicts.items()]
 
 
-def test_every_criterion_is_an_item_with_a_one_line_reason(pytester, plan):
+def test_every_criterion_is_an_item_with_a_one_line_reason(pytester: pytest.Pytester, plan: Path) -> None:
     done = session(pytester, "-v", "conformance.toml")
     done.stdout.fnmatch_lines(
         outcomes_250(
@@ -78,7 +79,7 @@ def test_every_criterion_is_an_item_with_a_one_line_reason(pytester, plan):
     assert sorted(path.name for path in (pytester.path / "report").iterdir()) == ["junit.xml", "results.json"]
 
 
-def test_items_are_chosen_by_id_and_options_go_before_the_plan(pytester, plan):
+def test_ids_select_items_and_options_replace_those_of_the_plan(pytester: pytest.Pytester, plan: Path) -> None:
     done = session(
         pytester,
         "conformance.toml::en50318-2002/250::1::std_force_N", "--pantocheck-out", "asked",
@@ -94,7 +95,7 @@ def test_items_are_chosen_by_id_and_options_go_before_the_plan(pytester, plan):
 
 
 @pytest.mark.parametrize("workers", [(), ("-n2",)])
-def test_each_case_is_run_once_in_a_session(pytester, plan, workers):
+def test_each_case_is_run_once_in_a_session(pytester: pytest.Pytester, plan: Path, workers: tuple[str, ...]) -> None:
     (pytester.path / "skipper.py").write_text(SKIPPER)
     log = pytester.path / "log"
     text = plan.read_text().replace("record:records", f"command:{sys.executable} skipper.py {log}")
@@ -107,7 +108,7 @@ def test_each_case_is_run_once_in_a_session(pytester, plan, workers):
     assert (results["verdict"], results["system"]["name"]) == ("skip", "skipper")
 
 
-def test_error_of_a_case_fails_its_criteria_with_the_reason(pytester, plan):
+def test_error_of_a_case_fails_its_criteria_with_the_reason(pytester: pytest.Pytester, plan: Path) -> None:
     (pytester.path / "skipper.py").write_text(SKIPPER.replace("print(json.dumps(answer), flush=True)", "sys.exit(3)"))
     plan.write_text(plan.read_text().replace("record:records", f"command:{sys.executable} skipper.py log"))
     done = session(pytester, "conformance.toml")
@@ -115,7 +116,7 @@ def test_error_of_a_case_fails_its_criteria_with_the_reason(pytester, plan):
     done.stdout.fnmatch_lines(["error: *ended with exit code 3 before it answered"])
 
 
-def test_missing_records_are_told_in_one_line(pytester, plan):
+def test_missing_records_are_reported_in_one_line(pytester: pytest.Pytester, plan: Path) -> None:
     plan.write_text(plan.read_text().replace("record:records", "record:nowhere"))
     done = session(pytester, "conformance.toml")
     done.assert_outcomes(failed=16)
@@ -123,7 +124,7 @@ def test_missing_records_are_told_in_one_line(pytester, plan):
     done.stdout.no_fnmatch_line("*raise InputError*")
 
 
-def test_drift_from_a_baseline_fails_the_session(pytester, plan):
+def test_drift_from_a_baseline_fails_the_session(pytester: pytest.Pytester, plan: Path) -> None:
     session(pytester, "conformance.toml", "--pantocheck-out", "before")
     (pytester.path / "before" / "results.json").rename(pytester.path / "baseline.json")
     plan.write_text(plan.read_text() + 'baseline = "baseline.json"\n')
@@ -138,8 +139,8 @@ def test_drift_from_a_baseline_fails_the_session(pytester, plan):
     done.stdout.fnmatch_lines(["conformance.toml: 1 values drifted from the baseline *baseline.json"])
 
 
-def test_wrong_plans_say_what_to_do(pytester, plan):
-    for text, said in (
+def test_invalid_plan_is_reported_with_a_hint(pytester: pytest.Pytester, plan: Path) -> None:
+    for text, message in (
         ('cases = ["en50318-2002/25"]', "*there is no such case*"),
         ("case = 1", "*key case: unknown key*"),
         ("cases = [", "*is not valid TOML*"),
@@ -148,12 +149,12 @@ def test_wrong_plans_say_what_to_do(pytester, plan):
         plan.write_text(text)
         done = session(pytester, "conformance.toml")
         done.assert_outcomes(errors=1)
-        done.stdout.fnmatch_lines([said])
+        done.stdout.fnmatch_lines([message])
         assert "Traceback" not in done.stdout.str()
 
 
-def test_silent_when_not_asked_for(pytester, plan):
-    """A plan that is not named is left alone, and so is every other TOML file."""
+def test_plan_that_is_not_named_is_ignored(pytester: pytest.Pytester, plan: Path) -> None:
+    """The plugin ignores other TOML files, too."""
     pytester.makepyfile("def test_own(): pass")
     done = session(pytester)
     done.assert_outcomes(passed=1)
@@ -162,7 +163,7 @@ def test_silent_when_not_asked_for(pytester, plan):
 
 
 @pytest.mark.parametrize("arguments", [("conformance.toml",), (".", "conformance.toml"), ()])
-def test_plan_is_collected_when_named(pytester, plan, arguments):
+def test_plan_is_collected_when_named(pytester: pytest.Pytester, plan: Path, arguments: tuple[str, ...]) -> None:
     """On the command line, also beside a folder that holds it, or in `testpaths`."""
     if not arguments:
         pytester.makeini("[pytest]\ntestpaths = conformance.toml")
@@ -171,7 +172,7 @@ def test_plan_is_collected_when_named(pytester, plan, arguments):
     assert not (pytester.path / "report" / "results.json").exists()
 
 
-def test_loading_the_plugin_imports_nothing_heavy():
+def test_loading_the_plugin_imports_nothing_heavy() -> None:
     code = "import sys, pantocheck.conformance.pytest_plugin; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     loaded = set(done.stdout.split())
@@ -182,7 +183,7 @@ def test_loading_the_plugin_imports_nothing_heavy():
     assert ours <= {"pantocheck", "pantocheck.conformance", plugin, f"{plugin}.session"}
 
 
-def test_fixtures_grade_records_and_arrays(pytester, plan):
+def test_fixtures_grade_records_and_arrays(pytester: pytest.Pytester, plan: Path) -> None:
     pytester.makepyfile(
         """
         import numpy as np
@@ -223,7 +224,7 @@ def test_fixtures_grade_records_and_arrays(pytester, plan):
     done.stdout.fnmatch_lines(["E*en50318-2002/250: max_force_N of pantograph 1 = 158.6 N, limits 175 to 210: 16.4 N*"])
 
 
-def test_users_own_modules_of_our_folders_names_do_not_collide(pytester, plan):
+def test_modules_of_a_user_with_names_of_our_folders_do_not_collide(pytester: pytest.Pytester, plan: Path) -> None:
     """`model.py`, `templates/` and `conformance/` beside the tests, imported by them and found first."""
     pytester.makepyfile(model="WHOSE = 'mine'", conformance="WHOSE = 'mine'")
     pytester.mkpydir("templates")

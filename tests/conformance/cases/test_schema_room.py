@@ -1,4 +1,6 @@
-"""The line schema takes the published data of the other reference lines."""
+"""Line files accept the published data of the reference lines."""
+
+from typing import Any
 
 import pytest
 from pydantic import ValidationError
@@ -38,7 +40,7 @@ AC_SIMPLE = {
 STITCH = {"length_m": 18.0, "tension_N": 3500.0, "mass_kg_m": 0.31, "clamp_kg": 0.38, **PROVENANCE}
 
 
-def test_simple_stitched_and_twin_lines_fit():
+def test_simple_stitched_and_twin_lines_fit() -> None:
     assert LineFile.model_validate(AC_SIMPLE).geometry.stagger_contact_wire_m == 0.2
     assert LineFile.model_validate(AC_SIMPLE | {"stitch_wire": STITCH}).stitch_wire is not None
     twin = AC_SIMPLE["contact_wire"] | {"number": 2, "spacing_m": 0.04}
@@ -53,12 +55,12 @@ def test_simple_stitched_and_twin_lines_fit():
         ({"steady_arm": {"static_share": "none", **PROVENANCE}}, "neither a stiffness nor a length"),
     ],
 )
-def test_impossible_lines_are_refused(change, message):
+def test_impossible_lines_are_refused(change: dict[str, Any], message: str) -> None:
     with pytest.raises(ValidationError, match=message):
         LineFile.model_validate(AC_SIMPLE | change)
 
 
-def test_modal_damping_bands_must_not_overlap():
+def test_modal_damping_bands_must_not_overlap() -> None:
     band = {"from_Hz": 0.8, "to_Hz": 1.2, "damping_ratio": 0.006}
     next_band = {"from_Hz": 1.2, "to_Hz": 2.5, "damping_ratio": 0.005}
     assert len(Damping.model_validate({"modal": [band, next_band], **PROVENANCE}).modal) == 2
@@ -66,7 +68,7 @@ def test_modal_damping_bands_must_not_overlap():
         Damping.model_validate({"modal": [band, next_band | {"from_Hz": 1.1}], **PROVENANCE})
 
 
-def test_three_mass_pantograph_fits():
+def test_three_mass_pantograph_fits() -> None:
     chain = {
         "masses_kg": [6.0, 9.0, 7.5],
         "stiffness_N_m": [160.0, 15500.0, 7000.0],

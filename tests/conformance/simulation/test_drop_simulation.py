@@ -1,6 +1,8 @@
-"""Simulated drops as records: the filter before decimation, what the record says, and the way through files."""
+"""Simulated drops as records: decimation, content of the record, and files."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -42,7 +44,7 @@ def own_case(tmp_path):
     return write
 
 
-def test_decimation_keeps_the_pass_band_and_its_phase():
+def test_decimation_keeps_the_pass_band_and_its_phase() -> None:
     """A sine at 0.8 of half the new rate comes out as it is, up to the filter's ripple of 90 dB; no delay."""
     rate, every = 1000.0, 5
     time = np.arange(20_000) / rate
@@ -51,14 +53,14 @@ def test_decimation_keeps_the_pass_band_and_its_phase():
         assert_allclose(decimate(wave, every)[200:-200], wave[::every][200:-200], atol=1e-4)
 
 
-def test_decimation_takes_out_what_would_alias():
+def test_decimation_removes_frequencies_that_would_alias() -> None:
     rate, every = 1000.0, 5
     time = np.arange(20_000) / rate
     wave = np.sin(2 * np.pi * 101.0 * time)[:, None]
     assert np.abs(decimate(wave, every)[200:-200]).max() < 1e-4
 
 
-def test_record_is_the_decay_at_its_own_rate(own_case):
+def test_record_is_the_decay_at_the_rate_of_the_record(own_case: Callable[..., Path]) -> None:
     case = load_case(own_case(("noise_rms = 0.003", "noise_rms = 0.0")))
     drop = simulate_drop(case, 1)
     record, decay = drop.record, drop.decay
@@ -82,7 +84,7 @@ def test_record_is_the_decay_at_its_own_rate(own_case):
     assert_allclose(np.sqrt(np.mean(record.signals[700:] ** 2, axis=0)), rms, rtol=0.005)
 
 
-def test_noise_is_the_same_every_time_and_another_for_every_drop(own_case):
+def test_noise_is_reproducible_and_differs_between_drops(own_case: Callable[..., Path]) -> None:
     case = load_case(own_case())
     first, again, other = simulate_drop(case, 1).record, simulate_drop(case, 1).record, simulate_drop(case, 3).record
     assert np.array_equal(first.signals, again.signals)
@@ -93,7 +95,7 @@ def test_noise_is_the_same_every_time_and_another_for_every_drop(own_case):
 
 
 @pytest.mark.parametrize("suffix", [".uff", ".csv", ".h5"])
-def test_command_writes_records_that_read_back(own_case, tmp_path, suffix):
+def test_command_writes_records_that_read_back(own_case: Callable[..., Path], tmp_path: Path, suffix: str) -> None:
     out = tmp_path / f"record{suffix}"
     done = pantocheck("drop", own_case(), "--drop", 2, "--out", out)
     assert done.exit_code == 0, done.output
@@ -102,7 +104,7 @@ def test_command_writes_records_that_read_back(own_case, tmp_path, suffix):
     assert_allclose(record.signals, simulate_drop(load_case(own_case()), 2).record.signals, rtol=1e-6, atol=1e-6)
 
 
-def test_command_writes_every_drop_to_a_file_of_its_own(own_case, tmp_path):
+def test_command_writes_a_file_per_drop(own_case: Callable[..., Path], tmp_path: Path) -> None:
     done = pantocheck("drop", own_case(), "--out", tmp_path / "all.csv")
     assert done.exit_code == 0, done.output
     assert [read_drop_records(tmp_path / f"all-{n}.csv")[0].drop.mass for n in (1, 2, 3)] == [40.0, 30.0, 20.0]
@@ -117,7 +119,9 @@ def test_command_writes_every_drop_to_a_file_of_its_own(own_case, tmp_path):
         (("vovan2015/mass-drop/updated", "--drop", "4", "--out", "x.uff"), "there is no drop 4"),
     ],
 )
-def test_command_reports_wrong_input(arguments, message, tmp_path, monkeypatch):
+def test_command_reports_wrong_input(
+    arguments: tuple[str, ...], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     done = pantocheck("drop", *arguments)
     assert done.exit_code == 2
@@ -138,7 +142,9 @@ def test_command_reports_wrong_input(arguments, message, tmp_path, monkeypatch):
         ('damping = "vovan2015', 'speed_km_h = 300.0\ndamping = "vovan2015', "mass_drop"),
     ],
 )
-def test_impossible_drops_are_refused_with_their_key(own_case, old, new, key):
+def test_impossible_drops_are_refused_with_their_key(
+    own_case: Callable[..., Path], old: str, new: str, key: str
+) -> None:
     path = own_case()
     text = path.read_text()
     assert old in text
@@ -148,7 +154,7 @@ def test_impossible_drops_are_refused_with_their_key(own_case, old, new, key):
     assert key in str(refused.value)
 
 
-def test_damping_table_and_damping_file_are_the_same(own_case):
+def test_damping_table_and_damping_file_are_the_same(own_case: Callable[..., Path]) -> None:
     """The block that a fit writes stands in a case as it is, or in a file that the case names."""
     named = load_case(own_case())
     path = own_case()
@@ -159,13 +165,13 @@ def test_damping_table_and_damping_file_are_the_same(own_case):
     assert load_case(path).digest == named.digest
 
 
-def test_studies_run_on_request_only():
+def test_studies_run_on_request_only() -> None:
     """They take minutes, and one is expected to fail: a run without a case must not meet them."""
     assert not any(case.id.startswith("vovan2015") for case in select_cases([]))
     assert len(select_cases(["vovan2015/*"])) == 8
 
 
-def test_every_kind_of_damping_that_a_model_leaves_out_stays_the_lines(own_case):
+def test_component_without_damping_in_the_model_keeps_that_of_the_line(own_case: Callable[..., Path]) -> None:
     case = load_case(own_case())
     wires = case.dampings["initial"].model_copy(update={})
     only = type(wires).model_validate(
@@ -179,6 +185,6 @@ def test_every_kind_of_damping_that_a_model_leaves_out_stays_the_lines(own_case)
     assert other.id.endswith("/only")
 
 
-def test_digest_covers_the_models_that_a_study_runs_with():
+def test_digest_covers_the_damping_models_of_a_study() -> None:
     (study,) = select_cases(["vovan2015/contact-force"])
     assert replace(study, dampings={"initial": study.line.damping}).digest != study.digest

@@ -1,10 +1,12 @@
 """Lines at rest as the reference simulator reports them."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
+from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.runner import run_cases
 from pantocheck.conformance.simulation.catenary_model import build_catenary
@@ -13,9 +15,9 @@ from pantocheck.conformance.systems.reference_simulator import ReferenceSimulato
 from pantocheck.model import discretise
 
 
-def shortened(name, spans=8):
-    """A case of the library on a shorter line: what is checked in a span half way along hardly feels the ends."""
-    case = next(one for one in select_cases([name]) if one.id == name)
+def shortened(name: str, spans: int = 8) -> Case:
+    """Case of the library on a shorter line; its ends hardly affect the middle span."""
+    case = next(case for case in select_cases([name]) if case.id == name)
     line = case.line.model_copy(update={"geometry": case.line.geometry.shorten(spans)})
     sections = {} if case.is_static else {"evaluated_spans": (3, 4), "compared_spans": None}
     return replace(case, line=line, file=case.file.model_copy(update=sections))
@@ -27,7 +29,9 @@ def simple():
     return case, compute_static_quantities(case, discretise(build_catenary(case.line), 0.5))
 
 
-def test_published_lengths_by_strings_and_what_bending_and_stagger_add(simple):
+def test_string_statics_give_published_lengths_and_bending_and_stagger_add_to_them(
+    simple: tuple[Case, dict[str, Any]],
+) -> None:
     """Strings to 1 mm; bending 4 to 5 mm more; the slant of the outer droppers 11 mm on top."""
     case, found = simple
     string, bending, stagger = (
@@ -40,7 +44,7 @@ def test_published_lengths_by_strings_and_what_bending_and_stagger_add(simple):
     assert 10.0 < stagger[0] - bending[0] < 1e3 * (np.hypot(1.0216, 0.1673) - 1.0216)
 
 
-def test_elasticity_is_symmetrical_and_larger_when_droppers_slacken(simple):
+def test_elasticity_is_symmetrical_and_larger_when_droppers_slacken(simple: tuple[Case, dict[str, Any]]) -> None:
     _, found = simple
     small, large = (np.array(found[f"elasticity{name}_along_span_mm_N"]) for name in ("", "_200_N"))
     assert small.size == SAMPLES_PER_SPAN
@@ -51,7 +55,7 @@ def test_elasticity_is_symmetrical_and_larger_when_droppers_slacken(simple):
     assert found["elasticity_mm_N"] == small.max()
 
 
-def test_waves_and_modes(simple):
+def test_waves_and_modes(simple: tuple[Case, dict[str, Any]]) -> None:
     case, found = simple
     assert found["wave_speed_m_s"] == pytest.approx(np.sqrt(22e3 / 1.35))
     assert "doppler_factor" not in found
@@ -69,14 +73,14 @@ def test_waves_and_modes(simple):
     assert frequencies[0] == pytest.approx(np.sqrt(38e3 / 2.43) / (2 * case.line.geometry.span_m), rel=0.25)
 
 
-def test_stitched_line_fits_its_figure():
+def test_stitched_line_fits_its_figure() -> None:
     """Seven lengths measured to 0.01 m."""
     case = shortened("en50318-2018/ac-stitched/static")
     found = compute_static_quantities(case, discretise(build_catenary(case.line), 1.0))
     assert found["dropper_length_m"] == pytest.approx(case.line.droppers.length_m, abs=0.0101)
 
 
-def test_failed_static_case_skips_what_builds_on_it():
+def test_failed_static_case_skips_cases_that_require_it() -> None:
     static, running = (shortened(f"en50318-2018/ac-simple/{name}") for name in ("static", "275"))
     wrong = static.limits[0].model_copy(update={"lower": 2.0, "upper": 3.0})
     coarse = static.file.discretisation.model_copy(update={"element_m": 4.0})
@@ -86,7 +90,7 @@ def test_failed_static_case_skips_what_builds_on_it():
     assert results.cases[1].reason == f"requires {static.id}, which ended in fail"
 
 
-def test_apparent_mass_is_a_static_check(simple):
+def test_apparent_mass_is_a_static_check(simple: tuple[Case, dict[str, Any]]) -> None:
     case, found = simple
     assert case.file.apparent_mass is not None
     assert len(found["apparent_mass_kg"]) == len(case.file.apparent_mass.frequency_Hz)

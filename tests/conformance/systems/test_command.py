@@ -1,15 +1,17 @@
-"""A program as a system under test: what it is told, and what becomes of every way to misbehave."""
+"""Program as a system under test: messages, deliveries and failures."""
 
 import json
 import os
 import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
 import jsonschema
 import pytest
 from numpy.testing import assert_allclose
 
+from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.plan import read_plan
@@ -19,9 +21,11 @@ from pantocheck.conformance.runner import run_cases
 from pantocheck.conformance.schemas import build_schema
 from pantocheck.conformance.systems.command.program_arguments import split_arguments
 from pantocheck.conformance.systems.command.protocol_messages import AnswerRefused, parse_message
+from pantocheck.conformance.systems.system import System
 from pantocheck.conformance.systems.system_choice import choose_system
+from tests.conformance.conftest import Wave
 
-# A program that behaves but for one thing, which its first argument names.
+# Program with one fault, which its first argument names.
 PROGRAM = """
 import hashlib, json, os, shutil, subprocess, sys, time
 how, records, log = sys.argv[1:4]
@@ -114,7 +118,7 @@ def cases():
 
 @pytest.fixture
 def program(case_250, wave, tmp_path):
-    """The program of a way to behave, with a time limit."""
+    """Function that starts the program with a fault and a time limit."""
     write_record(tmp_path / "record.csv", wave().record(case_250), case_250.id)
     script = tmp_path / "a program.py"
     script.write_text(PROGRAM)
@@ -126,7 +130,7 @@ def program(case_250, wave, tmp_path):
     return system
 
 
-def test_delivered_record_is_read(program, case_250, wave):
+def test_delivered_record_is_read(program: Callable[..., System], case_250: Case, wave: type[Wave]) -> None:
     system = program("well")
     assert (system.name, system.version, system.kind) == ("p", "1", "command")
     outcome = system.run(case_250)
@@ -137,7 +141,9 @@ def test_delivered_record_is_read(program, case_250, wave):
     assert outcome.warnings == ()
 
 
-def test_case_is_given_whole_and_without_limits(program, case_250, tmp_path):
+def test_message_contains_the_whole_case_without_limits(
+    program: Callable[..., System], case_250: Case, tmp_path: Path
+) -> None:
     program("well").run(case_250)
     messages = [json.loads(line) for line in (tmp_path / "log").read_text().splitlines()][2:]
     assert [message["message"] for message in messages] == ["start", "run", "stop"]
@@ -154,7 +160,7 @@ def test_case_is_given_whole_and_without_limits(program, case_250, tmp_path):
     assert given["evaluated_m"] == [240.0, 360.0]
 
 
-def test_answers_of_the_program_follow_their_schema():
+def test_answers_follow_their_schema() -> None:
     digest = {"file": "a.toml", "sha256": "0" * 64}
     for message in (
         {"message": "started", "protocol": "pantocheck.command/1", "name": "p", "version": ""},
@@ -188,7 +194,9 @@ def test_answers_of_the_program_follow_their_schema():
         ("other table", "error", "p: the sidecar is of 'record.csv', the answer names 'b.csv'"),
     ],
 )
-def test_misbehaviour_is_the_verdict_of_its_case(program, case_250, how, verdict, reason):
+def test_fault_of_the_program_is_the_verdict_of_its_case(
+    program: Callable[..., System], case_250: Case, how: str, verdict: str, reason: str
+) -> None:
     try:
         (result,) = run_cases([case_250], program(how)).cases
     finally:
@@ -198,32 +206,36 @@ def test_misbehaviour_is_the_verdict_of_its_case(program, case_250, how, verdict
     assert "\n" not in result.reason
 
 
-def test_crash_with_its_last_words_leaves_the_other_cases_and_a_record_of_another_case_is_refused(program, cases):
+def test_crash_does_not_stop_other_cases_and_record_of_another_case_is_refused(
+    program: Callable[..., System], cases: list[Case]
+) -> None:
     first, second = run_cases(cases, program("crash")).cases
     assert first.reason == "p: ended with exit code 1 before it answered; its last words: no licence left"
     assert second.reason == "p: the record is of case 'en50318-2002/250' in place of 'en50318-2002/300'"
 
 
-def living(text):
-    found = []
+def running_processes(text: bytes) -> list[str]:
+    processes = []
     for path in Path("/proc").glob("[0-9]*/cmdline"):
         try:
             if text in path.read_bytes():
-                found.append(path.parent.name)
+                processes.append(path.parent.name)
         except OSError:
             continue
-    return found
+    return processes
 
 
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="processes are counted in /proc")
-def test_time_limit_ends_the_program_and_all_its_children(program, case_250):
-    """One child stays in the program's group, the other leaves it for a session of its own."""
+def test_time_limit_ends_the_program_and_all_its_children(program: Callable[..., System], case_250: Case) -> None:
+    """One child stays in the process group of the program, the other starts a new session."""
     outcome = program("child", timeout=1.0).run(case_250)
     assert outcome == Errored("p: gave no answer within 1 s")
-    assert not living(b"time.sleep(1000)")
+    assert not running_processes(b"time.sleep(1000)")
 
 
-def test_program_that_does_not_stop_is_ended_and_warned_of(program, case_250, monkeypatch):
+def test_program_that_does_not_stop_is_ended_with_a_warning(
+    program: Callable[..., System], case_250: Case, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr("pantocheck.conformance.systems.command.program.PATIENCE", 0.2)
     outcome = program("deaf").run(case_250)
     assert outcome.record is not None
@@ -237,7 +249,9 @@ def test_program_that_does_not_stop_is_ended_and_warned_of(program, case_250, mo
         ("old", "it uses 'pantocheck.command/0', the suite 'pantocheck.command/1'"),
     ],
 )
-def test_program_that_does_not_start_is_the_error_of_every_case(program, cases, how, reason):
+def test_program_that_does_not_start_is_the_error_of_every_case(
+    program: Callable[..., System], cases: list[Case], how: str, reason: str
+) -> None:
     results = run_cases(cases, program(how, timeout=1.0))
     assert [case.verdict for case in results.cases] == ["error", "error"]
     assert all(reason in case.reason for case in results.cases)
@@ -253,19 +267,19 @@ def test_program_that_does_not_start_is_the_error_of_every_case(program, cases, 
         ("sh\0", "names no program"),
     ],
 )
-def test_wrong_commands(text, found, tmp_path):
+def test_invalid_command_is_refused(text: str, found: str, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=found):
         split_arguments(text, tmp_path)
 
 
-def test_nothing_of_a_command_is_left_to_a_shell(tmp_path):
+def test_no_shell_interprets_a_command(tmp_path: Path) -> None:
     (tmp_path / "a b.py").touch()
-    given = split_arguments("sh 'a b.py' $HOME ;rm -rf * | cat '' # x", tmp_path)
-    assert given[1:] == (str(tmp_path / "a b.py"), "$HOME", ";rm", "-rf", "*", "|", "cat", "", "#", "x")
-    assert os.path.isabs(given[0])
+    arguments = split_arguments("sh 'a b.py' $HOME ;rm -rf * | cat '' # x", tmp_path)
+    assert arguments[1:] == (str(tmp_path / "a b.py"), "$HOME", ";rm", "-rf", "*", "|", "cat", "", "#", "x")
+    assert os.path.isabs(arguments[0])
 
 
-def test_plan_names_a_command_relative_to_itself(tmp_path):
+def test_plan_names_a_command_relative_to_itself(tmp_path: Path) -> None:
     (tmp_path / "ad apter.py").touch()
     (tmp_path / "plan.toml").write_text("system = \"command:sh 'ad apter.py'\"\n")
     system = read_plan(tmp_path / "plan.toml").system
@@ -279,6 +293,6 @@ def test_plan_names_a_command_relative_to_itself(tmp_path):
      b'{"message": "skipped", "id": 1, "reason": "\\ud800"}', b'{"message": "skipped", "id": 1.5, "reason": "x"}',
      b'{"message": "skipped", "id": 1, "reason": "x", "more": 1}', b"\xff\xfe"],
 )  # fmt: skip
-def test_what_is_no_message_is_refused(line):
+def test_invalid_message_is_refused(line: bytes) -> None:
     with pytest.raises(AnswerRefused):
         parse_message(line)

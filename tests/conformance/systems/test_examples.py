@@ -3,10 +3,12 @@
 import sys
 import sysconfig
 from pathlib import Path
+from typing import Any
 
 import pytest
 from numpy.testing import assert_allclose
 
+from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import library_folder, load_case
 from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.results.outcome import Delivered, Skipped
@@ -40,7 +42,7 @@ def adapter(name, *arguments):
     return choose_system(f"command:'{sys.executable}' '{EXAMPLES / name / 'adapter.py'}' {' '.join(arguments)}", 100.0)
 
 
-def test_plain_simulator_agrees_with_the_reference_simulator(short, reference):
+def test_plain_simulator_agrees_with_the_reference_simulator(short: Case, reference: dict[str, Any]) -> None:
     """Two formulations of the same line. Second-order differences at 0.5 m are within a tenth up to 20 Hz."""
     outcome = adapter("string_catenary").run(short)
     assert isinstance(outcome, Delivered)
@@ -50,7 +52,7 @@ def test_plain_simulator_agrees_with_the_reference_simulator(short, reference):
     assert outcome.run.element_m == 0.5
 
 
-def test_plain_simulator_skips_what_it_cannot_do(short):
+def test_plain_simulator_skips_unsupported_cases(short: Case) -> None:
     twin = short.line.contact_wire.model_copy(update={"number": 2, "spacing_m": 0.04})
     line = short.line.model_copy(update={"contact_wire": twin})
     system = adapter("string_catenary")
@@ -61,7 +63,7 @@ def test_plain_simulator_skips_what_it_cannot_do(short):
     assert (system.name, system.version) == ("string catenary", "1.0")
 
 
-def test_external_program_gives_what_it_gives_in_process(short, reference):
+def test_external_program_agrees_with_the_same_program_in_process(short: Case, reference: dict[str, Any]) -> None:
     """The same program behind files and pipes: HDF5 keeps every digit, so the quantities are the same."""
     command = Path(sysconfig.get_path("scripts"), "pantocheck")
     outcome = adapter("external_program", f"'{command}'").run(short)

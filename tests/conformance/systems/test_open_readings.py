@@ -1,4 +1,4 @@
-"""What the sources of the 2002 model leave open: the figures that its notes give for the other readings."""
+"""Open points of the sources of the 2002 model: results in its notes for the other readings."""
 
 from dataclasses import replace
 
@@ -16,7 +16,7 @@ def values(case: Case) -> dict:
 
 
 @pytest.mark.parametrize(("speed", "deviation"), [(250, 33.0), (300, 38.4)])
-def test_an_arm_that_carries_nothing_raises_the_deviation(speed, deviation):
+def test_arm_without_static_share_increases_the_standard_deviation(speed: int, deviation: float) -> None:
     """Printed to a tenth in the note; above the limit of 31 N at 250 km/h."""
     (case,) = select_cases([f"en50318-2002/{speed}"])
     arm = case.line.steady_arm.model_copy(update={"static_share": "none"})
@@ -25,7 +25,7 @@ def test_an_arm_that_carries_nothing_raises_the_deviation(speed, deviation):
 
 
 @pytest.mark.parametrize(("speed", "mean"), [(250, 116.5), (300, 115.7)])
-def test_a_spring_unstretched_at_the_wire_takes_part_of_the_uplift(speed, mean):
+def test_base_spring_unstretched_at_the_wire_carries_part_of_the_uplift_force(speed: int, mean: float) -> None:
     """Printed to a tenth in the note."""
     (case,) = select_cases([f"en50318-2002/{speed}"])
     (pantograph,) = case.pantographs

@@ -1,15 +1,19 @@
 """A folder of records as a system."""
 
+from pathlib import Path
+
 import pytest
 
+from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.results.outcome import Skipped
 from pantocheck.conformance.systems.record_folder import open_record_folder
 from pantocheck.conformance.systems.system_choice import choose_system
+from tests.conformance.conftest import Wave
 
 
-def test_record_is_found_by_its_case(case_250, wave, tmp_path):
+def test_record_is_found_by_its_case(case_250: Case, wave: type[Wave], tmp_path: Path) -> None:
     write_record(tmp_path / "deep" / "any name.h5", wave().record(case_250), case_250.id, run={"dt_s": 0.002})
     system = choose_system(f"record:{tmp_path}")
     outcome = system.run(case_250)
@@ -18,12 +22,12 @@ def test_record_is_found_by_its_case(case_250, wave, tmp_path):
     assert system.name == tmp_path.name
 
 
-def test_case_without_record_is_skipped(case_250, wave, tmp_path):
+def test_case_without_record_is_skipped(case_250: Case, wave: type[Wave], tmp_path: Path) -> None:
     write_record(tmp_path / "a.csv", wave().record(case_250), "another/case")
     assert open_record_folder(tmp_path).run(case_250) == Skipped("there is no record of this case")
 
 
-def test_wrong_folders(case_250, wave, tmp_path):
+def test_invalid_folder_is_refused(case_250: Case, wave: type[Wave], tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no sidecar in it names a case"):
         open_record_folder(tmp_path)
     with pytest.raises(InputError, match="there is no such folder"):
@@ -35,6 +39,6 @@ def test_wrong_folders(case_250, wave, tmp_path):
 
 
 @pytest.mark.parametrize("text", ["builtins", "record:", "commands:python", ""])
-def test_unknown_system(text):
+def test_unknown_system_is_refused(text: str) -> None:
     with pytest.raises(InputError, match="there is no such system"):
         choose_system(text)
