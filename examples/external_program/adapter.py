@@ -1,7 +1,7 @@
-"""An adapter around another program that reads input files and writes output files.
+"""Adapter of a program that reads input files and writes output files.
 
-The program here is `pantocheck simulate`, in a process of its own; exchange `simulate` for yours. The pattern stays:
-write the program's input from the case, run it with a time limit, and hand over what it wrote.
+The program is `pantocheck simulate` in a separate process; replace `simulate` with yours. The steps remain: write the
+input of the program from the case, run the program with a time limit, and deliver its files.
 
 Try it:  pantocheck run 'en50318-2002/*' --system 'command:python3 examples/external_program/adapter.py pantocheck'
 The argument is the command that starts the program.
@@ -16,7 +16,7 @@ from itertools import pairwise
 from pathlib import Path
 
 PROTOCOL = "pantocheck.command/1"
-GIVEN = {"trust": "provisional", "source": "given over the protocol"}
+PROVENANCE = {"trust": "provisional", "source": "given over the protocol"}
 
 
 def toml(table, path=()):
@@ -38,8 +38,8 @@ def toml(table, path=()):
 
 
 def sourced(table):
-    """A table of groups, each saying where its numbers come from, as the input of this program wants it."""
-    return {key: {**value, **GIVEN} if isinstance(value, dict) else value for key, value in table.items()}
+    """Add the source of the numbers to every table, as the input of this program requires."""
+    return {key: {**value, **PROVENANCE} if isinstance(value, dict) else value for key, value in table.items()}
 
 
 def write_input(case):
@@ -51,7 +51,7 @@ def write_input(case):
         model = {"title": f"pantograph {i}", **parts}
         Path(f"pantograph{i}.toml").write_text("\n".join(toml(sourced(model))), encoding="utf-8")
         forces = {key: train[key] for key in ("uplift_force_N", "target_mean_force_N")}
-        uses.append({"model": f"pantograph{i}.toml", **forces, **GIVEN})
+        uses.append({"model": f"pantograph{i}.toml", **forces, **PROVENANCE})
     span, starts = case["line"]["geometry"]["span_m"], [train["start_m"] for train in case["pantographs"]]
     first, last = case["evaluated_m"]
     content = {
@@ -63,7 +63,7 @@ def write_input(case):
         "start_m": starts[-1],
         "run_out_m": case["pantographs"][-1]["end_m"] - last,
         "spacing_m": [a - b for a, b in pairwise(starts)] or None,
-        **GIVEN,
+        **PROVENANCE,
         "filter": case["filter"],
         "discretisation": case["discretisation"],
         "pantograph": uses,
@@ -74,7 +74,7 @@ def write_input(case):
 
 
 def simulate(program, time_limit):
-    """Run the program; what it says goes to our standard error, where Pantocheck keeps the end of it."""
+    """Run the program; its output goes to standard error, of which Pantocheck keeps the end."""
     subprocess.run(
         [*program, "simulate", "case.toml", "--out", "record.h5"],
         stdout=sys.stderr, timeout=time_limit, check=True, env={**os.environ, "OMP_NUM_THREADS": "1"},
@@ -82,7 +82,7 @@ def simulate(program, time_limit):
 
 
 def digest(name):
-    """A file with its SHA-256."""
+    """Name and SHA-256 of a file."""
     return {"file": name, "sha256": hashlib.sha256(Path(name).read_bytes()).hexdigest()}
 
 

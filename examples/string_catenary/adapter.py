@@ -1,4 +1,4 @@
-"""The adapter of `simulator.py`: everything Pantocheck asks of a program, in the standard library.
+"""Adapter of `simulator.py`: the whole protocol of Pantocheck with the standard library.
 
 Try it:  pantocheck run 'en50318-2002/*' --system 'command:python3 examples/string_catenary/adapter.py'
 """
@@ -13,7 +13,7 @@ NAME, VERSION = "string catenary", "1.0"
 
 
 def reason_to_skip(case):
-    """Why the simulator cannot do a case; None if it can. An honest refusal is no failure."""
+    """Reason why the simulator does not support a case; None if it does. A skipped case is no failure."""
     line, trains = case["line"], case["pantographs"]
     if case["speed_km_h"] is None:
         return "checks of the line at rest are not supported"
@@ -37,7 +37,7 @@ def reason_to_skip(case):
 
 
 def run(case):
-    """Simulate a case and write its record into the working folder; the answer without its id."""
+    """Simulate a case, write its record into the working folder, and build the answer without its id."""
     import simulator
 
     began = time.perf_counter()
@@ -61,7 +61,7 @@ def run(case):
     }
     with open("record.toml", "w") as file:
         for key, value in sidecar.items():
-            print(key, "=", json.dumps(value), file=file)  # these values read the same in JSON and in TOML
+            print(key, "=", json.dumps(value), file=file)  # JSON and TOML are equal for these values
         print(f"[system]\nname = {json.dumps(NAME)}\nversion = {json.dumps(VERSION)}", file=file)
         print(f"[run]\nwall_s = {wall:.3f}\nsimulated_s = {history[-1, 0]:.9g}", file=file)
         print(f"dt_s = {case['discretisation']['time_step_s']}", file=file)
@@ -71,7 +71,7 @@ def run(case):
 
 
 def digest(name):
-    """A file with its SHA-256."""
+    """Name and SHA-256 of a file."""
     with open(name, "rb") as file:
         return {"file": name, "sha256": hashlib.sha256(file.read()).hexdigest()}
 
@@ -79,7 +79,7 @@ def digest(name):
 def main():
     """Answer messages until `stop` or the end of the input."""
     answers = sys.stdout
-    sys.stdout = sys.stderr  # what a library prints must not end up between the answers
+    sys.stdout = sys.stderr  # output of libraries must not mix with the answers
     for line in sys.stdin:
         message = json.loads(line)
         if message["message"] == "stop":
