@@ -112,5 +112,6 @@ def figures(way: Passage, history: History, evaluated: tuple[float, float]) -> d
         support_position=np.array([x for _, x in way.watched]),
         support_uplift=history.motion[:, :, 0],
     )
-    values = evaluate_record(record, LowPass("butterworth", 6, 20.0, "zero")).values
+    supports = tuple(x for _, x in way.watched)
+    values = evaluate_record(record, LowPass("butterworth", 6, 20.0, "zero"), supports).values
     return {name: float({**values[0], **values[1]}[name]) for name in QUANTITIES}

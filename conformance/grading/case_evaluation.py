@@ -12,7 +12,8 @@ from pantocheck.conformance.grading.criterion_grading import GradedValues, grade
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation
 from pantocheck.conformance.quantities.registry import QUANTITIES
-from pantocheck.conformance.records.record_signals import RecordSignals, evaluate_record
+from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.results.results_format import Criterion
 
@@ -66,7 +67,7 @@ class CaseEvaluation:
     def signals(self) -> RecordSignals | None:
         """Signals of the record; None if the system delivered no record."""
         record = self.delivered.record
-        return None if record is None else RecordSignals(record, self.case.file.filter.low_pass)
+        return None if record is None else self._signals(record)
 
     @cached_property
     def values(self) -> GradedValues:
@@ -74,7 +75,9 @@ class CaseEvaluation:
         refined = self.delivered.refined
         return GradedValues(
             evaluation=_complete(self.delivered, None if self.signals is None else self.signals.evaluation),
-            refined=None if refined is None else _complete(refined, self._evaluate(refined)),
+            refined=None
+            if refined is None
+            else _complete(refined, None if refined.record is None else self._signals(refined.record).evaluation),
             spread={} if self.signals is None else section_spread(self.signals, self.case.shifted_sections),
         )
 
@@ -106,9 +109,8 @@ class CaseEvaluation:
             if position[0] > start - settling or position[-1] < end + settling
         ]
 
-    def _evaluate(self, delivered: Delivered) -> Evaluation | None:
-        record = delivered.record
-        return None if record is None else evaluate_record(record, self.case.file.filter.low_pass)
+    def _signals(self, record: Record) -> RecordSignals:
+        return RecordSignals(record, self.case.file.filter.low_pass, self.case.line.geometry.supports)
 
 
 def _complete(delivered: Delivered, evaluation: Evaluation | None) -> Evaluation:

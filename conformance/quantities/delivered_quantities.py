@@ -4,7 +4,7 @@ A static check, an identification or a study delivers them; none is computed fro
 """
 
 from pantocheck.conformance.quantities.bands import BANDS
-from pantocheck.conformance.quantities.quantity import Quantity, Scope
+from pantocheck.conformance.quantities.quantity import Need, Quantity, Scope
 
 _NEVER_NEGATIVE = {"elasticity_mm_N", "wave_speed_m_s"}
 
@@ -17,7 +17,7 @@ def _define(scope: Scope, needs: str, *rows: tuple[str, str, str, str]) -> list[
             label=label,
             unit=unit,
             definition=definition,
-            needs=needs,
+            needs=Need(needs),
             scope=scope,
             never_negative=name in _NEVER_NEGATIVE,
         )

@@ -50,11 +50,13 @@ def evaluate_signals(pantographs: Mapping[int, ForceSignals], line: LineSignals)
         values[pantograph], skipped[pantograph] = {}, {}
         for quantity in PANTOGRAPH_QUANTITIES:
             try:
+                quantity.needs.check(signals)
                 values[pantograph][quantity.name] = float(quantity.compute(signals, WHOLE_RECORD))
             except QuantityUnavailable as reason:
                 skipped[pantograph][quantity.name] = str(reason)
     for line_quantity in LINE_QUANTITIES:
         try:
+            line_quantity.needs.check(line)
             values[LINE][line_quantity.name] = line_quantity.compute(line)
         except QuantityUnavailable as reason:
             skipped[LINE][line_quantity.name] = str(reason)

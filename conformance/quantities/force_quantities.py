@@ -7,18 +7,30 @@ from functools import partial
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.bands import BANDS, Band
-from pantocheck.conformance.quantities.quantity import LineQuantity, PantographQuantity
+from pantocheck.conformance.quantities.quantity import LineQuantity, Need, PantographQuantity
 from pantocheck.conformance.quantities.sampling import Sampling
-from pantocheck.conformance.quantities.signals import ForceSignals
+from pantocheck.conformance.quantities.signals import ForceSignals, LineSignals
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, contact_loss, statistical_extremes
 
-FORCE, UNFILTERED_TO_50_HZ = "contact force", "contact force not filtered below 50 Hz"
 EN50318, VOVAN2015 = "EN 50318", "Vo Van et al. 2015, Table 1"
 
-_en50318 = partial(PantographQuantity, source=EN50318, needs=FORCE, unit="N")
+FORCE = Need[ForceSignals]("contact force over the whole analysis section", lambda signals: signals.delivered)
+FORCE_20 = Need[ForceSignals](
+    "contact force over the whole analysis section, at a rate for 20 Hz", lambda signals: signals.graded
+)
+FORCE_50 = Need[ForceSignals](
+    "contact force over the whole analysis section, not filtered below 50 Hz, at a rate for 50 Hz",
+    lambda signals: signals.extended,
+)
+HEIGHT = Need[ForceSignals]("contact height over the whole analysis section", lambda signals: signals.height)
+ALL_SUPPORTS = Need[LineSignals](
+    "uplift at every support of the analysis section", lambda signals: signals.check_supports()
+)
+
+_en50318 = partial(PantographQuantity, source=EN50318, needs=FORCE_20, unit="N")
 _vovan2015 = partial(PantographQuantity, source=VOVAN2015, tables=("bands", "damping models"))
 _vovan2015_20 = partial(_vovan2015, needs=FORCE)
-_vovan2015_50 = partial(_vovan2015, needs=UNFILTERED_TO_50_HZ)
+_vovan2015_50 = partial(_vovan2015, needs=FORCE_50)
 
 
 def _mean(signals: ForceSignals, sampling: Sampling) -> RealArray:
@@ -55,6 +67,7 @@ PANTOGRAPH_QUANTITIES: tuple[PantographQuantity, ...] = (
         name="mean_force_N",
         label="Mean contact force",
         definition="mean contact force over the analysis section",
+        needs=FORCE,
         tables=("damping models",),
         force_level="mean",
         compute=_mean,
@@ -125,7 +138,7 @@ PANTOGRAPH_QUANTITIES: tuple[PantographQuantity, ...] = (
         label="Contact loss",
         unit="%",
         definition="share of the samples of the unfiltered force without contact",
-        needs="unfiltered contact force",
+        needs=FORCE_50,
         never_negative=True,
         tables=("damping models",),
         compute=lambda signals, sampling: contact_loss(signals.delivered, signals.filter_applied_Hz, sampling),
@@ -135,7 +148,7 @@ PANTOGRAPH_QUANTITIES: tuple[PantographQuantity, ...] = (
         label="Range of the contact point's height",
         unit="mm",
         definition="highest minus lowest contact point over the analysis section",
-        needs="contact height",
+        needs=HEIGHT,
         never_negative=True,
         compute=lambda signals, sampling: sampling.extent(signals.height, 1e3),
     ),
@@ -148,7 +161,7 @@ LINE_QUANTITIES: tuple[LineQuantity, ...] = (
         unit="mm",
         definition="largest unfiltered uplift of the contact wire at any support of the analysis section, "
         "over the whole record",
-        needs="uplift at supports",
+        needs=ALL_SUPPORTS,
         source=EN50318,
         tables=("damping models",),
         compute=lambda signals: float(1e3 * signals.uplift.max()),

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Generic, Literal, TypeVar
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.sampling import Sampling
@@ -13,6 +13,30 @@ QuantityTable = Literal["bands", "damping models"]
 
 Scope = Literal["pantograph", "line", "static", "mass_drop", "study"]
 """One value per pantograph; one value of a run; the line at rest; identified modes; a comparison of several runs."""
+
+
+Signals = TypeVar("Signals")
+
+
+def _accept(_: object) -> None:
+    """Accept a quantity that no record gives."""
+
+
+@dataclass(frozen=True)
+class Need(Generic[Signals]):
+    """Part of a record that a quantity needs.
+
+    Parameters
+    ----------
+    text : str
+        Name of the part.
+    check : callable
+        Function of the signals that raises `QuantityUnavailable` if they lack the part; by default it never does,
+        because the quantity is delivered as a number.
+    """
+
+    text: str
+    check: Callable[[Signals], object] = _accept
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,8 +53,8 @@ class Quantity:
         Unit as printed; empty for a ratio.
     definition : str
         Definition in one sentence.
-    needs : str
-        Channel of a record, or result of a static check, that the quantity is computed from.
+    needs : Need
+        Part of a record, or result of a static check, without which the quantity is not computed.
     scope : Scope
         Object or computation that the value belongs to.
     source : str
@@ -47,7 +71,7 @@ class Quantity:
     label: str
     unit: str
     definition: str
-    needs: str
+    needs: Need[Any]
     scope: Scope
     source: str = "pantocheck"
     never_negative: bool = False
@@ -66,6 +90,7 @@ class PantographQuantity(Quantity):
         its bootstrap replicates, from which the uncertainty follows.
     """
 
+    needs: Need[ForceSignals]
     compute: Callable[[ForceSignals, Sampling], RealArray]
     scope: Literal["pantograph"] = "pantograph"
 
@@ -80,5 +105,6 @@ class LineQuantity(Quantity):
         Function of the signals of the line.
     """
 
+    needs: Need[LineSignals]
     compute: Callable[[LineSignals], float]
     scope: Literal["line"] = "line"

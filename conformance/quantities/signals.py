@@ -10,7 +10,12 @@ from numpy.typing import NDArray
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.bands import EXTENDED_BAND, band_rms
 from pantocheck.conformance.quantities.filters import LowPass, needs_filter
-from pantocheck.conformance.quantities.unavailable import BandNotObservable, ChannelMissing, SectionNotCovered
+from pantocheck.conformance.quantities.unavailable import (
+    BandNotObservable,
+    ChannelMissing,
+    SectionNotCovered,
+    SupportsMissing,
+)
 
 EXTENDED_CUTOFF_HZ = float(EXTENDED_BAND.high)
 """Upper edge of the extended band [Hz]."""
@@ -18,8 +23,11 @@ EXTENDED_CUTOFF_HZ = float(EXTENDED_BAND.high)
 SHORTEST_PERIODS = 4
 """Shortest analysis section, in periods of the cut-off frequency: fewer do not make a statistic."""
 
-SUPPORT_TOLERANCE_M = 1e-6
-"""A support this far outside the analysis section still belongs to it [m]: positions are rounded."""
+SUPPORT_TOLERANCE_M = 0.5
+"""Largest distance between the stated and the real position of a support [m].
+
+Positions are rounded, and surveyed to some decimetres. Spans are ten times as long, so no support is taken for
+another one. A support this far outside the analysis section belongs to it, and so to the sections on both sides."""
 
 
 class ForceSignals(Protocol):
@@ -187,11 +195,14 @@ class LineSignals:
         Positions of the supports along the track [m], or None.
     support_uplift : (s, n) ndarray or None
         Uplift at each support [m], or None.
+    line_supports : tuple of float or None
+        Positions of all supports of the line [m]; None if they are not known.
     """
 
     section: tuple[float, float]
     support_position: RealArray | None = None
     support_uplift: RealArray | None = None
+    line_supports: tuple[float, ...] | None = None
 
     @property
     def supports(self) -> RealArray:
@@ -208,6 +219,30 @@ class LineSignals:
             The record has no uplift, or none inside the analysis section.
         """
         return self._at_supports[1]
+
+    def check_supports(self) -> None:
+        """Check that every support of the analysis section has an uplift.
+
+        Raises
+        ------
+        SupportsMissing
+            A support has none, or the supports of the line are not known: the largest uplift may be at another one.
+        """
+        measured = self.supports
+        if self.line_supports is None:
+            raise SupportsMissing(
+                "the supports of the analysis section are not known: state span_m or support_position_m of the line"
+            )
+        line = np.asarray(self.line_supports, dtype=np.float64)
+        expected = line[supports_inside(line, self.section)]
+        distance = np.abs(expected[:, None] - measured).min(axis=1)
+        missing = expected[~(distance <= SUPPORT_TOLERANCE_M)]
+        if missing.size:
+            places = ", ".join(f"{position:g} m" for position in missing[:5])
+            raise SupportsMissing(
+                f"the record has no uplift at {missing.size} of {expected.size} supports of the analysis section: "
+                f"{places}{', ...' if missing.size > 5 else ''}"
+            )
 
     @cached_property
     def _at_supports(self) -> tuple[RealArray, RealArray]:

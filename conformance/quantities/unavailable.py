@@ -21,6 +21,10 @@ class ChannelMissing(QuantityUnavailable):
     """The record has no channel for the quantity."""
 
 
+class SupportsMissing(ChannelMissing):
+    """The uplift of a support of the analysis section is missing, and may be the largest one."""
+
+
 class NoMeanForce(QuantityUnavailable):
     """The mean force is not positive: a ratio to it would give the worst record the lowest variation."""
 

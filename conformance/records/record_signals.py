@@ -19,10 +19,13 @@ class RecordSignals:
         Record of a run or a measurement.
     low_pass : LowPass
         Filter of the graded force.
+    line_supports : tuple of float or None
+        Positions of all supports of the line [m]; None if they are not known.
     """
 
     record: Record
     low_pass: LowPass
+    line_supports: tuple[float, ...] | None = None
 
     @cached_property
     def pantographs(self) -> dict[int, PantographSignals]:
@@ -41,7 +44,8 @@ class RecordSignals:
     @cached_property
     def line(self) -> LineSignals:
         """Uplift at the supports."""
-        return LineSignals(self.record.evaluated, self.record.support_position, self.record.support_uplift)
+        record = self.record
+        return LineSignals(record.evaluated, record.support_position, record.support_uplift, self.line_supports)
 
     @cached_property
     def evaluation(self) -> Evaluation:
@@ -54,6 +58,6 @@ class RecordSignals:
         return evaluate_signals(pantographs, replace(self.line, section=section))
 
 
-def evaluate_record(record: Record, low_pass: LowPass) -> Evaluation:
-    """Evaluate every quantity of a record over its analysis section."""
-    return RecordSignals(record, low_pass).evaluation
+def evaluate_record(record: Record, low_pass: LowPass, line_supports: tuple[float, ...] | None = None) -> Evaluation:
+    """Evaluate every quantity of a record over its analysis section; see `RecordSignals`."""
+    return RecordSignals(record, low_pass, line_supports).evaluation

@@ -42,12 +42,12 @@ def run_damping_sensitivity(case: Case, system: System) -> Outcome:
     outcome = system.run(case.without_study())
     if not isinstance(outcome, Delivered) or outcome.record is None:
         return outcome
-    low_pass = case.file.filter.low_pass
-    values, missing = {CASE_DAMPING: evaluate_record(outcome.record, low_pass).values}, []
+    low_pass, supports = case.file.filter.low_pass, case.line.geometry.supports
+    values, missing = {CASE_DAMPING: evaluate_record(outcome.record, low_pass, supports).values}, []
     for name, damping in case.dampings.items():
         run = _run_unrefined(system, case.with_damping(name, damping))
         if isinstance(run, Delivered) and run.record is not None:
-            values[name] = evaluate_record(run.record, low_pass).values
+            values[name] = evaluate_record(run.record, low_pass, supports).values
         else:
             missing.append(f"damping '{name}': {missing_record_reason(run)}")
     return replace(

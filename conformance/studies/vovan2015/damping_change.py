@@ -109,7 +109,9 @@ def band_changes(before: ValuesByOwner, after: ValuesByOwner) -> dict[int, dict[
 
 
 def _evaluate(case: Case, record: Record | None) -> ValuesByOwner:
-    return {} if record is None else evaluate_record(record, case.file.filter.low_pass).values
+    if record is None:
+        return {}
+    return evaluate_record(record, case.file.filter.low_pass, case.line.geometry.supports).values
 
 
 def _comparison_table(values: Mapping[str, ValuesByOwner], printed: PrintedValues) -> TextTable:

@@ -92,7 +92,7 @@ def test_uplift_is_the_largest_at_the_evaluated_supports() -> None:
     supports = np.array([150.0, 200.0, 300.0, 400.0, 450.0])
     uplift = np.zeros((5, 12_000))
     uplift[:, 7000] = [0.9, 0.04, 0.05, 0.06, 0.9]
-    found = evaluate_record(record(support_position=supports, support_uplift=uplift), LowPass())
+    found = evaluate_record(record(support_position=supports, support_uplift=uplift), LowPass(), tuple(supports))
     assert_allclose(found.values[LINE]["max_uplift_at_support_mm"], 60.0)
 
 
@@ -155,7 +155,7 @@ def test_registry_has_every_name_of_the_contract() -> None:
     mode_frequency_Hz damping_ratio"""
     assert set(QUANTITIES) >= set(names.split())
     assert all(
-        name == quantity.name and quantity.label and quantity.definition and quantity.needs and quantity.source
+        name == quantity.name and quantity.label and quantity.definition and quantity.needs.text and quantity.source
         for name, quantity in QUANTITIES.items()
     )
 
