@@ -1,7 +1,7 @@
 """Assessed record: a record or a summary, with its quantities and their uncertainty."""
 
 import hashlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +13,7 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value, evaluate_signals
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.records.measured.block_bootstrap import FEWEST_BLOCKS, bootstrap_uncertainties
+from pantocheck.conformance.records.measured.line_supports import list_line_supports
 from pantocheck.conformance.records.measured.record_preparation import PreparedRecord, prepare_record
 from pantocheck.conformance.records.record import RecordInvalid
 from pantocheck.conformance.records.record_reading import build_record_error, open_record, read_samples
@@ -106,6 +107,8 @@ def load_assessed_record(path: Path, profile: Profile, line: LineTable) -> Asses
         prepared = prepare_record(samples, sidecar, profile.filter.low_pass, profile.speed_tolerance_pct)
     except RecordInvalid as error:
         raise build_record_error(table, error) from None
+    supports = list_line_supports(sidecar.support_position_m or (), known_line.span_m, prepared.section)
+    line_signals = replace(prepared.line, line_supports=supports)
     digest = join_digests(file_digest(path.with_suffix(".toml")), file_digest(table), known_line.model_dump_json())
     block = _block_length(known_line, sidecar)
     uncertainty = {
@@ -124,7 +127,7 @@ def load_assessed_record(path: Path, profile: Profile, line: LineTable) -> Asses
         line=known_line,
         digest=digest,
         values=_add_line_quantities(
-            evaluate_signals(prepared.pantographs, prepared.line), known_line, sidecar.speed_km_h
+            evaluate_signals(prepared.pantographs, line_signals), known_line, sidecar.speed_km_h
         ),
         uncertainty={number: values for number, values in uncertainty.items() if values},
         prepared=prepared,

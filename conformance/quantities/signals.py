@@ -231,7 +231,7 @@ class LineSignals:
         measured = self.supports
         if self.line_supports is None:
             raise SupportsMissing(
-                "the supports of the analysis section are not known: state span_m or support_position_m of the line"
+                "the supports of the analysis section are not known: state span_m, the length of the longest span"
             )
         line = np.asarray(self.line_supports, dtype=np.float64)
         expected = line[supports_inside(line, self.section)]

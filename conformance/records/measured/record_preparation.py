@@ -195,7 +195,7 @@ def _outlier_warnings(force: RealArray, position: RealArray, name: str) -> list[
 
 
 def _prepare_line(samples: RecordSamples, section: tuple[float, float]) -> tuple[LineSignals, list[str]]:
-    """Uplift of the measured supports, and warnings; missing values are replaced by the lowest one."""
+    """Uplift of the supports without missing values, and warnings; a missing value may be the largest one."""
     uplift = samples.uplift
     if uplift is None or samples.support_position is None:
         return LineSignals(section), []
@@ -203,12 +203,10 @@ def _prepare_line(samples: RecordSamples, section: tuple[float, float]) -> tuple
     warnings = []
     if missing.any():
         warnings.append(
-            f"{missing_share(missing)} of the uplift is missing: the largest uplift may not have been recorded"
+            f"{missing_share(missing)} of the uplift is missing: a support with missing values is not evaluated"
         )
-    measured = ~missing.all(axis=1)
-    lowest = np.where(missing[measured], np.inf, uplift[measured]).min(axis=1, keepdims=True)
-    complete = np.where(missing[measured], lowest, uplift[measured])
-    return LineSignals(section, samples.support_position[measured], complete), warnings
+    complete = ~missing.any(axis=1)
+    return LineSignals(section, samples.support_position[complete], uplift[complete]), warnings
 
 
 def _resampling_notes(placed: PlacedSamples, rate: float) -> list[str]:

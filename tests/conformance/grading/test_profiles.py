@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -32,13 +32,13 @@ file = "train.csv"
 speed_km_h = {speed}
 pantographs = 1
 filter_applied_Hz = "none"
-support_position_m = [600.0]
+support_position_m = {supports}
 line = {{ span_m = 60.0, wave_speed_m_s = {wave}, uplift_space_mm = {space} }}
 """
 
 
 Train = Callable[..., Path]
-"""Writes a record with the given mean, sigma, speed, wave speed, uplift space and number of spans."""
+"""Writes a record with the given mean, sigma, speed, wave speed, uplift space, number of spans and supports."""
 
 
 @pytest.fixture
@@ -52,17 +52,20 @@ def train(tmp_path: Path) -> Train:
         wave: float = 120.0,
         space: float = 80.0,
         spans: int = 40,
+        supports: Sequence[float] = tuple(np.arange(30.0, 2400, 60)),
     ) -> Path:
         random = np.random.default_rng(11)
         position = np.arange(0, 60.0 * spans, 0.2)
         amplitude = np.repeat(1 + 0.05 * random.standard_normal(spans), position.size // spans)
         wave_form = np.sqrt(2) * amplitude * np.sin(2 * np.pi * position / 60)
         force = mean + sigma * wave_form + 3 * np.sin(2 * np.pi * position / 2)
-        uplift = 55.0 * np.exp(-(((position - 600) / 5) ** 2))
-        table = np.column_stack([position, force, uplift])
-        names = "position_1_m,force_1_N,uplift_1_mm"
+        uplift = [55.0 * np.exp(-(((position - support) / 5) ** 2)) for support in supports]
+        table = np.column_stack([position, force, *uplift])
+        names = ",".join(["position_1_m", "force_1_N", *(f"uplift_{i + 1}_mm" for i in range(len(supports)))])
         np.savetxt(tmp_path / "train.csv", table, "%.9g", ",", header=names, comments="")
-        (tmp_path / "train.toml").write_text(SIDECAR.format(speed=speed, wave=wave, space=space))
+        (tmp_path / "train.toml").write_text(
+            SIDECAR.format(speed=speed, wave=wave, space=space, supports=list(map(float, supports)))
+        )
         return tmp_path / "train.toml"
 
     return write
@@ -159,8 +162,40 @@ def test_unknown_fact_of_the_line_omits_the_rule_with_a_warning(train: Train) ->
 def test_uplift_rule_without_an_uplift_is_skipped(train: Train) -> None:
     path = train()
     table = path.with_suffix(".csv")
-    table.write_text("\n".join(line.rsplit(",", 1)[0] for line in table.read_text().splitlines()))
+    table.write_text("\n".join(",".join(line.split(",")[:2]) for line in table.read_text().splitlines()))
     assert by_quantity(graded(path))["max_uplift_at_support_mm"].verdict == "skip"
+
+
+def remove_support(path: Path, number: int) -> Path:
+    """Remove the uplift of a support from the table of a record; its sidecar still lists the support."""
+    table = path.with_suffix(".csv")
+    rows = [line.split(",") for line in table.read_text().splitlines()]
+    column = rows[0].index(f"uplift_{number}_mm")
+    table.write_text("\n".join(",".join(row[:column] + row[column + 1 :]) for row in rows))
+    return path
+
+
+def test_uplift_is_graded_only_if_every_support_has_one(train: Train) -> None:
+    """The uplift of 55 mm stands at every support, so a rest of the supports would pass the limit of 80 mm."""
+    assert by_quantity(graded(train()))["max_uplift_at_support_mm"].verdict == "pass"
+    for number in (1, 20, 40):
+        row = by_quantity(graded(remove_support(train(), number)))["max_uplift_at_support_mm"]
+        assert (row.verdict, row.value) == ("skip", None)
+        assert f"no uplift at 1 of 40 supports of the analysis section: {60 * number - 30} m" in row.reason
+    for missing in (0, 19, 39):  # the record does not list the support either
+        supports = np.delete(np.arange(30.0, 2400, 60), missing)
+        row = by_quantity(graded(train(supports=supports)))["max_uplift_at_support_mm"]
+        # At the ends of the record, 90 m without a support hold a further one within a span of 60 m.
+        assert row.verdict == "skip"
+        assert "supports of the analysis section" in row.reason
+
+
+def test_uplift_is_skipped_where_the_length_of_a_span_is_not_known(train: Train) -> None:
+    path = train()
+    path.write_text(path.read_text().replace("span_m = 60.0, ", ""))
+    row = by_quantity(graded(path))["max_uplift_at_support_mm"]
+    assert row.verdict == "skip"
+    assert "state span_m" in row.reason
 
 
 def test_value_closer_to_a_limit_than_its_uncertainty_is_marked(train: Train) -> None:
@@ -227,7 +262,7 @@ def test_same_record_gives_the_same_results(train: Train) -> None:
 
 def test_peak_of_a_long_record_is_drawn(train: Train) -> None:
     """The peak is one sample of 60 000; a curve of every k-th sample would not show it."""
-    path = train(spans=200)
+    path = train(spans=200, supports=[600.0])
     lines = path.with_suffix(".csv").read_text().splitlines()
     lines[30_001] = re.sub(r",[-0-9.e]+,", ",700.0,", lines[30_001], count=1)
     path.with_suffix(".csv").write_text("\n".join(lines))

@@ -218,11 +218,11 @@ def test_record_that_covers_too_little_has_no_values() -> None:
         assert any(f"{share} % of" in text or f"{share}" in text for text in texts) == (share is not None)
 
 
-def test_uplift_ignores_missing_values() -> None:
+def test_support_with_missing_uplift_is_not_evaluated() -> None:
     samples = by_time()
-    uplift = np.full((2, samples.time.size), np.nan)
-    uplift[0, 100:200] = 0.03
+    uplift = np.full((2, samples.time.size), 0.03)
     uplift[0, 150] = 0.05
+    uplift[1, 150] = np.nan  # may have been the largest
     lines = RecordSamples(samples.force, samples.time, None, samples.position, None, uplift, np.array([300.0, 360.0]))
     found = ready(lines, support_position_m=[300.0, 360.0]).line
     assert (found.uplift.shape[0], found.uplift.max()) == (1, 0.05)

@@ -1,0 +1,48 @@
+"""Supports of a measured line, as far as its record states them."""
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from pantocheck.conformance.quantities.signals import SUPPORT_TOLERANCE_M, supports_inside
+
+
+def list_line_supports(
+    listed: Sequence[float], span_m: float | None, section: tuple[float, float]
+) -> tuple[float, ...] | None:
+    """Positions of the supports of a section: the listed ones, and others where the distance exceeds a span.
+
+    Parameters
+    ----------
+    listed : sequence of float
+        Positions of the supports that the record lists [m].
+    span_m : float or None
+        Length of the longest span [m]; None if it is not known.
+    section : tuple of float
+        Start and end of the analysis section [m].
+
+    Returns
+    -------
+    tuple of float or None
+        Positions in increasing order [m]; None if the length of a span is not known.
+    """
+    if span_m is None:
+        return None
+    positions = np.unique(np.asarray(listed, dtype=np.float64))
+    inside = [float(position) for position in positions[supports_inside(positions, section)]]
+    return tuple(sorted((*inside, *_missing_supports(inside, span_m, section)))) if inside else ()
+
+
+def _missing_supports(inside: list[float], span_m: float, section: tuple[float, float]) -> Iterator[float]:
+    start, end = section
+    yield from (inside[0] - span_m * (i + 1) for i in range(_spans(inside[0] - start, span_m)))
+    yield from (inside[-1] + span_m * (i + 1) for i in range(_spans(end - inside[-1], span_m)))
+    for left, right in pairwise(inside):
+        spans = int(np.ceil((right - left - SUPPORT_TOLERANCE_M) / span_m))
+        yield from (left + (right - left) * i / spans for i in range(1, spans))
+
+
+def _spans(distance: float, span_m: float) -> int:
+    """Number of whole spans in a distance [m]; a support at the section limit belongs to the section."""
+    return max(0, int((distance + SUPPORT_TOLERANCE_M) // span_m))
