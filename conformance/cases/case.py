@@ -148,8 +148,7 @@ class Case:
         }
         if self.dampings and "study" not in unused:
             inputs["dampings"] = {name: _numbers(damping) for name, damping in self.dampings.items()}
-        text = json.dumps(inputs, sort_keys=True, separators=(",", ":"), allow_nan=False)
-        return "sha256:" + hashlib.sha256(text.encode()).hexdigest()
+        return json_digest(inputs)
 
     @property
     def _keys_outside_digest(self) -> set[str]:
@@ -157,7 +156,7 @@ class Case:
         unused = {key for key in ("mass_drop", "study") if getattr(self.file, key) is None}
         if isinstance(self.file.study, DampingSensitivity):
             unused.add("study")  # The study runs the case unchanged.
-        return {"limit", "line", "requires", "damping", "on_request"} | unused
+        return {"limit", "line", "requires", "damping", "on_request", "edition", "superseded_by"} | unused
 
     @property
     def sourced_tables(self) -> dict[str, SourcedTable]:
@@ -211,6 +210,12 @@ def _tables(prefix: str, file: InputTable) -> dict[str, object]:
 def _numbers(table: InputTable, exclude: set[str] | None = None) -> object:
     """Content of a table without provenance and names, so that a corrected source leaves the digest unchanged."""
     return drop_keys(table.model_dump(mode="json", exclude=exclude), PROVENANCE | {"title", "id", "model"})
+
+
+def json_digest(tree: object) -> str:
+    """SHA-256 of plain lists, dictionaries, text and numbers; the order of keys has no influence."""
+    text = json.dumps(tree, sort_keys=True, separators=(",", ":"), allow_nan=False)
+    return "sha256:" + hashlib.sha256(text.encode()).hexdigest()
 
 
 def drop_keys(tree: object, keys: frozenset[str]) -> object:

@@ -96,6 +96,12 @@ class CaseFile(SourcedTable):
         str, Field(pattern=r"^[A-Za-z0-9._-]+(/[A-Za-z0-9._-]+)*$", max_length=200, description="path-like name")
     ]
     title: Annotated[str, Field(max_length=200, description="title in reports")]
+    edition: Annotated[
+        str | None, Field(max_length=100, description='edition of the standard, e.g. "EN 50318:2018"')
+    ] = None
+    superseded_by: Annotated[str | None, Field(max_length=100, description="edition that superseded this edition")] = (
+        None
+    )
     line: Annotated[FileName, Field(description="line file, relative to the case file")]
     damping: Annotated[
         FileName | Damping | None,

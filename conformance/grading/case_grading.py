@@ -4,13 +4,22 @@ from collections.abc import Sequence
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import source_text
+from pantocheck.conformance.cases.study_tables import DampingSensitivity
 from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
+from pantocheck.conformance.grading.case_identity import compare_with_library, limits_digest, list_limit_changes
 from pantocheck.conformance.grading.extended_band import extended_band_warnings
 from pantocheck.conformance.grading.verdicts import Verdict, worst_verdict
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.results.outcome import Delivered, Errored, Outcome, Skipped
 from pantocheck.conformance.results.results_building import key_by_owner, select_finite
-from pantocheck.conformance.results.results_format import CaseResult, FilterFacts, InputGroup, RunFacts
+from pantocheck.conformance.results.results_format import (
+    CaseResult,
+    FilterFacts,
+    InputGroup,
+    LibraryIdentity,
+    RunFacts,
+    Step,
+)
 from pantocheck.conformance.results.traces import build_pantograph_traces, build_uplift_traces
 
 _EMPTY: dict[str, object] = {
@@ -85,7 +94,7 @@ def build_ungraded(case: Case, verdict: Verdict, reason: str, delivered: Deliver
 
 
 def _build_result(case: Case, delivered: Delivered, notes: Sequence[str], **parts: object) -> CaseResult:
-    file, record = case.file, delivered.record
+    file, record, library = case.file, delivered.record, compare_with_library(case)
     inputs = [InputGroup(group=i.group, trust=i.trust, source=source_text(i.source)) for i in case.inputs]
     return CaseResult.model_validate(
         {
@@ -94,6 +103,13 @@ def _build_result(case: Case, delivered: Delivered, notes: Sequence[str], **part
             "notes": [*case.notes, *delivered.notes, *notes],
             "inputs": inputs,
             "input_digest": case.digest,
+            "limits_digest": limits_digest(case.limits),
+            "stated_limits_digest": limits_digest(case.file.limit),
+            "limit_changes": list_limit_changes(case),
+            "library": library,
+            "edition": file.edition,
+            "superseded_by": file.superseded_by,
+            "steps": _list_steps(case, library),
             "run": RunFacts(
                 **delivered.run.model_dump(),
                 speed_km_h=file.speed_km_h,
@@ -105,3 +121,13 @@ def _build_result(case: Case, delivered: Delivered, notes: Sequence[str], **part
             **parts,
         }
     )
+
+
+def _list_steps(case: Case, library: LibraryIdentity) -> list[Step]:
+    """Steps of the procedure that a case belongs to; a passage on an own line is not a reference model."""
+    file = case.file
+    if file.mass_drop is not None or not isinstance(file.study, DampingSensitivity | None):
+        return []
+    if not case.is_static:
+        return [] if library == "own" else ["reference_models"]
+    return ["static_check"] if file.apparent_mass is None else ["pantograph_model", "static_check"]

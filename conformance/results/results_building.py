@@ -11,7 +11,8 @@ from pantocheck.conformance.grading.verdicts import worst_verdict
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.evaluation import Value
 from pantocheck.conformance.results.results_format import CaseResult, Number, Platform, Results, Suite, SystemIdentity
-from pantocheck.conformance.results.suite_identity import find_suite_commit
+from pantocheck.conformance.results.scope import build_scope
+from pantocheck.conformance.results.suite_identity import find_suite_commit, suite_digest
 
 Content = TypeVar("Content")
 
@@ -53,7 +54,7 @@ def build_results(cases: Sequence[CaseResult], system: SystemIdentity, trust: Tr
         Start of the run, from `utc_now`.
     """
     return Results(
-        suite=Suite(version=version("pantocheck"), commit=find_suite_commit()),
+        suite=Suite(version=version("pantocheck"), commit=find_suite_commit(), digest=suite_digest()),
         system=system,
         verdict=worst_verdict(case.verdict for case in cases),
         trust=trust,
@@ -66,5 +67,6 @@ def build_results(cases: Sequence[CaseResult], system: SystemIdentity, trust: Tr
             machine=host.machine(),
             system=host.system(),
         ),
+        scope=build_scope(cases),
         cases=list(cases),
     )

@@ -4,7 +4,7 @@ The models check the file when it is written and read. Their JSON Schema is expo
 """
 
 import json
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -30,6 +30,9 @@ class Suite(ResultsPart):
 
     version: str
     commit: str | None
+    digest: Annotated[
+        str | None, Field(description="SHA-256 of the installed files of the suite; null: made by an older version")
+    ] = None
 
 
 class SystemIdentity(ResultsPart):
@@ -188,6 +191,32 @@ class TextTable(ResultsPart):
     rows: list[list[str]]
 
 
+LibraryIdentity = Literal["identical", "modified", "own"]
+"""Comparison of a case with the library: equal to a library case, other content under its id, or an own case."""
+
+Step = Literal["pantograph_model", "static_check", "reference_models", "line_test", "limits_of_validity"]
+"""Step of the procedure of EN 50318."""
+
+STEPS: tuple[Step, ...] = get_args(Step)
+
+
+class ScopeStep(ResultsPart):
+    """Step of the procedure and the cases that belong to it.
+
+    `done`: a case was graded by limits that count. `informative`: there are values, but no limit counts, or the case is
+    a modified copy. `not done`: no case, or none with values for all its limits.
+    """
+
+    step: Step
+    state: Literal["done", "informative", "not done"]
+    cases: list[str]
+
+
+def name_case(case_id: str, library: LibraryIdentity | None) -> str:
+    """Name of a case in reports: its id, or `modified copy of` the library case with this id."""
+    return f"modified copy of {case_id}" if library == "modified" else case_id
+
+
 class CaseResult(ResultsPart):
     """Result of one case. Keys of `quantities`, `skipped` and `traces` are the pantographs; `0` is the line."""
 
@@ -199,6 +228,22 @@ class CaseResult(ResultsPart):
     warnings: list[str]
     inputs: list[InputGroup]
     input_digest: str
+    limits_digest: Annotated[
+        str | None, Field(description="SHA-256 of the limits, those of a limits file included")
+    ] = None
+    stated_limits_digest: Annotated[
+        str | None, Field(description="SHA-256 of the limits of the case file or profile, without a limits file")
+    ] = None
+    limit_changes: Annotated[
+        list[str], Field(description="limits of the case file or profile that a limits file weakens")
+    ] = []
+    library: Annotated[
+        LibraryIdentity | None,
+        Field(description="comparison with the library case of this id; null: not a case, or an older version"),
+    ] = None
+    edition: Annotated[str | None, Field(description="edition of the standard that defines the case")] = None
+    superseded_by: Annotated[str | None, Field(description="edition that superseded it")] = None
+    steps: Annotated[list[Step], Field(description="steps of the procedure that the case belongs to")] = []
     criteria: list[Criterion]
     quantities: dict[Owner, dict[str, Number]]
     skipped: dict[Owner, dict[str, str]]
@@ -230,6 +275,9 @@ class Results(ResultsPart):
     trust: Trust
     started: str | None
     platform: Platform
+    scope: Annotated[
+        list[ScopeStep], Field(description="every step of the procedure; empty: made by an older version")
+    ] = []
     cases: list[CaseResult]
 
     def to_dict(self) -> dict[str, Any]:

@@ -1,9 +1,29 @@
-"""Identity of the suite: commit of its repository."""
+"""Identity of the suite: digest of its installed files and commit of its repository."""
 
+import hashlib
 import subprocess
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
+
+from pantocheck.conformance.input_files.atomic_writing import file_digest
+
+PACKAGES = ("pantocheck.conformance", "pantocheck.model", "pantocheck.reference_cases", "pantocheck.templates")
+SOURCE_SUFFIXES = frozenset({".py", ".toml", ".html", ".typ", ".css", ".js", ".mplstyle"})
+"""Suffixes of the files that determine the results and their pages: code, cases and templates."""
+
+
+@cache
+def suite_digest() -> str:
+    """SHA-256 of the installed files of the suite, by their names; equal for a repository and a plain installation."""
+    digest = hashlib.sha256()
+    for package in PACKAGES:
+        folder = Path(str(files(package)))
+        paths = {path.relative_to(folder).as_posix(): path for path in folder.rglob("*")}
+        for name, path in sorted(paths.items()):
+            if path.suffix in SOURCE_SUFFIXES and path.is_file():
+                digest.update(f"{package}/{name} {file_digest(path)}\n".encode())
+    return f"sha256:{digest.hexdigest()}"
 
 
 @cache

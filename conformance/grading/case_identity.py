@@ -1,0 +1,90 @@
+"""Identity of a case: comparison with the library, digest of the limits, changes by a limits file."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from pantocheck.conformance.cases.case import Case, json_digest
+from pantocheck.conformance.cases.library import library_folder, list_library, load_case
+from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.cases.study_tables import DampingSensitivity
+from pantocheck.conformance.input_files.trust import LEVELS
+from pantocheck.conformance.results.results_format import LibraryIdentity
+
+
+def compare_with_library(case: Case) -> LibraryIdentity:
+    """Compare the content of a case with the library case of the same id.
+
+    The comparison covers inputs, limits and their sources, as the case file states them. It excludes the names of
+    files, the user's own limits and the damping study, because they are options of the run.
+    """
+    known = list_library(library_folder())
+    if case.id not in known:
+        return "own"
+    return "identical" if _content_digest(case) == _content_digest(load_case(known[case.id])) else "modified"
+
+
+def _content_digest(case: Case) -> str:
+    is_option = isinstance(case.file.study, DampingSensitivity)
+    names: dict[str, Any] = {
+        "line": True,
+        "damping": True,
+        "pantograph": {"__all__": {"model"}},
+        "apparent_mass": {"model"},
+    }
+    file = case.file.model_copy(update={"study": None}) if is_option else case.file
+    return json_digest(
+        {
+            "file": file.model_dump(mode="json", exclude=names),
+            "line": case.line.model_dump(mode="json"),
+            "pantographs": [file.model_dump(mode="json") for file in case.pantograph_files],
+            "dampings": {} if is_option else {name: model.model_dump() for name, model in case.dampings.items()},
+        }
+    )
+
+
+def limits_digest(limits: Sequence[Limit]) -> str:
+    """SHA-256 of limits with trust and source, in any order."""
+    content = [limit.model_dump(mode="json", exclude={"note", "case"}) for limit in limits]
+    return json_digest(sorted(content, key=repr))
+
+
+def list_limit_changes(case: Case) -> list[str]:
+    """Sentences on the limits of the case file that the user's limits weaken, remove or give another trust."""
+    limits = {limit.target: limit for limit in case.limits}
+    changes = (describe_limit_change(stated, limits.get(stated.target)) for stated in case.file.limit)
+    return [change for change in changes if change is not None]
+
+
+def describe_limit_change(stated: Limit, limit: Limit | None) -> str | None:
+    """Change of a limit by the limit that replaces it; None if it is as strict and of the same trust.
+
+    Parameters
+    ----------
+    stated : Limit
+        Limit of the case or profile.
+    limit : Limit or None
+        Limit of the user that replaces it; None if it was removed.
+    """
+    name = f"{stated.quantity}{f'[{stated.item}]' if stated.item else ''}"
+    name += f" of pantograph {stated.owner}" if stated.owner else ""
+    if limit is None:
+        return f"{name}: the limit {_describe_bounds(stated)} is removed"
+    parts = []
+    if _is_wider(stated, limit):
+        parts.append(f"the limit {_describe_bounds(stated)} is widened to {_describe_bounds(limit)}")
+    if limit.trust != stated.trust:
+        change = "lowered" if LEVELS.index(limit.trust) > LEVELS.index(stated.trust) else "raised"
+        parts.append(f"the trust of the limit is {change} from {stated.trust} to {limit.trust}")
+    return f"{name}: {', and '.join(parts)}" if parts else None
+
+
+def _is_wider(stated: Limit, limit: Limit) -> bool:
+    lower = stated.lower is not None and (limit.lower is None or limit.lower < stated.lower)
+    upper = stated.upper is not None and (limit.upper is None or limit.upper > stated.upper)
+    return lower or upper
+
+
+def _describe_bounds(limit: Limit) -> str:
+    if limit.lower is None:
+        return f"<= {limit.upper:g}"
+    return f">= {limit.lower:g}" if limit.upper is None else f"{limit.lower:g} to {limit.upper:g}"

@@ -1,0 +1,125 @@
+"""Identity of a case: copies of library cases, digests of limits, limits that a limits file weakens."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.library import library_folder, list_library, load_case, overlay_limits
+from pantocheck.conformance.cases.limits import Limit, LimitOverride
+from pantocheck.conformance.grading.case_grading import grade_case
+from pantocheck.conformance.grading.case_identity import (
+    compare_with_library,
+    describe_limit_change,
+    limits_digest,
+    list_limit_changes,
+)
+from pantocheck.conformance.results.outcome import Skipped
+from pantocheck.conformance.studies.damping_sensitivity import add_damping_study
+
+LIBRARY = list_library(library_folder())
+
+
+@pytest.mark.parametrize("name", LIBRARY)
+def test_every_library_case_is_identical_to_itself(name: str) -> None:
+    assert compare_with_library(load_case(LIBRARY[name])) == "identical"
+
+
+def test_copy_with_the_same_content_is_identical(edited_case: Callable[[str, dict[str, Any]], Path]) -> None:
+    assert compare_with_library(load_case(edited_case("250.toml", {}))) == "identical"
+
+
+@pytest.mark.parametrize(
+    ("file", "changes"),
+    [
+        ("250.toml", {"limit.6.upper": 255.0}),
+        ("250.toml", {"limit.1.trust": "primary"}),
+        ("250.toml", {"limit": []}),
+        ("250.toml", {"speed_km_h": 249.0}),
+        ("250.toml", {"title": "Another title"}),
+        ("250.toml", {"source": "another source"}),
+        ("250.toml", {"edition": "EN 50318:2018"}),
+        ("250.toml", {"superseded_by": None}),
+        ("line.toml", {"contact_wire.tension_N": 20001.0}),
+        ("pantograph.toml", {"title": "Another pantograph"}),
+    ],
+)
+def test_copy_with_other_content_is_modified(
+    edited_case: Callable[[str, dict[str, Any]], Path], file: str, changes: dict[str, Any]
+) -> None:
+    """A wider limit, other inputs, another source or title: the id alone does not make a library case."""
+    assert compare_with_library(load_case(edited_case(file, changes))) == "modified"
+
+
+def test_second_pantograph_makes_a_modified_copy(two_pantograph_case: Case) -> None:
+    assert compare_with_library(two_pantograph_case) == "modified"
+
+
+def test_other_id_is_an_own_case(edited_case: Callable[[str, dict[str, Any]], Path]) -> None:
+    assert compare_with_library(load_case(edited_case("250.toml", {"id": "en50318-2002/250-copy"}))) == "own"
+
+
+def test_options_of_the_run_do_not_modify_a_case(case_250: Case) -> None:
+    wide = LimitOverride(quantity="std_force_N", upper=900.0, trust="secondary", source="own")
+    assert compare_with_library(overlay_limits([case_250], [wide])[0]) == "identical"
+    assert compare_with_library(add_damping_study(case_250)) == "identical"
+
+
+def test_edition_leaves_the_input_digest_unchanged(case_250: Case) -> None:
+    """An edition is provenance: results of an older version keep their digest."""
+    file = case_250.file.model_copy(update={"edition": None, "superseded_by": None})
+    assert replace(case_250, file=file).digest == case_250.digest
+    assert (case_250.file.edition, case_250.file.superseded_by) == ("EN 50318:2002", "EN 50318:2018")
+
+
+@pytest.mark.parametrize("change", [{"upper": 31.5}, {"trust": "primary"}, {"source": "another"}, {"pantograph": 2}])
+def test_digest_of_limits_notices_bounds_trust_and_source(change: dict[str, Any]) -> None:
+    limits = (
+        Limit(quantity="std_force_N", pantograph=1, upper=31.0, trust="secondary", source="own"),
+        Limit(quantity="mean_force_N", pantograph=2, upper=120.0, trust="secondary", source="own"),
+    )
+    assert limits_digest(limits[::-1]) == limits_digest(limits)
+    assert limits_digest((limits[0].model_copy(update=change), limits[1])) != limits_digest(limits)
+
+
+def test_result_states_identity_and_both_digests_of_the_limits(case_250: Case) -> None:
+    own = LimitOverride(quantity="std_force_N", upper=900.0, trust="secondary", source="own")
+    plain, wide = (
+        grade_case(case, Skipped("not run"), "secondary") for case in (case_250, *overlay_limits([case_250], [own]))
+    )
+    assert (plain.library, plain.edition, plain.steps) == ("identical", "EN 50318:2002", ["reference_models"])
+    assert plain.limits_digest == plain.stated_limits_digest == wide.stated_limits_digest != wide.limits_digest
+    assert not plain.limit_changes
+    assert wide.limit_changes == ["std_force_N of pantograph 1: the limit 26 to 31 is widened to <= 900"]
+
+
+STATED = Limit(quantity="std_force_N", pantograph=2, lower=26.0, upper=31.0, trust="secondary", source="wang2016")
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        ({"trust": "provisional"}, "the trust of the limit is lowered from secondary to provisional"),
+        ({"trust": "primary"}, "the trust of the limit is raised from secondary to primary"),
+        ({"upper": 32.0}, "the limit 26 to 31 is widened to 26 to 32"),
+        ({"lower": 25.0}, "the limit 26 to 31 is widened to 25 to 31"),
+        ({"upper": None}, "the limit 26 to 31 is widened to >= 26"),
+        ({"lower": None, "trust": "provisional"}, "the limit 26 to 31 is widened to <= 31, and the trust of the limit "
+         "is lowered from secondary to provisional"),
+    ],
+)  # fmt: skip
+def test_weaker_limit_is_described(change: dict[str, Any], text: str) -> None:
+    assert describe_limit_change(STATED, STATED.model_copy(update=change)) == f"std_force_N of pantograph 2: {text}"
+
+
+@pytest.mark.parametrize("change", [{}, {"upper": 30.0}, {"lower": 27.0, "source": "own", "note": "stricter"}])
+def test_stricter_limit_is_not_reported(change: dict[str, Any]) -> None:
+    assert describe_limit_change(STATED, STATED.model_copy(update=change)) is None
+
+
+def test_removed_limit_is_reported(case_250: Case) -> None:
+    changes = list_limit_changes(replace(case_250, limits=case_250.limits[1:]))
+    assert changes == ["mean_force_N of pantograph 1: the limit 110 to 120 is removed"]
