@@ -9,6 +9,7 @@ from typing import Any, Literal
 import numpy as np
 import pytest
 
+from helpers.toml_edit import edit_toml
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import library_folder, load_case
 from pantocheck.conformance.cases.pantograph_file import PantographFile
@@ -19,7 +20,6 @@ from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.outcome import Delivered, Outcome
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph
-from tests.helpers.toml_edit import edit_toml
 
 MEAN, SIGMA, UPLIFT_MM = 119.0, 28.0, 50.0
 

@@ -13,12 +13,12 @@ import tomli_w
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from helpers.toml_edit import edit_toml
 from pantocheck.conformance.cases.library import library_folder, select_cases
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record_reading import open_record, read_samples
 from pantocheck.conformance.runner import run_cases
 from pantocheck.conformance.systems.record_folder import open_record_folder
-from tests.helpers.toml_edit import edit_toml
 
 FUZZ = Path(__file__).parents[3] / "benchmarks" / "fuzz.py"
 ROUNDS = 12

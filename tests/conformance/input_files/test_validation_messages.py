@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
+from helpers.toml_edit import edit_toml
 from pantocheck.conformance.cases.library import load_case, read_limits
 from pantocheck.conformance.input_files.input_error import InputError
-from tests.helpers.toml_edit import edit_toml
 
 CaseCopy = Callable[[str, str, str], Path]
 """Copies the case at 250 km/h with one text replaced in one of its files; gives the path of the case."""

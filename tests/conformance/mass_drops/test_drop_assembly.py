@@ -4,13 +4,12 @@ from pathlib import Path
 
 import pytest
 
-from helpers.drop_records import RATE
+from helpers.drop_records import RATE, assert_same_record
+from helpers.toml_edit import edit_toml
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
 from pantocheck.conformance.mass_drops.drop_writing import write_drop_csv
-from tests.helpers.drop_records import assert_same_record
-from tests.helpers.toml_edit import edit_toml
 
 
 def test_units_and_directions_become_si_and_upward(tmp_path: Path, record: DropRecord) -> None:

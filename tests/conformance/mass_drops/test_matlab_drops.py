@@ -7,12 +7,11 @@ import numpy as np
 import pytest
 import scipy.io
 
-from helpers.drop_records import RATE
+from helpers.drop_records import RATE, N, assert_same_record
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
 from pantocheck.conformance.mass_drops.drop_writing import write_drop_csv
-from tests.helpers.drop_records import N, assert_same_record
 
 
 @pytest.mark.parametrize("version", ["5", "7.3"])

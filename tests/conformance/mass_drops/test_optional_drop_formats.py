@@ -6,12 +6,11 @@ from types import SimpleNamespace
 
 import pytest
 
-from helpers.drop_records import RATE
+from helpers.drop_records import RATE, assert_same_record
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
 from pantocheck.conformance.mass_drops.drop_writing import write_drop_csv
-from tests.helpers.drop_records import assert_same_record
 
 
 def test_tdms(tmp_path: Path, record: DropRecord) -> None:

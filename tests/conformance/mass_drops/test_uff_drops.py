@@ -6,11 +6,11 @@ from typing import Literal
 
 import pytest
 
+from helpers.drop_records import assert_same_record
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
 from pantocheck.conformance.mass_drops.drop_writing import write_drop_csv
 from pantocheck.conformance.mass_drops.uff_writing import write_drop_uff
-from tests.helpers.drop_records import assert_same_record
 
 
 @pytest.mark.parametrize("form", ["ascii", "binary"])

@@ -9,6 +9,7 @@ import pytest
 import tomli_w
 from numpy.testing import assert_allclose
 
+from helpers.toml_edit import edit_toml
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import library_folder
 from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
@@ -17,7 +18,6 @@ from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_reading import read_record, read_samples
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.records.samples import complete_samples
-from tests.helpers.toml_edit import edit_toml
 
 if TYPE_CHECKING:
     from tests.conformance.conftest import Wave

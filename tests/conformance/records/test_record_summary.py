@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from helpers.toml_edit import edit_toml
 from pantocheck.conformance.authenticity.recomputation import find_discrepancies
 from pantocheck.conformance.cases.library import library_folder, select_cases
 from pantocheck.conformance.input_files.input_error import InputError
@@ -15,7 +16,6 @@ from pantocheck.conformance.results.results_format import CaseResult
 from pantocheck.conformance.runner import run_cases
 from pantocheck.conformance.systems.record_folder import open_record_folder
 from pantocheck.conformance.systems.system_choice import choose_system
-from tests.helpers.toml_edit import edit_toml
 
 PASSING = library_folder() / "en50318-2002" / "known-passing-code"
 SPEEDS = ("250", "300")

@@ -1,0 +1,34 @@
+"""Constraints for pip: the lowest declared version of every dependency.
+
+python benchmarks/lowest_versions.py [EXTRA ...] > constraints.txt
+pip install -c constraints.txt ".[EXTRA,...]"
+"""
+
+import re
+import sys
+import tomllib
+from pathlib import Path
+
+PROJECT = Path(__file__).resolve().parents[1] / "pyproject.toml"
+
+
+def pin_lowest(requirement: str) -> str:
+    """Requirement with its lower bound as the exact version; other bounds are dropped."""
+    match = re.fullmatch(r"\s*([A-Za-z0-9._-]+)(?:\[[^]]*\])?\s*>=\s*([A-Za-z0-9.]+)\s*(?:,.*)?", requirement)
+    if match is None:
+        raise ValueError(f"{requirement!r} has no lower bound")
+    name, version = match.groups()
+    return f"{name}=={version}"
+
+
+def build_constraints(extras: list[str]) -> list[str]:
+    """Lines of a constraints file for the dependencies and the chosen extras."""
+    project = tomllib.loads(PROJECT.read_text(encoding="utf-8"))["project"]
+    requirements = list(project["dependencies"])
+    for extra in extras:
+        requirements += project["optional-dependencies"][extra]
+    return [pin_lowest(requirement) for requirement in requirements]
+
+
+if __name__ == "__main__":
+    print("\n".join(build_constraints(sys.argv[1:])))
