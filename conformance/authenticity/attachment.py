@@ -1,12 +1,13 @@
 """Extraction of the results from a certificate of unknown origin."""
 
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 from pypdf import PdfReader
 from pypdf.errors import PyPdfError
 
-from pantocheck.conformance.input_files.bounded_file import check_file
+from pantocheck.conformance.input_files.bounded_file import read_bytes
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.reports.formats.reproducibility import NAME
 from pantocheck.conformance.reports.page_text import clean_text
@@ -38,16 +39,11 @@ def open_document(path: Path) -> PdfReader:
     InputError
         It cannot be read, is too large, is damaged or is not a PDF.
     """
-    check_file(path, str(path), MAX_DOCUMENT_BYTES)
-    try:
-        with path.open("rb") as file:
-            start = file.read(1024)
-    except OSError as error:
-        raise InputError(str(path), f"cannot be read ({error.strerror})", "Name a certificate.pdf.") from None
-    if b"%PDF-" not in start:
+    content = read_bytes(path, str(path), MAX_DOCUMENT_BYTES)
+    if b"%PDF-" not in content[:1024]:
         raise InputError(str(path), "not a PDF", "Name the certificate.pdf that 'pantocheck run' wrote.")
     try:
-        reader = PdfReader(path, strict=True)
+        reader = PdfReader(BytesIO(content), strict=True)
         pages = len(reader.pages)
     except DAMAGED as error:
         raise _build_damage_error(path, error) from None

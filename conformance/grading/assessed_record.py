@@ -8,7 +8,7 @@ import numpy as np
 
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.profile_file import Profile
-from pantocheck.conformance.input_files.atomic_writing import file_digest
+from pantocheck.conformance.input_files.bounded_file import file_digest
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value, evaluate_signals
 from pantocheck.conformance.quantities.registry import QUANTITIES

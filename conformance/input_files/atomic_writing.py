@@ -1,6 +1,5 @@
 """Atomic writing: a file is complete or absent."""
 
-import hashlib
 import os
 import tempfile
 from collections.abc import Callable, Iterator
@@ -72,9 +71,3 @@ def _convert_write_errors(path: Path) -> Iterator[None]:
         raise InputError(
             str(path), f"cannot be written ({error.strerror})", "Name a folder that you may write to, with --out."
         ) from None
-
-
-def file_digest(path: Path) -> str:
-    """SHA-256 of a file, in hexadecimal."""
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()

@@ -1,14 +1,49 @@
-"""Bounded reading: the size of a file is known before its content enters the memory."""
+"""Bounded reading: a file is regular, its size is known before its content enters the memory, and no more is read."""
 
+import hashlib
+import io
+import os
+import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import IO, Any
 
 from pantocheck.conformance.input_files.input_error import InputError
 
+MAX_FILE_BYTES = 2_000_000_000
+"""Largest file that is read [bytes]: a table of samples."""
 
-def check_file(path: Path, where: str, largest: int) -> None:
-    """Refuse a file that is missing, is not a regular file or is too large.
+NO_LINK = getattr(os, "O_NOFOLLOW", 0)
+"""Flag of `open_file` that refuses a symbolic link."""
+
+_CHUNK = 2**20  # [bytes]
+
+# A pipe without a writer must not block; Windows needs O_BINARY and has no pipes in its folders.
+_FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0)
+
+
+class _BoundedFile(io.FileIO):
+    """Regular file whose size was checked: a read behind this size is refused, because the file grows."""
+
+    def __init__(self, descriptor: int, where: str, size: int) -> None:
+        super().__init__(descriptor)
+        self._where, self._size = where, size
+
+    def readinto(self, buffer: Any) -> int:
+        count = super().readinto(buffer) or 0
+        if self.tell() > self._size:
+            raise InputError(self._where, "grows while it is read", "Read it after the writing program has ended.")
+        return count
+
+    # The methods of FileIO bypass `readinto`.
+    read = io.RawIOBase.read
+    readall = io.RawIOBase.readall
+
+
+@contextmanager
+def open_file(path: Path, where: str, largest: int, flags: int = 0) -> Iterator[IO[bytes]]:
+    """Open a regular file for reading; kind and size are those of the open file, not of its name.
 
     Parameters
     ----------
@@ -18,31 +53,53 @@ def check_file(path: Path, where: str, largest: int) -> None:
         Name of the file in messages, e.g. `results 'results.json'`.
     largest : int
         Limit of its size [bytes].
+    flags : int
+        Further flags of `os.open`, such as `NO_LINK`.
 
     Raises
     ------
     InputError
-        The file must not be read. A pipe or device is refused because it may never end.
+        The file is missing, is not a regular file, is too large, or grows while it is read. A pipe or device is
+        refused because it may never end.
     """
     with convert_read_errors(path, where):
-        size = path.stat().st_size
-    if not path.is_file():
-        raise InputError(where, f"cannot be read from {path} (not a regular file)", "Name a file.")
-    if size > largest:
-        raise InputError(where, f"{size} bytes", f"At most {largest} bytes are read.")
+        descriptor = os.open(path, _FLAGS | flags)
+        try:
+            status = os.fstat(descriptor)
+            if not stat.S_ISREG(status.st_mode):
+                raise InputError(where, f"cannot be read from {path} (not a regular file)", "Name a file.")
+            if status.st_size > largest:
+                raise InputError(where, f"{status.st_size} bytes", f"At most {largest} bytes are read.")
+            file = io.BufferedReader(_BoundedFile(descriptor, where, status.st_size), _CHUNK)
+        except BaseException:
+            os.close(descriptor)
+            raise
+    with file:
+        yield file
+
+
+def check_file(path: Path, where: str, largest: int) -> None:
+    """Refuse a file that a library opens by its path; parameters and errors as in `open_file`."""
+    with open_file(path, where, largest):
+        pass
 
 
 def read_bytes(path: Path, where: str, largest: int) -> bytes:
-    """Read a file as bytes; parameters and errors as in `check_file`."""
-    check_file(path, where, largest)
-    with convert_read_errors(path, where):
-        return path.read_bytes()
+    """Read a file as bytes; parameters and errors as in `open_file`."""
+    with open_file(path, where, largest) as file, convert_read_errors(path, where):
+        return b"".join(iter(lambda: file.read(_CHUNK), b""))
 
 
 def read_text(path: Path, where: str, largest: int) -> str:
-    """Read a file of UTF-8 text, with or without byte order mark; parameters and errors as in `check_file`."""
+    """Read a file of UTF-8 text, with or without byte order mark; parameters and errors as in `open_file`."""
     with convert_read_errors(path, where):
         return read_bytes(path, where, largest).decode("utf-8-sig")
+
+
+def file_digest(path: Path, flags: int = 0) -> str:
+    """SHA-256 of a file, in hexadecimal; parameters and errors as in `open_file`."""
+    with open_file(path, f"file '{path.name}'", MAX_FILE_BYTES, flags) as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 @contextmanager

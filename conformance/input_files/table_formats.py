@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 
-from pantocheck.conformance.input_files.bounded_file import check_file, convert_read_errors
+from pantocheck.conformance.input_files.bounded_file import MAX_FILE_BYTES, open_file
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.measured_table import MeasuredTable
 
-MAX_TABLE_BYTES = 2_000_000_000
+MAX_TABLE_BYTES = MAX_FILE_BYTES
 """Largest table that is read [bytes]."""
 
 Reader = Callable[[Path, tuple[str, ...], int], list[MeasuredTable]]
@@ -108,8 +108,7 @@ def read_tables(
     """
     table_format = find_table_format(path, formats)
     where = f"record '{path.name}'"
-    check_file(path, where, MAX_TABLE_BYTES)
-    with convert_read_errors(path, where), path.open("rb") as file:
+    with open_file(path, where, MAX_TABLE_BYTES) as file:
         if not file.read(1):
             raise InputError(where, "is empty", "Export the record again.")
     return table_format.read(path, names, largest)

@@ -6,8 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.input_files.atomic_writing import file_digest
-from pantocheck.conformance.input_files.bounded_file import check_file
+from pantocheck.conformance.input_files.bounded_file import check_file, file_digest
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.table_formats import MAX_TABLE_BYTES
 from pantocheck.conformance.input_files.toml_file import read_model, read_toml

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 import tomli_w
 
-from pantocheck.conformance.input_files.atomic_writing import file_digest, produce_atomically, write_atomically
+from pantocheck.conformance.input_files.atomic_writing import produce_atomically, write_atomically
+from pantocheck.conformance.input_files.bounded_file import file_digest
 from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
 from pantocheck.conformance.input_files.formats.hdf5_table import write_hdf5_table
 from pantocheck.conformance.input_files.input_error import InputError

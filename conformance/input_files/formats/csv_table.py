@@ -2,6 +2,8 @@
 
 import warnings
 from collections.abc import Iterator
+from contextlib import contextmanager
+from io import TextIOWrapper
 from itertools import chain, islice
 from pathlib import Path
 from typing import TextIO
@@ -9,7 +11,7 @@ from typing import TextIO
 import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.input_files.bounded_file import convert_read_errors
+from pantocheck.conformance.input_files.bounded_file import MAX_FILE_BYTES, convert_read_errors, open_file
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.measured_table import MeasuredTable, TableColumn
 
@@ -26,7 +28,7 @@ def read_csv_table(path: Path, names: tuple[str, ...], largest: int) -> list[Mea
     """
     del names  # a CSV file is read the same way with and without a sidecar
     where = f"record '{path.name}'"
-    with convert_read_errors(path, where), path.open(encoding="utf-8-sig") as file, warnings.catch_warnings():
+    with _open_text(path, where) as file, warnings.catch_warnings():
         start = list(islice(_numbered(file, where), 3))
         if not start:
             raise InputError(where, "holds no data", "Export the record again.")
@@ -68,6 +70,12 @@ def write_csv_table(path: Path, names: list[str], values: RealArray, digits: int
     np.savetxt(path, values, f"%.{digits}g", ",", header=head, comments="", encoding="utf-8")
 
 
+@contextmanager
+def _open_text(path: Path, where: str) -> Iterator[TextIO]:
+    with convert_read_errors(path, where), open_file(path, where, MAX_FILE_BYTES) as file:
+        yield TextIOWrapper(file, encoding="utf-8-sig")
+
+
 def _numbered(file: TextIO, where: str) -> Lines:
     """Lines of the table: those after the first comments that are not blank."""
     comments = True
@@ -97,7 +105,7 @@ def _is_number(cell: str, decimal: str) -> bool:
 
 def _find_fault(path: Path, where: str, named: bool) -> InputError:
     """First line of a damaged table whose width or numbers are wrong."""
-    with path.open(encoding="utf-8-sig") as file:
+    with _open_text(path, where) as file:
         lines = list(_numbered(file, where))
     delimiter, decimal = _find_dialect([line for _, line in lines[:3]])
     width = lines[0][1].count(delimiter) + 1

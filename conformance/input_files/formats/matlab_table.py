@@ -8,6 +8,7 @@ import scipy.io
 from scipy.io.matlab import MatReadError
 
 from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.input_files.bounded_file import MAX_FILE_BYTES, open_file
 from pantocheck.conformance.input_files.formats.hdf5_table import open_hdf5, read_numbers
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.measured_table import MeasuredTable, TableColumn, refuse_damage, stack_channels
@@ -61,8 +62,8 @@ def _find_largest_matrix(data: dict[str, RealArray], where: str) -> RealArray:
 
 
 def _read_version_5(path: Path, where: str) -> dict[str, RealArray]:
-    with refuse_damage(where, "a MATLAB file", MatReadError):
-        content = scipy.io.loadmat(path, struct_as_record=True)
+    with open_file(path, where, MAX_FILE_BYTES) as file, refuse_damage(where, "a MATLAB file", MatReadError):
+        content = scipy.io.loadmat(file, struct_as_record=True)
     return {
         name: np.asarray(value, dtype=np.float64)
         for name, value in content.items()

@@ -3,9 +3,7 @@
 from pathlib import Path
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.input_files.atomic_writing import file_digest
-from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.table_formats import MAX_TABLE_BYTES
+from pantocheck.conformance.input_files.bounded_file import NO_LINK, file_digest
 from pantocheck.conformance.records.record_reading import read_record
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.outcome import Delivered
@@ -64,12 +62,10 @@ def _check_file(file: File, folder: Path) -> Path:
             raise DeliveryRefused(f"the file {file.file!r} lies outside the folder of the run")
         if not path.is_file():
             raise DeliveryRefused(f"there is no file {file.file!r} in the folder of the run")
-        if path.stat().st_size > MAX_TABLE_BYTES:
-            raise InputError(f"record '{path.name}'", "too large", f"A record has at most {MAX_TABLE_BYTES} bytes.")
-        digest = file_digest(path)
+        digest = file_digest(path, NO_LINK)
+    except DeliveryRefused:
+        raise
     except (OSError, ValueError) as error:
-        if isinstance(error, DeliveryRefused | InputError):
-            raise
         raise DeliveryRefused(f"the file {file.file!r} cannot be read ({error})") from None
     if digest != file.sha256:
         raise DeliveryRefused(f"the content of {file.file!r} does not agree with its sha256")
