@@ -7,7 +7,7 @@ import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 from pantocheck.conformance.input_files.input_error import InputError
 
@@ -23,7 +23,7 @@ _CHUNK = 2**20  # [bytes]
 _FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0)
 
 
-class _BoundedFile(io.FileIO):
+class _RawFile(io.FileIO):
     """Regular file whose size was checked: a read behind this size is refused, because the file grows."""
 
     def __init__(self, descriptor: int, where: str, size: int) -> None:
@@ -37,12 +37,26 @@ class _BoundedFile(io.FileIO):
         return count
 
     # The methods of FileIO bypass `readinto`.
-    read = io.RawIOBase.read
-    readall = io.RawIOBase.readall
+    def read(self, size: int | None = -1) -> bytes:
+        return io.RawIOBase.read(self, -1 if size is None else size) or b""
+
+    def readall(self) -> bytes:
+        return io.RawIOBase.readall(self)
+
+
+class BoundedFile(io.BufferedReader):
+    """Buffered regular file; a library that asks for more bytes than the file has takes no memory for them."""
+
+    def __init__(self, descriptor: int, where: str, size: int) -> None:
+        super().__init__(_RawFile(descriptor, where, size), _CHUNK)
+        self._size = size
+
+    def read(self, size: int | None = -1, /) -> bytes:
+        return super().read(-1 if size is None or size < 0 else min(size, self._size + 1))
 
 
 @contextmanager
-def open_file(path: Path, where: str, largest: int, flags: int = 0) -> Iterator[IO[bytes]]:
+def open_file(path: Path, where: str, largest: int, flags: int = 0) -> Iterator[BoundedFile]:
     """Open a regular file for reading; kind and size are those of the open file, not of its name.
 
     Parameters
@@ -70,7 +84,7 @@ def open_file(path: Path, where: str, largest: int, flags: int = 0) -> Iterator[
                 raise InputError(where, f"cannot be read from {path} (not a regular file)", "Name a file.")
             if status.st_size > largest:
                 raise InputError(where, f"{status.st_size} bytes", f"At most {largest} bytes are read.")
-            file = io.BufferedReader(_BoundedFile(descriptor, where, status.st_size), _CHUNK)
+            file = BoundedFile(descriptor, where, status.st_size)
         except BaseException:
             os.close(descriptor)
             raise

@@ -1,5 +1,6 @@
 """TOML files: bounded reading, parsing and validation."""
 
+import re
 import tomllib
 from pathlib import Path
 from typing import Any, TypeVar
@@ -12,6 +13,12 @@ from pantocheck.conformance.input_files.validation_messages import build_input_e
 
 MAX_TOML_BYTES = 5_000_000
 """Largest TOML file that is read [bytes]; no line or case needs more, and gigabytes would block the parser."""
+
+MOST_PARTS = 100
+"""Largest number of parts of a dotted key; the time and memory of the parser grow with the square of it."""
+
+_PART = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')"""
+_LONG_KEY = re.compile(rf"(?<![\w.-])(?:{_PART}[ \t]*+\.[ \t]*+){{{MOST_PARTS}}}")
 
 T = TypeVar("T", bound=BaseModel)
 
@@ -45,6 +52,11 @@ def read_toml(path: Path, kind: str) -> dict[str, Any]:
     """Read a TOML file without validation; parameters and errors as in `read_model`."""
     where = f"{kind} '{path.name}'"
     text = read_text(path, where, MAX_TOML_BYTES)
+    if (long := _LONG_KEY.search(text)) is not None:
+        line = text.count("\n", 0, long.start()) + 1
+        raise InputError(
+            f"{where}, line {line}", "is a key of too many parts", f"A key has at most {MOST_PARTS} parts between dots."
+        )
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:

@@ -7,6 +7,7 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.measured_table import MeasuredTable
 from pantocheck.conformance.mass_drops.drop_sidecar import DropSidecar
 
+LOWEST_RATE, HIGHEST_RATE = 0.1, 1e6  # [Hz]
 RATE_TOLERANCE = 1e-3  # relative
 
 
@@ -27,8 +28,10 @@ def find_sampling_rate(table: MeasuredTable, sidecar: DropSidecar | None) -> flo
     if not rates:
         raise InputError(table.where, "states no sampling rate", "Give sampling_rate_hz in a sidecar.")
     first, rate = rates[0]
-    if not (np.isfinite(rate) and rate > 0):
-        raise InputError(table.where, f"sampling rate {rate} Hz", "Give a positive number of samples per second.")
+    for source, other in rates:
+        if not LOWEST_RATE <= other <= HIGHEST_RATE:
+            found = f"{source} says {other:g} samples per second"
+            raise InputError(table.where, found, f"The rate lies between {LOWEST_RATE:g} and {HIGHEST_RATE:g} Hz.")
     for source, other in rates[1:]:
         if abs(other / rate - 1) > RATE_TOLERANCE:
             raise InputError(

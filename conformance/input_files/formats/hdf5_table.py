@@ -1,5 +1,6 @@
 """HDF5 tables: runs `run_<k>/<quantity>` with a group `channels` and attributes, or data sets at the root."""
 
+import math
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,6 +14,11 @@ from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.measured_table import MeasuredTable, TableColumn, refuse_damage
 
+MOST_ITEMS = 10_000
+"""Largest count of data sets in a group, and of channels."""
+
+OWN_DATA = "Store the data sets themselves in the file."
+
 MOTION_QUANTITIES = ("acceleration", "velocity", "displacement")
 
 
@@ -21,7 +27,7 @@ def read_hdf5_table(path: Path, names: tuple[str, ...], largest: int) -> list[Me
 
     A file without groups `run_<k>` is one run whose data sets, of one or more rows, stand at its root.
     """
-    with open_hdf5(path) as file:
+    with open_hdf5(path, largest) as file:
         where = f"record '{path.name}'"
         runs = sorted((name for name in file if name.startswith("run_")), key=_run_number)
         if not runs:
@@ -34,9 +40,26 @@ def read_hdf5_table(path: Path, names: tuple[str, ...], largest: int) -> list[Me
 
 
 @contextmanager
-def open_hdf5(path: Path) -> Iterator[h5py.File]:
-    """Open an HDF5 file for reading; failures of the library inside the block become `InputError`."""
-    with refuse_damage(f"record '{path.name}'", "HDF5"), h5py.File(path, "r") as file:
+def open_hdf5(path: Path, largest: int) -> Iterator[h5py.File]:
+    """Open an HDF5 file for reading; failures of the library inside the block become `InputError`.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    largest : int
+        Largest count of numbers in its data sets.
+
+    Raises
+    ------
+    InputError
+        The file is damaged, a part of its data stands in another place or file, or its data are too large.
+    """
+    where = f"record '{path.name}'"
+    with refuse_damage(where, "HDF5"), h5py.File(path, "r") as file:
+        numbers = _check_items(file, where, largest)
+        if numbers > largest:
+            raise InputError(where, f"{numbers} numbers", f"At most {largest} numbers are read.")
         yield file
 
 
@@ -75,6 +98,30 @@ def write_hdf5_table(path: Path, attributes: Mapping[str, Any], datasets: Mappin
             texts = isinstance(values, list) and isinstance(values[0], str)
             dtype = h5py.string_dtype("utf-8") if texts else None
             file.create_dataset(name, data=values, dtype=dtype, track_times=False)
+
+
+def _check_items(group: h5py.Group, where: str, largest: int) -> int:
+    """Count of numbers in the data sets of a group and of its runs, which must all stand in this file.
+
+    The SHA-256 of the file would not cover data of another file, and a chunk is read as a whole.
+    """
+    if len(group) > MOST_ITEMS:
+        raise InputError(where, f"{len(group)} data sets", f"At most {MOST_ITEMS} are read.")
+    numbers = 0
+    for name in group:
+        place = f"{where}, {str(name)[:80]!r}"
+        if not isinstance(group.get(name, getlink=True), h5py.HardLink):
+            raise InputError(place, "is a link to another place", OWN_DATA)
+        item = group[name]
+        if isinstance(item, h5py.Dataset):
+            if item.external or item.is_virtual:
+                raise InputError(place, "stores its numbers in another place", OWN_DATA)
+            if math.prod(item.chunks or ()) > max(largest, MOST_ITEMS):
+                raise InputError(place, f"its chunks have the shape {item.chunks}", "Store smaller chunks.")
+            numbers += item.size or 0
+        elif isinstance(item, h5py.Group) and (name == "channels" or str(name).startswith("run_")):
+            numbers += _check_items(item, place, largest)
+    return numbers
 
 
 def _run_number(name: str) -> tuple[int, str]:

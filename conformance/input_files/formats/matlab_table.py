@@ -1,6 +1,10 @@
 """MATLAB tables, version 5 (scipy) and 7.3 (HDF5): a matrix of samples or one vector per channel, with a sidecar."""
 
+import math
+import struct
+import zlib
 from pathlib import Path
+from typing import BinaryIO
 
 import h5py
 import numpy as np
@@ -14,13 +18,16 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.measured_table import MeasuredTable, TableColumn, refuse_damage, stack_channels
 
 MATLAB_TIME_NAMES = ("time", "time_s", "t")
+NUMERIC_CLASSES = {"double", "single", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64))}
+COMPRESSED = 15  # type of an element of version 5
+
 RATE_NAMES = ("sampling_rate_hz", "fs", "rate")
 
 
 def read_matlab_table(path: Path, names: tuple[str, ...], largest: int) -> list[MeasuredTable]:
     """Read the run of a MATLAB file; arguments and errors as in `table_formats.Reader`."""
     where = f"record '{path.name}'"
-    arrays = _read_version_7_3(path, where, largest) if h5py.is_hdf5(path) else _read_version_5(path, where)
+    arrays = _read_version_7_3(path, where, largest) if h5py.is_hdf5(path) else _read_version_5(path, where, largest)
     time = next((array.ravel() for array in _find_arrays(arrays, MATLAB_TIME_NAMES) if array.size > 1), None)
     rate = next((float(array.ravel()[0]) for array in _find_arrays(arrays, RATE_NAMES) if array.size), None)
     data = {name: array for name, array in arrays.items() if name.lower() not in MATLAB_TIME_NAMES + RATE_NAMES}
@@ -61,18 +68,48 @@ def _find_largest_matrix(data: dict[str, RealArray], where: str) -> RealArray:
     return np.ascontiguousarray(table if table.shape[0] >= table.shape[1] else table.T)
 
 
-def _read_version_5(path: Path, where: str) -> dict[str, RealArray]:
+def _read_version_5(path: Path, where: str, largest: int) -> dict[str, RealArray]:
+    """Numeric variables; the stated shapes are checked before reading, and so are the compressed data behind them."""
     with open_file(path, where, MAX_FILE_BYTES) as file, refuse_damage(where, "a MATLAB file", MatReadError):
-        content = scipy.io.loadmat(file, struct_as_record=True)
-    return {
-        name: np.asarray(value, dtype=np.float64)
-        for name, value in content.items()
-        if not name.startswith("__") and isinstance(value, np.ndarray) and value.dtype.kind in "fiu"
-    }
+        inflated = _inflates_over(file, 8 * largest + 2**20)  # `whosmat` inflates whole variables
+        file.seek(0)
+        stated = [] if inflated else scipy.io.whosmat(file)
+        shapes = {name: shape for name, shape, kind in stated if kind in NUMERIC_CLASSES}
+        numbers = sum(math.prod(shape) for shape in shapes.values())
+        if inflated or numbers > largest:
+            raise InputError(where, f"more than {largest} numbers", "Cut the record, or leave channels out.")
+        file.seek(0)
+        content = scipy.io.loadmat(file, struct_as_record=True, variable_names=list(shapes))
+        return {
+            name: np.asarray(value, dtype=np.float64)
+            for name, value in content.items()
+            if name in shapes and isinstance(value, np.ndarray) and value.dtype.kind in "fiu"
+        }
+
+
+def _inflates_over(file: BinaryIO, limit: int) -> bool:
+    """Whether the compressed variables of a file of version 5 hold more than `limit` [bytes] together."""
+    file.seek(126)
+    order = "<" if file.read(2) == b"IM" else ">"
+    total = 0
+    while len(tag := file.read(8)) == 8:
+        kind, size = struct.unpack(f"{order}II", tag)
+        end = file.tell() + size
+        if kind == COMPRESSED:
+            inflation, left = zlib.decompressobj(), size
+            while left > 0 and total <= limit and (data := file.read(min(left, 2**20))):
+                left -= len(data)
+                while data and total <= limit:
+                    total += len(inflation.decompress(data, 2**20))
+                    data = inflation.unconsumed_tail
+        if total > limit:
+            return True
+        file.seek(end)
+    return False
 
 
 def _read_version_7_3(path: Path, where: str, largest: int) -> dict[str, RealArray]:
-    with open_hdf5(path) as file:
+    with open_hdf5(path, largest) as file:
         return {
             # MATLAB stores matrices by columns, so they are transposed here.
             name: read_numbers(item, f"{where}, variable {name!r}", largest).T

@@ -32,6 +32,10 @@ def read_mdf_table(path: Path, names: tuple[str, ...], largest: int) -> list[Mea
                 f"channel '{missing[0]}' of the sidecar is missing",
                 f"The file holds: {', '.join(sorted(file.channels_db)[:12])}",
             )
+        places = [file.channels_db[name][0] for name in names]
+        stated = sum(file.groups[group].channel_group.cycles_nr for group, _ in places)
+        if stated > largest:
+            raise InputError(where, f"states {stated} samples", f"At most {largest} are read.")
         signals = [file.get(name) for name in names]
     values = stack_channels([np.asarray(signal.samples, dtype=np.float64) for signal in signals], where, largest)
     time = np.asarray(signals[0].timestamps, dtype=np.float64)

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from pantocheck.conformance.input_files.bounded_file import MAX_FILE_BYTES, open_file
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.measured_table import (
     SAMPLED_TOGETHER,
@@ -20,8 +21,12 @@ def read_tdms_table(path: Path, names: tuple[str, ...], largest: int) -> list[Me
     from nptdms import TdmsFile
 
     where = f"record '{path.name}'"
-    with refuse_damage(where, "TDMS"):
-        channels = [channel for group in TdmsFile.read(path).groups() for channel in group.channels()]
+    with open_file(path, where, MAX_FILE_BYTES) as file, refuse_damage(where, "TDMS"):
+        stated = sum(len(channel) for group in TdmsFile.read_metadata(file).groups() for channel in group.channels())
+        if stated > min(largest, path.stat().st_size):  # a sample has at least one byte
+            raise InputError(where, f"states {stated} samples", f"At most {largest}, and no more than bytes, are read.")
+        file.seek(0)
+        channels = [channel for group in TdmsFile.read(file).groups() for channel in group.channels()]
         vectors = [np.asarray(channel[:], dtype=np.float64) for channel in channels]
     kept = [(channel, vector) for channel, vector in zip(channels, vectors, strict=True) if vector.size]
     if not kept:

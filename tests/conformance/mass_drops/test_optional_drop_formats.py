@@ -66,10 +66,10 @@ def test_mdf_with_channels_of_two_rates_is_refused(
     }
 
     class File:
-        channels_db = signals
-
         def __init__(self, path: Path) -> None:
             self.get = signals.__getitem__
+            self.channels_db = {name: ((0, c),) for c, name in enumerate(signals)}
+            self.groups = [SimpleNamespace(channel_group=SimpleNamespace(cycles_nr=record.time.size))]
 
         def __enter__(self) -> "File":
             return self

@@ -1,0 +1,70 @@
+"""TOML files: pathological content is refused at once, with the reason and the line."""
+
+import time
+from pathlib import Path
+
+import pytest
+
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.toml_file import MAX_TOML_BYTES, MOST_PARTS, read_toml
+
+
+def dotted(parts: int, separator: str = ".") -> str:
+    return separator.join(["a"] * parts)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        f"{dotted(20_000)} = 1",
+        f"{dotted(500_000)} = 1",
+        f"{dotted(20_000, ' . ')} = 1",
+        f"[{dotted(20_000)}]",
+        f"[[{dotted(20_000)}]]",
+        f"b = {{ {dotted(20_000)} = 1 }}",
+        ".".join(['"a b"'] * 20_000) + " = 1",
+        ".".join(["'a'"] * 20_000) + " = 1",
+        f"{dotted(MOST_PARTS + 1)} = 1",
+    ],
+)
+def test_key_of_many_parts_is_refused_quickly(line: str, tmp_path: Path) -> None:
+    """The parser took 20 s and 2 GB for 20 000 parts."""
+    (tmp_path / "a.toml").write_text(f"x = 1\n{line}\n")
+    start = time.process_time()
+    with pytest.raises(InputError, match=rf"case 'a\.toml', line 2: is a key of .*\n  .* at most {MOST_PARTS} parts"):
+        read_toml(tmp_path / "a.toml", "case")
+    assert time.process_time() - start < 1.0
+
+
+def test_usual_keys_numbers_and_texts_are_read(tmp_path: Path) -> None:
+    """Dots of a sentence, of a version and of a long list of numbers are no parts of a key."""
+    numbers = ", ".join(["1.5"] * 1000)
+    text = "One. Two. Three. " * 20 + "..." * 50
+    content = f'{dotted(MOST_PARTS)} = 1\nb = [{numbers}]\nc = "{text}"\nd = "1.2.3"\n'
+    (tmp_path / "a.toml").write_text(content)
+    tree = read_toml(tmp_path / "a.toml", "case")
+    assert tree["b"] == [1.5] * 1000
+    assert tree["c"] == text
+
+
+def test_file_without_a_key_is_searched_in_linear_time(tmp_path: Path) -> None:
+    """The search for long keys must not be slow itself."""
+    for content in ("a" * 4_000_000, '"' * 4_000_000, "a. " * 1_000_000, "a\n" * 1_000_000):
+        (tmp_path / "a.toml").write_text(content)
+        start = time.process_time()
+        with pytest.raises(InputError):
+            read_toml(tmp_path / "a.toml", "case")
+        assert time.process_time() - start < 5.0
+
+
+def test_file_over_the_limit_has_its_own_message(tmp_path: Path) -> None:
+    (tmp_path / "a.toml").write_bytes(b"#" * (MAX_TOML_BYTES + 1))
+    with pytest.raises(InputError, match=r"case 'a\.toml': 5000001 bytes\.\n  At most 5000000 bytes are read"):
+        read_toml(tmp_path / "a.toml", "case")
+
+
+@pytest.mark.parametrize("content", ["a = " + "9" * 5000, "a = " + "[" * 5000, "a = " + "{b=" * 5000])
+def test_long_number_and_deep_nesting_are_refused(content: str, tmp_path: Path) -> None:
+    (tmp_path / "a.toml").write_text(content)
+    with pytest.raises(InputError, match="a number or a nesting that is too long to read"):
+        read_toml(tmp_path / "a.toml", "case")
