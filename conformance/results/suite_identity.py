@@ -6,7 +6,7 @@ from functools import cache
 from importlib.resources import files
 from pathlib import Path
 
-from pantocheck.conformance.input_files.atomic_writing import file_digest
+from pantocheck.conformance.input_files.bounded_file import file_digest
 
 PACKAGES = ("pantocheck.conformance", "pantocheck.model", "pantocheck.reference_cases", "pantocheck.templates")
 SOURCE_SUFFIXES = frozenset({".py", ".toml", ".html", ".typ", ".css", ".js", ".mplstyle"})
