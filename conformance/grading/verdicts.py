@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from typing import Literal, get_args
 
-Verdict = Literal["error", "fail", "skip", "pass", "info"]
+Verdict = Literal["error", "fail", "skip", "info", "unverified", "pass"]
 
 WORST_FIRST: tuple[Verdict, ...] = get_args(Verdict)
 
@@ -45,5 +45,5 @@ def margin(value: float, lower: float | None, upper: float | None) -> float:
 
 
 def worst_verdict(verdicts: Iterable[Verdict]) -> Verdict:
-    """Worst of several verdicts, in the order error, fail, skip, pass, info; `info` if there are none."""
+    """Worst of several verdicts, in the order of `WORST_FIRST`; `info` if there are none."""
     return min(verdicts, key=WORST_FIRST.index, default="info")

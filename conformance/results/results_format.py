@@ -14,6 +14,9 @@ from pantocheck.conformance.input_files.trust import Trust
 RESULTS_SCHEMA = "pantocheck.results/1"
 STATEMENT = "self-declared conformance report, in the style of EN 50318"
 
+RecordState = Literal["verified", "unverified", "contradicted"]
+"""Result of the consistency checks of a record: confirmed, not all of them possible, or refuted."""
+
 FiniteNumber = Annotated[float, Field(ge=-1e15, le=1e15)]
 Number = FiniteNumber | list[FiniteNumber]
 Owner = Annotated[str, Field(pattern="^[0-9]{1,2}$", description="number of a pantograph, 0: the line")]
@@ -217,6 +220,19 @@ def name_case(case_id: str, library: LibraryIdentity | None) -> str:
     return f"modified copy of {case_id}" if library == "modified" else case_id
 
 
+class RecordFacts(ResultsPart):
+    """Record of a case. Digests are SHA-256 in hexadecimal, null if unknown.
+
+    `digest` is that of the record. `case_digest` is that of the case for which the record was made, as the record states
+    it.
+    """
+
+    state: RecordState
+    reason: str
+    digest: str | None = None
+    case_digest: str | None = None
+
+
 class CaseResult(ResultsPart):
     """Result of one case. Keys of `quantities`, `skipped` and `traces` are the pantographs; `0` is the line."""
 
@@ -257,6 +273,8 @@ class CaseResult(ResultsPart):
         dict[Owner, dict[str, float]],
         Field(default_factory=dict, description="half-width of the 95 % interval, as in `quantities`"),
     ]
+    record: RecordFacts | None = None
+    """Null without a record: line at rest, mass drop, or a study of several runs."""
     run: RunFacts
     traces: dict[Owner, Traces]
     uplift: list[UpliftTrace]
