@@ -1,7 +1,9 @@
 """Plans: the options of a run in a file, and their preparation for the run."""
 
 import shlex
+from collections.abc import Sequence
 from dataclasses import dataclass
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Annotated
 
@@ -10,10 +12,13 @@ from pydantic import Field
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import library_folder, overlay_limits, read_limits, select_cases
 from pantocheck.conformance.grading.baseline import compare_with_baseline
+from pantocheck.conformance.grading.case_verdict import Participation
 from pantocheck.conformance.input_files.atomic_writing import check_writable
+from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.sourced_table import InputTable
+from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.toml_file import read_model
-from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.input_files.trust import Trust, limit_counts
 from pantocheck.conformance.reports.formats.report_writers import check_formats
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.results.results_reading import read_results
@@ -28,8 +33,15 @@ Names = Annotated[tuple[str, ...], Field(strict=False, max_length=1000)]
 class Plan(InputTable):
     """Options of `pantocheck run`; an option of the command line replaces that of the plan."""
 
-    cases: Annotated[Names, Field(description="ids, globs or paths of cases; default: every case with limits")] = ()
+    cases: Annotated[
+        Names,
+        Field(description="ids, globs or paths of cases; default: those whose limits count"),
+    ] = ()
     system: Annotated[str, Field(description="builtin, record:DIR or command:PROGRAM ARGUMENTS")] = "builtin"
+    information: Annotated[
+        Names, Field(description="ids or globs of cases that are shown, but do not take part in the verdict")
+    ] = ()
+    accept_unverified: Annotated[Names, Field(description="names of systems whose unverified records may pass")] = ()
     timeout_s: Annotated[float, Field(gt=0, description="time that a program may take for a case [s]")] = 600.0
     out: Annotated[str, Field(description="folder of the results")] = "report"
     formats: Annotated[Names, Field(description="formats of the report: html, pdf, json, junit, md, badge")] = (
@@ -65,6 +77,8 @@ class PreparedPlan:
         Folder of the results.
     baseline : Results or None
         Earlier results that values are compared with.
+    participation : Participation
+        Cases shown for information, and accepted unverified records.
     """
 
     plan: Plan
@@ -72,6 +86,7 @@ class PreparedPlan:
     formats: tuple[str, ...]
     out: Path
     baseline: Results | None
+    participation: Participation
 
     def start_system(self) -> System:
         """System under test; a program is started once to learn its name.
@@ -100,14 +115,41 @@ def prepare_plan(plan: Plan) -> PreparedPlan:
     InputError
         A case, the limits, the baseline or a format is wrong.
     """
-    cases = select_cases(plan.cases)
+    cases = select_cases(plan.cases or ["*"])
     if plan.limits is not None:
         cases = overlay_limits(cases, read_limits(Path(plan.limits)))
+    if not plan.cases:
+        cases = _keep_counting(cases, plan.trust)
+        if not cases:
+            raise InputError("cases", f"no limit counts at trust '{plan.trust}'", "Name a case, or lower the trust.")
     if plan.damping_study:
         cases = [add_damping_study(case) for case in cases]
     formats = check_formats(plan.formats)
     baseline = None if plan.baseline is None else read_results(Path(plan.baseline))
-    return PreparedPlan(plan, tuple(cases), formats, Path(plan.out), baseline)
+    participation = Participation(_list_information(cases, plan), plan.accept_unverified)
+    return PreparedPlan(plan, tuple(cases), formats, Path(plan.out), baseline, participation)
+
+
+def _keep_counting(cases: Sequence[Case], trust: Trust) -> list[Case]:
+    """Cases with a limit that counts and without `on_request`, and the cases that they require."""
+    kept = {case.id for case in cases if _has_counting_limit(case, trust) and not case.file.on_request}
+    needed = {required for case in cases if case.id in kept for required in case.file.requires}
+    return [case for case in cases if case.id in kept | needed]
+
+
+def _has_counting_limit(case: Case, trust: Trust) -> bool:
+    return any(limit_counts(limit.trust, trust) for limit in case.limits)
+
+
+def _list_information(cases: Sequence[Case], plan: Plan) -> tuple[str, ...]:
+    """Ids of the cases for information: those of the plan, and required cases of a default run without limits."""
+    for i, pattern in enumerate(plan.information, 1):
+        if not any(fnmatchcase(case.id, pattern) for case in cases):
+            names = suggest_names(pattern, [case.id for case in cases])
+            raise InputError(f"plan, key information[{i}]", f"no case of this run matches {pattern!r}", names)
+    listed = [case.id for case in cases if any(fnmatchcase(case.id, pattern) for pattern in plan.information)]
+    required = [case.id for case in cases if not plan.cases and not _has_counting_limit(case, plan.trust)]
+    return tuple(dict.fromkeys([*listed, *required]))
 
 
 def read_plan(path: Path) -> Plan:
@@ -119,6 +161,12 @@ def read_plan(path: Path) -> Plan:
         The file cannot be read or is wrong.
     """
     plan, folder = read_model(path, Plan, "plan"), path.parent
+    if "system" not in plan.model_fields_set:
+        raise InputError(
+            f"plan '{path.name}', key system",
+            "missing",
+            "Name the system under test: builtin, record:DIR or command:PROGRAM.",
+        )
     kind, _, rest = plan.system.partition(":")
     system = plan.system
     if kind == "record":

@@ -10,6 +10,7 @@ from types import FrameType
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.grading.case_grading import build_ungraded, grade_case
+from pantocheck.conformance.grading.case_verdict import EVERY_CASE, Participation
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.results.results_building import build_results, utc_now
 from pantocheck.conformance.results.results_format import CaseResult, Results, SystemIdentity
@@ -35,7 +36,12 @@ class RunInterrupted(Exception):
 
 
 def run_cases(
-    cases: Sequence[Case], system: System, trust: Trust = "secondary", jobs: int = 1, progress: Progress | None = None
+    cases: Sequence[Case],
+    system: System,
+    trust: Trust = "secondary",
+    jobs: int = 1,
+    progress: Progress | None = None,
+    participation: Participation = EVERY_CASE,
 ) -> Results:
     """Run cases on a system and grade them.
 
@@ -51,6 +57,8 @@ def run_cases(
         Number of parallel processes; 1 runs all cases in this process.
     progress : Progress or None
         Callback for each result.
+    participation : Participation
+        Cases shown for information, and accepted unverified records.
 
     Returns
     -------
@@ -72,7 +80,7 @@ def run_cases(
 
     def combine() -> Results:
         identity = SystemIdentity(name=system.name, version=system.version, kind=system.kind)
-        return build_results([finished[case.id] for case in cases], identity, trust, started)
+        return build_results([finished[case.id] for case in cases], identity, trust, started, participation)
 
     try:
         if jobs == 1:

@@ -5,10 +5,12 @@ from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
-from pantocheck.conformance.grading.verdicts import judge, margin, worst_verdict
+from pantocheck.conformance.grading.case_verdict import Participation, judge_case
+from pantocheck.conformance.grading.verdicts import judge, margin
 from pantocheck.conformance.input_files.trust import limit_counts
 from pantocheck.conformance.quantities.bands import BANDS
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, statistical_extremes
+from pantocheck.conformance.results.results_format import RecordFacts
 
 EXACT, ROUNDED = 1e-9, 2e-5
 """Relative tolerances: numbers of results.json have all their digits, traces are rounded to six digits."""
@@ -28,7 +30,9 @@ def find_discrepancies(results: dict[str, Any]) -> list[str]:
         One line per contradiction.
     """
     discrepancies = [text for case in results["cases"] for text in _check_case(case, results["trust"])]
-    verdict = worst_verdict(case["verdict"] for case in results["cases"])
+    participation = Participation(tuple(results["information"]), tuple(results["accepted_unverified"]))
+    verdicts = ((case["id"], case["verdict"]) for case in results["cases"])
+    verdict = participation.judge_run(verdicts, results["system"]["name"])
     if results["verdict"] != verdict:
         discrepancies.append(f"verdict: '{results['verdict']}' stated, '{verdict}' follows from the cases")
     return discrepancies
@@ -39,10 +43,13 @@ def _check_case(case: dict[str, Any], trust: Any) -> Iterator[str]:
         where = f"{case['id']}, {row['quantity']} of pantograph {row['pantograph']}"
         for text in (*_check_value(row, case["quantities"]), *_check_grade(row, trust)):
             yield f"{where}: {text}"
-    verdict = worst_verdict(row["verdict"] for row in case["criteria"])
+    record = None if case["record"] is None else RecordFacts.model_validate(case["record"])
     ungraded = not case["criteria"] and case["reason"] and case["verdict"] in ("skip", "error")
+    if record is None and case["run"]["evaluated_m"] is not None and not ungraded:
+        yield f"{case['id']}: the state of the record is missing"
+    verdict = judge_case((row["verdict"] for row in case["criteria"]), record)
     if case["verdict"] != verdict and not ungraded:
-        yield f"{case['id']}: verdict '{case['verdict']}' stated, '{verdict}' follows from the criteria"
+        yield f"{case['id']}: verdict '{case['verdict']}' stated, '{verdict}' follows from the criteria and the record"
     for key, quantities in case["quantities"].items():
         trace = case["traces"].get(key)
         # Statistics delivered as numbers are rounded, and printed tables are not always consistent.

@@ -42,7 +42,7 @@ def select_cases(patterns: Sequence[str]) -> list[Case]:
     Parameters
     ----------
     patterns : sequence of str
-        Ids, globs and paths; empty: every case of the library with limits and without `on_request`.
+        Ids, globs and paths.
 
     Returns
     -------
@@ -56,13 +56,9 @@ def select_cases(patterns: Sequence[str]) -> list[Case]:
     """
     known = list_library(library_folder())
     chosen: dict[str, Case] = {}
-    for pattern in patterns or ["*"]:
+    for pattern in patterns:
         for path in _match_pattern(pattern, known):
             _add(load_case(path), known, chosen, ())
-    if not patterns:
-        graded = {case.id for case in chosen.values() if case.limits and not case.file.on_request}
-        needed = {required for case in chosen.values() if case.id in graded for required in case.file.requires}
-        return [case for case in chosen.values() if case.id in graded | needed]
     return list(chosen.values())
 
 

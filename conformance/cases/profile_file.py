@@ -107,6 +107,10 @@ class Profile(InputTable):
     speed_tolerance_pct: Annotated[
         float, Field(gt=0, le=50, description="deviation from the nominal speed beyond which the record is cut [%]")
     ] = 5.0
+    verification: Annotated[
+        Literal["shown", "demanded"],
+        Field(description="demanded: an unverified record does not pass; shown: the report states its state only"),
+    ] = "shown"
     filter: Filter = Filter()
     rule: Annotated[tuple[Rule, ...], Field(strict=False, min_length=1, max_length=1000)]
 

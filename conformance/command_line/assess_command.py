@@ -11,6 +11,7 @@ from pantocheck.conformance.cases.library import read_limits
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.command_line.options import (
+    AcceptUnverifiedOption,
     BaselineOption,
     DriftOption,
     FormatsOption,
@@ -21,6 +22,7 @@ from pantocheck.conformance.command_line.options import (
 from pantocheck.conformance.command_line.results_output import EXIT_CODES, print_results
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
 from pantocheck.conformance.grading.baseline import compare_with_baseline
+from pantocheck.conformance.grading.case_verdict import Participation
 from pantocheck.conformance.grading.profile_grading import assess_record
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
@@ -53,6 +55,7 @@ def assess_command(
     uplift_space_mm: Annotated[
         float | None, typer.Option(help="Available uplift at the supports, if the record does not state it.")
     ] = None,
+    accept_unverified: AcceptUnverifiedOption = None,
     baseline: BaselineOption = None,
     drift: DriftOption = None,
 ) -> None:
@@ -75,7 +78,8 @@ def assess_command(
     assessed = load_assessed_record(record, rules, line)
     reference = None if measured is None else load_assessed_record(measured, rules, LineTable())
     _check_pantographs(own_limits, len(assessed.pantographs))
-    results = assess_record(assessed, rules, options.trust, reference, own_limits)
+    participation = Participation(accepted_unverified=tuple(accept_unverified or ()))
+    results = assess_record(assessed, rules, options.trust, reference, own_limits, participation)
     if earlier is not None and baseline is not None:
         results = compare_with_baseline(results, earlier, options.drift_pct, baseline.name)
     print_results(results, write_all(results, folder, report_formats))

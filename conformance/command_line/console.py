@@ -20,6 +20,7 @@ _STYLES: dict[Verdict, str] = {
     "error": "bold red",
     "skip": "yellow",
     "info": "cyan",
+    "unverified": "yellow",
 }
 
 

@@ -27,6 +27,10 @@ TrustOption = Annotated[
         help="Lowest trust of limits that count: primary, secondary or provisional.", show_default="secondary"
     ),
 ]
+AcceptUnverifiedOption = Annotated[
+    list[str] | None,
+    typer.Option(metavar="NAME", help="Name of a system whose unverified records may pass; repeat for several."),
+]
 BaselineOption = Annotated[
     Path | None, typer.Option(help="Earlier results.json; a value that drifts from it fails, apart from the limits.")
 ]

@@ -14,8 +14,8 @@ from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.results.results_format import CaseResult, Criterion, Results
 from pantocheck.conformance.runner import Progress as ResultCallback
 
-EXIT_CODES: dict[Verdict, int] = {"pass": 0, "info": 0, "fail": 1, "skip": 1, "error": 2}
-"""Exit code by verdict; `skip` is not 0, because a limit without a grade is not met."""
+EXIT_CODES: dict[Verdict, int] = {"pass": 0, "unverified": 1, "info": 1, "skip": 1, "fail": 1, "error": 2}
+"""Exit code by verdict: 0 only for `pass`."""
 
 LEGEND = "+-: uncertainty of the value; shift: its change when the analysis section is shifted"
 

@@ -7,6 +7,7 @@ import typer
 
 from pantocheck.conformance.command_line.guard import INTERRUPTED
 from pantocheck.conformance.command_line.options import (
+    AcceptUnverifiedOption,
     BaselineOption,
     DriftOption,
     FormatsOption,
@@ -22,7 +23,8 @@ from pantocheck.conformance.runner import RunInterrupted, run_cases
 
 def run_command(
     case: Annotated[
-        list[str] | None, typer.Argument(help="Ids, globs or paths of cases; every case with limits if omitted.")
+        list[str] | None,
+        typer.Argument(help="Ids, globs or paths of cases; default: those whose limits count."),
     ] = None,
     plan: Annotated[
         Path | None, typer.Option(help="TOML file with the options of a run; see `pantocheck schema plan`.")
@@ -37,6 +39,7 @@ def run_command(
     limits: Annotated[
         Path | None, typer.Option(help="TOML file of your own limits, which replace those of the cases.")
     ] = None,
+    accept_unverified: AcceptUnverifiedOption = None,
     baseline: BaselineOption = None,
     drift: DriftOption = None,
     jobs: Annotated[int | None, typer.Option(help="Number of cases that run in parallel.", show_default="1")] = None,
@@ -70,6 +73,7 @@ def run_command(
         formats=formats,
         trust=trust,
         limits=limits,
+        accept_unverified=tuple(accept_unverified) if accept_unverified else None,
         baseline=baseline,
         drift_pct=drift,
         jobs=jobs,
@@ -81,7 +85,8 @@ def run_command(
     interrupted = False
     try:
         with report_progress(len(cases)) as progress:
-            results = run_cases(cases, system_under_test, options.trust, min(options.jobs, len(cases)), progress)
+            jobs = min(options.jobs, len(cases))
+            results = run_cases(cases, system_under_test, options.trust, jobs, progress, prepared.participation)
     except RunInterrupted as interruption:
         results, interrupted = interruption.results, True
         typer.echo("Interrupted: the results of the finished cases are written.", err=True)

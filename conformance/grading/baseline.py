@@ -4,8 +4,8 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from pantocheck.conformance.grading.case_verdict import Participation, judge_case
 from pantocheck.conformance.grading.criterion_grading import Requirement, build_criterion
-from pantocheck.conformance.grading.verdicts import worst_verdict
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results.results_format import CaseResult, Criterion, Results
 
@@ -42,7 +42,10 @@ def compare_with_baseline(results: Results, baseline: Results, drift_pct: float,
     """
     earlier = {case.id: case for case in baseline.cases}
     cases = [_compare_case(case, earlier.get(case.id), drift_pct, name) for case in results.cases]
-    return results.model_copy(update={"cases": cases, "verdict": worst_verdict(case.verdict for case in cases)})
+    verdicts = ((case.id, case.verdict) for case in cases)
+    participation = Participation(tuple(results.information), tuple(results.accepted_unverified))
+    verdict = participation.judge_run(verdicts, results.system.name)
+    return results.model_copy(update={"cases": cases, "verdict": verdict})
 
 
 def _compare_case(case: CaseResult, earlier: CaseResult | None, drift_pct: float, name: str) -> CaseResult:
@@ -68,7 +71,7 @@ def _compare_case(case: CaseResult, earlier: CaseResult | None, drift_pct: float
             "criteria": [*case.criteria, *drifted],
             "notes": [*case.notes, note],
             "warnings": warnings,
-            "verdict": worst_verdict([case.verdict, *(criterion.verdict for criterion in drifted)]),
+            "verdict": judge_case((criterion.verdict for criterion in (*case.criteria, *drifted)), case.record),
         }
     )
 

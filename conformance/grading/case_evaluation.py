@@ -8,6 +8,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.consistency.check import CheckName, Finding
 from pantocheck.conformance.consistency.record_checks import check_record
 from pantocheck.conformance.consistency.record_positions import SPEED_TOLERANCE
+from pantocheck.conformance.consistency.record_state import record_state
 from pantocheck.conformance.grading.criterion_grading import GradedValues, grade_limit
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation
@@ -15,7 +16,7 @@ from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.results.outcome import Delivered
-from pantocheck.conformance.results.results_format import Criterion
+from pantocheck.conformance.results.results_format import Criterion, RecordFacts
 
 SECTION_TOLERANCE_M = 0.01
 """Tolerance of the analysis section of a record against that of its case [m]."""
@@ -90,6 +91,16 @@ class CaseEvaluation:
     def contradiction(self) -> str | None:
         """Text of the contradiction that the checks found; None if there is none."""
         return next((finding.text for finding in self.findings.values() if finding.kind == "contradiction"), None)
+
+    @cached_property
+    def record_facts(self) -> RecordFacts | None:
+        """State of the record; None for a case without a record."""
+        if self.delivered.summary is not None:
+            return RecordFacts(state="unverified", reason="published statistics: there is no record to check")
+        if self.signals is None:
+            return None
+        state, reason = record_state(self.findings)
+        return RecordFacts(state=state, reason=reason)
 
     def grade_limits(self, lowest_trust: Trust) -> list[Criterion]:
         """Grade the delivery by every limit of the case."""

@@ -7,8 +7,9 @@ from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.study_tables import DampingSensitivity
 from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
 from pantocheck.conformance.grading.case_identity import compare_with_library, limits_digest, list_limit_changes
+from pantocheck.conformance.grading.case_verdict import judge_case
 from pantocheck.conformance.grading.extended_band import extended_band_warnings
-from pantocheck.conformance.grading.verdicts import Verdict, worst_verdict
+from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.results.outcome import Delivered, Errored, Outcome, Skipped
 from pantocheck.conformance.results.results_building import key_by_owner, select_finite
@@ -65,10 +66,11 @@ def grade_evaluation(evaluation: CaseEvaluation, lowest_trust: Trust) -> CaseRes
     # Quantities of a contradicted record are shown but not graded: some would pass.
     criteria = evaluation.grade_limits(lowest_trust) if contradiction is None else []
     supports = case.line.geometry.span_limits
+    record = evaluation.record_facts
     return _build_result(
         case,
         delivered,
-        verdict=worst_verdict(criterion.verdict for criterion in criteria) if contradiction is None else "error",
+        verdict=judge_case((criterion.verdict for criterion in criteria), record),
         reason=contradiction,
         warnings=[
             *delivered.warnings,
@@ -78,6 +80,7 @@ def grade_evaluation(evaluation: CaseEvaluation, lowest_trust: Trust) -> CaseRes
         ],
         notes=[f"not checked, {finding.text}" for finding in findings if finding.kind == "unchecked"],
         criteria=criteria,
+        record=record,
         quantities=key_by_owner(select_finite(values.evaluation.values)),
         skipped=key_by_owner(values.evaluation.skipped),
         spread=key_by_owner(values.spread),

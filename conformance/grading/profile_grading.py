@@ -6,13 +6,20 @@ from collections.abc import Sequence
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.profile_file import Profile
 from pantocheck.conformance.grading.assessed_record import AssessedRecord, join_digests
+from pantocheck.conformance.grading.case_verdict import EVERY_CASE, Participation, judge_case
 from pantocheck.conformance.grading.extended_band import find_unvalidated
 from pantocheck.conformance.grading.rule_grading import RuleGrading
-from pantocheck.conformance.grading.verdicts import worst_verdict
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.results.results_building import build_results, key_by_owner, select_finite, utc_now
-from pantocheck.conformance.results.results_format import CaseResult, FilterFacts, Results, RunFacts, SystemIdentity
+from pantocheck.conformance.results.results_format import (
+    CaseResult,
+    FilterFacts,
+    RecordFacts,
+    Results,
+    RunFacts,
+    SystemIdentity,
+)
 from pantocheck.conformance.results.traces import build_measured_traces
 
 
@@ -22,6 +29,7 @@ def assess_record(
     trust: Trust = "secondary",
     measured: AssessedRecord | None = None,
     limits: Sequence[Limit] = (),
+    participation: Participation = EVERY_CASE,
 ) -> Results:
     """Grade a record by a profile.
 
@@ -37,6 +45,8 @@ def assess_record(
         Measured record, for a profile that compares.
     limits : sequence of Limit
         The user's own limits, which replace the rules of the same quantity.
+    participation : Participation
+        Accepted unverified records.
 
     Raises
     ------
@@ -47,10 +57,12 @@ def assess_record(
     criteria, omitted = RuleGrading(subject, measured, trust).grade_profile(profile, limits)
     records = [record for record in (subject, measured) if record is not None]
     digest = join_digests(subject.digest, measured.digest if measured else "", profile.model_dump_json())
+    reason = "a profile names no case: the consistency checks of a case cannot be made"
+    record = RecordFacts(state="unverified", reason=reason, demanded=profile.verification == "demanded")
     case = CaseResult(
         id=f"{profile.name}/{re.sub(r'[^A-Za-z0-9._-]', '_', subject.name)}",
         title=f"{profile.title}: {subject.name}",
-        verdict=worst_verdict(criterion.verdict for criterion in criteria),
+        verdict=judge_case((criterion.verdict for criterion in criteria), record),
         reason=None,
         notes=[*_name_sources(records, "notes"), *([profile.note.strip()] if profile.note else [])],
         warnings=[*_name_sources(records, "warnings"), *omitted, *find_unvalidated(subject.values)],
@@ -61,6 +73,7 @@ def assess_record(
         skipped=key_by_owner(subject.values.skipped),
         spread={},
         uncertainty=key_by_owner(subject.uncertainty),
+        record=record,
         run=_run_facts(subject, profile),
         traces={}
         if subject.prepared is None
@@ -68,7 +81,7 @@ def assess_record(
         uplift=[],
     )
     system = SystemIdentity(name=subject.system.name, version=subject.system.version, kind="record")
-    return build_results([case], system, trust, utc_now())
+    return build_results([case], system, trust, utc_now(), participation)
 
 
 def _check_pair(subject: AssessedRecord, measured: AssessedRecord | None, profile: Profile) -> None:

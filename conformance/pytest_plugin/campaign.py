@@ -76,7 +76,8 @@ class PlanSession:
             self._read(case) or build_ungraded(case, "skip", "not run in this session of pytest") for case in self.cases
         ]
         identity = SystemIdentity.model_validate(session["system"])
-        results = build_results(finished, identity, self.prepared.plan.trust, session["started"])
+        trust, participation = self.prepared.plan.trust, self.prepared.participation
+        results = build_results(finished, identity, trust, session["started"], participation)
         compared = self.prepared.compare(results)
         return compared, _count_criteria(compared) - _count_criteria(results)
 

@@ -7,7 +7,7 @@ from datetime import UTC, datetime
 from importlib.metadata import version
 from typing import TypeVar
 
-from pantocheck.conformance.grading.verdicts import worst_verdict
+from pantocheck.conformance.grading.case_verdict import EVERY_CASE, Participation
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.evaluation import Value
 from pantocheck.conformance.results.results_format import CaseResult, Number, Platform, Results, Suite, SystemIdentity
@@ -39,7 +39,13 @@ def select_finite(values: Mapping[int, Mapping[str, Value]]) -> dict[int, dict[s
     }
 
 
-def build_results(cases: Sequence[CaseResult], system: SystemIdentity, trust: Trust, started: str) -> Results:
+def build_results(
+    cases: Sequence[CaseResult],
+    system: SystemIdentity,
+    trust: Trust,
+    started: str,
+    participation: Participation = EVERY_CASE,
+) -> Results:
     """Combine the results of cases.
 
     Parameters
@@ -52,11 +58,13 @@ def build_results(cases: Sequence[CaseResult], system: SystemIdentity, trust: Tr
         Lowest trust of the limits that count.
     started : str
         Start of the run, from `utc_now`.
+    participation : Participation
+        Cases shown for information, and accepted unverified records.
     """
     return Results(
         suite=Suite(version=version("pantocheck"), commit=find_suite_commit(), digest=suite_digest()),
         system=system,
-        verdict=worst_verdict(case.verdict for case in cases),
+        verdict=participation.judge_run(((case.id, case.verdict) for case in cases), system.name),
         trust=trust,
         started=started,
         platform=Platform(
@@ -68,5 +76,7 @@ def build_results(cases: Sequence[CaseResult], system: SystemIdentity, trust: Tr
             system=host.system(),
         ),
         scope=build_scope(cases),
+        information=list(participation.information),
+        accepted_unverified=list(participation.accepted_unverified),
         cases=list(cases),
     )

@@ -223,12 +223,13 @@ def name_case(case_id: str, library: LibraryIdentity | None) -> str:
 class RecordFacts(ResultsPart):
     """Record of a case. Digests are SHA-256 in hexadecimal, null if unknown.
 
-    `digest` is that of the record. `case_digest` is that of the case for which the record was made, as the record states
-    it.
+    `demanded` is false if a profile shows the state `unverified` without lowering the verdict. `digest` is that of the
+    record. `case_digest` is that of the case for which the record was made, as the record states it.
     """
 
     state: RecordState
     reason: str
+    demanded: bool = True
     digest: str | None = None
     case_digest: str | None = None
 
@@ -296,6 +297,10 @@ class Results(ResultsPart):
     scope: Annotated[
         list[ScopeStep], Field(description="every step of the procedure; empty: made by an older version")
     ] = []
+    information: list[str] = []
+    """Ids of the cases that are shown for information: they do not take part in the verdict."""
+    accepted_unverified: list[str] = []
+    """Names of systems whose unverified records the user accepts."""
     cases: list[CaseResult]
 
     def to_dict(self) -> dict[str, Any]:

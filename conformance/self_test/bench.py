@@ -7,8 +7,9 @@ from typing import Final
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
 from pantocheck.conformance.grading.case_grading import grade_case, grade_evaluation
+from pantocheck.conformance.grading.case_verdict import judge_case
 from pantocheck.conformance.grading.extended_band import WARNING_PREFIX
-from pantocheck.conformance.grading.verdicts import Verdict, worst_verdict
+from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.results.outcome import Delivered
@@ -118,7 +119,7 @@ def _run_mutant(mutant: Mutant, case: Case, record: Record) -> MutantResult:
         mutant,
         case.id,
         result.verdict,
-        worst_verdict(criterion.verdict for criterion in criteria),
+        judge_case((criterion.verdict for criterion in criteria), None),
         outside,
         checks,
         mutant.expected_check is None or (result.verdict in {"fail", "error"} and mutant.expected_check in detecting),

@@ -10,7 +10,7 @@ from pantocheck.conformance.plan import Plan, prepare_plan, read_plan
 
 def test_damping_study_of_a_plan_is_added_to_its_cases(tmp_path: Path) -> None:
     path = tmp_path / "conformance.toml"
-    path.write_text("cases = ['en50318-2002/250']\ndamping_study = true\nformats = ['html']\n")
+    path.write_text("system = 'builtin'\ncases = ['en50318-2002/250']\ndamping_study = true\nformats = ['html']\n")
     prepared = prepare_plan(read_plan(path))
     assert [case.file.study is not None for case in prepared.cases] == [True]
     assert prepared.formats == ("json", "html")

@@ -22,6 +22,8 @@ RATE = 1000.0
 SPANS_M = (240.0, 360.0)
 SUPPORTS_M = [240.0, 300.0, 360.0]
 
+VERIFIED = {"state": "verified", "reason": "every consistency check confirms the record"}
+
 Signal = NDArray[np.float64]
 
 
@@ -169,6 +171,7 @@ def passing_case() -> dict[str, Any]:
         "criteria": [criterion(q1, 1, *limit) for limit in limits] + [criterion(q2, 2, *limit) for limit in limits],
         "quantities": {"0": {"wave_speed_m_s": 121.7}, "1": q1, "2": q2},
         "skipped": {},
+        "record": VERIFIED,
         "run": run_facts(250),
         "traces": {"1": trace(*front), "2": trace(*rear)},
         "uplift": [uplift(240.0, 50.1), uplift(300.0, 51.3), uplift(360.0, 48.9)],
@@ -204,6 +207,7 @@ def failing_case() -> dict[str, Any]:
         ],
         "quantities": {"1": q},
         "skipped": {"1": {"rms_20_50_N": skipped["reason"], "std_force_50_N": skipped["reason"]}},
+        "record": VERIFIED,
         "run": run_facts(300),
         "traces": {"1": trace(*signal)},
         "uplift": [],

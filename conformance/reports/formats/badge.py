@@ -7,7 +7,14 @@ from xml.sax.saxutils import escape
 from pantocheck.conformance.reports.words import read_words
 
 LABEL = "EN 50318 style"
-COLOURS = {"pass": "#1b5e3a", "fail": "#8c1d18", "info": "#24496e", "skip": "#625000", "error": "#5a1a66"}
+COLOURS = {
+    "pass": "#1b5e3a",
+    "fail": "#8c1d18",
+    "info": "#24496e",
+    "skip": "#625000",
+    "unverified": "#7a3b00",
+    "error": "#5a1a66",
+}
 LETTER, MARGIN = 6.6, 8
 """Width of a letter and margin beside the text [px]; every font is fitted to these widths."""
 

@@ -8,8 +8,8 @@ from pantocheck.conformance.reports.certificate.case_facts import name_system
 from pantocheck.conformance.reports.page_text import clean_tree
 from pantocheck.conformance.reports.words import name_owner
 
-ELEMENTS = {"fail": "failure", "error": "error", "skip": "skipped"}
-"""Name of each verdict in JUnit; `pass` and `info` have no element of their own."""
+ELEMENTS = {"fail": "failure", "error": "error", "skip": "skipped", "info": "skipped", "unverified": "failure"}
+"""Name of each verdict in JUnit; a test without such an element has passed."""
 
 COUNTERS = ("tests", "failures", "errors", "skipped")
 """Attributes that count the tests of a suite."""
@@ -31,6 +31,10 @@ def _suite(case: dict[str, Any], results: dict[str, Any]) -> ElementTree.Element
     tests = [_criterion_test(case["id"], row) for row in case["criteria"]] or [
         _test(case["id"], "case", case["verdict"], case["reason"] or "no criteria")
     ]
+    if case["criteria"] and case["record"]:
+        tests.append(_record_test(case, results))
+    if case["id"] in results["information"]:
+        tests = [_skip_test(test) for test in tests]
     elements = Counter(test[0].tag for test in tests)
     counts = (len(tests), elements["failure"], elements["error"], elements["skipped"])
     attributes = {"name": case["id"], **dict(zip(COUNTERS, map(str, counts), strict=True))}
@@ -62,6 +66,20 @@ def _criterion_test(case: str, row: dict[str, Any]) -> ElementTree.Element:
     reason = f" ({row['reason']})" if row["reason"] else ""
     name = f"{kind}{row['quantity']} of {name_owner(row)}"
     return _test(case, name, row["verdict"], f"{value}, {bounds}{margin}, {row['trust']}{reason}")
+
+
+def _record_test(case: dict[str, Any], results: dict[str, Any]) -> ElementTree.Element:
+    """Test of the state of the record; skipped if it is unverified, and the profile or the user accepts that."""
+    record = case["record"]
+    excused = results["system"]["name"] in results["accepted_unverified"] or not record["demanded"]
+    verdict = "pass" if record["state"] == "verified" else "info" if excused else "unverified"
+    return _test(case["id"], "record", verdict, f"{record['state']}: {record['reason']}")
+
+
+def _skip_test(test: ElementTree.Element) -> ElementTree.Element:
+    """The same test without influence on a pipeline, for a case that is shown for information."""
+    text = test[0].get("message") or test[0].text or ""
+    return _test(test.attrib["classname"], test.attrib["name"], "info", f"for information: {test[0].tag}: {text}")
 
 
 def _test(case: str, name: str, verdict: str, text: str) -> ElementTree.Element:

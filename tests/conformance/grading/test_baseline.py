@@ -13,6 +13,7 @@ from pantocheck.conformance.authenticity.recomputation import find_discrepancies
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.grading.baseline import compare_with_baseline
+from pantocheck.conformance.grading.case_verdict import Participation
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.reports.formats.junit import render_junit
 from pantocheck.conformance.results.results_format import Results
@@ -25,7 +26,10 @@ PASSING = "record:en50318-2002/known-passing-code"
 
 @pytest.fixture
 def results() -> Results:
-    return run_cases(select_cases(["en50318-2002/*"]), choose_system(PASSING))
+    """Published statistics that pass; the user accepts that they are unverified."""
+    system = choose_system(PASSING)
+    accepted = Participation(accepted_unverified=(system.name,))
+    return run_cases(select_cases(["en50318-2002/*"]), system, participation=accepted)
 
 
 def changed(results: Results, name: str, value: float) -> Results:
@@ -56,7 +60,7 @@ def test_value_that_drifts_fails_within_its_limits(results: Results, was: float,
         assert (finding.lower, finding.upper) == (round(0.98 * was, 4), round(1.02 * was, 4))
         assert find_discrepancies(compared.to_dict()) == []
         assert b'name="drift of std_force_N of pantograph 1"' in render_junit(compared.to_dict())
-        assert compared.cases[1].verdict == "pass"
+        assert compared.cases[1].verdict == "unverified"
 
 
 def test_value_near_zero_drifts_by_its_unit(results: Results) -> None:
@@ -97,6 +101,7 @@ def test_baseline_on_the_command_line_and_in_a_plan(results: Results, tmp_path: 
     base = tmp_path / "baseline.json"
     base.write_bytes(changed(results, "std_force_N", 27.0).to_json())
     command = ["run", "en50318-2002/*", "--system", PASSING, "--out", tmp_path / "out", "--formats", "json,badge"]
+    command += ["--accept-unverified", results.system.name]
     assert pantocheck(*command).exit_code == 0
     result = pantocheck(*command, "--baseline", base)
     assert result.exit_code == 1
@@ -106,6 +111,7 @@ def test_baseline_on_the_command_line_and_in_a_plan(results: Results, tmp_path: 
     plan = tmp_path / "plan.toml"
     plan.write_text(
         f'system = "{PASSING}"\ncases = ["en50318-2002/*"]\nbaseline = "baseline.json"\nformats = ["json"]\n'
+        f'accept_unverified = ["{results.system.name}"]\n'
     )
     assert pantocheck("run", "--plan", plan, "--out", tmp_path / "p").exit_code == 1
     assert pantocheck("run", "--plan", plan, "--out", tmp_path / "p", "--drift", "3").exit_code == 0

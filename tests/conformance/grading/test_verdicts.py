@@ -1,11 +1,13 @@
 """Verdicts and margins: sign, scale, and the published results of a code that passes."""
 
+from itertools import pairwise
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from pantocheck.conformance.cases.library import library_folder, load_case
-from pantocheck.conformance.grading.verdicts import judge, margin, worst_verdict
+from pantocheck.conformance.grading.verdicts import Verdict, judge, margin, worst_verdict
 from pantocheck.conformance.input_files.trust import limit_counts
 
 NAMES = """mean_force_N std_force_N statistical_max_N statistical_min_N
@@ -74,8 +76,9 @@ def test_published_results_pass_and_each_value_outside_its_limits_fails_alone(sp
 
 
 def test_worst_verdict_decides() -> None:
-    assert worst_verdict(["pass", "info", "pass"]) == "pass"
-    assert worst_verdict(["info", "info"]) == "info"
+    order: tuple[Verdict, ...] = ("pass", "unverified", "info", "skip", "fail", "error")
+    for better, worse in pairwise(order):
+        assert worst_verdict([better, worse, "pass"]) == worst_verdict([worse, better]) == worse
     assert worst_verdict(["pass", "skip"]) == "skip"
     assert worst_verdict(["skip", "fail", "pass"]) == "fail"
     assert worst_verdict(["fail", "error"]) == "error"
