@@ -8,7 +8,12 @@ import typer
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.command_line.console import console, escape_text
-from pantocheck.conformance.identification.damping.damping_results import build_damping_results, write_damping_toml
+from pantocheck.conformance.identification.damping.damping_results import (
+    build_damping_results,
+    select_usable,
+    write_damping_toml,
+)
+from pantocheck.conformance.identification.damping.line_comparison import compare_line, refuse_other_line
 from pantocheck.conformance.identification.mode import read_modes
 from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
@@ -26,18 +31,25 @@ def fit_damping_command(
         Path, typer.Option(help="Folder for damping.toml, damping_with_modal.toml, damping.json, .html and .pdf.")
     ],
     element: Annotated[float, typer.Option(help="Element length [m].", min=0.05, max=5.0)] = 0.5,
+    other_line: Annotated[
+        bool, typer.Option("--other-line", help="Fit a line that is not the line of the record; the result says so.")
+    ] = False,
 ) -> None:
     """Fit a damping model of a line to identified modes.
 
     The model is Rayleigh damping per component, with and without modal damping. The report states which coefficients
-    the modes determine.
+    the modes determine. A line whose spans, tensions or wires at the sensors differ from those of the record is
+    refused.
 
     Example: pantocheck fit-damping T1/modes.json --line my-line.toml --out T1
     """
+    identified, catenary = read_modes(modes), build_catenary(_read_line(line))
+    if not other_line:
+        refuse_other_line(compare_line(select_usable(identified, modes.name), catenary), modes.name)
     check_writable(out)
     output = console()
     with output.status("modes of the line"):
-        results = build_damping_results(read_modes(modes), build_catenary(_read_line(line)), element, modes.name)
+        results = build_damping_results(identified, catenary, element, modes.name)
         block = write_damping_toml(results)
         document = build_damping_document(results.model_dump(mode="json", by_alias=True), block)
         write_atomically(out / "damping.toml", block.encode("utf-8"))
@@ -47,6 +59,8 @@ def fit_damping_command(
         for suffix in (".html", ".pdf"):
             write_report(document, out / f"damping{suffix}")
     output.print(escape_text(document.header.headline))
+    for text in results.warnings:
+        output.print(escape_text(f"warning: {text}"))
     output.print(escape_text(block))
     output.print(
         escape_text(f"{out}: damping.toml, damping_with_modal.toml, damping.json, damping.html, damping.pdf"),

@@ -25,6 +25,20 @@ class SensorShape(RoundedModel):
     std: Annotated[Rounded | None, Field(description="standard deviation of each part")] = None
 
 
+class MeasuredLine(RoundedModel):
+    """Facts about the line of a record, by which a fit recognises it."""
+
+    model_config = ConfigDict(allow_inf_nan=False)
+
+    spans_m: Annotated[tuple[Rounded, ...], Field(description="lengths of the spans [m]; empty: unknown")] = ()
+    contact_wire_tension_N: Annotated[
+        Rounded | None, Field(description="tension of one contact wire [N]; null: unknown")
+    ] = None
+    messenger_wire_tension_N: Annotated[
+        Rounded | None, Field(description="tension of one messenger wire [N]; null: unknown")
+    ] = None
+
+
 class Mode(RoundedModel):
     """Identified mode of a line."""
 
@@ -38,6 +52,7 @@ class Mode(RoundedModel):
     sensor_shape: Annotated[tuple[SensorShape, ...], Field(description="mode shape at the sensors of `record`")]
     error: Annotated[Rounded | None, Field(description="residual over measured signal in the mode's band [-]")] = None
     record: Annotated[str, Field(description="name of the record that shows the mode best")] = ""
+    line: Annotated[MeasuredLine | None, Field(description="line of `record`; null: unknown")] = None
     warnings: Annotated[tuple[str, ...], Field(description="reasons to doubt the mode")] = ()
     certain: Annotated[bool, Field(description="damping ratio known to 5 % (one standard deviation)")] = True
     outlier: Annotated[bool, Field(description="damping ratio far from that of its group")] = False

@@ -5,9 +5,10 @@ import numpy as np
 from pantocheck.conformance.array_types import ComplexArray, RealArray
 from pantocheck.conformance.identification.decay_filters import filter_gain
 from pantocheck.conformance.identification.line_fit import FittedBlock, LineFit, RecordFit
-from pantocheck.conformance.identification.mode import Mode, SensorShape
+from pantocheck.conformance.identification.mode import MeasuredLine, Mode, SensorShape
 from pantocheck.conformance.identification.mode_groups import assign_groups
 from pantocheck.conformance.identification.projection import build_block, estimate_noise, residue_spread, solve_residues
+from pantocheck.conformance.mass_drops.drop_record import DropLine
 
 POINTS_IN_HALF_POWER_BAND = 5
 """Spectral lines that the half-power band should hold (Vo Van, Balmes, Lorang 2015)."""
@@ -57,6 +58,7 @@ def _build_mode(fit: LineFit, j: int, lateral_share: float | None) -> Mode:
         sensor_shape=_sensor_shape(best, residues, spread, scale),
         error=_band_error(fit.blocks, pole),
         record=decay.record.name,
+        line=_describe_line(decay.record.line),
         certain=damping_std < UNCERTAIN * damping,
         lateral=lateral_share is not None and lateral_share > LATERAL,
         amplitude_at_release=_finite(amplitude),
@@ -65,6 +67,14 @@ def _build_mode(fit: LineFit, j: int, lateral_share: float | None) -> Mode:
         half_power_points=2 * damping * frequency * linear.duration,
     )
     return mode.model_copy(update={"warnings": _list_warnings(mode, linear.duration, nearest)})
+
+
+def _describe_line(line: DropLine) -> MeasuredLine:
+    return MeasuredLine(
+        spans_m=line.spans,
+        contact_wire_tension_N=line.contact_wire_tension,
+        messenger_wire_tension_N=line.messenger_wire_tension,
+    )
 
 
 def _phase_collinearity(shape: ComplexArray) -> float | None:

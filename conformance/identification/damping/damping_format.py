@@ -15,6 +15,40 @@ class Coefficient(RoundedModel):
     value: Rounded
     low_95: Annotated[Rounded, Field(description="lower bound of the 95 % confidence interval")]
     high_95: Annotated[Rounded, Field(description="upper bound of the 95 % confidence interval")]
+    determined: Annotated[bool, Field(description="false: below a threshold, not for use in a simulation")] = False
+    reason: Annotated[str, Field(description="thresholds that are not reached; empty: determined")] = ""
+
+
+class LineDifference(RoundedModel):
+    """Difference between the line of the record and the line of the fit."""
+
+    fact: Annotated[str, Field(description="span, tension or sensor")]
+    record: Annotated[str, Field(description="value of the record, with its unit")]
+    line: Annotated[str, Field(description="value of the line of the fit, with its unit")]
+
+
+class LineComparison(RoundedModel):
+    """Comparison of the line of the record with the line of the fit."""
+
+    state: Annotated[
+        Literal["verified", "unverified", "contradicted"],
+        Field(description="verified: all facts agree; unverified: some are missing; contradicted: some differ"),
+    ]
+    differences: tuple[LineDifference, ...]
+    missing: Annotated[tuple[str, ...], Field(description="facts that the modes do not state")]
+
+
+class Matching(RoundedModel):
+    """Identified modes that the fit can use, and those with a counterpart in the model of the line."""
+
+    modes: Annotated[int, Field(description="identified modes that are certain, vertical and in a group")]
+    matched: Annotated[int, Field(description="number of them with a computed counterpart")]
+    matched_share: Annotated[Rounded, Field(description="matched over modes [-]")]
+    median_mac: Annotated[
+        Rounded | None,
+        Field(description="median MAC of the matched modes with two sensors or more [-]; null: no such mode"),
+    ]
+    lowest_mac: Annotated[Rounded | None, Field(description="lowest MAC of the same modes [-]")]
 
 
 class MeasuredBand(RoundedModel):
@@ -48,10 +82,15 @@ class Observability(RoundedModel):
 
 
 class Thresholds(RoundedModel):
-    """Lower limits of the keys of the same name for a coefficient to be observable."""
+    """Lower limits of the keys of the same name.
+
+    An observable coefficient reaches the first two, a determined one all of them.
+    """
 
     largest_share: float
     plausible_over_std: float
+    matched_share: float
+    median_mac: float
 
 
 class PairedMode(RoundedModel):
@@ -89,6 +128,9 @@ class DampingResults(RoundedModel):
 
     schema_: Annotated[Literal["pantocheck.damping/1"], Field(alias="schema")] = "pantocheck.damping/1"
     modes_file: Annotated[str, Field(description="source of the identified modes")]
+    warnings: Annotated[tuple[str, ...], Field(description="caveats for the user of the coefficients")]
+    line: Annotated[LineComparison, Field(description="whether the fit used the line of the record")]
+    matching: Matching
     residual: Annotated[Rounded, Field(description="RMS of (measured - fitted) / measured over the modes used [-]")]
     coefficients: tuple[Coefficient, ...]
     modal: Annotated[tuple[MeasuredBand, ...], Field(description="bands of the first groups of span modes")]

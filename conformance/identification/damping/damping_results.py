@@ -6,8 +6,11 @@ from typing import Any
 import numpy as np
 import tomli_w
 
+from pantocheck.conformance.array_types import ComplexArray
 from pantocheck.conformance.identification.damping.damping_format import (
+    Coefficient,
     DampingResults,
+    Matching,
     MeasuredBand,
     MeasuredRatios,
     ModelComparison,
@@ -19,20 +22,43 @@ from pantocheck.conformance.identification.damping.damping_model import (
     fit_modal_bands,
 )
 from pantocheck.conformance.identification.damping.damping_terms import MATRICES, TABLE_OF_KIND, build_damping_basis
+from pantocheck.conformance.identification.damping.line_comparison import compare_line, warn_about_line
 from pantocheck.conformance.identification.damping.mode_pairing import (
+    ModePair,
     compute_sensor_shapes,
     find_sensor_positions,
     pair_modes,
 )
-from pantocheck.conformance.identification.damping.observability import THRESHOLDS, compute_observability
+from pantocheck.conformance.identification.damping.observability import (
+    THRESHOLDS,
+    compute_observability,
+    judge_coefficients,
+)
 from pantocheck.conformance.identification.mode import Mode
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.model import Catenary, Kind, discretise
 from pantocheck.model.modal.modal_damping import apply_modal_bands
 from pantocheck.model.modal.modes import component_energies, compute_modes_below, damping_ratios
 
+MAX_NOTE = 4000
+"""Longest note that a line file may hold [characters]."""
+
 MIN_PAIRS = 6
 """Identified modes with a computed counterpart that a fit needs."""
+
+
+def select_usable(modes: Sequence[Mode], source: str) -> list[Mode]:
+    """Identified modes that a fit can use: certain, vertical and in a group; `source` is the name of their file.
+
+    Raises
+    ------
+    InputError
+        There is none.
+    """
+    usable = [mode.rounded() for mode in modes if mode.certain and not mode.lateral and mode.group is not None]
+    if not usable:
+        raise InputError(source, "holds no certain mode that belongs to a group", "Identify longer or more records.")
+    return usable
 
 
 def build_damping_results(modes: Sequence[Mode], line: Catenary, element: float, source: str) -> DampingResults:
@@ -54,9 +80,8 @@ def build_damping_results(modes: Sequence[Mode], line: Catenary, element: float,
     InputError
         There are too few modes, or too few have a counterpart in the model of the line.
     """
-    usable = [mode.rounded() for mode in modes if mode.certain and not mode.lateral and mode.group is not None]
-    if not usable:
-        raise InputError(source, "holds no certain mode that belongs to a group", "Identify longer or more records.")
+    usable = select_usable(modes, source)
+    comparison = compare_line(usable, line)
     positions = find_sensor_positions(usable, line, source)
     mesh = discretise(line, element, tuple(sorted(x for _, x in positions)))
     shapes = compute_modes_below(mesh, 1.1 * max(mode.frequency_Hz for mode in usable))
@@ -79,16 +104,22 @@ def build_damping_results(modes: Sequence[Mode], line: Catenary, element: float,
     basis = build_damping_basis(shapes.frequency, component_energies(mesh, shapes))
     paired_basis = basis.select_modes(np.array([pair.computed for pair in pairs], dtype=np.int64))
     fit = fit_damping_model(paired_basis, measured)
+    observability = tuple(row for row in compute_observability(paired_basis, measured, fit) if row.largest_share > 0)
+    matching = _summarise_matching(len(usable), pairs, measured_shapes)
+    coefficients = judge_coefficients(fit.coefficients, observability, matching)
     bands = fit_modal_bands(measured)
     rayleigh = basis.ratios @ np.array([fit.values.get(term, 0.0) for term in basis.terms])
     return DampingResults(
         modes_file=source,
+        warnings=(*warn_about_line(comparison), *_warn_about_coefficients(coefficients)),
+        line=comparison,
+        matching=matching,
         residual=fit.residual,
-        coefficients=fit.coefficients,
+        coefficients=coefficients,
         modal=tuple(
             MeasuredBand(from_Hz=b.from_frequency, to_Hz=b.to_frequency, damping_ratio=b.damping_ratio) for b in bands
         ),
-        observability=tuple(row for row in compute_observability(paired_basis, measured, fit) if row.largest_share > 0),
+        observability=observability,
         thresholds=THRESHOLDS,
         pairs=tuple(
             PairedMode(
@@ -121,8 +152,31 @@ def build_damping_results(modes: Sequence[Mode], line: Catenary, element: float,
     ).rounded()
 
 
+def _summarise_matching(modes: int, pairs: Sequence[ModePair], shapes: Sequence[ComplexArray]) -> Matching:
+    # The shape at a single sensor agrees with every other shape.
+    mac = [pair.mac for pair in pairs if shapes[pair.measured].size > 1]
+    return Matching(
+        modes=modes,
+        matched=len(pairs),
+        matched_share=len(pairs) / modes,
+        median_mac=float(np.median(mac)) if mac else None,
+        lowest_mac=min(mac, default=None),
+    )
+
+
+def _warn_about_coefficients(coefficients: Sequence[Coefficient]) -> list[str]:
+    """One warning per set of coefficients that are not determined for the same reason."""
+    names: dict[str, list[str]] = {}
+    for c in coefficients:
+        if not c.determined:
+            names.setdefault(c.reason, []).append(f"{c.kind.replace('_', ' ')} {c.matrix}")
+    return [f"Not determined: {', '.join(terms)} ({reason})." for reason, terms in names.items()]
+
+
 def write_damping_toml(results: DampingResults, modal: Sequence[MeasuredBand] = ()) -> str:
-    """Table `damping` of a line file.
+    """Table `damping` of a line file, below the warnings as comments.
+
+    A coefficient that is not determined is a comment, too, so that nobody simulates with it unknowingly.
 
     Parameters
     ----------
@@ -136,8 +190,23 @@ def write_damping_toml(results: DampingResults, modal: Sequence[MeasuredBand] = 
         "source": f"fitted to {results.modes_file} by pantocheck fit-damping"[:500],
         "note": f"residual {100 * results.residual:.2g} % of the measured damping ratios",
     }
+    comments = [f"warning: {text}" for text in results.warnings]
     for c in results.coefficients:
-        tables.setdefault(TABLE_OF_KIND[Kind(c.kind)], {})[MATRICES[c.matrix].key] = c.value
+        table, key = TABLE_OF_KIND[Kind(c.kind)], MATRICES[c.matrix].key
+        if c.determined:
+            tables.setdefault(table, {})[key] = c.value
+        else:
+            comments.append(f"not determined, left out: {table}.{key} = {c.value:g}")
+    if any(not c.determined for c in results.coefficients):
+        comments.append("In a simulation, a coefficient that is left out counts as 0.")
+    if results.warnings:
+        tables["note"] = " ".join((tables["note"] + ".", *results.warnings))[:MAX_NOTE]
     if modal:
         tables["modal"] = [band.model_dump() for band in modal]
-    return tomli_w.dumps({"damping": tables}, multiline_strings=False)
+    lines = "".join(f"# {_join_lines(text)}\n" for text in comments)
+    return lines + tomli_w.dumps({"damping": tables}, multiline_strings=False)
+
+
+def _join_lines(text: str) -> str:
+    """Text as a comment of a TOML file: on one line, without characters that a comment cannot hold."""
+    return " ".join("".join(c if c.isprintable() else " " for c in text).split())

@@ -10,6 +10,7 @@ from pantocheck.conformance.array_types import ComplexArray, RealArray
 from pantocheck.conformance.identification.mode import Mode
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.model import Catenary, DiscretisedLine, Kind
+from pantocheck.model.catenary import Wire
 from pantocheck.model.modal.modes import Modes, deflection_at
 
 LARGEST_FREQUENCY_GAP = 0.05
@@ -21,8 +22,8 @@ MIN_MAC = 0.5
 KIND_OF_WIRE = {"CW": Kind.CONTACT_WIRE, "MW": Kind.MESSENGER_WIRE, "SW": Kind.STITCH_WIRE}
 """Kinds of wire by their names in mass-drop records."""
 
-Positions = set[tuple[str, float]]
-"""Wire and position along the line [m] of sensors."""
+Positions = dict[tuple[str, float], str]
+"""Name of the wire in the line, by wire in the record and position along the line [m] of a sensor."""
 
 
 @dataclass(frozen=True)
@@ -107,18 +108,21 @@ def find_sensor_positions(modes: Sequence[Mode], line: Catenary, source: str) ->
     Raises
     ------
     InputError
-        A sensor lies beyond the line.
+        The line has no wire of the same kind at a sensor.
     """
-    sensors = {(sensor.wire, sensor.position_m) for mode in modes for sensor in mode.sensor_shape}
-    positions = {(wire, x) for wire, x in sensors if x is not None and wire in KIND_OF_WIRE}
-    end = max(wire.end for wire in line.wires)
-    outside = sorted(x for _, x in positions if not 0 <= x <= end)
-    if outside:
-        raise InputError(
-            source,
-            f"a sensor at {outside[0]:g} m, but the line ends at {end:g} m",
-            "Name a case with the line that was measured.",
-        )
+    positions = {}
+    for name, x in {(sensor.wire, sensor.position_m) for mode in modes for sensor in mode.sensor_shape}:
+        if x is None or name not in KIND_OF_WIRE:
+            continue
+        kind = KIND_OF_WIRE[name]
+        wire = find_wire(line, kind, x)
+        if wire is None:
+            raise InputError(
+                source,
+                f"a sensor at {x:g} m, where the line has no {kind.replace('_', ' ')}",
+                "Name the line that was measured with --line.",
+            )
+        positions[name, x] = wire.name
     return positions
 
 
@@ -141,8 +145,9 @@ def compute_sensor_shapes(
     list of (s,) complex ndarray, list of (n, s) ndarray
         Identified shape of each mode at its s sensors, and the computed shapes there.
     """
-    rows = {name: mesh.mesh.row_of[_wire_name(mesh.catenary, KIND_OF_WIRE[name]), "z"] for name, _ in positions}
-    deflections = {(wire, x): deflection_at(mesh, shapes, rows[wire], x) for wire, x in positions}
+    deflections = {
+        (name, x): deflection_at(mesh, shapes, mesh.mesh.row_of[wire, "z"], x) for (name, x), wire in positions.items()
+    }
     measured, computed = [], []
     for mode in modes:
         sensors = [s for s in mode.sensor_shape if (s.wire, s.position_m) in deflections]
@@ -152,9 +157,7 @@ def compute_sensor_shapes(
     return measured, computed
 
 
-def _wire_name(line: Catenary, kind: Kind) -> str:
-    """Name of the first wire of a kind."""
-    for wire in line.wires:
-        if wire.kind is kind:
-            return wire.name
-    raise InputError("line", f"has no {kind.replace('_', ' ')}", "Name a case with the line that was measured.")
+def find_wire(line: Catenary, kind: Kind, position: float) -> Wire | None:
+    """First wire of a kind that reaches a position [m]; None if there is none."""
+    reaching = (wire for wire in line.wires if wire.kind is kind and wire.start <= position <= wire.end)
+    return next(reaching, None)

@@ -10,6 +10,11 @@ COEFFICIENT_UNITS = {"stiffness": "s", "mass": "1/s"}
 RESULT = (
     "The block replaces [damping] in the line file. Mass coefficients multiply M, stiffness coefficients multiply K."
 )
+LINE_STATES = {
+    "verified": "The line of the fit is the line of the record.",
+    "unverified": "The line of the fit is not verified.",
+    "contradicted": "The line of the fit is NOT the line of the record.",
+}
 COMPARISON = "The line as it is has the damping of its present file."
 
 
@@ -19,13 +24,17 @@ def build_damping_document(results: dict[str, Any], block: str) -> doc.Document:
     kinds = dict.fromkeys(_component(row) for row in results["observability"] if row["observable"])
     headline = (
         f"Rayleigh damping fitted to {len(results['pairs'])} modes leaves {100 * results['residual']:.2g} % "
-        f"of their damping ratios. Observable: {', '.join(kinds) or 'nothing'}."
+        f"of their damping ratios. Observable: {', '.join(kinds) or 'nothing'}. "
+        f"{sum(row['determined'] for row in results['coefficients'])} of {len(results['coefficients'])} coefficients "
+        f"are determined. {LINE_STATES[results['line']['state']]}"
     )
     header = doc.PlainHeader("Damping model from mass drops", headline)
-    blocks: list[doc.Block] = []
+    warnings = list(results["warnings"])
     if results["unpaired"]:
         frequencies = ", ".join(format_value(frequency) for frequency in results["unpaired"])
-        blocks.append(doc.WarningBox((f"measured modes without a counterpart in the model: {frequencies} Hz",)))
+        warnings.append(f"measured modes without a counterpart in the model: {frequencies} Hz")
+    blocks: list[doc.Block] = [doc.WarningBox(tuple(warnings))] if warnings else []
+    blocks.append(doc.Paragraph(describe_matching(results["matching"], results["thresholds"])))
     comparison = doc.Figure(
         draw_comparison(results["comparison"]),
         "Damping ratio over frequency, measured and of the models; the pairs are in the table.",
@@ -61,6 +70,18 @@ def describe_observability(thresholds: dict[str, float]) -> str:
     )
 
 
+def describe_matching(matching: dict[str, Any], thresholds: dict[str, float]) -> str:
+    """Share and MAC of the matched modes, and the thresholds of a determined coefficient."""
+    return (
+        f"{matching['matched']} of {matching['modes']} identified modes "
+        f"({format_percent(matching['matched_share'], 3)} %) have a counterpart in the model of the line. "
+        f"MAC of the matched modes: median {format_value(matching['median_mac'], 3)}, "
+        f"lowest {format_value(matching['lowest_mac'], 3)}. A coefficient is determined if it is observable, if at "
+        f"least {100 * thresholds['matched_share']:g} % of the modes are matched, and if their median MAC is at least "
+        f"{thresholds['median_mac']:g}."
+    )
+
+
 def _component(row: dict[str, Any]) -> str:
     return str(row["kind"]).replace("_", " ")
 
@@ -75,6 +96,7 @@ def _coefficient_table(rows: list[dict[str, Any]]) -> doc.Table:
         "Multiplies": _matrix,
         "Value": lambda row: f"{format_value(row['value'])} {COEFFICIENT_UNITS[row['matrix']]}",
         "95 % interval": lambda row: f"{format_value(row['low_95'], 3)} to {format_value(row['high_95'], 3)}",
+        "Determined": lambda row: "yes" if row["determined"] else f"not determined: {row['reason']}",
     }
     return doc.make_grid("Coefficients", rows, cells)
 
