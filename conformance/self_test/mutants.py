@@ -87,9 +87,9 @@ def _coarsen_mesh(element: float) -> RunMutant:
 
 
 def _run_bilateral_droppers(case: Case, record: Record) -> Outcome:
-    steps = case.file.discretisation
-    line = never_slack(discretise(build_catenary(case.line), steps.element_m))
-    passage = run_passage(case, line, steps)
+    discretisation = case.file.discretisation
+    line = never_slack(discretise(build_catenary(case.line), discretisation.element_m))
+    passage = run_passage(case, line, discretisation)
     return Delivered(passage.record, compute_static_quantities(case, line), passage.run)
 
 

@@ -39,7 +39,7 @@ class PassageRun:
 
 
 def run_passage(
-    case: Case, line: DiscretisedLine, steps: Discretisation, uplift_forces: tuple[float, ...] | None = None
+    case: Case, line: DiscretisedLine, discretisation: Discretisation, uplift_forces: tuple[float, ...] | None = None
 ) -> PassageRun:
     """Simulate the passage of a case on a discretised line.
 
@@ -48,8 +48,8 @@ def run_passage(
     case : Case
         Case with a speed.
     line : DiscretisedLine
-        Line of the case, discretised with the element length of `steps`.
-    steps : Discretisation
+        Line of the case, discretised with the element length of `discretisation`.
+    discretisation : Discretisation
         Element length and time step.
     uplift_forces : tuple of float, optional
         Uplift force of every pantograph [N]; default: forces of the case, tuned if a mean contact force is required.
@@ -67,27 +67,31 @@ def run_passage(
     uses = case.file.pantograph
     start = uplift_forces or tuple(use.uplift_force_N or use.target_mean_force_N or 0.0 for use in uses)
     # The computing time must not include the compilation of the kernels.
-    simulate_passage(line, replace(build_passage(case, line, steps, start), duration=0.0))
+    simulate_passage(line, replace(build_passage(case, line, discretisation, start), duration=0.0))
     return tune_uplift(
-        lambda forces: _run_once(case, line, steps, forces),
+        lambda forces: _run_once(case, line, discretisation, forces),
         lambda passage_run: _mean_forces(case, passage_run.record),
         start,
         [None if uplift_forces else use.target_mean_force_N for use in uses],
     )
 
 
-def _run_once(case: Case, line: DiscretisedLine, steps: Discretisation, uplift_forces: tuple[float, ...]) -> PassageRun:
-    passage = build_passage(case, line, steps, uplift_forces)
+def _run_once(
+    case: Case, line: DiscretisedLine, discretisation: Discretisation, uplift_forces: tuple[float, ...]
+) -> PassageRun:
+    passage = build_passage(case, line, discretisation, uplift_forces)
     begin = time.perf_counter()
     history = simulate_passage(line, passage)
     record = record_passage(case, passage, history)
-    return PassageRun(record, build_run_table(steps, passage.duration, begin), uplift_forces)
+    return PassageRun(record, build_run_table(discretisation, passage.duration, begin), uplift_forces)
 
 
-def build_run_table(steps: Discretisation, simulated_s: float, begin: float) -> RunTable:
+def build_run_table(discretisation: Discretisation, simulated_s: float, begin: float) -> RunTable:
     """Run facts of a simulation that began at `begin` on the clock `time.perf_counter` [s] and ends now."""
     wall_s = time.perf_counter() - begin
-    return RunTable(simulated_s=simulated_s, wall_s=wall_s, dt_s=steps.time_step_s, element_m=steps.element_m)
+    return RunTable(
+        simulated_s=simulated_s, wall_s=wall_s, dt_s=discretisation.time_step_s, element_m=discretisation.element_m
+    )
 
 
 def _mean_forces(case: Case, record: Record) -> RealArray:
@@ -97,7 +101,7 @@ def _mean_forces(case: Case, record: Record) -> RealArray:
 
 
 def build_passage(
-    case: Case, line: DiscretisedLine, steps: Discretisation, uplift_forces: tuple[float, ...]
+    case: Case, line: DiscretisedLine, discretisation: Discretisation, uplift_forces: tuple[float, ...]
 ) -> Passage:
     """Passage of a case on a discretised line, with given uplift forces [N]."""
     first_span = (case.file.evaluated_spans or (1,))[0]
@@ -113,9 +117,9 @@ def build_passage(
         start=case.start_positions,
         speed=case.speed,
         duration=duration,
-        time_step=steps.time_step_s,
+        time_step=discretisation.time_step_s,
         watched=_watched_supports(case, line),
-        reach=reach if steps.reach_m is None else min(steps.reach_m, reach),
+        reach=reach if discretisation.reach_m is None else min(discretisation.reach_m, reach),
     )
 
 

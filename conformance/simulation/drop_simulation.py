@@ -64,11 +64,11 @@ def simulate_drop(
     NoInitialState, NoEquilibrium, DidNotConverge
         The simulation has no solution.
     """
-    mass_drop, steps = require_mass_drop(case), case.file.discretisation
+    mass_drop, discretisation = require_mass_drop(case), case.file.discretisation
     drop, catenary = mass_drop.drop[number - 1], line or build_catenary(case.line)
     decay = simulate_mass_drop(
         catenary,
-        steps.element_m,
+        discretisation.element_m,
         MassDropSetup(
             mass=drop.mass_kg,
             wire=_first_wire(catenary, drop.wire),
@@ -76,13 +76,13 @@ def simulate_drop(
             release_duration=drop.release_s,
             hanging=mass_drop.hanging_s,
             duration=mass_drop.record_s,
-            time_step=steps.time_step_s,
+            time_step=discretisation.time_step_s,
             sensors=tuple((_first_wire(catenary, sensor.wire), sensor.x_m) for sensor in mass_drop.sensor),
         ),
         progress,
     )
     motion = decay.motion[:, :, ORDER[mass_drop.quantity]].T
-    signals = decimate(motion, round(1 / mass_drop.rate_Hz / steps.time_step_s))
+    signals = decimate(motion, round(1 / mass_drop.rate_Hz / discretisation.time_step_s))
     if mass_drop.noise_rms:
         # The noise differs between drops; it is the same in every run and under every damping model.
         seed = hashlib.sha256(f"{drop.model_dump_json()} {number}".encode()).digest()

@@ -24,9 +24,9 @@ class ReferenceSimulator:
 
     def run(self, case: Case) -> Delivered:
         """Run a case and its refinement."""
-        steps = case.file.discretisation
-        delivered, uplift_forces = _deliver(case, steps)
-        refined, _ = _deliver(case, steps.halve(), uplift_forces)
+        discretisation = case.file.discretisation
+        delivered, uplift_forces = _deliver(case, discretisation)
+        refined, _ = _deliver(case, discretisation.halve(), uplift_forces)
         return replace(delivered, refined=refined)
 
     def run_unrefined(self, case: Case) -> Delivered:
@@ -35,12 +35,14 @@ class ReferenceSimulator:
 
 
 def _deliver(
-    case: Case, steps: Discretisation, uplift_forces: tuple[float, ...] | None = None
+    case: Case, discretisation: Discretisation, uplift_forces: tuple[float, ...] | None = None
 ) -> tuple[Delivered, tuple[float, ...] | None]:
     """Simulate a case; result, and uplift forces of its passage [N]."""
-    line = discretise(build_catenary(case.line), steps.element_m)
+    line = discretise(build_catenary(case.line), discretisation.element_m)
     static = compute_static_quantities(case, line)
     if case.is_static:
-        return Delivered(static=static, run=RunTable(dt_s=steps.time_step_s, element_m=steps.element_m)), None
-    passage = run_passage(case, line, steps, uplift_forces)
+        return Delivered(
+            static=static, run=RunTable(dt_s=discretisation.time_step_s, element_m=discretisation.element_m)
+        ), None
+    passage = run_passage(case, line, discretisation, uplift_forces)
     return Delivered(passage.record, static, passage.run), passage.uplift_forces

@@ -61,15 +61,15 @@ def run_dropper_damping(case: Case, study: DropperDamping) -> Delivered:
         No dropper hangs at the position of the study, or a pantograph has no uplift force.
     """
     begin = time.perf_counter()
-    steps, line = case.file.discretisation, build_catenary(case.line)
+    discretisation, line = case.file.discretisation, build_catenary(case.line)
     dropper = _find_dropper(line, study, case.id)
     forces = tuple(use.uplift_force_N or 0.0 for use in case.file.pantograph)
     if not all(forces):
         raise InputError(
             f"case '{case.id}', key pantograph", "no uplift_force_N", "This study needs the force of every pantograph."
         )
-    mesh = discretise(line, steps.element_m)
-    passage = build_passage(case, mesh, steps, forces)
+    mesh = discretise(line, discretisation.element_m)
+    passage = build_passage(case, mesh, discretisation, forces)
     history = simulate_passage(mesh, passage)
     coefficients = np.array(study.coefficients_s)
     force = {
@@ -79,7 +79,7 @@ def run_dropper_damping(case: Case, study: DropperDamping) -> Delivered:
     runs = 1 + len(LAWS) * coefficients.size
     return Delivered(
         record=record_passage(case, passage, history),
-        run=build_run_table(steps, runs * passage.duration, begin),
+        run=build_run_table(discretisation, runs * passage.duration, begin),
         study=StudyResult(
             findings=findings,
             charts=(_draw_forces(case, study, force),),
