@@ -66,9 +66,9 @@ def assemble_matrices(line: DiscretisedLine) -> GlobalMatrices:
 
     def assemble(wires: list[sp.csr_array], lumped: Array, connector: Array) -> sp.csc_array:
         deflections = np.stack([lumped, np.zeros_like(lumped)], axis=-1).ravel()
-        single_rows = (sp.block_diag(wires, format="csr") + sp.diags_array(deflections))[order][:, order]
-        whole = single_rows + directions @ sp.diags_array(connector) @ directions.T
-        return sp.csc_array(whole[free][:, free])
+        uncoupled = (sp.block_diag(wires, format="csr") + sp.diags_array(deflections))[order][:, order]
+        coupled = uncoupled + directions @ sp.diags_array(connector) @ directions.T
+        return sp.csc_array(coupled[free][:, free])
 
     return GlobalMatrices(
         mass=assemble(mass, beams.lumped_mass, np.zeros_like(line.connectors.stiffness)),
