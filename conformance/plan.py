@@ -170,7 +170,7 @@ def read_plan(path: Path) -> Plan:
     kind, _, rest = plan.system.partition(":")
     system = plan.system
     if kind == "record":
-        system = f"record:{_beside(folder, rest)}"
+        system = f"record:{_find_record_folder(folder, rest)}"
     elif kind == "command":
         system = f"command:{shlex.join(split_arguments(rest, folder))}"
     return plan.model_copy(
@@ -184,7 +184,7 @@ def read_plan(path: Path) -> Plan:
     )
 
 
-def _beside(folder: Path, records: str) -> Path:
+def _find_record_folder(folder: Path, name: str) -> Path:
     """Folder of records beside the plan, or that of the library if there is none."""
-    beside = folder / records
-    return Path(records) if not beside.is_dir() and (library_folder() / records).is_dir() else beside
+    beside = folder / name
+    return Path(name) if not beside.is_dir() and (library_folder() / name).is_dir() else beside
