@@ -86,7 +86,7 @@ def _numbers(case: CaseResult) -> Iterator[tuple[_Key, float]]:
 
 
 def _round_limit(limit: float, allowed: float) -> float:
-    """Limit to a hundredth of the allowed drift or finer, so that no page prints twelve digits."""
+    """Round a limit to a hundredth of the allowed drift or finer, so that no page prints twelve digits."""
     return round(limit, 3 - math.floor(math.log10(allowed))) if allowed > 0 else limit
 
 

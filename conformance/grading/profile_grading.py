@@ -123,6 +123,6 @@ def _run_facts(subject: AssessedRecord, profile: Profile) -> RunFacts:
 
 
 def _name_sources(records: Sequence[AssessedRecord], field: str) -> list[str]:
-    """Notes or warnings of records; of two records, each text names its record."""
+    """Notes or warnings of records; if there are several records, each text begins with the name of its record."""
     texts = [(record.name, text) for record in records for text in getattr(record, field)]
     return [text if len(records) == 1 else f"{name}: {text}" for name, text in texts]

@@ -41,7 +41,7 @@ MAX_TRIALS = 40
 
 @dataclass(frozen=True)
 class PoleSelection:
-    """Poles that the data support, by frequency [1/s], and the noise of the channels of each block, (c,)."""
+    """Poles [1/s] that the data support, sorted by frequency, and the noise of the c channels of each block, (c,)."""
 
     poles: ComplexArray
     noise: list[RealArray]

@@ -26,7 +26,7 @@ MARK = "PANTOCHECK_PROGRAM"
 
 
 class ProgramFailed(Exception):
-    """A program ended, was late or wrote too much: its case cannot be graded, but the other cases can."""
+    """A program ended, exceeded its time or wrote too much: its case cannot be graded, but the other cases can."""
 
 
 class Program:
