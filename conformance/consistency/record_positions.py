@@ -57,7 +57,7 @@ def _check_support_passing(_: Case, signals: RecordSignals) -> Finding | None:
     return Finding(
         "contradiction",
         f"the uplift at the supports is largest when the nearest pantograph is {abs(typical):.3g} m {side} them: "
-        "position and uplift are not of the same time",
+        "position and uplift are not synchronous",
     )
 
 

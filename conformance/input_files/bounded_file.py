@@ -83,7 +83,7 @@ def open_file(path: Path, where: str, largest: int, flags: int = 0) -> Iterator[
             if not stat.S_ISREG(status.st_mode):
                 raise InputError(where, f"cannot be read from {path} (not a regular file)", "Name a file.")
             if status.st_size > largest:
-                raise InputError(where, f"{status.st_size} bytes", f"At most {largest} bytes are read.")
+                raise InputError(where, f"has {status.st_size} bytes", f"The largest accepted size is {largest} bytes.")
             file = BoundedFile(descriptor, where, status.st_size)
         except BaseException:
             os.close(descriptor)

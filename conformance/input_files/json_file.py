@@ -36,7 +36,7 @@ def read_json(path: Path, kind: str, largest: int) -> Any:
 def parse_json(content: bytes, where: str, largest: int) -> Any:
     """Parse JSON from bytes that may come from another file; parameters and errors as in `read_json`."""
     if len(content) > largest:
-        raise InputError(where, f"{len(content)} bytes", f"At most {largest} bytes are read.")
+        raise InputError(where, f"has {len(content)} bytes", f"The largest accepted size is {largest} bytes.")
     try:
         return json.loads(content)
     except (ValueError, RecursionError) as error:

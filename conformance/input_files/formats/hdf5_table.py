@@ -138,8 +138,10 @@ def _read_root(file: h5py.File, source: str, largest: int) -> MeasuredTable:
         place = f"{where}, data set {str(name)[:80]!r}"
         values = read_numbers(item, place, largest)
         if values.ndim not in (1, 2) or (rows and values.shape[-1] != rows[0].size):
-            first = f", the first data set has {rows[0].size} samples" if rows else ""
-            raise InputError(place, f"its shape is {values.shape}{first}", "Store (samples) or (rows, samples).")
+            first = f"; the first data set has {rows[0].size} samples" if rows else ""
+            raise InputError(
+                place, f"its shape is {values.shape}{first}", "Store arrays of shape (samples) or (rows, samples)."
+            )
         for row, samples in enumerate(np.atleast_2d(values), 1):
             columns.append(TableColumn(str(name), row))
             rows.append(samples)
@@ -170,7 +172,9 @@ def _read_run(
     data = next((file[name][quantity] for quantity in MOTION_QUANTITIES if quantity in file[name]), None)
     values = read_numbers(data, where, largest).T
     if values.ndim != 2:
-        raise InputError(where, "holds no table of samples", f"Store {name}/acceleration (channel, sample).")
+        raise InputError(
+            where, "holds no table of samples", f"Store {name}/acceleration as an array of shape (channels, samples)."
+        )
     if columns is not None and len(columns) != values.shape[1]:
         raise InputError(
             where,
