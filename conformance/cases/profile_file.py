@@ -72,7 +72,7 @@ class Rule(InputTable):
     ] = None
     need: Annotated[
         Literal["required", "if_known"],
-        Field(description="rule without its quantity or bound; required: verdict skip; if_known: no verdict"),
+        Field(description="verdict if the quantity or the bound is not known; required: skip; if_known: none"),
     ] = "required"
     trust: Annotated[Trust, Field(description="trust in the rule")]
     source: Annotated[str | list[str], Field(description="source of the rule: keys of sources.toml, or free text")]
@@ -105,7 +105,12 @@ class Profile(InputTable):
     title: Annotated[str, Field(max_length=200, description="title in reports")]
     note: Annotated[str | None, Field(description="remark for the reader", max_length=4000)] = None
     speed_tolerance_pct: Annotated[
-        float, Field(gt=0, le=50, description="deviation from the nominal speed beyond which the record is cut [%]")
+        float,
+        Field(
+            gt=0,
+            le=50,
+            description="largest deviation from the nominal speed; faster and slower samples are left out [%]",
+        ),
     ] = 5.0
     verification: Annotated[
         Literal["shown", "demanded"],

@@ -13,7 +13,7 @@ from pantocheck.conformance.input_files.sourced_table import (
     validation_problem,
 )
 
-Interval = Annotated[tuple[float, float], Field(strict=False, description="start and end")]
+Interval = Annotated[tuple[float, float], Field(strict=False)]
 
 
 class Printed(InputTable):
@@ -30,7 +30,7 @@ class DampingChange(SourcedTable):
     kind: Literal["damping-change"]
     before: Annotated[DampingModels, Field(min_length=1, max_length=1, description="damping file of the earlier run")]
     after: Annotated[str, Field(max_length=100, description="name of the damping of the case")]
-    span: Annotated[int, Field(ge=1, description="span of the force diagram, from 1")]
+    span: Annotated[int, Field(ge=1, description="number of the span whose force is drawn, from 1")]
     printed: Annotated[tuple[Printed, ...], Field(strict=False, max_length=40)] = ()
 
 
@@ -41,7 +41,9 @@ class ReleaseVelocity(SourcedTable):
     models: Annotated[DampingModels, Field(min_length=2)]
     windows_s: Annotated[
         tuple[Interval, ...],
-        Field(strict=False, min_length=1, max_length=6, description="start and end, after the release [s]"),
+        Field(
+            strict=False, min_length=1, max_length=6, description="start and end of each window, after the release [s]"
+        ),
     ]
     sensor: Annotated[int, Field(ge=1, description="number of the sensor, from 1")] = 1
 
@@ -78,7 +80,7 @@ class SteadyArmDamper(SourcedTable):
     damper_N_s_m: Annotated[Positive, Field(le=1e6, description="vertical damper between wire and ground [N s/m]")]
     bands_Hz: Annotated[
         tuple[Interval, ...],
-        Field(strict=False, min_length=1, max_length=40, description="edges of each band [Hz]"),
+        Field(strict=False, min_length=1, max_length=40, description="lower and upper edge of each band [Hz]"),
     ]
 
 

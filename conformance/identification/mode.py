@@ -56,9 +56,9 @@ class Mode(RoundedModel):
     warnings: Annotated[tuple[str, ...], Field(description="reasons to doubt the mode")] = ()
     certain: Annotated[bool, Field(description="damping ratio known to 5 % (one standard deviation)")] = True
     outlier: Annotated[bool, Field(description="damping ratio far from that of its group")] = False
-    lateral: Annotated[bool, Field(description="lateral mode, seen by vertical channels through their mounting")] = (
-        False
-    )
+    lateral: Annotated[
+        bool, Field(description="lateral mode; vertical channels measure it because of their mounting")
+    ] = False
     amplitude_at_release: Annotated[
         Rounded | None, Field(description="largest amplitude of a sensor at the release [unit of the record]")
     ] = None
