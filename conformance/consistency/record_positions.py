@@ -5,10 +5,8 @@ import numpy as np
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.consistency.check import Check, Finding
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable, SectionNotCovered
+from pantocheck.conformance.records.record import SPEED_TOLERANCE
 from pantocheck.conformance.records.record_signals import RecordSignals
-
-SPEED_TOLERANCE = 0.005
-"""Relative tolerance of the speed: a tenth of the width of a resonance."""
 
 PASSING_TOLERANCE_M = 5.0
 """Distance between support and pantograph at the largest uplift [m]: some decimetres in simulation and measurement."""
@@ -31,7 +29,7 @@ def _check_motion(_: Case, signals: RecordSignals) -> Finding | None:
     elapsed = record.time[-1] - record.time[0]
     for number, position in enumerate(record.position, 1):
         speed = (position[-1] - position[0]) / elapsed
-        if abs(speed / record.speed - 1) > SPEED_TOLERANCE:
+        if not abs(speed / record.speed - 1) <= SPEED_TOLERANCE:
             return Finding(
                 "contradiction",
                 f"pantograph {number} advances at {3.6 * speed:.4g} km/h by position and time, "

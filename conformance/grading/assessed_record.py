@@ -138,7 +138,7 @@ def load_assessed_record(path: Path, profile: Profile, line: LineTable) -> Asses
 
 def _assess_summary(path: Path, summary: RecordSummary, profile: Profile, line: LineTable) -> AssessedRecord:
     cutoff = profile.filter.cutoff_Hz
-    if abs(summary.filter_cutoff_Hz / cutoff - 1) > 0.001:
+    if not abs(summary.filter_cutoff_Hz / cutoff - 1) <= 0.001:
         raise InputError(
             f"summary record '{path.name}', key filter_cutoff_Hz",
             f"the force was filtered at {summary.filter_cutoff_Hz:g} Hz, profile {profile.name} requires {cutoff:g} Hz",

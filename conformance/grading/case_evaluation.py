@@ -7,9 +7,9 @@ from functools import cached_property
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.consistency.check import CheckName, Finding
 from pantocheck.conformance.consistency.record_checks import check_record
-from pantocheck.conformance.consistency.record_positions import SPEED_TOLERANCE
 from pantocheck.conformance.consistency.record_state import record_state
 from pantocheck.conformance.grading.criterion_grading import GradedValues, grade_limit
+from pantocheck.conformance.grading.record_mismatch import find_other_case, find_record_mismatch
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation
 from pantocheck.conformance.quantities.registry import QUANTITIES
@@ -17,9 +17,6 @@ from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.results.results_format import Criterion, RecordFacts
-
-SECTION_TOLERANCE_M = 0.01
-"""Tolerance of the analysis section of a record against that of its case [m]."""
 
 MIN_SECTIONS = 3
 """Smallest number of shifted sections that give a spread."""
@@ -44,6 +41,8 @@ class CaseEvaluation:
     def mismatch(self) -> str | None:
         """Reason why the delivery does not belong to the case; None if it does."""
         case, record = self.case, self.delivered.record
+        if (other := find_other_case(case, self.delivered.case_digest)) is not None:
+            return other
         for name in sorted(self.delivered.static):
             if name not in QUANTITIES:
                 return f"the system delivered an unknown quantity {name!r}"
@@ -55,14 +54,7 @@ class CaseEvaluation:
             return None
         if record is None:
             return None if self.delivered.summary is not None else "the system delivered no record"
-        if record.pantographs != len(case.pantographs):
-            return f"the record has {record.pantographs} pantographs, the case has {len(case.pantographs)}"
-        if abs(record.speed / case.speed - 1) > SPEED_TOLERANCE:
-            return f"the record was made at {3.6 * record.speed:.4g} km/h, the case runs at {3.6 * case.speed:.4g} km/h"
-        (start, end), (first, last) = record.evaluated, case.analysis_section
-        if abs(start - first) > SECTION_TOLERANCE_M or abs(end - last) > SECTION_TOLERANCE_M:
-            return f"the record evaluates {start:g} m to {end:g} m, the case {first:g} m to {last:g} m"
-        return None
+        return find_record_mismatch(case, record)
 
     @cached_property
     def signals(self) -> RecordSignals | None:
@@ -96,11 +88,15 @@ class CaseEvaluation:
     def record_facts(self) -> RecordFacts | None:
         """State of the record; None for a case without a record."""
         if self.delivered.summary is not None:
-            return RecordFacts(state="unverified", reason="published statistics: there is no record to check")
+            return RecordFacts(
+                state="unverified",
+                reason="published statistics: there is no record to check",
+                case_digest=self.delivered.case_digest,
+            )
         if self.signals is None:
             return None
         state, reason = record_state(self.findings)
-        return RecordFacts(state=state, reason=reason)
+        return RecordFacts(state=state, reason=reason, case_digest=self.delivered.case_digest)
 
     def grade_limits(self, lowest_trust: Trust) -> list[Criterion]:
         """Grade the delivery by every limit of the case."""

@@ -45,7 +45,7 @@ def extended_band_warnings(evaluation: Evaluation, refined: Evaluation | None, d
         ]
     for pantograph, value in band_values.items():
         fine = refined.values.get(pantograph, {}).get(EXTENDED_BAND.quantity)
-        if isinstance(value, float) and isinstance(fine, float) and abs(value - fine) > LARGEST_CHANGE * fine:
+        if isinstance(value, float) and isinstance(fine, float) and not abs(value - fine) <= LARGEST_CHANGE * fine:
             warnings.append(
                 f"{WARNING_PREFIX}halving element and time step changes the RMS of pantograph {pantograph} from "
                 f"{value:.3g} N to {fine:.3g} N, by more than {100 * LARGEST_CHANGE:g} %: the band is not resolved"

@@ -99,7 +99,7 @@ def _check_pair(subject: AssessedRecord, measured: AssessedRecord | None, profil
         raise InputError(
             where, f"it has {measured_count} pantographs, {subject.name} has {count}", "Compare records of one train."
         )
-    if abs(measured_speed / speed - 1) > profile.speed_tolerance_pct / 100:
+    if not abs(measured_speed / speed - 1) <= profile.speed_tolerance_pct / 100:
         raise InputError(
             where,
             f"its speed is {measured_speed:g} km/h, that of {subject.name} is {speed:g} km/h",

@@ -13,6 +13,9 @@ MAX_SAMPLES = 20_000_000
 LARGEST_NUMBER = 1e9
 """Largest force, position or time in SI units; its square is still accurate enough for statistics."""
 
+SPEED_TOLERANCE = 0.005
+"""Relative tolerance of the speed of a run: a tenth of the width of a resonance."""
+
 
 class RecordInvalid(ValueError):
     """Impossible array of a record, whose statistics would have no meaning.
@@ -138,6 +141,6 @@ def _rate(time: RealArray) -> float:
         raise RecordInvalid("time", "fewer than two samples")
     step = (time[-1] - time[0]) / (time.size - 1)
     # Printed times are rounded by up to a hundredth of a step; more is a gap or a changing rate.
-    if step <= 0 or np.abs(time - np.linspace(time[0], time[-1], time.size)).max() > 0.01 * step:
+    if not step > 0 or not np.abs(time - np.linspace(time[0], time[-1], time.size)).max() <= 0.01 * step:
         raise RecordInvalid("time", "samples are not evenly spaced in time")
     return float(1 / step)

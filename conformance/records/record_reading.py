@@ -1,6 +1,5 @@
 """Reading of records: samples with a sidecar, which are checked before they become a `Record`, and summaries."""
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -62,9 +61,7 @@ def read_record(path: Path, evaluated: tuple[float, float] | None = None) -> tup
     """
     samples, sidecar, table = read_samples(path)
     try:
-        record = build_record(samples, sidecar)
-        if sidecar.evaluated_m is None and evaluated is not None:
-            record = replace(record, evaluated=evaluated)
+        record = build_record(samples, sidecar, evaluated)
     except RecordInvalid as error:
         raise build_record_error(table, error) from None
     return record, sidecar

@@ -5,7 +5,14 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from pantocheck.conformance.input_files.sourced_table import InputTable, NumberList, PositiveList, validation_problem
-from pantocheck.conformance.records.sidecar_tables import LineTable, RunTable, Speed, SystemTable, check_section
+from pantocheck.conformance.records.sidecar_tables import (
+    CaseDigest,
+    LineTable,
+    RunTable,
+    Speed,
+    SystemTable,
+    check_section,
+)
 
 RECORD_SCHEMA = "pantocheck.record/1"
 
@@ -18,6 +25,7 @@ class RecordSidecar(InputTable):
         Field(alias="schema", description='version of the format: "pantocheck.record/1"'),
     ]
     case: Annotated[str | None, Field(max_length=200, description="id of the case that was run")] = None
+    case_digest: CaseDigest | None = None
     file: Annotated[str, Field(min_length=1, max_length=500, description="name of the table beside the sidecar")]
     sha256: Annotated[
         str | None, Field(pattern="^[0-9a-f]{64}$", description="SHA-256 of the table, which reveals a damaged copy")
@@ -37,9 +45,9 @@ class RecordSidecar(InputTable):
         Field(description='cut-off of the low-pass filter already applied to the force [Hz], or "none"'),
     ]
     start_m: Annotated[
-        float,
+        float | None,
         Field(description="position of the first pantograph at the first sample, unless in the table [m]"),
-    ] = 0.0
+    ] = None
     spacing_m: Annotated[
         PositiveList | None,
         Field(

@@ -10,7 +10,14 @@ from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value
 from pantocheck.conformance.quantities.force_quantities import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, statistical_extremes
-from pantocheck.conformance.records.sidecar_tables import LineTable, RunTable, Speed, SystemTable, check_section
+from pantocheck.conformance.records.sidecar_tables import (
+    CaseDigest,
+    LineTable,
+    RunTable,
+    Speed,
+    SystemTable,
+    check_section,
+)
 
 SUMMARY_SCHEMA = "pantocheck.summary/1"
 
@@ -25,6 +32,7 @@ class RecordSummary(SourcedTable):
         Field(alias="schema", description='version of the format: "pantocheck.summary/1"'),
     ]
     case: Annotated[str | None, Field(max_length=200, description="id of the case that was run")] = None
+    case_digest: CaseDigest | None = None
     speed_km_h: Speed
     filter_cutoff_Hz: Annotated[
         float, Field(gt=0, le=1000, description="cut-off of the low-pass filter of the force statistics [Hz]")
@@ -70,7 +78,7 @@ class RecordSummary(SourcedTable):
         contradictions = []
         for i, values in enumerate(self.pantograph, 1):
             for name, expected, rounding in _derive_statistics(values):
-                if name in values and abs(values[name] - expected) > rounding:
+                if name in values and not abs(values[name] - expected) <= rounding:
                     contradictions.append(
                         f"{name} of pantograph {i} is given as {values[name]:g}; {expected:.4g} follows from the mean "
                         "and the standard deviation"

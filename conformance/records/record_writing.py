@@ -26,6 +26,7 @@ def write_record(
     case: str | None = None,
     system: dict[str, str] | None = None,
     run: dict[str, float | None] | None = None,
+    case_digest: str | None = None,
 ) -> Path:
     """Write a record as CSV or HDF5, by its suffix, and its sidecar beside it.
 
@@ -41,6 +42,8 @@ def write_record(
         `name` and `version` of the simulator or measuring system.
     run : dict[str, float or None] or None
         Keys of the run table of the sidecar; None is left out.
+    case_digest : str or None
+        Digest of the inputs of the case that was run.
 
     Returns
     -------
@@ -57,6 +60,7 @@ def write_record(
     sidecar: dict[str, Any] = {
         "schema": RECORD_SCHEMA,
         "case": case,
+        "case_digest": case_digest,
         "file": path.name,
         "sha256": file_digest(path),
         "speed_km_h": float(f"{3.6 * record.speed:.12g}"),

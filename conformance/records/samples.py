@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.records.record import Record, RecordInvalid
+from pantocheck.conformance.records.record import SPEED_TOLERANCE, Record, RecordInvalid
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 
 
@@ -55,7 +55,7 @@ def complete_samples(samples: RecordSamples, sidecar: RecordSidecar) -> tuple[Re
     Raises
     ------
     RecordInvalid
-        There is neither time nor position, or a speed is not positive.
+        There is neither time nor position, positions cannot be computed, or a speed is not positive.
     """
     behind = np.array(sidecar.behind)[:, None]
     speed = np.full(samples.force.shape[1], sidecar.speed_km_h / 3.6) if samples.speed is None else samples.speed
@@ -67,10 +67,20 @@ def complete_samples(samples: RecordSamples, sidecar: RecordSidecar) -> tuple[Re
             raise RecordInvalid("speed", f"not positive at sample {int(np.argmin(speed > 0)) + 1}")
         time = _integral(1 / speed, position[0])
     if position is None:
-        position = sidecar.start_m + _integral(speed, time)[None] - behind
+        _check_placement(sidecar)
+        position = (sidecar.start_m or 0.0) + _integral(speed, time)[None] - behind
     elif position.shape[0] == 1:
         position = position - behind
     return time, position
+
+
+def _check_placement(sidecar: RecordSidecar) -> None:
+    """Refuse a record without positions that does not state where its pantographs are."""
+    if sidecar.pantographs > 1 and sidecar.spacing_m is None:
+        raise RecordInvalid("position", f"{sidecar.pantographs} pantographs have neither a position nor spacing_m")
+    placed = (sidecar.case, sidecar.evaluated_m, sidecar.support_position_m)
+    if sidecar.start_m is None and any(key is not None for key in placed):
+        raise RecordInvalid("position", "the first pantograph has neither a position nor start_m")
 
 
 def _integral(rate: RealArray, over: RealArray) -> RealArray:
@@ -85,13 +95,24 @@ def analysis_section(sidecar: RecordSidecar, position: RealArray) -> tuple[float
     return float(position[:, 0].max()), float(position[:, -1].min())
 
 
-def build_record(samples: RecordSamples, sidecar: RecordSidecar) -> Record:
+def build_record(
+    samples: RecordSamples, sidecar: RecordSidecar, evaluated: tuple[float, float] | None = None
+) -> Record:
     """Build a record from samples that are complete and evenly spaced in time.
+
+    Parameters
+    ----------
+    samples : RecordSamples
+        Samples as read.
+    sidecar : RecordSidecar
+        Sidecar of the record.
+    evaluated : tuple of float or None
+        Analysis section of the case [m], used where the sidecar states none.
 
     Raises
     ------
     RecordInvalid
-        Values are missing, or time is not uniform.
+        Values are missing, time is not uniform, or the speed channel contradicts the speed.
     """
     for name in _SAMPLED:
         value = getattr(samples, name)
@@ -99,14 +120,31 @@ def build_record(samples: RecordSamples, sidecar: RecordSidecar) -> Record:
             bad = np.argwhere(~np.isfinite(value.T))[:, 0]
             raise RecordInvalid(name, f"{bad.size} values are not finite, the first at sample {bad[0] + 1}")
     time, position = complete_samples(samples, sidecar)
+    section = evaluated if sidecar.evaluated_m is None and evaluated else analysis_section(sidecar, position)
+    _check_speed_channel(samples, sidecar.speed_km_h, position, section)
     return Record(
         time=time,
         speed=sidecar.speed_km_h / 3.6,
         position=position,
         force=samples.force,
-        evaluated=analysis_section(sidecar, position),
+        evaluated=section,
         filter_applied_Hz=sidecar.low_passed_Hz,
         contact_height=samples.contact_height,
         support_position=samples.support_position,
         support_uplift=samples.uplift,
     )
+
+
+def _check_speed_channel(
+    samples: RecordSamples, speed_km_h: float, position: RealArray, section: tuple[float, float]
+) -> None:
+    """Refuse a speed channel that contradicts the speed inside the section; run-in and run-out may differ."""
+    if samples.speed is None:
+        return
+    inside = ((position >= section[0]) & (position <= section[1])).any(axis=0)
+    speed = 3.6 * (samples.speed[inside] if inside.any() else samples.speed)
+    # The mean of the absolute deviation leaves the noise of a sensor, but no stretch at another speed.
+    if not np.abs(speed / speed_km_h - 1).mean() <= SPEED_TOLERANCE:
+        raise RecordInvalid(
+            "speed", f"{speed.min():.4g} to {speed.max():.4g} km/h, but the sidecar states {speed_km_h:.4g} km/h"
+        )

@@ -8,6 +8,14 @@ from pantocheck.conformance.input_files.sourced_table import InputTable, NonNega
 
 Speed = Annotated[float, Field(ge=1, le=600, description="speed of the train [km/h]")]
 
+CaseDigest = Annotated[
+    str,
+    Field(
+        pattern="^sha256:[0-9a-f]{64}$",
+        description="digest of the inputs of the case that was run, as its results state it (input_digest)",
+    ),
+]
+
 
 class SystemTable(InputTable):
     """Origin of a record: a simulator or a measuring system."""

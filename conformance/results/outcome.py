@@ -47,6 +47,8 @@ class Delivered:
         Quantities delivered as numbers in place of a record.
     study : StudyResult
         Result of a study; empty for a single run.
+    case_digest : str or None
+        Digest of the case that the record was made for, as the record states it.
     refined : Delivered or None
         The same case with element length and time step halved, for the discretisation error.
     """
@@ -58,6 +60,7 @@ class Delivered:
     warnings: tuple[str, ...] = ()
     summary: Evaluation | None = None
     study: StudyResult = field(default_factory=StudyResult)
+    case_digest: str | None = None
     refined: "Delivered | None" = None
 
 
@@ -76,6 +79,13 @@ class Errored:
 
 
 Outcome = Delivered | Skipped | Errored
+
+
+def note_case_version(case_digest: str | None) -> tuple[str, ...]:
+    """Note on a record that states its case, but not the digest of its inputs."""
+    if case_digest is not None:
+        return ()
+    return ("The record does not state the inputs of its case (case_digest): they may have changed since it was made.",)
 
 
 def missing_record_reason(outcome: Outcome) -> str:

@@ -6,11 +6,13 @@ from typing import Literal
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import library_folder, source_text
+from pantocheck.conformance.grading.record_mismatch import SECTION_TOLERANCE_M
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_toml
+from pantocheck.conformance.records.record import SPEED_TOLERANCE
 from pantocheck.conformance.records.record_reading import RECORD_SCHEMAS, open_record, read_record
 from pantocheck.conformance.records.record_summary import RecordSummary
-from pantocheck.conformance.results.outcome import Delivered, Errored, Outcome, Skipped
+from pantocheck.conformance.results.outcome import Delivered, Errored, Outcome, Skipped, note_case_version
 
 
 @dataclass(frozen=True)
@@ -39,7 +41,9 @@ class RecordFolder:
         if isinstance(opened, RecordSummary):
             return _deliver_summary(opened, case)
         record, sidecar = read_record(path, None if case.is_static else case.analysis_section)
-        return Delivered(record, run=sidecar.run)
+        return Delivered(
+            record, run=sidecar.run, notes=note_case_version(sidecar.case_digest), case_digest=sidecar.case_digest
+        )
 
 
 def _deliver_summary(summary: RecordSummary, case: Case) -> Outcome:
@@ -51,9 +55,11 @@ def _deliver_summary(summary: RecordSummary, case: Case) -> Outcome:
         notes=(
             f"The values are a summary record, graded as given ({summary.trust}): {source_text(source)}",
             *((summary.note.strip(),) if summary.note else ()),
+            *note_case_version(summary.case_digest),
         ),
         warnings=summary.contradictions,
         summary=summary.evaluation,
+        case_digest=summary.case_digest,
     )
 
 
@@ -62,12 +68,12 @@ def _find_mismatch(summary: RecordSummary, case: Case) -> str | None:
     cutoff, speed = case.file.filter.cutoff_Hz, case.file.speed_km_h
     if len(summary.pantograph) != len(case.pantographs):
         return f"the summary record has {len(summary.pantograph)} pantographs, the case has {len(case.pantographs)}"
-    if speed is not None and abs(summary.speed_km_h / speed - 1) > 0.005:
+    if speed is not None and not abs(summary.speed_km_h / speed - 1) <= SPEED_TOLERANCE:
         return f"the summary record is of {summary.speed_km_h:g} km/h, the case runs at {speed:g} km/h"
-    if abs(summary.filter_cutoff_Hz / cutoff - 1) > 0.001:
+    if not abs(summary.filter_cutoff_Hz / cutoff - 1) <= 0.001:
         return f"the summary record has a filter of {summary.filter_cutoff_Hz:g} Hz, the case requires {cutoff:g} Hz"
     section, (start, end) = summary.evaluated_m, case.analysis_section
-    if section is not None and max(abs(section[0] - start), abs(section[1] - end)) > 0.01:
+    if section is not None and not max(abs(section[0] - start), abs(section[1] - end)) <= SECTION_TOLERANCE_M:
         return f"the summary record evaluates {section[0]:g} m to {section[1]:g} m, the case {start:g} m to {end:g} m"
     return None
 

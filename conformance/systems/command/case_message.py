@@ -14,6 +14,7 @@ def build_case_message(case: Case) -> object:
     file = case.file
     content: dict[str, Any] = {
         "id": case.id,
+        "case_digest": case.digest,
         "title": file.title,
         "speed_km_h": file.speed_km_h,
         "evaluated_m": list(case.analysis_section),

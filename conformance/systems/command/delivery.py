@@ -6,7 +6,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.input_files.bounded_file import NO_LINK, file_digest
 from pantocheck.conformance.records.record_reading import read_record
 from pantocheck.conformance.records.sidecar_tables import RunTable
-from pantocheck.conformance.results.outcome import Delivered
+from pantocheck.conformance.results.outcome import Delivered, note_case_version
 from pantocheck.conformance.systems.command.protocol_messages import DeliveredAnswer, File
 
 
@@ -51,7 +51,8 @@ def read_delivery(case: Case, answer: DeliveredAnswer, folder: Path, wall: float
     run = sidecar.run
     if run.wall_s is None:
         run = run.model_copy(update={"wall_s": wall})
-    return Delivered(record, dict(answer.static), run, answer.notes)
+    notes = (*answer.notes, *note_case_version(sidecar.case_digest))
+    return Delivered(record, dict(answer.static), run, notes, case_digest=sidecar.case_digest)
 
 
 def _check_file(file: File, folder: Path) -> Path:

@@ -50,6 +50,9 @@ class GivenCase(InputTable):
     """Case without limits: all numbers, defaults included."""
 
     id: Annotated[str, Field(description="id of the case, to be repeated in the sidecar of the record")]
+    case_digest: Annotated[
+        str, Field(description="digest of the inputs of the case, to be repeated in the sidecar of the record")
+    ]
     title: str
     speed_km_h: Annotated[float | None, Field(description="speed of the train; null: check of the line at rest")]
     evaluated_m: Annotated[tuple[float, float], Field(description="start and end of the analysis section [m]")]
