@@ -64,7 +64,7 @@ class Wave:
         return -np.imag(compliance * np.sqrt(2) * self.sigma * np.exp(2j * np.pi * position / span))
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def wave() -> type[Wave]:
     return Wave
 
