@@ -11,7 +11,7 @@ from pydantic import Field
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import library_folder, overlay_limits, read_limits, select_cases
-from pantocheck.conformance.grading.baseline import compare_with_baseline
+from pantocheck.conformance.grading.baseline import compare_with_baseline, read_baseline
 from pantocheck.conformance.grading.case_verdict import Participation
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
@@ -21,7 +21,6 @@ from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.input_files.trust import Trust, limit_counts
 from pantocheck.conformance.reports.formats.report_writers import check_formats
 from pantocheck.conformance.results.results_format import Results
-from pantocheck.conformance.results.results_reading import read_results
 from pantocheck.conformance.studies.damping_sensitivity import add_damping_study
 from pantocheck.conformance.systems.command.program_arguments import split_arguments
 from pantocheck.conformance.systems.system import System
@@ -125,7 +124,7 @@ def prepare_plan(plan: Plan) -> PreparedPlan:
     if plan.damping_study:
         cases = [add_damping_study(case) for case in cases]
     formats = check_formats(plan.formats)
-    baseline = None if plan.baseline is None else read_results(Path(plan.baseline))
+    baseline = None if plan.baseline is None else read_baseline(Path(plan.baseline))
     participation = Participation(_list_information(cases, plan), plan.accept_unverified)
     return PreparedPlan(plan, tuple(cases), formats, Path(plan.out), baseline, participation)
 

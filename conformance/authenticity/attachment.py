@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Any
 
 from pypdf import PdfReader
-from pypdf.errors import PyPdfError
 
 from pantocheck.conformance.input_files.bounded_file import read_bytes
 from pantocheck.conformance.input_files.input_error import InputError
@@ -15,20 +14,6 @@ from pantocheck.conformance.results.results_reading import parse_results
 
 MAX_DOCUMENT_BYTES = 64 * 2**20
 """Largest PDF that is read [bytes]; a certificate of two cases has half a million."""
-
-DAMAGED = (
-    PyPdfError,
-    OSError,
-    ValueError,
-    LookupError,
-    TypeError,
-    AttributeError,
-    RecursionError,
-    NotImplementedError,
-    ArithmeticError,
-    AssertionError,
-)
-"""Exceptions of the parser for damaged files, which have no common base."""
 
 
 def open_document(path: Path) -> PdfReader:
@@ -45,7 +30,7 @@ def open_document(path: Path) -> PdfReader:
     try:
         reader = PdfReader(BytesIO(content), strict=True)
         pages = len(reader.pages)
-    except DAMAGED as error:
+    except Exception as error:
         raise _build_damage_error(path, error) from None
     if pages == 0:
         raise InputError(str(path), "a PDF without pages", "Request the certificate again.")
@@ -63,7 +48,7 @@ def read_title_and_first_page(path: Path, reader: PdfReader) -> tuple[str, str]:
     try:
         title = reader.metadata.title if reader.metadata else None
         return str(title or ""), reader.pages[0].extract_text()
-    except DAMAGED as error:
+    except Exception as error:
         raise _build_damage_error(path, error) from None
 
 
@@ -78,7 +63,7 @@ def read_embedded_results(path: Path, reader: PdfReader) -> dict[str, Any]:
     try:
         attachments = reader.attachments.get(NAME, [])
         content = bytes(attachments[0]) if len(attachments) == 1 else b""
-    except DAMAGED as error:
+    except Exception as error:
         raise _build_damage_error(path, error) from None
     if len(attachments) != 1:
         number = len(attachments) or "no"
@@ -89,6 +74,7 @@ def read_embedded_results(path: Path, reader: PdfReader) -> dict[str, Any]:
 
 
 def _build_damage_error(path: Path, error: Exception) -> InputError:
+    """Message for an exception of the parser; its exceptions for damaged files have no common base."""
     return InputError(
         str(path), f"a damaged PDF ({clean_text(str(error)) or type(error).__name__})", "Request the certificate again."
     )

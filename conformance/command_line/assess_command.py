@@ -21,7 +21,7 @@ from pantocheck.conformance.command_line.options import (
 )
 from pantocheck.conformance.command_line.results_output import EXIT_CODES, print_results
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
-from pantocheck.conformance.grading.baseline import compare_with_baseline
+from pantocheck.conformance.grading.baseline import compare_with_baseline, read_baseline
 from pantocheck.conformance.grading.case_verdict import Participation
 from pantocheck.conformance.grading.profile_grading import assess_record
 from pantocheck.conformance.input_files.atomic_writing import check_writable
@@ -29,7 +29,6 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.validation_messages import build_input_error
 from pantocheck.conformance.records.sidecar_tables import LineTable
 from pantocheck.conformance.reports.formats.report_writers import check_formats, write_all
-from pantocheck.conformance.results.results_reading import read_results
 
 
 def assess_command(
@@ -73,14 +72,15 @@ def assess_command(
     rules = load_profile(profile)
     own_limits = () if limits is None else read_limits(limits)
     line = _build_line_table(wave_speed_m_s=wave_speed_m_s, uplift_space_mm=uplift_space_mm)
-    earlier = None if baseline is None else read_results(baseline)
-    check_writable(folder)
+    earlier = None if baseline is None else read_baseline(baseline)
     assessed = load_assessed_record(record, rules, line)
     reference = None if measured is None else load_assessed_record(measured, rules, LineTable())
     _check_pantographs(own_limits, len(assessed.pantographs))
+    check_writable(folder)
     participation = Participation(accepted_unverified=tuple(accept_unverified or ()))
     results = assess_record(assessed, rules, options.trust, reference, own_limits, participation)
     if earlier is not None and baseline is not None:
+        write_all(results, folder, ("json",))  # kept if the comparison fails
         results = compare_with_baseline(results, earlier, options.drift_pct, baseline.name)
     print_results(results, write_all(results, folder, report_formats))
     raise typer.Exit(EXIT_CODES[results.verdict])

@@ -41,11 +41,11 @@ def drop_command(
     """
     if (write := WRITERS.get(out.suffix.lower())) is None:
         raise InputError(str(out), f"format '{out.suffix}' cannot be written", f"Write one of {', '.join(WRITERS)}.")
-    check_writable(out.parent)
     drop_case = choose_case(case, lambda each: each.file.mass_drop is not None, "with a [mass_drop] table")
     drops = len(require_mass_drop(drop_case).drop)
     if number is not None and number > drops:
         raise InputError("--drop", f"there is no drop {number}", f"Case {drop_case.id} has {drops}, numbered from 1.")
+    check_writable(out.parent)
     output = console()
     with Progress(console=output, transient=True, disable=not output.is_terminal) as bar:
         for n in range(1, drops + 1) if number is None else [number]:

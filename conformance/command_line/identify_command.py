@@ -46,20 +46,20 @@ def identify_command(
 
     pantocheck identify T1.h5 T2.csv --out both --highest 6
     """
-    check_writable(out)
     output = console()
     start_poles = None if poles is None else read_poles(poles)
     drop_records = tuple(record for path in records for record in read_drop_records(path))
+    check_writable(out)
     with output.status("reading") as status:
         identifications = identify_modes(
             drop_records, highest, start_poles, progress=lambda text: status.update(escape_text(text))
         )
         status.update("writing the report")
         lines = tuple(analyse_identification(identification) for identification in identifications)
-        write_model(out / "modes.json", ModesFile(tuple(mode for line in lines for mode in line.modes)))
-        write_model(out / "identification.json", IdentificationFile(lines=lines))
         data = [line.model_dump(mode="json", by_alias=True) for line in lines]
         document = build_identification_document(data)
+        write_model(out / "modes.json", ModesFile(tuple(mode for line in lines for mode in line.modes)))
+        write_model(out / "identification.json", IdentificationFile(lines=lines))
         for suffix in (".html", ".pdf"):
             write_report(document, out / f"identification{suffix}")
     output.print(escape_text(document.header.headline))

@@ -90,6 +90,8 @@ def run_command(
     except RunInterrupted as interruption:
         results, interrupted = interruption.results, True
         typer.echo("Interrupted: the results of the finished cases are written.", err=True)
-    results = prepared.compare(results)
+    if prepared.baseline is not None:
+        write_all(results, prepared.out, ("json",))  # kept if the comparison fails
+        results = prepared.compare(results)
     print_results(results, write_all(results, prepared.out, prepared.formats))
     raise typer.Exit(INTERRUPTED if interrupted else EXIT_CODES[results.verdict])

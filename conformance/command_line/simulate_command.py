@@ -25,9 +25,9 @@ def simulate_command(
     Example: pantocheck simulate en50318-2002/250 --out 250.csv
     """
     check_record_path(out)
-    check_writable(out.parent)
     chosen = choose_case(case, lambda each: not each.is_static, "with a train")
     simulator = choose_system(system)
+    check_writable(out.parent)
     # A record holds one run, so the refined run of the reference simulator is not needed.
     run = simulator.run_unrefined if isinstance(simulator, ReferenceSimulator) else simulator.run
     output = console()

@@ -2,12 +2,15 @@
 
 import math
 from collections.abc import Iterator
+from pathlib import Path
 from typing import NamedTuple
 
 from pantocheck.conformance.grading.case_verdict import Participation, judge_case
 from pantocheck.conformance.grading.criterion_grading import Requirement, build_criterion
+from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results.results_format import CaseResult, Criterion, Results
+from pantocheck.conformance.results.results_reading import read_results
 
 SMALLEST_SCALE = 1.0
 """Drift is relative to at least one unit (N, mm, %, Hz, m/s): any change of a value near zero would be 100 %."""
@@ -16,12 +19,40 @@ SMALLEST_RATIO_SCALE = 0.01
 """Smallest scale of quantities without a unit."""
 
 
+LARGEST_VALUE = 1e12
+MOST_VALUES = 10_000
+"""Largest size and number of the values of a case; the results of a run stay far below both."""
+
+
 class _Key(NamedTuple):
     """Owner, quantity and item of one number of a case."""
 
     owner: str
     quantity: str
     item: int | None
+
+
+def read_baseline(path: Path) -> Results:
+    """Read earlier results before a run, so that no comparison fails after it.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, is not in the format of the suite, or its values are too many or too large.
+    """
+    baseline = read_results(path)
+    for case in baseline.cases:
+        values = [value for _, value in _numbers(case)]
+        found = (
+            f"{len(values)} values, at most {MOST_VALUES} are compared"
+            if len(values) > MOST_VALUES
+            else next((f"a value of {value:g}" for value in values if not abs(value) <= LARGEST_VALUE), None)
+        )
+        if found is not None:
+            raise InputError(
+                f"baseline '{path.name}', case {case.id[:80]}", found, "Give results.json of an earlier run."
+            )
+    return baseline
 
 
 def compare_with_baseline(results: Results, baseline: Results, drift_pct: float, name: str) -> Results:

@@ -10,6 +10,8 @@ from typing import Any
 
 import pytest
 from pypdf import PdfWriter
+from pypdf.errors import DependencyError, LimitReachedError
+from pypdf.generic import NameObject, StreamObject
 from typer.testing import CliRunner
 
 from pantocheck.conformance.authenticity import attachment
@@ -216,3 +218,27 @@ def test_verify_command(certificate_file: Path, results: dict[str, Any], tmp_pat
     none = runner.invoke(app, ["verify", str(tmp_path / "none.pdf")])
     assert none.exit_code == 2
     assert "cannot be read" in none.stderr
+
+
+@pytest.mark.parametrize("name", ["/JBIG2Decode", "/JPXDecode", "/Crypt", "/NoSuchFilter", "/LZWDecode"])
+def test_attachment_behind_another_filter_is_refused(certificate_file: Path, name: str) -> None:
+    """Some filters need packages that are not installed; the parser then raises exceptions of its own."""
+    writer = PdfWriter(clone_from=certificate_file)
+    for item in writer._objects:
+        if isinstance(item, StreamObject) and item.get("/Type") == "/EmbeddedFile":
+            item[NameObject("/Filter")] = NameObject(name)
+    writer.write(certificate_file)
+    with pytest.raises(InputError, match=r"certificate\.pdf(: a damaged PDF|, attachment results\.json: not JSON)"):
+        verify_certificate(certificate_file)
+
+
+@pytest.mark.parametrize("error", [LimitReachedError("limit"), MemoryError(), DependencyError("jbig2dec")])
+def test_every_exception_of_the_parser_is_a_message(
+    certificate_file: Path, error: Exception, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object, **__: object) -> None:
+        raise error
+
+    monkeypatch.setattr(attachment, "PdfReader", fail)
+    with pytest.raises(InputError, match="a damaged PDF"):
+        verify_certificate(certificate_file)

@@ -299,3 +299,26 @@ def test_unknown_command_suggests_a_known_one() -> None:
     result = pantocheck("simulat")
     assert result.exit_code == 2
     assert "Did you mean 'simulate'?" in result.output
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("assess", "bad.toml", "--profile", "acceptance-ac"),
+        ("identify", "bad.csv"),
+        ("identify", "bad.csv", "--poles", "bad.toml"),
+        ("fit-damping", "bad.json", "--line", "en50318-2002/250"),
+        ("run", "bad.toml"),
+        ("run", "en50318-2002/250", "--system", "record:absent"),
+        ("run", "en50318-2002/250", "--baseline", "bad.json"),
+        ("drop", "bad.toml"),
+        ("simulate", "bad.toml"),
+    ],
+)
+def test_bad_input_leaves_no_folder(command: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name in ("bad.toml", "bad.csv", "bad.json"):
+        Path(name).write_text("{")
+    out = Path("new") / ("out.csv" if command[0] in ("drop", "simulate") else "out")
+    assert pantocheck(*command, "--out", out).exit_code == 2
+    assert not Path("new").exists()

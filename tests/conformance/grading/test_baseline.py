@@ -32,7 +32,7 @@ def results() -> Results:
     return run_cases(select_cases(["en50318-2002/*"]), system, participation=accepted)
 
 
-def changed(results: Results, name: str, value: float) -> Results:
+def changed(results: Results, name: str, value: float | list[float]) -> Results:
     """Baseline in which one quantity of the first case had another value."""
     first = results.cases[0]
     quantities = {**first.quantities, "1": {**first.quantities["1"], name: value}}
@@ -149,3 +149,31 @@ def test_results_round_trip(results: Results, tmp_path: Path) -> None:
     (tmp_path / "r.json").write_bytes(results.to_json())
     assert read_results(tmp_path / "r.json") == results
     assert json.loads(results.to_json())["cases"][0]["criteria"][0]["baseline"] is None
+
+
+@pytest.mark.parametrize("value", [1e15, -1e13, [1.0] * 200_000])
+def test_baseline_of_extreme_values_is_refused_before_the_run(
+    results: Results, tmp_path: Path, value: float | list[float]
+) -> None:
+    """A limit above 1e15 is no valid result, and 200 000 criteria take minutes."""
+    path, out = tmp_path / "b.json", tmp_path / "out"
+    path.write_bytes(changed(results, "std_force_N", value).to_json())
+    result = pantocheck("run", "en50318-2002/*", "--system", PASSING, "--out", out, "--baseline", path)
+    assert result.exit_code == 2
+    assert "baseline 'b.json', case en50318-2002/250: " in result.output
+    assert not out.exists()
+
+
+def test_results_are_kept_if_the_comparison_fails(
+    results: Results, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "b.json").write_bytes(results.to_json())
+
+    def fail(*_: object) -> Results:
+        raise RuntimeError("defect")
+
+    monkeypatch.setattr("pantocheck.conformance.plan.compare_with_baseline", fail)
+    out = tmp_path / "out"
+    command = ("run", "en50318-2002/*", "--system", PASSING, "--out", out, "--baseline", tmp_path / "b.json")
+    assert pantocheck(*command).exit_code == 2
+    assert read_results(out / "results.json").verdict == "pass"
