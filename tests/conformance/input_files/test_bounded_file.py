@@ -56,7 +56,7 @@ def test_every_reader_refuses_a_file_over_its_limit(name: str, tmp_path: Path) -
     """A sparse file of 2^40 bytes would exhaust the memory."""
     with (tmp_path / name).open("wb") as file:
         file.truncate(2**40)
-    with pytest.raises(InputError, match=r"1099511627776 bytes\.\n  At most"):
+    with pytest.raises(InputError, match=r"has 1099511627776 bytes\.\n  The largest accepted size"):
         READERS[name](tmp_path / name)
 
 
