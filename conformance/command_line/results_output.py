@@ -11,7 +11,7 @@ from rich.text import Text
 
 from pantocheck.conformance.command_line.console import build_table, console, escape_text, format_number, style_verdict
 from pantocheck.conformance.grading.verdicts import Verdict
-from pantocheck.conformance.results.results_format import CaseResult, Criterion, Results
+from pantocheck.conformance.results.results_format import CaseResult, Criterion, Results, name_case
 from pantocheck.conformance.runner import Progress as ResultCallback
 
 EXIT_CODES: dict[Verdict, int] = {"pass": 0, "unverified": 1, "info": 1, "skip": 1, "fail": 1, "error": 2}
@@ -44,8 +44,9 @@ def print_results(results: Results, files: Sequence[Path]) -> None:
     output.print(escape_text(f"{results.statement}; limits count from trust '{results.trust}' up"))
     for case in results.cases:
         output.print()
-        output.print(style_verdict(case.verdict), escape_text(f" {case.id}  {case.title}"))
-        for line in filter(None, [case.reason, *(f"warning: {warning}" for warning in case.warnings)]):
+        output.print(style_verdict(case.verdict), escape_text(f" {name_case(case.id, case.library)}  {case.title}"))
+        changes = [f"limits file: {'; '.join(case.limit_changes)}"] if case.limit_changes else []
+        for line in filter(None, [case.reason, *changes, *(f"warning: {warning}" for warning in case.warnings)]):
             output.print(escape_text(f"  {line}"))
         if case.criteria:
             output.print(_build_criterion_table(case))

@@ -14,6 +14,7 @@ def list_suite_facts(results: dict[str, Any]) -> Facts:
     return Facts(
         _drop_empty(
             ("Suite", name_suite(results)),
+            ("Digest of the suite", results["suite"]["digest"]),
             ("Commit of the suite", results["suite"]["commit"] or "not known"),
             ("System under test", name_system(results)),
             ("Platform", ", ".join([computer, *versions])),
@@ -37,6 +38,7 @@ def name_system(results: dict[str, Any]) -> str:
 def list_case_facts(case: dict[str, Any]) -> Facts:
     """Facts of one run; unknown facts are left out."""
     run = case["run"]
+    record, changed = case.get("record") or {}, case["limits_digest"] != case["stated_limits_digest"]
     simulated, wall, section = run["simulated_s"], run["wall_s"], run["evaluated_m"]
     return Facts(
         _drop_empty(
@@ -47,7 +49,12 @@ def list_case_facts(case: dict[str, Any]) -> Facts:
             ("Time step", _with_unit(run["dt_s"], "s")),
             ("Element length", _with_unit(run["element_m"], "m")),
             ("Simulated time", _with_unit(simulated, "s")),
+            ("Edition", case["edition"]),
+            ("Superseded by", case["superseded_by"]),
             ("Digest of the inputs", case["input_digest"]),
+            ("Digest of the limits", case["limits_digest"]),
+            ("Without the limits file", case["stated_limits_digest"] if changed else None),
+            ("Digest of the record", record.get("digest")),
         ),
         times=_drop_empty(
             ("Wall time", None if wall is None else f"{format_value(wall, 3)} s"),

@@ -16,8 +16,13 @@ from pantocheck.conformance.reports.certificate.quantity_tables import (
     build_quantity_table,
     list_skipped,
 )
+from pantocheck.conformance.reports.certificate.scope_page import (
+    build_scope_section,
+    describe_origin,
+    list_identity_warnings,
+    prepare_results,
+)
 from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline, list_reasons, summarise_case
-from pantocheck.conformance.reports.page_text import clean_tree
 from pantocheck.conformance.reports.words import read_words
 
 HEADING = "Conformance report"
@@ -25,10 +30,11 @@ HEADING = "Conformance report"
 
 def build_certificate(results: dict[str, Any]) -> doc.Document:
     """The certificate of a run, from results.json as a dictionary."""
-    cleaned = clean_tree(results)
+    cleaned = prepare_results(results)
     header = build_header(cleaned)
     cases = cleaned["cases"]
     anchors = [f"case-{number}" for number in range(1, len(cases) + 1)]
+    warnings = list_identity_warnings(cleaned)
     reasons = list_reasons(cleaned) or (doc.Paragraph("Nothing was graded."),)
     trusts = read_words()["trust"].items()
     levels = doc.BulletList(tuple((doc.TrustMark(name), f" {level['meaning']}") for name, level in trusts))
@@ -37,6 +43,8 @@ def build_certificate(results: dict[str, Any]) -> doc.Document:
         title=f"{read_words()['verdict'][header.verdict]['word']} – {HEADING} – {name_system(cleaned)}",
         header=header,
         blocks=(
+            *((doc.WarningBox(warnings),) if warnings else ()),
+            *build_scope_section(cleaned, dict(zip((case["id"] for case in cases), anchors, strict=True))),
             doc.Section("Reasons", reasons, anchor="reasons"),
             doc.Section("Cases", (_case_index(cases, anchors),), anchor="cases"),
             *map(_case_section, cases, anchors),
@@ -67,10 +75,11 @@ def build_header(results: dict[str, Any]) -> doc.VerdictHeader:
 
 def _case_index(cases: list[dict[str, Any]], anchors: list[str]) -> doc.Table:
     rows = tuple(
-        (doc.Link(case["id"], anchor), doc.VerdictMark(case["verdict"]), summarise_case(case))
+        (doc.Link(case["id"], anchor), describe_origin(case), doc.VerdictMark(case["verdict"]), summarise_case(case))
         for case, anchor in zip(cases, anchors, strict=True)
     )
-    return doc.Table((doc.Column("Case", share=2), doc.Column("Verdict"), doc.Column("Criteria", share=3)), rows)
+    shares = {"Case": 2, "Origin": 2, "Verdict": 0, "Criteria": 3}
+    return doc.Table(tuple(doc.Column(heading, share) for heading, share in shares.items()), rows)
 
 
 def _case_section(case: dict[str, Any], anchor: str) -> doc.Section:
@@ -78,8 +87,9 @@ def _case_section(case: dict[str, Any], anchor: str) -> doc.Section:
         doc.Paragraph((doc.VerdictMark(case["verdict"]), "\N{EN SPACE}", doc.Code(case["id"]))),
         doc.Paragraph(summarise_case(case)),
     ]
-    if case["warnings"]:
-        blocks.append(doc.WarningBox(tuple(case["warnings"])))
+    warnings = (*(f"Limits file: {change}." for change in case["limit_changes"]), *case["warnings"])
+    if warnings:
+        blocks.append(doc.WarningBox(warnings))
     if case["criteria"]:
         blocks.append(doc.Section("Criteria", criteria_blocks(case, anchor)))
     blocks += [doc.Section(table["caption"], (_study_table(table),)) for table in case["tables"]]

@@ -5,16 +5,23 @@ from typing import Any
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.certificate.certificate_page import build_header
 from pantocheck.conformance.reports.certificate.criteria_table import describe_criterion, error_name
+from pantocheck.conformance.reports.certificate.scope_page import (
+    build_scope_section,
+    list_identity_warnings,
+    prepare_results,
+)
 from pantocheck.conformance.reports.certificate.verdict_reasons import list_reasons
-from pantocheck.conformance.reports.page_text import clean_tree
 from pantocheck.conformance.reports.words import read_words
 
 
 def build_summary(results: dict[str, Any]) -> doc.Document:
     """Verdict, reasons and criteria of a run, from results.json as a dictionary."""
-    results = clean_tree(results)
+    results = prepare_results(results)
     header = build_header(results)
-    return doc.Document(header.heading, header, (*list_reasons(results), *map(_case_section, results["cases"])))
+    warnings = list_identity_warnings(results)
+    scope = build_scope_section(results, {})
+    first = (*((doc.WarningBox(warnings),) if warnings else ()), *scope, *list_reasons(results))
+    return doc.Document(header.heading, header, (*first, *map(_case_section, results["cases"])))
 
 
 def _case_section(case: dict[str, Any]) -> doc.Section:

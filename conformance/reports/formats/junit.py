@@ -5,7 +5,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 from pantocheck.conformance.reports.certificate.case_facts import name_system
-from pantocheck.conformance.reports.page_text import clean_tree
+from pantocheck.conformance.reports.certificate.scope_page import describe_origin, prepare_results
 from pantocheck.conformance.reports.words import name_owner
 
 ELEMENTS = {"fail": "failure", "error": "error", "skip": "skipped", "info": "skipped", "unverified": "failure"}
@@ -17,7 +17,7 @@ COUNTERS = ("tests", "failures", "errors", "skipped")
 
 def render_junit(results: dict[str, Any]) -> bytes:
     """JUnit XML of results.json as a dictionary."""
-    results = clean_tree(results)
+    results = prepare_results(results)
     suites = [_suite(case, results) for case in results["cases"]]
     total = {name: str(sum(int(suite.attrib[name]) for suite in suites)) for name in COUNTERS}
     root = ElementTree.Element("testsuites", {"name": "pantocheck", **total})
@@ -49,7 +49,11 @@ def _suite(case: dict[str, Any], results: dict[str, Any]) -> ElementTree.Element
         "suite_version": results["suite"]["version"],
         "suite_commit": results["suite"]["commit"],
         "system": name_system(results),
+        "suite_digest": results["suite"]["digest"],
+        "origin": describe_origin(case),
         "input_digest": case["input_digest"],
+        "limits_digest": case["limits_digest"],
+        "limit_changes": "; ".join(case["limit_changes"]),
         **{f"platform_{name}": text for name, text in results["platform"].items()},
     }.items():
         if value:

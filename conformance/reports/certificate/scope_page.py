@@ -1,0 +1,81 @@
+"""Identity and scope of a run on page 1: origin of the cases, weakened limits, steps of the procedure."""
+
+from typing import Any
+
+from pantocheck.conformance.reports import document as doc
+from pantocheck.conformance.reports.page_text import clean_tree
+from pantocheck.conformance.reports.words import read_words
+from pantocheck.conformance.results.results_format import name_case
+
+CHANGES_SHOWN = 5
+"""Number of weakened limits of a case on page 1; the section of the case shows all."""
+
+
+def prepare_results(results: dict[str, Any]) -> dict[str, Any]:
+    """Results for all pages: cleaned texts, and modified copies of library cases under their full name."""
+    cleaned: dict[str, Any] = clean_tree(results)
+    names = {case["id"]: name_case(case["id"], case["library"]) for case in cleaned["cases"]}
+    cases = [
+        case
+        | {"id": names[case["id"]]}
+        | ({"title": f"Modified copy: {case['title']}"} if case["library"] == "modified" else {})
+        for case in cleaned["cases"]
+    ]
+    scope = [step | {"cases": [names[case] for case in step["cases"]]} for step in cleaned["scope"]]
+    information = [names.get(case, case) for case in cleaned.get("information", ())]
+    return cleaned | {"cases": cases, "scope": scope, "information": information}
+
+
+def list_identity_warnings(results: dict[str, Any]) -> tuple[str, ...]:
+    """Warnings on modified copies of library cases and on limits that a limits file weakens."""
+    copies = [
+        f"The {case['id']} has other inputs, limits or sources than the library case."
+        for case in results["cases"]
+        if case["library"] == "modified"
+    ]
+    return (*copies, *(warn_of_changes(case) for case in results["cases"] if case["limit_changes"]))
+
+
+def warn_of_changes(case: dict[str, Any]) -> str:
+    """Warning on the limits of a case that a limits file weakens."""
+    changes = case["limit_changes"]
+    more = len(changes) - CHANGES_SHOWN
+    shown = [*changes[:CHANGES_SHOWN], *([f"and {more} more"] if more > 0 else [])]
+    return f"The limits file changes limits of {case['id']}. {'; '.join(shown)}."
+
+
+def describe_origin(case: dict[str, Any]) -> str:
+    """Origin of a case: library case with its edition, modified copy, own case; a dash if it is not a case."""
+    if case["library"] != "identical":
+        return {"modified": "modified copy", "own": "own case"}.get(case["library"], "–")
+    edition = f" of {case['edition']}" if case["edition"] else ""
+    return f"library case{edition}" + (f", superseded by {case['superseded_by']}" if case["superseded_by"] else "")
+
+
+def build_scope_section(results: dict[str, Any], anchors: dict[str, str]) -> tuple[doc.Section, ...]:
+    """Table of the steps of the procedure with the verdicts of their cases; empty for results of older versions.
+
+    Parameters
+    ----------
+    results : dict
+        Results from `prepare_results`.
+    anchors : dict of str to str
+        Anchor of the section of each case, by its name; empty: no links.
+    """
+    if not results["scope"]:
+        return ()
+    verdicts = {case["id"]: case["verdict"] for case in results["cases"]}
+    words = read_words()
+    rows: list[tuple[doc.RichText, ...]] = []
+    for step in results["scope"]:
+        cases: list[doc.Inline] = []
+        for name in step["cases"]:
+            label = doc.Link(name, anchors[name]) if name in anchors else name
+            cases += [", " if cases else "", label, " ", doc.VerdictMark(verdicts[name])]
+        rows.append((words["step"][step["step"]], step["state"], tuple(cases) or "–"))
+    listed = {name for step in results["scope"] for name in step["cases"]}
+    outside = [name for name in verdicts if name not in listed]
+    states = " ".join(f"{name.capitalize()}: {meaning}." for name, meaning in words["state"].items())
+    rest = f" Cases outside these steps: {', '.join(outside)}." if outside else ""
+    columns = (doc.Column("Step of the EN 50318 procedure", share=2), doc.Column("State"), doc.Column("Cases", share=3))
+    return (doc.Section("Scope", (doc.Table(columns, tuple(rows)), doc.SmallPrint(states + rest)), anchor="scope"),)

@@ -1,0 +1,132 @@
+"""Identity and scope on page 1: modified copies, weakened limits, editions, steps of the procedure."""
+
+from io import BytesIO
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+from pypdf import PdfReader
+
+from pantocheck.conformance.command_line.results_output import print_results
+from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
+from pantocheck.conformance.reports.certificate.scope_page import CHANGES_SHOWN, describe_origin, list_identity_warnings
+from pantocheck.conformance.reports.certificate.summary_page import build_summary
+from pantocheck.conformance.reports.document import Section, Table, VerdictMark, WarningBox
+from pantocheck.conformance.reports.formats.html import render_html
+from pantocheck.conformance.reports.formats.junit import render_junit
+from pantocheck.conformance.reports.formats.markdown import render_markdown
+from pantocheck.conformance.reports.formats.pdf import render_pdf
+from pantocheck.conformance.results.results_format import Results
+from pantocheck.conformance.results.scope import build_scope
+
+COPY = "modified copy of en50318-2002/250"
+CHANGE = "std_force_N of pantograph 2: the trust of the limit is lowered from secondary to provisional"
+
+
+def describe(results: dict[str, Any], **changes: Any) -> dict[str, Any]:
+    """Results whose first case, of two pantographs, has other facts, with the scope of these cases."""
+    facts = {"library": "identical", "edition": "EN 50318:2002", "superseded_by": "EN 50318:2018"}
+    first = results["cases"][0] | facts | {"steps": ["reference_models"]} | changes
+    model = Results.model_validate(results | {"cases": [first, *results["cases"][1:]]})
+    return model.model_copy(update={"scope": build_scope(model.cases)}).to_dict()
+
+
+@pytest.fixture
+def copied(results: dict[str, Any]) -> dict[str, Any]:
+    return describe(results, library="modified", limit_changes=[CHANGE])
+
+
+def test_modified_copy_is_named_in_every_format(copied: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> None:
+    """No format shows the id of the library case alone."""
+    suites = ElementTree.fromstring(render_junit(copied))
+    assert suites[0].attrib["name"] == suites[0].findall("testcase")[0].attrib["classname"] == COPY
+    print_results(Results.model_validate(copied), [])
+    for text in (
+        render_html(build_certificate(copied)),
+        render_markdown(build_summary(copied)),
+        capsys.readouterr().out,
+    ):
+        assert text.count("en50318-2002/250") == text.count(COPY) > 0
+    assert copied["cases"][0]["library"] == "modified"
+
+
+def test_page_1_names_modified_copy_and_weakened_limit(copied: dict[str, Any]) -> None:
+    page = " ".join(PdfReader(BytesIO(render_pdf(build_certificate(copied)))).pages[0].extract_text().split())
+    assert f"The {COPY} has other inputs, limits or sources than the library case." in page
+    assert f"The limits file changes limits of {COPY}." in page
+    assert "lowered from secondary to provisional" in page
+
+
+def test_weakened_limit_is_named_in_every_format(results: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> None:
+    changed = describe(results, limit_changes=[CHANGE])
+    print_results(Results.model_validate(changed), [])
+    texts = [render_html(build_certificate(changed)), capsys.readouterr().out, render_junit(changed).decode()]
+    texts.append(render_markdown(build_summary(changed)).replace("\\_", "_"))
+    assert all(CHANGE in " ".join(text.split()) for text in texts)
+
+
+def test_page_1_shows_a_few_weakened_limits_and_their_number(results: dict[str, Any]) -> None:
+    changes = [f"dropper_length_m[{item}]: the limit 1 to 2 is removed" for item in range(1, 10)]
+    [warning] = list_identity_warnings(describe(results, limit_changes=changes))
+    assert f"dropper_length_m[{CHANGES_SHOWN}]" in warning
+    assert warning.endswith(f"and {9 - CHANGES_SHOWN} more.")
+
+
+def test_library_case_needs_no_warning(results: dict[str, Any]) -> None:
+    document = build_certificate(describe(results))
+    assert not [block for block in document.blocks if isinstance(block, WarningBox)]
+
+
+@pytest.mark.parametrize(
+    ("facts", "text"),
+    [
+        (("identical", "EN 50318:2002", "EN 50318:2018"), "library case of EN 50318:2002, superseded by EN 50318:2018"),
+        (("identical", "EN 50318:2018", None), "library case of EN 50318:2018"),
+        (("identical", None, None), "library case"),
+        (("modified", "EN 50318:2018", None), "modified copy"),
+        (("own", "EN 50318:2018", None), "own case"),
+        ((None, None, None), "–"),
+    ],
+)
+def test_origin_states_the_edition_of_library_cases_only(facts: tuple[str | None, ...], text: str) -> None:
+    """An own file can claim any edition."""
+    assert describe_origin(dict(zip(("library", "edition", "superseded_by"), facts, strict=True))) == text
+
+
+def test_scope_lists_every_step_with_its_cases(results: dict[str, Any]) -> None:
+    [scope] = [
+        block
+        for block in build_certificate(describe(results)).blocks
+        if isinstance(block, Section) and block.anchor == "scope"
+    ]
+    table = scope.blocks[0]
+    assert isinstance(table, Table)
+    assert [row[:2] for row in table.rows] == [
+        ("Pantograph model", "not done"),
+        ("Static check of the line model", "not done"),
+        ("Reference models", "done"),
+        ("Line test", "not done"),
+        ("Limits of validity", "not done"),
+    ]
+    assert VerdictMark("pass") in table.rows[2][2]
+
+
+def test_scope_is_on_page_1_of_the_pdf(results: dict[str, Any]) -> None:
+    page = PdfReader(BytesIO(render_pdf(build_certificate(describe(results))))).pages[0].extract_text()
+    assert "self-declared conformance report, in the style of EN 50318" in page
+    steps = ("Pantograph model", "Static check", "Reference models", "Line test", "Limits of validity")
+    assert all(step in page for step in steps)
+    assert "superseded by EN 50318:2018" in " ".join(page.split())
+
+
+def test_results_of_an_older_version_have_no_scope(results: dict[str, Any]) -> None:
+    assert results["scope"] == []
+    assert "Limits of validity" not in render_html(build_certificate(results))
+
+
+def test_certificate_states_all_digests(results: dict[str, Any]) -> None:
+    changed = describe(results, limits_digest="sha256:" + "a" * 64, stated_limits_digest="sha256:" + "b" * 64)
+    changed["suite"]["digest"] = "sha256:" + "c" * 64
+    page = render_html(build_certificate(changed))
+    assert all(f"sha256:{letter * 64}" in page for letter in "abc")
+    assert changed["cases"][0]["input_digest"] in page
