@@ -1,18 +1,10 @@
-"""Positions of the pantographs against the analysis section, the speed of the train and the supports."""
-
-import numpy as np
+"""Positions of the pantographs against the analysis section and the speed of the train."""
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.consistency.check import Check, Finding
-from pantocheck.conformance.quantities.unavailable import QuantityUnavailable, SectionNotCovered
+from pantocheck.conformance.quantities.unavailable import SectionNotCovered
 from pantocheck.conformance.records.record import SPEED_TOLERANCE
 from pantocheck.conformance.records.record_signals import RecordSignals
-
-PASSING_TOLERANCE_M = 5.0
-"""Distance between support and pantograph at the largest uplift [m]: some decimetres in simulation and measurement."""
-
-SMALLEST_UPLIFT_M = 0.005
-"""Uplift from which its maximum is clear [m]."""
 
 
 def _check_coverage(_: Case, signals: RecordSignals) -> Finding | None:
@@ -38,27 +30,6 @@ def _check_motion(_: Case, signals: RecordSignals) -> Finding | None:
     return None
 
 
-def _check_support_passing(_: Case, signals: RecordSignals) -> Finding | None:
-    try:
-        supports, uplift = signals.line.supports, signals.line.uplift
-    except QuantityUnavailable as reason:
-        return Finding("unchecked", f"position against uplift: {reason}")
-    lifted = uplift.max(axis=1) > SMALLEST_UPLIFT_M
-    if not lifted.any():
-        return None
-    distance = signals.record.position[:, uplift.argmax(axis=1)] - supports
-    nearest = distance[np.abs(distance).argmin(axis=0), np.arange(supports.size)]
-    typical = float(np.median(nearest[lifted]))
-    if abs(typical) <= PASSING_TOLERANCE_M:
-        return None
-    side = "past" if typical > 0 else "before"
-    return Finding(
-        "contradiction",
-        f"the uplift at the supports is largest when the nearest pantograph is {abs(typical):.3g} m {side} them: "
-        "position and uplift are not synchronous",
-    )
-
-
 COVERAGE = Check(
     name="coverage",
     must_hold="every pantograph crosses the whole analysis section",
@@ -73,12 +44,4 @@ MOTION = Check(
     why="a wrong rate or unit of position moves the analysis section",
     needs="position, time and speed",
     run=_check_motion,
-)
-
-SUPPORT_PASSING = Check(
-    name="support passing",
-    must_hold=f"the uplift at a support is largest while a pantograph is within {PASSING_TOLERANCE_M:g} m",
-    why="shifted positions hardly change the statistics",
-    needs="position and uplift at supports",
-    run=_check_support_passing,
 )

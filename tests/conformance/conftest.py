@@ -26,7 +26,7 @@ MEAN, SIGMA, UPLIFT_MM = 119.0, 28.0, 50.0
 
 @dataclass(frozen=True)
 class Wave:
-    """A force of one sine per span about a mean, sigma as given; a bump of uplift as each support is passed."""
+    """A force of one sine per span about a mean, sigma as given; a bump of uplift at each passage of a support."""
 
     mean: float = MEAN
     sigma: float = SIGMA
@@ -52,7 +52,8 @@ class Wave:
         span = end - start
         force = self.mean + np.sqrt(2) * self.sigma * np.sin(2 * np.pi * position / span)
         supports = np.array(case.line.geometry.span_limits)
-        uplift = 1e-3 * UPLIFT_MM * np.exp(-(((position[0] - supports[:, None]) / 5) ** 2))
+        bumps = np.exp(-(((position - supports[:, None, None]) / 5) ** 2))
+        uplift = 1e-3 * UPLIFT_MM * bumps.sum(axis=1)
         height = np.array([self.height(*of, case.speed, span) for of in zip(case.pantographs, position, strict=True)])
         return Record(time, case.speed, position, force, case.analysis_section, None, height, supports, uplift)
 

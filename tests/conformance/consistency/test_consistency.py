@@ -53,9 +53,9 @@ def test_correct_record_rounded_or_measured_at_the_wire_has_no_finding(case_250:
 
 @pytest.mark.parametrize("gain", [1e-3, 0.05, 0.9, 1.05, 1000.0, -1.0])
 def test_wrong_gain_of_the_force_is_found_and_stated(case_250: Case, record: Record, gain: float) -> None:
-    ((name, finding),) = findings(case_250, replace(record, force=gain * record.force)).items()
-    assert (name, finding.kind) == ("dynamics", "contradiction")
-    assert f"follows from {1 / gain:.3g} times the force" in finding.text
+    found = findings(case_250, replace(record, force=gain * record.force))
+    assert [name for name, finding in found.items() if finding.kind == "contradiction"] == ["dynamics"]
+    assert f"follows from {1 / gain:.3g} times the force" in found["dynamics"].text
 
 
 def test_constant_force_under_a_moving_contact_point_is_found(case_250: Case, record: Record) -> None:
