@@ -127,7 +127,7 @@ class _Passages:
             squares += load**2
         expected = -np.sign(wire.tension_N - wire.mass_kg_m * record.speed**2) * self.length
         scale = wire.number * wire.tension_N / (expected or np.inf)
-        return scale * products / np.maximum(np.sqrt(squares * squares.max()), TINY), squares
+        return np.asarray(scale * products / np.maximum(np.sqrt(squares * squares.max()), TINY)), squares
 
     def coincide(self, number: int) -> bool:
         """Whether contact height and uplift coincide at the stated passages, up to penetration and a constant."""
