@@ -152,7 +152,7 @@ class _Passages:
         """Time at which the pantograph, shifted, passes a support [s]; nan outside the record."""
         record = self._signals.record
         position = record.position[number - 1]
-        return np.interp(support + self.shifts, position, record.time, left=np.nan, right=np.nan)
+        return np.asarray(np.interp(support + self.shifts, position, record.time, left=np.nan, right=np.nan))
 
 
 def _scatter(differences: RealArray) -> RealArray:
