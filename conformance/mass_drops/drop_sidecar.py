@@ -25,8 +25,8 @@ class DropTestTable(_OpenTable):
     spans_m: Annotated[
         tuple[PositiveNumber, ...], Field(strict=False, max_length=1000, description="lengths of the spans [m]")
     ] = ()
-    cw_tension_n: Annotated[float | None, Field(gt=0, description="tension of the contact wire [N]")] = None
-    mw_tension_n: Annotated[float | None, Field(gt=0, description="tension of the messenger wire [N]")] = None
+    cw_tension_n: Annotated[float | None, Field(gt=0, description="tension of one contact wire [N]")] = None
+    mw_tension_n: Annotated[float | None, Field(gt=0, description="tension of one messenger wire [N]")] = None
 
 
 class DropTable(_OpenTable):
