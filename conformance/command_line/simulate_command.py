@@ -42,6 +42,9 @@ def simulate_command(
         case=chosen.id,
         system={"name": simulator.name, "version": simulator.version},
         run=outcome.run.model_dump(),
-        case_digest=outcome.case_digest if simulator.kind == "record" else chosen.digest,
+        further={
+            "case_digest": outcome.case_digest if simulator.kind == "record" else chosen.digest,
+            "line": {"span_m": max(chosen.line.geometry.span_lengths)},
+        },
     )
     output.print(escape_text(f"{out} and {sidecar.name}"), soft_wrap=True)

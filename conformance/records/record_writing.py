@@ -1,5 +1,6 @@
 """Writing of contact-force records: first the table, then the sidecar, so that no sidecar names a missing table."""
 
+from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -26,7 +27,7 @@ def write_record(
     case: str | None = None,
     system: dict[str, str] | None = None,
     run: dict[str, float | None] | None = None,
-    case_digest: str | None = None,
+    further: Mapping[str, object] | None = None,
 ) -> Path:
     """Write a record as CSV or HDF5, by its suffix, and its sidecar beside it.
 
@@ -42,8 +43,8 @@ def write_record(
         `name` and `version` of the simulator or measuring system.
     run : dict[str, float or None] or None
         Keys of the run table of the sidecar; None is left out.
-    case_digest : str or None
-        Digest of the inputs of the case that was run.
+    further : mapping of str to object, or None
+        Further keys of the sidecar, such as `case_digest` and `line`; None is left out.
 
     Returns
     -------
@@ -60,7 +61,6 @@ def write_record(
     sidecar: dict[str, Any] = {
         "schema": RECORD_SCHEMA,
         "case": case,
-        "case_digest": case_digest,
         "file": path.name,
         "sha256": file_digest(path),
         "speed_km_h": float(f"{3.6 * record.speed:.12g}"),
@@ -70,6 +70,7 @@ def write_record(
         "support_position_m": None if record.support_position is None else record.support_position.tolist(),
         "system": system,
         "run": {key: value for key, value in (run or {}).items() if value is not None},
+        **(further or {}),
     }
     known = {key: value for key, value in sidecar.items() if value is not None}
     RecordSidecar.model_validate(known)
