@@ -11,6 +11,7 @@ from rich.text import Text
 
 from pantocheck.conformance.command_line.console import build_table, console, escape_text, format_number, style_verdict
 from pantocheck.conformance.grading.verdicts import Verdict
+from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline, describe_record
 from pantocheck.conformance.results.results_format import CaseResult, Criterion, Results, name_case
 from pantocheck.conformance.runner import Progress as ResultCallback
 
@@ -33,20 +34,17 @@ def report_progress(cases: int) -> Iterator[ResultCallback]:
 def print_results(results: Results, files: Sequence[Path]) -> None:
     """Print the verdict, the criteria of each case, and the paths of the files."""
     output = console()
-    counted = [item for case in results.cases for item in case.criteria if item.verdict != "info"]
-    passed = sum(item.verdict == "pass" for item in counted)
     system = f"{results.system.name} {results.system.version}".strip()
-    cases = f"{len(results.cases)} case{'' if len(results.cases) == 1 else 's'}"
-    output.print(
-        style_verdict(results.verdict),
-        escape_text(f" {passed} of {len(counted)} graded criteria within limits, {cases}, system {system}"),
-    )
+    output.print(style_verdict(results.verdict), escape_text(f" {build_headline(results.to_dict())} System: {system}"))
     output.print(escape_text(f"{results.statement}; limits count from trust '{results.trust}' up"))
     for case in results.cases:
         output.print()
         output.print(style_verdict(case.verdict), escape_text(f" {name_case(case.id, case.library)}  {case.title}"))
+        record = None if case.record is None or case.reason else describe_record(case.model_dump())
         changes = [f"limits file: {'; '.join(case.limit_changes)}"] if case.limit_changes else []
-        for line in filter(None, [case.reason, *changes, *(f"warning: {warning}" for warning in case.warnings)]):
+        for line in filter(
+            None, [case.reason, record, *changes, *(f"warning: {warning}" for warning in case.warnings)]
+        ):
             output.print(escape_text(f"  {line}"))
         if case.criteria:
             output.print(_build_criterion_table(case))
@@ -54,7 +52,7 @@ def print_results(results: Results, files: Sequence[Path]) -> None:
             for remark in filter(None, (item.reason, *item.close)):
                 output.print(escape_text(f"  {_name(item)}: {remark}"))
     output.print()
-    if counted:
+    if any(case.criteria for case in results.cases):
         output.print(Text(LEGEND, "dim"))
     for path in files:
         output.print(escape_text(str(path)), soft_wrap=True)

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from pantocheck.conformance.authenticity.verification import verify_certificate
+from pantocheck.conformance.command_line.results_output import EXIT_CODES
 
 
 def verify_command(
@@ -13,8 +14,9 @@ def verify_command(
 ) -> None:
     """Check that the verdict of a certificate follows from its numbers.
 
-    The results in the PDF are graded again. Exit code 0: every verdict and margin follows from the numbers. Exit code
-    1: discrepancies, which are listed. Exit code 2: the file is not a certificate.
+    The results in the PDF are graded again. Exit code 0: every verdict and margin follows from the numbers, and the
+    verdict is `pass`. Exit code 1: discrepancies, which are listed, or another verdict. Exit code 2: the verdict is
+    `error`, or the file is not a certificate.
 
     The check does not show who made the certificate, nor that its limits are those of the library.
 
@@ -24,7 +26,7 @@ def verify_command(
     size = f"{_count(verification.cases, 'case', 'cases')}, {verification.criteria} criteria"
     if verification.consistent:
         typer.echo(f"consistent: the verdict '{verification.verdict}' follows from the embedded numbers ({size}).")
-        return
+        raise typer.Exit(EXIT_CODES[verification.verdict])
     count = _count(len(verification.discrepancies), "discrepancy", "discrepancies")
     typer.echo(f"not consistent: {count} ({size}; stated verdict '{verification.verdict}').")
     for text in verification.discrepancies:

@@ -8,6 +8,7 @@ from typing import NamedTuple
 from pantocheck.conformance.grading.case_verdict import Participation, judge_case
 from pantocheck.conformance.grading.criterion_grading import Requirement, build_criterion
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results.results_format import CaseResult, Criterion, Results
 from pantocheck.conformance.results.results_reading import read_results
@@ -83,7 +84,9 @@ def _compare_case(case: CaseResult, earlier: CaseResult | None, drift_pct: float
     if not case.quantities:
         return case  # skipped or in error as a whole
     if earlier is None:
-        return case.model_copy(update={"warnings": [*case.warnings, f"baseline {name} has no case {case.id}"]})
+        return _skip_comparison(case, f"baseline {name} has no case {case.id}")
+    if not earlier.quantities:
+        return _skip_comparison(case, f"baseline {name} has no values of this case: its verdict was {earlier.verdict}")
     values, earlier_values = dict(_numbers(case)), dict(_numbers(earlier))
     source = f"baseline {name}, from which a value may drift by {drift_pct:g} %"
     graded = (_grade_drift(case, key, (old, values.get(key)), drift_pct, source) for key, old in earlier_values.items())
@@ -91,8 +94,6 @@ def _compare_case(case: CaseResult, earlier: CaseResult | None, drift_pct: float
     warnings = list(case.warnings)
     if case.input_digest != earlier.input_digest:
         warnings.append(f"the inputs of the case have changed since baseline {name}: their digests differ")
-    if not earlier_values:
-        warnings.append(f"baseline {name} has no values of this case: its verdict was {earlier.verdict}")
     note = (
         f"Compared with baseline {name}: {len(earlier_values)} values, of which {len(drifted)} drifted by more than "
         f"{drift_pct:g} % or are missing."
@@ -105,6 +106,14 @@ def _compare_case(case: CaseResult, earlier: CaseResult | None, drift_pct: float
             "verdict": judge_case((criterion.verdict for criterion in (*case.criteria, *drifted)), case.record),
         }
     )
+
+
+def _skip_comparison(case: CaseResult, reason: str) -> CaseResult:
+    """Case with a skipped criterion in place of the comparison: a gate must not open on a baseline without the case."""
+    requirement = Requirement("baseline", LINE, None, None, None, "primary", "baseline")
+    criteria = [*case.criteria, build_criterion(requirement, None, reason, "primary")]
+    verdict = judge_case((criterion.verdict for criterion in criteria), case.record)
+    return case.model_copy(update={"criteria": criteria, "verdict": verdict})
 
 
 def _numbers(case: CaseResult) -> Iterator[tuple[_Key, float]]:

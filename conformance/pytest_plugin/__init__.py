@@ -59,10 +59,10 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
         from pantocheck.conformance.pytest_plugin.collection import write_certificates
 
         try:
-            config.stash[_LINES], drifted = write_certificates(config, folder)
+            config.stash[_LINES], not_passed = write_certificates(config, folder)
         except InputError as error:
-            config.stash[_LINES], drifted = [f"no certificate: {error}"], True
-        if drifted and session.exitstatus == pytest.ExitCode.OK:
+            config.stash[_LINES], not_passed = [f"no certificate: {error}"], True
+        if not_passed and session.exitstatus == pytest.ExitCode.OK:
             session.exitstatus = pytest.ExitCode.TESTS_FAILED
 
 

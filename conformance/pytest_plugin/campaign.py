@@ -10,6 +10,7 @@ from filelock import FileLock
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.grading.case_grading import build_ungraded
+from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.atomic_writing import write_atomically
 from pantocheck.conformance.plan import PreparedPlan
 from pantocheck.conformance.results.results_building import build_results, utc_now
@@ -59,14 +60,19 @@ class PlanSession:
                 if (result := self._read(case)) is None:
                     trust = self.prepared.plan.trust
                     result = run_when_ready(case, self._start_system(), trust, self._finished, self.cases)
-                    write_atomically(self._file(case), result.model_dump_json().encode())
+                    write_atomically(self._file(case.id), result.model_dump_json().encode())
             self._finished[case.id] = result
         return self._finished[case.id]
 
-    def results(self) -> tuple[Results, int] | None:
-        """Results of the plan and number of values that drifted from its baseline; None if no case ran.
+    @property
+    def accepts_unverified(self) -> bool:
+        """Whether the plan accepts unverified records of its system."""
+        return self._start_system().name in self.prepared.participation.accepted_unverified
 
-        A deselected case has the verdict `skip`.
+    def results(self) -> tuple[Results, int, Verdict] | None:
+        """Results of the plan, number of values that drifted from its baseline, verdict of the cases that ran.
+
+        A deselected case has the verdict `skip` in the results. None if no case ran.
         """
         session_file = self.folder / "session.json"
         if not session_file.is_file():
@@ -79,7 +85,9 @@ class PlanSession:
         trust, participation = self.prepared.plan.trust, self.prepared.participation
         results = build_results(finished, identity, trust, session["started"], participation)
         compared = self.prepared.compare(results)
-        return compared, _count_criteria(compared) - _count_criteria(results)
+        executed = ((case.id, case.verdict) for case in compared.cases if self._file(case.id).is_file())
+        verdict = participation.judge_run(executed, identity.name)
+        return compared, _count_criteria(compared) - _count_criteria(results), verdict
 
     def _start_system(self) -> System:
         """System under test, started once in this process."""
@@ -95,11 +103,11 @@ class PlanSession:
                     write_atomically(self.folder / "session.json", json.dumps(session).encode())
         return self._system
 
-    def _file(self, case: Case) -> Path:
-        return self.folder / f"{_hash(case.id)}.json"
+    def _file(self, case_id: str) -> Path:
+        return self.folder / f"{_hash(case_id)}.json"
 
     def _read(self, case: Case) -> CaseResult | None:
-        path = self._file(case)
+        path = self._file(case.id)
         return CaseResult.model_validate_json(path.read_bytes()) if path.is_file() else None
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import pytest
 
@@ -12,7 +12,8 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.plan import prepare_plan, read_plan
 from pantocheck.conformance.pytest_plugin.campaign import PlanSession, list_registered
 from pantocheck.conformance.pytest_plugin.session import shared_folder
-from pantocheck.conformance.pytest_plugin.user_fixtures import criterion_line
+from pantocheck.conformance.pytest_plugin.user_fixtures import criterion_line, is_unverified, unverified_line
+from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline
 from pantocheck.conformance.reports.formats.report_writers import FILES, write_all
 from pantocheck.conformance.results.results_format import CaseResult
 
@@ -73,10 +74,16 @@ class CaseNode(pytest.Collector):
         """
         result = self.campaign.result(self.case)
         if result.verdict == "error":
-            raise CriterionNotMet(f"error: {result.reason}")
+            self.report(f"error: {result.reason}")
         if result.reason:
             pytest.skip(result.reason)
         return result
+
+    def report(self, reason: str) -> NoReturn:
+        """Fail the test; skip it if the case is shown for information."""
+        if self.case.id in self.campaign.prepared.participation.information:
+            pytest.skip(f"for information: {reason}")
+        raise CriterionNotMet(reason)
 
 
 class PantographNode(pytest.Collector):
@@ -128,12 +135,14 @@ class CriterionItem(OneLineItem):
 
     def runtest(self) -> None:
         """Run the case if necessary and report the verdict of the criterion."""
-        criteria = self.case_node.result().criteria
-        criterion = next(c for c in criteria if (c.quantity, c.pantograph, c.item) == self.limit.target)
-        if criterion.verdict == "fail":
-            raise CriterionNotMet(criterion_line(criterion))
+        campaign, result = self.case_node.campaign, self.case_node.result()
+        criterion = next(c for c in result.criteria if (c.quantity, c.pantograph, c.item) == self.limit.target)
         if criterion.verdict in {"skip", "info"}:
             pytest.skip(criterion.reason or criterion.verdict)
+        if criterion.verdict == "fail":
+            self.case_node.report(criterion_line(criterion))
+        if is_unverified(result) and not campaign.accepts_unverified:
+            self.case_node.report(unverified_line(result))
 
 
 def write_certificates(config: pytest.Config, folder: Path) -> tuple[list[str], bool]:
@@ -144,28 +153,25 @@ def write_certificates(config: pytest.Config, folder: Path) -> tuple[list[str], 
     list of str
         Lines for the summary of the session.
     bool
-        Whether a value drifted from its baseline.
+        Whether the cases of a plan that ran in this session do not pass.
 
     Raises
     ------
     InputError
         A file cannot be written.
     """
-    lines, drifted_anywhere = [], False
+    lines, not_passed = [], False
     for path in list_registered(folder):
         session = _open_session(config, path, folder)
         if (session_results := session.results()) is None:
             continue
-        (results, drifted), prepared = session_results, session.prepared
-        drifted_anywhere |= drifted > 0
+        (results, drifted, verdict), prepared = session_results, session.prepared
+        not_passed |= verdict != "pass"
         write_all(results, prepared.out, prepared.formats)
-        counted = [c for case in results.cases for c in case.criteria if c.verdict != "info"]
-        passed = sum(c.verdict == "pass" for c in counted)
         shown = next((FILES[name] for name in ("html", "pdf", "md") if name in prepared.formats), FILES["json"])
         lines.append(
-            f"{path.name}: {results.verdict.upper()}, {passed} of {len(counted)} graded criteria within limits, "
-            f"{prepared.out / shown}"
+            f"{path.name}: {results.verdict.upper()}: {build_headline(results.to_dict())} {prepared.out / shown}"
         )
         if drifted:
             lines.append(f"{path.name}: {drifted} values drifted from the baseline {prepared.plan.baseline}")
-    return lines, drifted_anywhere
+    return lines, not_passed

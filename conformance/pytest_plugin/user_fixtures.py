@@ -1,6 +1,5 @@
 """Grading in the tests of a user: functions of the fixtures `pantocheck_run` and `pantocheck_assess`."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -42,33 +41,58 @@ class GradedCase:
 
     @property
     def reasons(self) -> tuple[str, ...]:
-        """Lines for the case, if it was not graded, and for every criterion that is not met."""
-        return (*((self.result.reason,) if self.result.reason else ()), *_unmet(self.result.criteria))
+        """Lines for the case and its record, and for every criterion that is not met; none if the case passes."""
+        return tuple(_list_reasons(self.result))
 
     def value(self, quantity: str, pantograph: int = 1) -> float | list[float]:
         """Value of a quantity of a pantograph (0: line), with or without limits."""
         return self.result.quantities[str(pantograph)][quantity]
 
-    def check(self, *quantities: str) -> None:
-        """Fail the test, with a line per reason, if a criterion of these quantities (default: all) is not met.
+    def check(self, *quantities: str, accept_unverified: bool = False) -> None:
+        """Fail the test, with a line per reason, unless the criteria of these quantities pass on a verified record.
+
+        Parameters
+        ----------
+        *quantities : str
+            Names of quantities; default: all with limits that count.
+        accept_unverified : bool
+            Whether an unverified record may pass.
 
         Raises
         ------
         AssertionError
-            A criterion is not met, or a quantity has no limits.
+            A criterion is not met or does not count, a quantity has no limits, or the record is not verified.
         """
         __tracebackhide__ = True
-        reasons = [f"{self.result.verdict}: {self.result.reason}"] if self.result.reason else []
-        reasons += _unmet(c for c in self.result.criteria if not quantities or c.quantity in quantities)
-        limited = {criterion.quantity for criterion in self.result.criteria}
+        criteria = [c for c in self.result.criteria if not quantities or c.quantity in quantities]
+        reasons = _list_reasons(self.result.model_copy(update={"criteria": criteria}), accept_unverified)
+        reasons += [criterion_line(c) for c in criteria if quantities and c.verdict == "info"]
+        limited = {criterion.quantity for criterion in criteria}
         reasons += [f"{name} has no limits" for name in quantities if name not in limited]
         if reasons:
             raise AssertionError(f"{self.result.id}: " + "\n".join(reasons))
 
 
-def _unmet(criteria: Iterable[Criterion]) -> list[str]:
-    """Lines of the criteria that are not met."""
-    return [criterion_line(criterion) for criterion in criteria if criterion.verdict not in {"pass", "info"}]
+def _list_reasons(result: CaseResult, accept_unverified: bool = False) -> list[str]:
+    """Reasons why a case does not pass."""
+    if result.reason:
+        return [f"{result.verdict}: {result.reason}"]
+    reasons = [criterion_line(c) for c in result.criteria if c.verdict not in {"pass", "info"}]
+    if all(criterion.verdict == "info" for criterion in result.criteria):
+        reasons.append("no limit counts")
+    if is_unverified(result) and not accept_unverified:
+        reasons.append(unverified_line(result))
+    return reasons
+
+
+def is_unverified(result: CaseResult) -> bool:
+    """Whether the record of a case is unverified and has to be verified."""
+    return result.record is not None and result.record.state == "unverified" and result.record.demanded
+
+
+def unverified_line(result: CaseResult) -> str:
+    """Line of a case with an unverified record."""
+    return f"the record is unverified: {'' if result.record is None else result.record.reason}"
 
 
 def criterion_line(criterion: Criterion) -> str:

@@ -22,7 +22,12 @@ from pantocheck.conformance.reports.certificate.scope_page import (
     list_identity_warnings,
     prepare_results,
 )
-from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline, list_reasons, summarise_case
+from pantocheck.conformance.reports.certificate.verdict_reasons import (
+    build_headline,
+    describe_record,
+    list_reasons,
+    summarise_case,
+)
 from pantocheck.conformance.reports.words import read_words
 
 HEADING = "Conformance report"
@@ -87,6 +92,8 @@ def _case_section(case: dict[str, Any], anchor: str) -> doc.Section:
         doc.Paragraph((doc.VerdictMark(case["verdict"]), "\N{EN SPACE}", doc.Code(case["id"]))),
         doc.Paragraph(summarise_case(case)),
     ]
+    if record := describe_record(case):
+        blocks.append(doc.Paragraph(record))
     warnings = (*(f"Limits file: {change}." for change in case["limit_changes"]), *case["warnings"])
     if warnings:
         blocks.append(doc.WarningBox(warnings))

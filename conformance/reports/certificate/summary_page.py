@@ -10,7 +10,7 @@ from pantocheck.conformance.reports.certificate.scope_page import (
     list_identity_warnings,
     prepare_results,
 )
-from pantocheck.conformance.reports.certificate.verdict_reasons import list_reasons
+from pantocheck.conformance.reports.certificate.verdict_reasons import describe_record, list_reasons
 from pantocheck.conformance.reports.words import read_words
 
 
@@ -26,6 +26,8 @@ def build_summary(results: dict[str, Any]) -> doc.Document:
 
 def _case_section(case: dict[str, Any]) -> doc.Section:
     blocks: list[doc.Block] = [doc.Paragraph(f"Case {case['id']}{': ' + case['reason'] if case['reason'] else ''}")]
+    if record := describe_record(case):
+        blocks.append(doc.Paragraph(record))
     if case["warnings"]:
         blocks.append(doc.WarningBox(tuple(case["warnings"])))
     if case["criteria"]:

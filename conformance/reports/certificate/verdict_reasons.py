@@ -13,25 +13,54 @@ MARGINS_SHOWN = 3
 """Number of the smallest margins in the reasons."""
 
 
+NAMES_SHOWN = 5
+"""Number of cases for information that the headline names."""
+
+CLAUSES = {
+    "error": ("ends in an error", "end in an error"),
+    "fail": ("fails", "fail"),
+    "skip": ("could not be evaluated completely", "could not be evaluated completely"),
+    "info": ("has no limit that counts", "have no limit that counts"),
+    "unverified": ("has an unverified record", "have an unverified record"),
+}
+"""Parts of the headline by verdict, in the singular and the plural, the worst first."""
+
+
 def build_headline(results: dict[str, Any]) -> str:
-    """The verdict in one sentence with its counts."""
-    verdicts = Counter(criterion["verdict"] for case in results["cases"] for criterion in case["criteria"])
-    counted = sum(verdicts[verdict] for verdict in ("pass", "fail", "skip", "error"))
-    cases = f"{len(results['cases'])} {'case' if len(results['cases']) == 1 else 'cases'}"
-    broken = sum(case["verdict"] == "error" for case in results["cases"])
-    if broken:
-        return f"{broken} of {cases} ended in an error."
-    if verdicts["fail"]:
-        return f"{verdicts['fail']} of {counted} counted criteria in {cases} lie outside their limits."
-    if results["verdict"] == "skip":
-        incomplete = sum(case["verdict"] == "skip" for case in results["cases"])
-        inside = f"{verdicts['pass']} of {counted} criteria are inside their limits"
-        return f"{incomplete} of {cases} could not be evaluated completely; {inside}."
-    if not counted:
-        return f"No limit counts in {cases}: the numbers are informative."
-    if verdicts["pass"] == counted:
-        return f"All {counted} counted criteria in {cases} lie inside their limits."
-    return f"{verdicts['pass']} of {counted} counted criteria in {cases} lie inside their limits."
+    """The verdict in sentences: passed cases, reasons against a better verdict, and the exceptions of the user."""
+    cases = [case for case in results["cases"] if case["id"] not in results["information"]]
+    verdicts = Counter(case["verdict"] for case in cases)
+    accepted = verdicts["unverified"] if results["system"]["name"] in results["accepted_unverified"] else 0
+    passed, verdicts["unverified"] = verdicts["pass"] + accepted, verdicts["unverified"] - accepted
+    grades = Counter(criterion["verdict"] for case in cases for criterion in case["criteria"])
+    counted = sum(grades[verdict] for verdict in ("pass", "fail", "skip", "error"))
+    total = f"{len(cases)} {'case' if len(cases) == 1 else 'cases'}"
+    if not cases:
+        sentences = ["No case takes part in the verdict."]
+    elif passed == len(cases):
+        sentences = [f"All {counted} counted criteria in {total} lie inside their limits."]
+    else:
+        parts = [f"{passed} of {total} {'passes' if passed == 1 else 'pass'}"]
+        for verdict, (one, many) in CLAUSES.items():
+            if number := verdicts[verdict]:
+                outside = f" ({grades['fail']} of {counted} counted criteria outside their limits)"
+                parts.append(f"{number} {one if number == 1 else many}{outside if verdict == 'fail' else ''}")
+        sentences = [f"{', '.join(parts)}."]
+    if accepted:
+        sentences.append(f"Accepted by the user: unverified records of {results['system']['name']}.")
+    if shown := results["information"]:
+        more = f" and {len(shown) - NAMES_SHOWN} more" if len(shown) > NAMES_SHOWN else ""
+        sentences.append(f"For information, not part of the verdict: {', '.join(shown[:NAMES_SHOWN])}{more}.")
+    return " ".join(sentences)
+
+
+def describe_record(case: dict[str, Any]) -> str | None:
+    """The state of the record of a case in one sentence; None without a record."""
+    record = case["record"]
+    if record is None:
+        return None
+    remark = "" if record["demanded"] else " The profile does not demand verification."
+    return f"Record {record['state']}: {record['reason']}.{remark}"
 
 
 def list_reasons(results: dict[str, Any]) -> tuple[Section, ...]:
@@ -42,6 +71,7 @@ def list_reasons(results: dict[str, Any]) -> tuple[Section, ...]:
         "Errors": [*_case_reasons(results, "error"), *map(_reason, _select(results, "error"))],
         "Failed": [*_case_reasons(results, "fail"), *map(_value, _select(results, "fail"))],
         "Not evaluated": [*_case_reasons(results, "skip"), *map(_reason, _select(results, "skip"))],
+        "Not verified": _record_reasons(results),
         "Closer to a limit than an error": [_value(pair) for pair in _criteria(results) if is_close(pair[1])],
         # Between two equal limits a margin is 0 at best and says nothing about closeness.
         "Smallest margins": [_value(pair) for pair in bounded[:MARGINS_SHOWN]],
@@ -83,6 +113,11 @@ def _case_reasons(results: dict[str, Any], verdict: str) -> list[str]:
     return [
         f"{case['id']}: {case['reason']}" for case in results["cases"] if case["verdict"] == verdict and case["reason"]
     ]
+
+
+def _record_reasons(results: dict[str, Any]) -> list[str]:
+    cases = [case for case in results["cases"] if case["record"] and case["record"]["state"] == "unverified"]
+    return [f"{case['id']}: {describe_record(case)}" for case in cases]
 
 
 def _value(pair: CaseCriterion) -> str:

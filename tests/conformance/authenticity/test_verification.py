@@ -209,7 +209,7 @@ def test_damage_never_ends_in_a_traceback(certificate: bytes, tmp_path: Path) ->
 def test_verify_command(certificate_file: Path, results: dict[str, Any], tmp_path: Path) -> None:
     runner = CliRunner()
     good = runner.invoke(app, ["verify", str(certificate_file)])
-    assert (good.exit_code, good.stdout.split(":")[0]) == (0, "consistent")
+    assert (good.exit_code, good.stdout.split(":")[0]) == (1, "consistent")  # a consistent FAIL
     row(results, 1, 1)["margin"] = 0.5
     (tmp_path / "bad.pdf").write_bytes(pdf.render_pdf(build_certificate(results)))
     bad = runner.invoke(app, ["verify", str(tmp_path / "bad.pdf")])

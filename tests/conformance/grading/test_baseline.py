@@ -83,7 +83,11 @@ def test_other_cases_and_changed_inputs_give_warnings(results: Results) -> None:
     other = results.model_copy(update={"cases": [first.model_copy(update={"input_digest": "sha256:0"})]})
     compared = compare_with_baseline(results, other, 1.0, "b.json")
     assert any("inputs of the case have changed" in text for text in compared.cases[0].warnings)
-    assert any("baseline b.json has no case en50318-2002/300" in text for text in compared.cases[1].warnings)
+    assert compared.cases[0].verdict == "unverified"
+    lacking = compared.cases[1]
+    assert (lacking.verdict, lacking.criteria[-1].reason) == ("skip", "baseline b.json has no case en50318-2002/300")
+    assert compared.verdict == "skip"
+    assert find_discrepancies(compared.to_dict()) == []
 
 
 def test_ungraded_case_keeps_its_verdict(results: Results) -> None:

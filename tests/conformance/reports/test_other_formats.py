@@ -75,7 +75,8 @@ def test_summary_tables_keep_their_columns(name: str, request: pytest.FixtureReq
 
 def test_summary_begins_with_the_verdict_and_escapes(results: dict[str, Any], hostile: dict[str, Any]) -> None:
     assert render_markdown(build_summary(results)).startswith(
-        "# FAIL: 1 of 21 counted criteria in 3 cases lie outside their limits.\n"
+        "# FAIL: 1 of 3 cases passes, 1 fails \\(1 of 21 counted criteria outside their limits\\), "
+        "1 could not be evaluated completely.\n"
     )
     text = render_markdown(build_summary(hostile))
     assert "<script" not in text
