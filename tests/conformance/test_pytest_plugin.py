@@ -29,6 +29,9 @@ for line in sys.stdin:
 """
 
 
+PUBLISHED = "record:en50318-2002/known-passing-code"
+CODE = "published passing code (Wang et al.)"
+
 # This plugin takes a second to load and is not needed here.
 ALONE = ("-p", "no:hypothesispytest")
 
@@ -72,7 +75,9 @@ def test_every_criterion_is_an_item_with_a_one_line_reason(pytester: pytest.Pyte
         ["max_force_N of pantograph 1 = 158.6 N, limits 175 to 210: 16.4 N below the lower limit"]
     )
     assert "Traceback" not in done.stdout.str()
-    done.stdout.fnmatch_lines([f"conformance.toml: FAIL, {16 - failed} of 16 graded criteria*report/results.json"])
+    done.stdout.fnmatch_lines(
+        [f"conformance.toml: FAIL: 0 of 2 cases pass, 2 fail ({failed} of 16 counted *report/results.json"]
+    )
     results = json.loads((pytester.path / "report" / "results.json").read_text())
     assert [case["id"] for case in results["cases"]] == ["en50318-2002/250", "en50318-2002/300"]
     assert sum(c["verdict"] == "fail" for case in results["cases"] for c in case["criteria"]) == failed
@@ -125,18 +130,65 @@ def test_missing_records_are_reported_in_one_line(pytester: pytest.Pytester, pla
 
 
 def test_drift_from_a_baseline_fails_the_session(pytester: pytest.Pytester, plan: Path) -> None:
-    session(pytester, "conformance.toml", "--pantocheck-out", "before")
+    plan.write_text(plan.read_text().replace("record:records", PUBLISHED) + f'accept_unverified = ["{CODE}"]\n')
+    assert session(pytester, "conformance.toml", "--pantocheck-out", "before").ret == 0
     (pytester.path / "before" / "results.json").rename(pytester.path / "baseline.json")
     plan.write_text(plan.read_text() + 'baseline = "baseline.json"\n')
     chosen = ("conformance.toml", "-k", "mean_force")
     assert session(pytester, *chosen).ret == 0
     content = json.loads((pytester.path / "baseline.json").read_text())
-    content["cases"][0]["quantities"]["1"]["rms_0_5_N"] *= 1.05
+    content["cases"][0]["quantities"]["1"]["std_force_N"] *= 1.05
     (pytester.path / "baseline.json").write_text(json.dumps(content))
     done = session(pytester, *chosen)
     done.assert_outcomes(passed=2, deselected=14)
     assert done.ret == 1
     done.stdout.fnmatch_lines(["conformance.toml: 1 values drifted from the baseline *baseline.json"])
+
+
+def test_session_passes_only_with_the_verdict_pass(pytester: pytest.Pytester, plan: Path) -> None:
+    """Published statistics are inside all limits, but unverified: exit 0 only if the user accepts the system."""
+    plan.write_text(plan.read_text().replace("record:records", PUBLISHED))
+    done = session(pytester, "conformance.toml")
+    done.assert_outcomes(failed=16)
+    done.stdout.fnmatch_lines(["the record is unverified: published statistics*"])
+    plan.write_text(plan.read_text() + f'accept_unverified = ["{CODE}"]\n')
+    accepted = session(pytester, "conformance.toml")
+    accepted.assert_outcomes(passed=16)
+    assert accepted.ret == 0
+    uncounted = session(pytester, "conformance.toml", "--pantocheck-trust", "primary")
+    uncounted.assert_outcomes(skipped=16)
+    assert uncounted.ret == 1
+
+
+def test_case_for_information_does_not_fail_the_session(pytester: pytest.Pytester, plan: Path) -> None:
+    plan.write_text(plan.read_text() + 'information = ["*/300", "*/250"]\n')
+    done = session(pytester, "-rs", "conformance.toml")
+    assert done.parseoutcomes().get("failed", 0) == 0
+    done.stdout.fnmatch_lines(["SKIPPED*for information: max_force_N of pantograph 1*below the lower limit"])
+    assert done.ret == 1  # no case takes part in the verdict
+
+
+def test_check_fails_on_uncounted_limits_and_unverified_records(pytester: pytest.Pytester, plan: Path) -> None:
+    pytester.makepyfile(
+        f"""
+        import pytest
+
+        def test_check(pantocheck_run):
+            graded = pantocheck_run("en50318-2002/250", system="{PUBLISHED}")
+            with pytest.raises(AssertionError, match="the record is unverified: published statistics"):
+                graded.check("std_force_N")
+            graded.check("std_force_N", accept_unverified=True)
+            graded.check(accept_unverified=True)
+            assert len(graded.reasons) == 1
+
+        def test_check_of_uncounted_limits(pantocheck_run):
+            graded = pantocheck_run("en50318-2002/250", system="{PUBLISHED}", trust="primary")
+            for quantities in ((), ("std_force_N",)):
+                with pytest.raises(AssertionError, match="no limit counts"):
+                    graded.check(*quantities, accept_unverified=True)
+        """
+    )
+    session(pytester).assert_outcomes(passed=2)
 
 
 def test_invalid_plan_is_reported_with_a_hint(pytester: pytest.Pytester, plan: Path) -> None:
@@ -146,7 +198,7 @@ def test_invalid_plan_is_reported_with_a_hint(pytester: pytest.Pytester, plan: P
         ("cases = [", "*is not valid TOML*"),
         ('formats = ["htm"]', "*format 'htm': there is no such format*"),
     ):
-        plan.write_text(text)
+        plan.write_text(f'system = "builtin"\n{text}')
         done = session(pytester, "conformance.toml")
         done.assert_outcomes(errors=1)
         done.stdout.fnmatch_lines([message])
