@@ -29,6 +29,11 @@ SUPPORT_TOLERANCE_M = 0.5
 Positions are rounded, and surveyed to some decimetres. Spans are ten times as long, so no support is taken for
 another one. A support this far outside the analysis section belongs to it, and so to the sections on both sides."""
 
+RUN_OUT_M = 5.0
+"""Distance that every pantograph runs on after a support, so that the record holds the largest uplift there [m].
+
+The uplift is largest within some decimetres of the pantograph, in simulation and measurement."""
+
 
 class ForceSignals(Protocol):
     """Signals of one pantograph over the analysis section; each property raises `QuantityUnavailable` if missing."""
@@ -197,12 +202,15 @@ class LineSignals:
         Uplift at each support [m], or None.
     line_supports : tuple of float or None
         Positions of all supports of the line [m]; None if they are not known.
+    end : float
+        Position that the last pantograph reaches [m].
     """
 
     section: tuple[float, float]
     support_position: RealArray | None = None
     support_uplift: RealArray | None = None
     line_supports: tuple[float, ...] | None = None
+    end: float = np.inf
 
     @property
     def supports(self) -> RealArray:
@@ -226,7 +234,8 @@ class LineSignals:
         Raises
         ------
         SupportsMissing
-            A support has none, or the supports of the line are not known: the largest uplift may be at another one.
+            A support has none, the supports of the line are not known, or the record ends before the uplift of the
+            last one is complete: the largest uplift may not have been recorded.
         """
         measured = self.supports
         if self.line_supports is None:
@@ -242,6 +251,11 @@ class LineSignals:
             raise SupportsMissing(
                 f"the record has no uplift at {missing.size} of {expected.size} supports of the analysis section: "
                 f"{places}{', ...' if missing.size > 5 else ''}"
+            )
+        if not self.end >= measured.max() + RUN_OUT_M:
+            raise SupportsMissing(
+                f"the record ends at {self.end:.6g} m: the uplift of the support at {measured.max():g} m is complete "
+                f"{RUN_OUT_M:g} m behind it"
             )
 
     @cached_property

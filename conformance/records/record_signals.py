@@ -45,7 +45,13 @@ class RecordSignals:
     def line(self) -> LineSignals:
         """Uplift at the supports."""
         record = self.record
-        return LineSignals(record.evaluated, record.support_position, record.support_uplift, self.line_supports)
+        return LineSignals(
+            record.evaluated,
+            record.support_position,
+            record.support_uplift,
+            self.line_supports,
+            float(record.position[:, -1].min()),
+        )
 
     @cached_property
     def evaluation(self) -> Evaluation:

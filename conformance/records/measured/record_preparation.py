@@ -118,7 +118,7 @@ def prepare_record(
     for row in range(samples.force.shape[0]):
         pantographs[row + 1], remarks = _prepare_pantograph(placed, row, settings)
         warnings += remarks
-    line, remarks = _prepare_line(samples, section)
+    line, remarks = _prepare_line(samples, section, float(position[:, -1].min()))
     first = pantographs[1]
     return PreparedRecord(
         pantographs=pantographs,
@@ -194,7 +194,7 @@ def _outlier_warnings(force: RealArray, position: RealArray, name: str) -> list[
     ]
 
 
-def _prepare_line(samples: RecordSamples, section: tuple[float, float]) -> tuple[LineSignals, list[str]]:
+def _prepare_line(samples: RecordSamples, section: tuple[float, float], end: float) -> tuple[LineSignals, list[str]]:
     """Uplift of the supports without missing values, and warnings; a missing value may be the largest one."""
     uplift = samples.uplift
     if uplift is None or samples.support_position is None:
@@ -206,7 +206,7 @@ def _prepare_line(samples: RecordSamples, section: tuple[float, float]) -> tuple
             f"{missing_share(missing)} of the uplift is missing: a support with missing values is not evaluated"
         )
     complete = ~missing.any(axis=1)
-    return LineSignals(section, samples.support_position[complete], uplift[complete]), warnings
+    return LineSignals(section, samples.support_position[complete], uplift[complete], end=end), warnings
 
 
 def _resampling_notes(placed: PlacedSamples, rate: float) -> list[str]:

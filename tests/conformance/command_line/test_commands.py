@@ -256,6 +256,8 @@ def test_simulate_writes_a_record_that_can_be_graded(records: Path, tmp_path: Pa
     assert result.exit_code == 0
     record, sidecar = read_record(tmp_path / "again" / "a.h5")
     assert (sidecar.case, record.pantographs) == ("en50318-2002/250", 1)
+    assert sidecar.case_digest is None  # a record of unknown origin does not become one of this version of the case
+    assert sidecar.line.span_m == 60
 
 
 def test_cases_and_show_state_trust_and_source() -> None:

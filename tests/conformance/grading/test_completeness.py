@@ -119,6 +119,17 @@ def test_trailing_pantograph_that_stops_early_is_refused(twin: Case, record: Rec
     assert "the record of pantograph 2 is cut short" in result.reason
 
 
+@pytest.mark.parametrize(("end", "verdict"), [(362.0, "skip"), (366.0, "pass")])
+def test_uplift_needs_the_record_behind_the_last_support(twin: Case, record: Record, end: float, verdict: str) -> None:
+    """The section ends with the support at 360 m; the rear pantograph lifts it last."""
+    kept = record.position[1] < end
+    rows = ("position", "force", "contact_height", "support_uplift")
+    cut = replace(record, time=record.time[kept], **{name: getattr(record, name)[:, kept] for name in rows})
+    criterion = find_criterion(grade(twin, cut), UPLIFT)
+    assert criterion.verdict == verdict
+    assert verdict == "pass" or "the record ends at 36" in criterion.reason
+
+
 def test_record_of_another_version_of_the_case_is_refused(twin: Case, record: Record) -> None:
     assert grade(twin, record, twin.digest).verdict == "pass"
     older = replace(twin, file=twin.file.model_copy(update={"spacing_m": (151.0,)})).digest
