@@ -178,6 +178,11 @@ def _resolve_bound(bound: RuleBound | None, speed_km_h: float, line_values: Mapp
     return bound
 
 
+def list_profiles() -> dict[str, Path]:
+    """Files of the profiles of the library, by name."""
+    return {path.stem: path for path in sorted((library_folder() / "profiles").glob("*.toml"))}
+
+
 def load_profile(name: str) -> Profile:
     """Read a profile of the library by its name, or of a file (name ending in .toml).
 
@@ -188,7 +193,7 @@ def load_profile(name: str) -> Profile:
     """
     if name.endswith(".toml"):
         return read_model(Path(name), Profile, "profile")
-    known = {path.stem: path for path in sorted((library_folder() / "profiles").glob("*.toml"))}
+    known = list_profiles()
     if name not in known:
         raise InputError(f"profile '{name}'", "there is no such profile", suggest_names(name, list(known)))
     return read_model(known[name], Profile, "profile")

@@ -16,11 +16,15 @@ from pantocheck.conformance.records.measured.block_bootstrap import FEWEST_BLOCK
 from pantocheck.conformance.records.measured.line_supports import list_line_supports
 from pantocheck.conformance.records.measured.record_preparation import PreparedRecord, prepare_record
 from pantocheck.conformance.records.record import RecordInvalid
-from pantocheck.conformance.records.record_reading import build_record_error, open_record, read_samples
+from pantocheck.conformance.records.record_reading import build_record_error, open_record, read_samples, record_digest
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.record_summary import RecordSummary
+from pantocheck.conformance.records.samples import RecordSamples
 from pantocheck.conformance.records.sidecar_tables import LineTable, SystemTable
 from pantocheck.conformance.results.results_format import InputGroup
+
+FEWEST_STATISTICS = 3
+"""Smallest number of equal statistics that show a copy; rounded means of two records may be equal by chance."""
 
 ASSUMED_SPAN_M = 60.0
 """Length of a bootstrap block if the record does not state the span length [m]."""
@@ -39,7 +43,11 @@ class AssessedRecord:
     line : LineTable
         Facts on the line, from the record and the command line.
     digest : str
-        SHA-256 of all files that were read, in hexadecimal.
+        SHA-256 of all files that were read and of the facts on the line, in hexadecimal.
+    record_digest : str
+        SHA-256 of the files of the record.
+    force_digest : str or None
+        SHA-256 of the samples of the force, in any format of file; None for a summary.
     values : Evaluation
         Quantities, including those that follow from the line.
     uncertainty : dict of int to dict of str to float
@@ -56,6 +64,8 @@ class AssessedRecord:
     header: RecordSidecar | RecordSummary
     line: LineTable
     digest: str
+    record_digest: str
+    force_digest: str | None
     values: Evaluation
     uncertainty: dict[int, dict[str, float]]
     prepared: PreparedRecord | None
@@ -126,6 +136,8 @@ def load_assessed_record(path: Path, profile: Profile, line: LineTable) -> Asses
         header=sidecar,
         line=known_line,
         digest=digest,
+        record_digest=record_digest(path, table),
+        force_digest=_force_digest(samples),
         values=_add_line_quantities(
             evaluate_signals(prepared.pantographs, line_signals), known_line, sidecar.speed_km_h
         ),
@@ -149,6 +161,8 @@ def _assess_summary(path: Path, summary: RecordSummary, profile: Profile, line: 
         header=summary,
         line=line,
         digest=join_digests(file_digest(path.with_suffix(".toml")), line.model_dump_json()),
+        record_digest=record_digest(path),
+        force_digest=None,
         values=_add_line_quantities(summary.evaluation, line, summary.speed_km_h),
         uncertainty={},
         prepared=None,
@@ -174,6 +188,26 @@ def _add_line_quantities(evaluation: Evaluation, line: LineTable, speed_km_h: fl
         values |= {"wave_speed_m_s": wave_speed, "speed_over_wave_speed": speed_km_h / 3.6 / wave_speed}
     ordered = {name: values[name] for name in QUANTITIES if name in values}
     return Evaluation({**evaluation.values, LINE: ordered}, evaluation.skipped)
+
+
+def _force_digest(samples: RecordSamples) -> str:
+    """SHA-256 of the force, rounded to 1 mN: units and formats of files change the last digits only."""
+    return hashlib.sha256(np.round(samples.force, 3).tobytes()).hexdigest()
+
+
+def find_equal_pantograph(subject: AssessedRecord, other: AssessedRecord) -> int | None:
+    """Pantograph whose samples or statistics are the same in two records; None if the records are independent.
+
+    Statistics of two independent records never agree to six digits. A copy agrees in all of them, in any format.
+    """
+    if subject.force_digest is not None and subject.force_digest == other.force_digest:
+        return subject.pantographs[0]
+    for number in subject.pantographs:
+        statistics, others = subject.values.values[number], other.values.values.get(number, {})
+        pairs = [(value, others[name]) for name, value in statistics.items() if value != 0 and name in others]
+        if len(pairs) >= FEWEST_STATISTICS and all(np.allclose(value, same, 1e-6, 0) for value, same in pairs):
+            return number
+    return None
 
 
 def join_digests(*parts: str) -> str:

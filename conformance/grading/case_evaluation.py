@@ -87,16 +87,14 @@ class CaseEvaluation:
     @cached_property
     def record_facts(self) -> RecordFacts | None:
         """State of the record; None for a case without a record."""
+        digests = {"digest": self.delivered.digest, "case_digest": self.delivered.case_digest}
         if self.delivered.summary is not None:
-            return RecordFacts(
-                state="unverified",
-                reason="published statistics: there is no record to check",
-                case_digest=self.delivered.case_digest,
-            )
+            reason = "published statistics: there is no record to check"
+            return RecordFacts(state="unverified", reason=reason, **digests)
         if self.signals is None:
             return None
         state, reason = record_state(self.findings)
-        return RecordFacts(state=state, reason=reason, case_digest=self.delivered.case_digest)
+        return RecordFacts(state=state, reason=reason, **digests)
 
     def grade_limits(self, lowest_trust: Trust) -> list[Criterion]:
         """Grade the delivery by every limit of the case."""

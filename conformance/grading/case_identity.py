@@ -6,6 +6,7 @@ from typing import Any
 from pantocheck.conformance.cases.case import Case, json_digest
 from pantocheck.conformance.cases.library import library_folder, list_library, load_case
 from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.cases.profile_file import Profile, list_profiles, load_profile
 from pantocheck.conformance.cases.study_tables import DampingSensitivity
 from pantocheck.conformance.input_files.trust import LEVELS
 from pantocheck.conformance.results.results_format import LibraryIdentity
@@ -21,6 +22,13 @@ def compare_with_library(case: Case) -> LibraryIdentity:
     if case.id not in known:
         return "own"
     return "identical" if _content_digest(case) == _content_digest(load_case(known[case.id])) else "modified"
+
+
+def compare_profile_with_library(profile: Profile) -> LibraryIdentity:
+    """Compare a profile with the library profile of the same name."""
+    if profile.name not in list_profiles():
+        return "own"
+    return "identical" if profile == load_profile(profile.name) else "modified"
 
 
 def _content_digest(case: Case) -> str:
@@ -46,6 +54,11 @@ def limits_digest(limits: Sequence[Limit]) -> str:
     """SHA-256 of limits with trust and source, in any order."""
     content = [limit.model_dump(mode="json", exclude={"note", "case"}) for limit in limits]
     return json_digest(sorted(content, key=repr))
+
+
+def rules_digest(profile: Profile) -> str:
+    """SHA-256 of the rules of a profile with trust and source."""
+    return json_digest([rule.model_dump(mode="json", exclude={"note"}) for rule in profile.rule])
 
 
 def list_limit_changes(case: Case) -> list[str]:

@@ -3,9 +3,15 @@
 import re
 from collections.abc import Sequence
 
+from pantocheck.conformance.cases.case import json_digest
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.profile_file import Profile
-from pantocheck.conformance.grading.assessed_record import AssessedRecord, join_digests
+from pantocheck.conformance.grading.assessed_record import AssessedRecord, find_equal_pantograph, join_digests
+from pantocheck.conformance.grading.case_identity import (
+    compare_profile_with_library,
+    limits_digest,
+    rules_digest,
+)
 from pantocheck.conformance.grading.case_verdict import EVERY_CASE, Participation, judge_case
 from pantocheck.conformance.grading.extended_band import find_unvalidated
 from pantocheck.conformance.grading.rule_grading import RuleGrading
@@ -54,11 +60,19 @@ def assess_record(
         A measured record is missing, not needed, or does not fit the record.
     """
     _check_pair(subject, measured, profile)
-    criteria, omitted = RuleGrading(subject, measured, trust).grade_profile(profile, limits)
+    grading = RuleGrading(subject, measured, trust)
+    criteria, omitted = grading.grade_profile(profile, limits)
     records = [record for record in (subject, measured) if record is not None]
     digest = join_digests(subject.digest, measured.digest if measured else "", profile.model_dump_json())
     reason = "a profile names no case: the consistency checks of a case cannot be made"
-    record = RecordFacts(state="unverified", reason=reason, demanded=profile.verification == "demanded")
+    record = RecordFacts(
+        state="unverified",
+        reason=reason,
+        demanded=profile.verification == "demanded",
+        digest=subject.record_digest,
+        case_digest=subject.header.case_digest,
+        measured_digest=None if measured is None else measured.record_digest,
+    )
     case = CaseResult(
         id=f"{profile.name}/{re.sub(r'[^A-Za-z0-9._-]', '_', subject.name)}",
         title=f"{profile.title}: {subject.name}",
@@ -68,6 +82,12 @@ def assess_record(
         warnings=[*_name_sources(records, "warnings"), *omitted, *find_unvalidated(subject.values)],
         inputs=[group for record in records for group in record.inputs],
         input_digest=f"sha256:{digest}",
+        limits_digest=json_digest([rules_digest(profile), limits_digest(limits)]),
+        stated_limits_digest=json_digest([rules_digest(profile), limits_digest(())]),
+        limit_changes=grading.list_limit_changes(profile, limits),
+        library=compare_profile_with_library(profile),
+        profile=profile.name,
+        steps=["line_test"] if profile.compares else [],
         criteria=criteria,
         quantities=key_by_owner(select_finite(subject.values.values)),
         skipped=key_by_owner(subject.values.skipped),
@@ -104,6 +124,12 @@ def _check_pair(subject: AssessedRecord, measured: AssessedRecord | None, profil
             where,
             f"its speed is {measured_speed:g} km/h, that of {subject.name} is {speed:g} km/h",
             "Compare records at the same speed.",
+        )
+    if (number := find_equal_pantograph(subject, measured)) is not None:
+        raise InputError(
+            where,
+            f"its contact force of pantograph {number} is that of {subject.name}: one record is a copy of the other",
+            "Compare a simulated record with an independent measured record.",
         )
 
 

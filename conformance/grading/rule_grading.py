@@ -1,13 +1,15 @@
 """Grading of a record by the rules of a profile: each rule gives a criterion for every pantograph it applies to."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.profile_file import BoundMissing, Profile, Rule, resolve_bounds
 from pantocheck.conformance.grading.assessed_record import AssessedRecord
+from pantocheck.conformance.grading.case_identity import describe_limit_change
 from pantocheck.conformance.grading.criterion_grading import GradedValues, Requirement, build_criterion, grade_limit
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.evaluation import LINE
@@ -46,18 +48,16 @@ class RuleGrading:
         criteria: list[Criterion] = []
         omitted: list[str] = []
         replaced = {limit.target for limit in limits}
-        for rule in profile.rule:
-            owners = self.subject.pantographs if QUANTITIES[rule.quantity].scope == "pantograph" else (LINE,)
-            for owner in owners:
-                if (rule.quantity, owner, None) in replaced:
-                    continue
-                try:
-                    criteria.append(self._grade_rule(rule, owner))
-                except BoundMissing as reason:
-                    if rule.need == "if_known":
-                        omitted.append(f"{rule.quantity} is not graded: {reason}")
-                    else:
-                        criteria.append(self._skip_rule(rule, owner, str(reason)))
+        for rule, owner in self._pair_owners(profile):
+            if (rule.quantity, owner, None) in replaced:
+                continue
+            try:
+                criteria.append(self._grade_rule(rule, owner))
+            except BoundMissing as reason:
+                if rule.need == "if_known":
+                    omitted.append(f"{rule.quantity} is not graded: {reason}")
+                else:
+                    criteria.append(self._skip_rule(rule, owner, str(reason)))
         criteria += [grade_limit(limit, self._values, self.trust, self._limit_uncertainty(limit)) for limit in limits]
         return criteria, omitted
 
@@ -65,13 +65,34 @@ class RuleGrading:
     def _values(self) -> GradedValues:
         return GradedValues(self.subject.values, uncertainty=self.subject.uncertainty)
 
+    def list_limit_changes(self, profile: Profile, limits: Sequence[Limit]) -> list[str]:
+        """Sentences on the rules that the user's limits weaken or give another trust."""
+        own = {limit.target: limit for limit in limits}
+        changes = []
+        for rule, owner in self._pair_owners(profile):
+            if (limit := own.get((rule.quantity, owner, None))) is not None:
+                with suppress(BoundMissing):
+                    changes.append(describe_limit_change(self._resolve_rule(rule, owner), limit))
+        return [change for change in changes if change is not None]
+
+    def _pair_owners(self, profile: Profile) -> Iterator[tuple[Rule, int]]:
+        """Every rule with every pantograph that it applies to."""
+        for rule in profile.rule:
+            owners = self.subject.pantographs if QUANTITIES[rule.quantity].scope == "pantograph" else (LINE,)
+            yield from ((rule, owner) for owner in owners)
+
     def _grade_rule(self, rule: Rule, owner: int) -> Criterion:
+        limit = self._resolve_rule(rule, owner)
+        return grade_limit(limit, self._values, self.trust, self._limit_uncertainty(limit))
+
+    def _resolve_rule(self, rule: Rule, owner: int) -> Limit:
+        """Limit that follows from a rule for this record."""
         compared = None if self.measured is None else _finite_value(self.measured, owner, rule.quantity)
         lower, upper = resolve_bounds(rule, self.subject.header.speed_km_h, self.subject.line.model_dump(), compared)
         is_static = QUANTITIES[rule.quantity].scope == "static"
         if is_static and rule.need == "if_known" and rule.quantity not in self.subject.values.values[LINE]:
             raise BoundMissing("the record does not give it")
-        limit = Limit(
+        return Limit(
             quantity=rule.quantity,
             pantograph=owner or None,
             lower=lower,
@@ -80,7 +101,6 @@ class RuleGrading:
             source=self._source(rule, compared),
             note=rule.note,
         )
-        return grade_limit(limit, self._values, self.trust, self._limit_uncertainty(limit))
 
     def _skip_rule(self, rule: Rule, owner: int, reason: str) -> Criterion:
         requirement = Requirement(rule.quantity, owner, None, None, None, rule.trust, source_text(rule.source))

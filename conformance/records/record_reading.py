@@ -1,5 +1,6 @@
 """Reading of records: samples with a sidecar, which are checked before they become a `Record`, and summaries."""
 
+import hashlib
 from pathlib import Path
 
 import numpy as np
@@ -94,6 +95,12 @@ def read_samples(path: Path) -> tuple[RecordSamples, RecordSidecar, Path]:
             f"record '{table.name}'", "its content contradicts the sha256 of the sidecar", "Copy or write it again."
         )
     return _build_samples(read_channel_rows(table, sidecar), sidecar), sidecar, table
+
+
+def record_digest(sidecar_path: Path, table: Path | None = None) -> str:
+    """SHA-256 of a record: of its sidecar and its table, or of a summary record alone."""
+    paths = [sidecar_path.with_suffix(".toml"), *([] if table is None else [table])]
+    return "sha256:" + hashlib.sha256("\n".join(map(file_digest, paths)).encode()).hexdigest()
 
 
 def build_record_error(table: Path, error: RecordInvalid) -> InputError:

@@ -49,6 +49,8 @@ class Delivered:
         Result of a study; empty for a single run.
     case_digest : str or None
         Digest of the case that the record was made for, as the record states it.
+    digest : str or None
+        SHA-256 of the files of the record; None for a record that was never in a file.
     refined : Delivered or None
         The same case with element length and time step halved, for the discretisation error.
     """
@@ -61,6 +63,7 @@ class Delivered:
     summary: Evaluation | None = None
     study: StudyResult = field(default_factory=StudyResult)
     case_digest: str | None = None
+    digest: str | None = None
     refined: "Delivered | None" = None
 
 

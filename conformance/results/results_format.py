@@ -224,7 +224,8 @@ class RecordFacts(ResultsPart):
     """Record of a case. Digests are SHA-256 in hexadecimal, null if unknown.
 
     `demanded` is false if a profile shows the state `unverified` without lowering the verdict. `digest` is that of the
-    record. `case_digest` is that of the case for which the record was made, as the record states it.
+    record. `case_digest` is that of the case for which the record was made, as the record states it. `measured_digest`
+    is that of the measured record, if a profile compares with one.
     """
 
     state: RecordState
@@ -232,6 +233,7 @@ class RecordFacts(ResultsPart):
     demanded: bool = True
     digest: str | None = None
     case_digest: str | None = None
+    measured_digest: str | None = None
 
 
 class CaseResult(ResultsPart):
@@ -256,8 +258,9 @@ class CaseResult(ResultsPart):
     ] = []
     library: Annotated[
         LibraryIdentity | None,
-        Field(description="comparison with the library case of this id; null: not a case, or an older version"),
+        Field(description="comparison with the library case or profile of this name; null: made by an older version"),
     ] = None
+    profile: Annotated[str | None, Field(description="name of the profile of an assessment; null: a case")] = None
     edition: Annotated[str | None, Field(description="edition of the standard that defines the case")] = None
     superseded_by: Annotated[str | None, Field(description="edition that superseded it")] = None
     steps: Annotated[list[Step], Field(description="steps of the procedure that the case belongs to")] = []

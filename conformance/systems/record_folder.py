@@ -10,7 +10,7 @@ from pantocheck.conformance.grading.record_mismatch import SECTION_TOLERANCE_M
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_toml
 from pantocheck.conformance.records.record import SPEED_TOLERANCE
-from pantocheck.conformance.records.record_reading import RECORD_SCHEMAS, open_record, read_record
+from pantocheck.conformance.records.record_reading import RECORD_SCHEMAS, open_record, read_record, record_digest
 from pantocheck.conformance.records.record_summary import RecordSummary
 from pantocheck.conformance.results.outcome import Delivered, Errored, Outcome, Skipped, note_case_version
 
@@ -39,14 +39,18 @@ class RecordFolder:
             return Skipped("there is no record of this case")
         opened = open_record(path)
         if isinstance(opened, RecordSummary):
-            return _deliver_summary(opened, case)
+            return _deliver_summary(opened, case, record_digest(path))
         record, sidecar = read_record(path, None if case.is_static else case.analysis_section)
         return Delivered(
-            record, run=sidecar.run, notes=note_case_version(sidecar.case_digest), case_digest=sidecar.case_digest
+            record,
+            run=sidecar.run,
+            notes=note_case_version(sidecar.case_digest),
+            case_digest=sidecar.case_digest,
+            digest=record_digest(path, path.parent / sidecar.file),
         )
 
 
-def _deliver_summary(summary: RecordSummary, case: Case) -> Outcome:
+def _deliver_summary(summary: RecordSummary, case: Case, digest: str) -> Outcome:
     if (mismatch := _find_mismatch(summary, case)) is not None:
         return Errored(mismatch)
     source = (summary.source,) if isinstance(summary.source, str) else tuple(summary.source)
@@ -60,6 +64,7 @@ def _deliver_summary(summary: RecordSummary, case: Case) -> Outcome:
         warnings=summary.contradictions,
         summary=summary.evaluation,
         case_digest=summary.case_digest,
+        digest=digest,
     )
 
 

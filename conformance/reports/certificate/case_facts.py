@@ -55,6 +55,7 @@ def list_case_facts(case: dict[str, Any]) -> Facts:
             ("Digest of the limits", case["limits_digest"]),
             ("Without the limits file", case["stated_limits_digest"] if changed else None),
             ("Digest of the record", record.get("digest")),
+            ("Digest of the measured record", record.get("measured_digest")),
         ),
         times=_drop_empty(
             ("Wall time", None if wall is None else f"{format_value(wall, 3)} s"),

@@ -29,7 +29,7 @@ def prepare_results(results: dict[str, Any]) -> dict[str, Any]:
 def list_identity_warnings(results: dict[str, Any]) -> tuple[str, ...]:
     """Warnings on modified copies of library cases and on limits that a limits file weakens."""
     copies = [
-        f"The {case['id']} has other inputs, limits or sources than the library case."
+        f"The {case['id']} has other inputs, limits or sources than the library {_kind(case)}."
         for case in results["cases"]
         if case["library"] == "modified"
     ]
@@ -45,11 +45,16 @@ def warn_of_changes(case: dict[str, Any]) -> str:
 
 
 def describe_origin(case: dict[str, Any]) -> str:
-    """Origin of a case: library case with its edition, modified copy, own case; a dash if it is not a case."""
+    """Origin of a case or profile: the library with the edition, a modified copy, or a user; a dash if unknown."""
+    kind = _kind(case)
     if case["library"] != "identical":
-        return {"modified": "modified copy", "own": "own case"}.get(case["library"], "–")
+        return {"modified": "modified copy", "own": f"own {kind}"}.get(case["library"], "–")
     edition = f" of {case['edition']}" if case["edition"] else ""
-    return f"library case{edition}" + (f", superseded by {case['superseded_by']}" if case["superseded_by"] else "")
+    return f"library {kind}{edition}" + (f", superseded by {case['superseded_by']}" if case["superseded_by"] else "")
+
+
+def _kind(case: dict[str, Any]) -> str:
+    return "profile" if case["profile"] else "case"
 
 
 def build_scope_section(results: dict[str, Any], anchors: dict[str, str]) -> tuple[doc.Section, ...]:

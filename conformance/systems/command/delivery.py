@@ -4,7 +4,7 @@ from pathlib import Path
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.input_files.bounded_file import NO_LINK, file_digest
-from pantocheck.conformance.records.record_reading import read_record
+from pantocheck.conformance.records.record_reading import read_record, record_digest
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.outcome import Delivered, note_case_version
 from pantocheck.conformance.systems.command.protocol_messages import DeliveredAnswer, File
@@ -52,7 +52,8 @@ def read_delivery(case: Case, answer: DeliveredAnswer, folder: Path, wall: float
     if run.wall_s is None:
         run = run.model_copy(update={"wall_s": wall})
     notes = (*answer.notes, *note_case_version(sidecar.case_digest))
-    return Delivered(record, dict(answer.static), run, notes, case_digest=sidecar.case_digest)
+    digest = record_digest(sidecar_path, table_path)
+    return Delivered(record, dict(answer.static), run, notes, case_digest=sidecar.case_digest, digest=digest)
 
 
 def _check_file(file: File, folder: Path) -> Path:

@@ -233,7 +233,8 @@ def test_rule_without_a_bound_for_this_speed_is_omitted(train: Train) -> None:
     above = rule.model_copy(update={"upper": rule.upper.model_copy(update={"above_km_h": 260.0}), "lower": None})
     mixed = profile.model_copy(update={"rule": (*profile.rule, above)})
     subject = load_assessed_record(train(), mixed, LineTable())
-    rows = assess_record(subject, mixed, "provisional", subject).cases[0].criteria
+    measured = load_assessed_record(train(mean=126.0), mixed, LineTable())
+    rows = assess_record(subject, mixed, "provisional", measured).cases[0].criteria
     assert any(row.verdict == "skip" and "above 260 km/h" in (row.reason or "") for row in rows)
 
 

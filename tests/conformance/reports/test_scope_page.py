@@ -90,7 +90,14 @@ def test_library_case_needs_no_warning(results: dict[str, Any]) -> None:
 )
 def test_origin_states_the_edition_of_library_cases_only(facts: tuple[str | None, ...], text: str) -> None:
     """An own file can claim any edition."""
-    assert describe_origin(dict(zip(("library", "edition", "superseded_by"), facts, strict=True))) == text
+    case = dict(zip(("library", "edition", "superseded_by"), facts, strict=True))
+    assert describe_origin(case | {"profile": None}) == text
+
+
+def test_origin_of_a_profile_is_named() -> None:
+    case = {"library": "identical", "edition": None, "superseded_by": None, "profile": "line-test"}
+    assert describe_origin(case) == "library profile"
+    assert describe_origin(case | {"library": "own"}) == "own profile"
 
 
 def test_scope_lists_every_step_with_its_cases(results: dict[str, Any]) -> None:
