@@ -72,10 +72,10 @@ def _check_support_passing(case: Case, signals: RecordSignals) -> Finding | None
     for number in signals.pantographs:
         kink, contact = passages.kinks(number)
         best = int(kink.argmax())
-        if (near[best] and kink[best] >= SMALLEST_KINK) or passages.coincide(number):
+        touching = contact >= SMALLEST_CONTACT * contact.max()
+        if (near[best] and touching[best] and kink[best] >= SMALLEST_KINK) or passages.coincide(number):
             continue
-        touching = contact[near].max() >= SMALLEST_CONTACT * contact.max()
-        if touching and kink[best] >= max(SMALLEST_KINK, CLEAR_RATIO * kink[near].max()):
+        if touching[near].any() and kink[best] >= max(SMALLEST_KINK, CLEAR_RATIO * kink[near].max()):
             shift = passages.shifts[best]
             return Finding(
                 "contradiction",
