@@ -134,7 +134,8 @@ class Runs:
             assert outcome.record is not None
             write_record(path, outcome.record, case=loaded.id)
         record, _ = read_record(path)
-        evaluation = evaluate_record(record, loaded.file.filter.low_pass)
+        supports = loaded.line.geometry.span_limits
+        evaluation = evaluate_record(record, loaded.file.filter.low_pass, supports)
         self.evaluations[name] = evaluation
         sidecar = read_toml(path.with_suffix(".toml"), "sidecar")
         dossier.sidecar = {key: value for key, value in sidecar.items() if key not in {"sha256", "case_digest"}}
