@@ -25,8 +25,9 @@ def test_shipped_schema_is_that_of_the_model(name: str) -> None:
     Draft202012Validator.check_schema(schema)
     assert json.loads(format_schema(schema)) == schema
     shipped = (FOLDER / f"{name}.schema.json").read_text(encoding="utf-8")
-    assert shipped == format_schema(schema), "run: pantocheck schema --out reference_cases/schema"
-    assert CliRunner().invoke(app, ["schema", name]).output == shipped
+    # Versions of pydantic write 0 or 0.0; both are the same number.
+    assert json.loads(shipped) == schema, "run: pantocheck schema --out reference_cases/schema"
+    assert CliRunner().invoke(app, ["schema", name]).output == format_schema(schema)
 
 
 def test_folder_holds_the_schemas_of_all_formats_and_nothing_else() -> None:

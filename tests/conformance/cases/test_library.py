@@ -130,7 +130,10 @@ def test_circular_requirement_is_refused(edited_case: EditedCase, monkeypatch: p
         ("250.toml", {"title": "another title"}, True),
         ("250.toml", {"limit.1.upper": 32.0}, True),
         ("line.toml", {"contact_wire.source": "another source"}, True),
+        ("250.toml", {"filter.cutoff_Hz": 20.1}, False),
         ("line.toml", {"contact_wire.tension_N": 20.001e3}, False),
+        ("line.toml", {"contact_wire.mass_kg_m": 1.36}, False),
+        ("line.toml", {"droppers.mass_kg": 0.1}, False),
         ("pantograph.toml", {"chain.masses_kg": [15.0, 7.3]}, False),
     ],
 )
@@ -165,3 +168,13 @@ def test_limits_of_a_user_replace_and_add(tmp_path: Path, case_250: Case) -> Non
     path.write_text(entry.format("std_force_N", 30.0).replace("*/250", "*/251"))
     with pytest.raises(InputError, match=r"no case of this run matches '\*/251'"):
         overlay_limits([case_250], read_limits(path))
+
+
+def test_limits_of_a_user_apply_to_the_named_cases_only(tmp_path: Path) -> None:
+    path = tmp_path / "limits.toml"
+    path.write_text(
+        '[[limit]]\ncase = "*/250"\nquantity = "std_force_N"\nupper = 99.0\ntrust = "primary"\nsource = "my copy"\n'
+    )
+    cases = overlay_limits(select_cases(["en50318-2002/*"]), read_limits(path))
+    upper = {case.id: limit.upper for case in cases for limit in case.limits if limit.quantity == "std_force_N"}
+    assert upper == {"en50318-2002/250": 99.0, "en50318-2002/300": 40.0}

@@ -48,6 +48,15 @@ def test_same_values_do_not_drift(results: Results) -> None:
     assert compared.cases[0].notes[-1].startswith("Compared with baseline b.json: 8 values, of which 0 drifted")
 
 
+@pytest.mark.parametrize(("was", "drifts"), [(0.230, False), (0.236, True)])
+def test_ratio_drifts_relative_to_itself(results: Results, was: float, drifts: bool) -> None:
+    """A ratio of 0.23 may drift by 2 % of itself, 0.0046, not by 2 % of 1."""
+    now = changed(results, "cov_20", 0.230)
+    compared = compare_with_baseline(now, changed(results, "cov_20", was), 2.0, "b.json")
+    found = [row.quantity for row in compared.cases[0].criteria if row.baseline is not None]
+    assert found == (["cov_20"] if drifts else [])
+
+
 @pytest.mark.parametrize(("was", "drifts"), [(27.6 / 1.019, False), (27.6 / 1.021, True), (27.6 / 0.979, True)])
 def test_value_that_drifts_fails_within_its_limits(results: Results, was: float, drifts: bool) -> None:
     compared = compare_with_baseline(results, changed(results, "std_force_N", was), 2.0, "b.json")

@@ -1,0 +1,63 @@
+"""Record against its case: another speed, section, number of pantographs or spacing is another run.
+
+Every tolerance is tested on both sides of the true value, just inside and just outside.
+"""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.grading.record_mismatch import find_record_mismatch
+from pantocheck.conformance.records.record import Record
+
+
+@pytest.fixture
+def record(two_pantograph_case: Case, wave: Any) -> Record:
+    return wave().record(two_pantograph_case)
+
+
+def test_run_of_the_case_matches(two_pantograph_case: Case, record: Record) -> None:
+    assert find_record_mismatch(two_pantograph_case, record) is None
+
+
+@pytest.mark.parametrize(("factor", "matches"), [(0.994, False), (0.996, True), (1.004, True), (1.006, False)])
+def test_speed_agrees_within_half_a_percent(
+    two_pantograph_case: Case, record: Record, factor: float, matches: bool
+) -> None:
+    found = find_record_mismatch(two_pantograph_case, replace(record, speed=factor * record.speed))
+    assert (found is None) is matches
+    assert matches or "km/h, the case runs at 250 km/h" in str(found)
+
+
+@pytest.mark.parametrize("shift", [(0.02, 0.0), (-0.02, 0.0), (0.0, 0.02), (0.0, -0.02), (9.0, 9.0), (-9.0, -9.0)])
+def test_another_analysis_section_is_another_run(
+    two_pantograph_case: Case, record: Record, shift: tuple[float, float]
+) -> None:
+    start, end = record.evaluated
+    found = find_record_mismatch(two_pantograph_case, replace(record, evaluated=(start + shift[0], end + shift[1])))
+    assert found is not None
+    assert found.startswith("the record evaluates")
+
+
+@pytest.mark.parametrize("rows", [[0], [1], [0, 1, 1]])
+def test_fewer_or_more_pantographs_are_another_train(
+    two_pantograph_case: Case, record: Record, rows: list[int]
+) -> None:
+    assert record.contact_height is not None
+    other = replace(
+        record, position=record.position[rows], force=record.force[rows], contact_height=record.contact_height[rows]
+    )
+    found = find_record_mismatch(two_pantograph_case, other)
+    assert found == f"the record has {len(rows)} pantographs, the case has 2"
+
+
+@pytest.mark.parametrize("shift", [-50.0, -2.0, 2.0, 50.0])
+def test_another_spacing_is_another_train(two_pantograph_case: Case, record: Record, shift: float) -> None:
+    found = find_record_mismatch(
+        two_pantograph_case, replace(record, position=record.position + np.array([[0.0], [shift]]))
+    )
+    assert found is not None
+    assert "that of the case 150 m" in found

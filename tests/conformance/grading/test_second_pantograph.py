@@ -1,0 +1,121 @@
+"""The second pantograph is checked and graded like the first: each fault here is a fault of pantograph 2 alone."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.cases.profile_file import load_profile
+from pantocheck.conformance.consistency.check import CheckName
+from pantocheck.conformance.consistency.record_checks import check_record
+from pantocheck.conformance.grading.assessed_record import AssessedRecord, load_assessed_record
+from pantocheck.conformance.grading.profile_grading import assess_record
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.records.record_signals import RecordSignals, evaluate_record
+from pantocheck.conformance.records.record_writing import write_record
+from pantocheck.conformance.records.sidecar_tables import LineTable
+
+
+@pytest.fixture
+def record(two_pantograph_case: Case, wave: Any) -> Record:
+    return wave().record(two_pantograph_case)
+
+
+def _scale_second(values: np.ndarray | None, factor: float) -> np.ndarray:
+    assert values is not None
+    return values * np.array([[1.0], [factor]])
+
+
+def _slow_down_second(position: np.ndarray) -> np.ndarray:
+    start = position[1, 0]
+    return np.array([position[0], start + 0.99 * (position[1] - start)])
+
+
+def _noise(record: Record) -> np.ndarray:
+    """Content up to half the rate, 30 N."""
+    return 30 * np.random.default_rng(3).standard_normal(record.time.size)
+
+
+FAULTS: dict[CheckName, Callable[[Record], Record]] = {
+    "coverage": lambda record: replace(record, position=record.position - np.array([[0.0], [250.0]])),
+    "motion": lambda record: replace(record, position=_slow_down_second(record.position)),
+    "roll-off": lambda record: replace(
+        record, filter_applied_Hz=20.0, force=record.force + np.array([[0.0], [1.0]]) * _noise(record)
+    ),
+    "dynamics": lambda record: replace(record, contact_height=_scale_second(record.contact_height, 0.9)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("check", FAULTS)
+def test_contradiction_of_the_second_pantograph_is_found(
+    two_pantograph_case: Case, record: Record, check: CheckName
+) -> None:
+    low_pass = two_pantograph_case.file.filter.low_pass
+    sound = check_record(two_pantograph_case, RecordSignals(record, low_pass))
+    assert check not in sound or sound[check].kind != "contradiction"
+    findings = check_record(two_pantograph_case, RecordSignals(FAULTS[check](record), low_pass))
+    assert findings[check].kind == "contradiction"
+    assert "pantograph 2" in findings[check].text
+
+
+@pytest.mark.parametrize(("stated", "checked"), [(19.999, True), (20.001, True), (20.03, False)])
+def test_filter_within_a_thousandth_is_that_of_the_case(
+    two_pantograph_case: Case, record: Record, stated: float, checked: bool
+) -> None:
+    """It must be checked, because the suite does not filter again; further above, it does."""
+    rough = replace(record, force=record.force + _noise(record), filter_applied_Hz=stated)
+    findings = check_record(two_pantograph_case, RecordSignals(rough, two_pantograph_case.file.filter.low_pass))
+    assert ("roll-off" in findings) is checked
+
+
+def test_contact_height_is_that_of_the_pantograph(two_pantograph_case: Case, record: Record) -> None:
+    doubled = replace(record, contact_height=_scale_second(record.contact_height, 2.0))
+    values = evaluate_record(doubled, two_pantograph_case.file.filter.low_pass).values
+    first, second = (values[number]["contact_height_range_mm"] for number in (1, 2))
+    assert second == pytest.approx(2 * first, rel=0.01)
+
+
+@pytest.fixture
+def assessed(two_pantograph_case: Case, wave: Any, tmp_path: Path) -> Callable[..., AssessedRecord]:
+    """Assessed record of two pantographs with given standard deviations."""
+
+    def load(*sigma: float, profile: str = "acceptance-ac") -> AssessedRecord:
+        records = [wave(sigma=value).record(two_pantograph_case) for value in sigma]
+        rows = np.array([record.force[i] for i, record in enumerate(records)])
+        heights = np.array([r.contact_height[i] for i, r in enumerate(records) if r.contact_height is not None])
+        record = replace(records[0], force=rows, contact_height=heights, position=records[0].position[: len(sigma)])
+        path = write_record(tmp_path / f"{'_'.join(map(str, sigma))}.csv", record)
+        return load_assessed_record(path, load_profile(profile), LineTable(span_m=60.0, wave_speed_m_s=120.0))
+
+    return load
+
+
+def test_assessment_fails_by_the_second_pantograph(assessed: Callable[..., AssessedRecord]) -> None:
+    """At most 0.3 of the mean of 119 N is 35.7 N."""
+    results = assess_record(assessed(28.0, 38.0), load_profile("acceptance-ac"))
+    verdicts = {c.pantograph: c.verdict for c in results.cases[0].criteria if c.quantity == "cov_20"}
+    assert verdicts == {1: "pass", 2: "fail"}
+    values = {c.pantograph: c.value for c in results.cases[0].criteria if c.quantity == "cov_20"}
+    assert values[2] == pytest.approx(38 / 119, rel=0.01)
+
+
+def test_limit_for_one_pantograph_keeps_the_rule_of_the_other(assessed: Callable[..., AssessedRecord]) -> None:
+    limit = Limit(quantity="cov_20", pantograph=1, upper=0.5, trust="primary", source="own")
+    results = assess_record(assessed(28.0, 38.0), load_profile("acceptance-ac"), limits=[limit])
+    rows = {c.pantograph: (c.upper, c.verdict) for c in results.cases[0].criteria if c.quantity == "cov_20"}
+    assert rows == {1: (0.5, "pass"), 2: (0.3, "fail")}
+
+
+@pytest.mark.parametrize(("subject", "measured"), [((28.0, 29.0), (30.0,)), ((28.0,), (30.0, 31.0))])
+def test_records_of_different_trains_are_not_compared(
+    assessed: Callable[..., AssessedRecord], subject: tuple[float, ...], measured: tuple[float, ...]
+) -> None:
+    records = [assessed(*sigma, profile="line-test") for sigma in (subject, measured)]
+    with pytest.raises(InputError, match="Compare records of one train"):
+        assess_record(records[0], load_profile("line-test"), measured=records[1])
