@@ -3,9 +3,11 @@
 import multiprocessing
 import os
 import signal
+import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from multiprocessing.process import BaseProcess
 from types import FrameType
 
 from pantocheck.conformance.cases.case import Case
@@ -15,7 +17,15 @@ from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.results.results_building import build_results, utc_now
 from pantocheck.conformance.results.results_format import CaseResult, Results, SystemIdentity
 from pantocheck.conformance.studies.study_dispatch import run_study
+from pantocheck.conformance.systems.process_control import (
+    adopt_orphans,
+    die_with_parent,
+    interruption_exit_code,
+)
 from pantocheck.conformance.systems.system import System
+
+GRACE = 2.0
+"""Time of a process to end its program after a signal [s]."""
 
 Progress = Callable[[CaseResult], None]
 """Callback that receives each result as soon as its case is finished."""
@@ -28,11 +38,13 @@ class RunInterrupted(Exception):
     ----------
     results : Results
         Results of all cases; unfinished cases are skipped with this reason.
+    exit_code : int
+        128 and the number of the signal.
     """
 
-    def __init__(self, results: Results) -> None:
+    def __init__(self, results: Results, exit_code: int) -> None:
         super().__init__("interrupted")
-        self.results = results
+        self.results, self.exit_code = results, exit_code
 
 
 def run_cases(
@@ -68,7 +80,7 @@ def run_cases(
     Raises
     ------
     RunInterrupted
-        The user pressed Ctrl-C; the exception holds the results.
+        Ctrl-C, SIGTERM or SIGHUP ended the run; the exception holds the results.
     """
     started = utc_now()
     finished: dict[str, CaseResult] = {}
@@ -87,13 +99,14 @@ def run_cases(
             for case in _order_cases(cases):
                 keep(run_when_ready(case, system, trust, finished, cases))
         else:
-            _run_in_parallel(cases, system, trust, jobs, finished, keep)
-    except KeyboardInterrupt:
+            with adopt_orphans():
+                _run_in_parallel(cases, system, trust, jobs, finished, keep)
+    except KeyboardInterrupt as interruption:
         for case in cases:
             if case.id not in finished:
                 reason = "the run was interrupted before this case was finished"
                 finished[case.id] = build_ungraded(case, "skip", reason)
-        raise RunInterrupted(combine()) from None
+        raise RunInterrupted(combine(), interruption_exit_code(interruption)) from None
     return combine()
 
 
@@ -151,6 +164,7 @@ def _run_in_parallel(
 ) -> None:
     waiting = _order_cases(cases)
     running: dict[Future[CaseResult], Case] = {}
+    others = set(multiprocessing.active_children())
     pool = _start_pool(jobs)
     try:
         while waiting or running:
@@ -171,8 +185,21 @@ def _run_in_parallel(
                 running.clear()
                 pool.shutdown(wait=False)
                 pool = _start_pool(jobs)
+    except KeyboardInterrupt:
+        _end_workers(set(multiprocessing.active_children()) - others)
+        raise
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _end_workers(workers: set[BaseProcess]) -> None:
+    """End the processes of a pool: a signal lets each end its program, and a kernel that goes on is killed."""
+    for worker in workers:
+        worker.terminate()
+    limit = time.monotonic() + GRACE
+    for worker in workers:
+        worker.join(max(0.0, limit - time.monotonic()))
+        worker.kill()
 
 
 def _keep_finished(running: dict[Future[CaseResult], Case], keep: Progress) -> list[Case]:
@@ -195,14 +222,19 @@ def _start_pool(jobs: int) -> Executor:
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")
     # Fresh interpreters: threads of a compiled kernel do not survive a fork.
-    return ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn"), _handle_interrupt)
+    return ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn"), _handle_signals)
 
 
-def _handle_interrupt() -> None:
-    """In a worker: Ctrl-C reaches all processes; only the parent process reports it."""
-    signal.signal(signal.SIGINT, _exit_on_signal)
+def _handle_signals() -> None:
+    """In a worker: a signal ends the program of its case; only the parent process reports it."""
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, _exit_on_signal)
+    die_with_parent(signal.SIGTERM)
 
 
 def _exit_on_signal(number: int, frame: FrameType | None) -> None:
-    # An exception, so that a system can stop its own processes before this process ends.
+    # An exception, so that a system can stop its own processes before this process ends. The pool keeps the process
+    # alive after it; the alarm ends it.
+    if hasattr(signal, "alarm"):
+        signal.alarm(int(GRACE))
     raise SystemExit(128 + number)

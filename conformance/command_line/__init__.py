@@ -1,8 +1,41 @@
 """The `pantocheck` command."""
 
+import errno
+import os
+import signal
+import sys
+from types import FrameType
+from typing import NoReturn
+
 from pantocheck.conformance.command_line.app import app
+from pantocheck.conformance.command_line.guard import FULL
 
 
 def main() -> None:
     """Entry point of the `pantocheck` command."""
-    app(prog_name="pantocheck")
+    for name in ("SIGTERM", "SIGHUP"):
+        number = getattr(signal, name, None)
+        if number is not None and signal.getsignal(number) is signal.SIG_DFL:  # nohup ignores SIGHUP
+            signal.signal(number, _interrupt)
+    exit_code: str | int | None = 0
+    try:
+        try:
+            app(prog_name="pantocheck")
+        except SystemExit as end:
+            exit_code = end.code
+        if sys.stdout is not None and not sys.stdout.closed:
+            sys.stdout.flush()
+    except OSError as error:
+        if error.errno not in (*FULL, errno.EPIPE):
+            raise
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # the interpreter flushes again
+        if error.errno in FULL:
+            text = f"The standard output cannot be written ({error.strerror}).\n  Free space on its device."
+            print(text, file=sys.stderr)
+            exit_code = 2
+    sys.exit(exit_code)
+
+
+def _interrupt(number: int, frame: FrameType | None) -> NoReturn:
+    """End a run as Ctrl-C does: finished work is kept, programs and processes are ended."""
+    raise KeyboardInterrupt(number)

@@ -1,5 +1,6 @@
 """Error handling of all commands: every failure becomes a message and an exit code."""
 
+import errno
 import functools
 import os
 import traceback
@@ -9,12 +10,14 @@ from typing import NoReturn, ParamSpec, TypeVar
 import typer
 
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.systems.process_control import interruption_exit_code
 from pantocheck.model.failures import SimulationError
 
 BAD_INPUT = 2
 """Exit code after wrong input, a failure of the model or an internal error."""
 
-INTERRUPTED = 130
+FULL = (errno.ENOSPC, errno.EFBIG, errno.EDQUOT, errno.EIO)
+"""Errors of a device that takes no more output."""
 
 TRACEBACK_VARIABLE = "PANTOCHECK_TRACEBACK"
 
@@ -33,8 +36,9 @@ def guard_command(command: Callable[P, R]) -> Callable[P, R]:
     Returns
     -------
     callable
-        The same command. It ends with exit code 2 after an `InputError`, a `SimulationError` or an internal error, and
-        with 130 after Ctrl-C. The traceback of an internal error is printed if `PANTOCHECK_TRACEBACK` is set.
+        The same command. It ends with exit code 2 after an `InputError`, a `SimulationError` or an internal error, with
+        130 after Ctrl-C, 143 after SIGTERM and 129 after SIGHUP. The traceback of an internal error is printed if
+        `PANTOCHECK_TRACEBACK` is set.
     """
 
     @functools.wraps(command)
@@ -47,17 +51,14 @@ def guard_command(command: Callable[P, R]) -> Callable[P, R]:
             _end(str(error), BAD_INPUT)
         except SimulationError as error:
             _end(f"{error}\n  Check the data of the line and of the pantographs.", BAD_INPUT)
-        except KeyboardInterrupt:
-            _end("Interrupted.", INTERRUPTED)
+        except KeyboardInterrupt as interruption:
+            _end("Interrupted.", interruption_exit_code(interruption))
+        except OSError as error:
+            if error.errno in FULL:
+                raise  # the standard output; files end as `InputError`
+            _end_internal(error)
         except Exception as error:
-            if os.environ.get(TRACEBACK_VARIABLE):
-                traceback.print_exc()
-            _end(
-                f"internal error: {type(error).__name__}: {error}\n"
-                "  This is a defect of Pantocheck. Please report it with the command and its input files.\n"
-                f"  Set {TRACEBACK_VARIABLE}=1 to print the traceback.",
-                BAD_INPUT,
-            )
+            _end_internal(error)
 
     return run
 
@@ -65,6 +66,17 @@ def guard_command(command: Callable[P, R]) -> Callable[P, R]:
 def strip_control_characters(text: str) -> str:
     """Replace control characters, which a terminal would obey, in text that comes from a file."""
     return "".join(character if character.isprintable() or character == "\n" else "?" for character in text)
+
+
+def _end_internal(error: Exception) -> NoReturn:
+    if os.environ.get(TRACEBACK_VARIABLE):
+        traceback.print_exc()
+    _end(
+        f"internal error: {type(error).__name__}: {error}\n"
+        "  This is a defect of Pantocheck. Please report it with the command and its input files.\n"
+        f"  Set {TRACEBACK_VARIABLE}=1 to print the traceback.",
+        BAD_INPUT,
+    )
 
 
 def _end(message: str, exit_code: int) -> NoReturn:

@@ -5,7 +5,6 @@ from typing import Annotated
 
 import typer
 
-from pantocheck.conformance.command_line.guard import INTERRUPTED
 from pantocheck.conformance.command_line.options import (
     AcceptUnverifiedOption,
     BaselineOption,
@@ -82,16 +81,16 @@ def run_command(
     )
     prepared = prepare_plan(options)
     system_under_test, cases = prepared.start_system(), prepared.cases
-    interrupted = False
+    interrupted = 0
     try:
         with report_progress(len(cases)) as progress:
             jobs = min(options.jobs, len(cases))
             results = run_cases(cases, system_under_test, options.trust, jobs, progress, prepared.participation)
     except RunInterrupted as interruption:
-        results, interrupted = interruption.results, True
+        results, interrupted = interruption.results, interruption.exit_code
         typer.echo("Interrupted: the results of the finished cases are written.", err=True)
     if prepared.baseline is not None:
         write_all(results, prepared.out, ("json",))  # kept if the comparison fails
         results = prepared.compare(results)
     print_results(results, write_all(results, prepared.out, prepared.formats))
-    raise typer.Exit(INTERRUPTED if interrupted else EXIT_CODES[results.verdict])
+    raise typer.Exit(interrupted or EXIT_CODES[results.verdict])

@@ -2,6 +2,7 @@
 
 import tempfile
 import time
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
@@ -69,9 +70,12 @@ class CommandSystem:
                     answer = _parse_answer(program.line(limit))
                     wall = time.monotonic() - begin
                     program.send(encode_message("stop"))
-                    warnings = (
-                        () if program.ended() else (f"{self.name} did not end after the message stop, and was ended",)
-                    )
+                    warnings: tuple[str, ...] = ()
+                    if not program.ended():
+                        warnings = (f"{self.name} did not end after the message stop, and was ended",)
+                    elif isinstance(answer, DeliveredAnswer):
+                        answer = _find_late_error(program.late_lines()) or answer
+                        program.refuse_late_failure()
                 match answer:
                     case SkippedAnswer():
                         return Skipped(answer.reason)
@@ -92,6 +96,16 @@ def _parse_answer(line: bytes) -> DeliveredAnswer | SkippedAnswer | ErroredAnswe
     if answer.id != RUN:
         raise AnswerRefused(f"it answered run {answer.id} in place of run {RUN}")
     return answer
+
+
+def _find_late_error(lines: list[bytes]) -> ErroredAnswer | None:
+    """Error that a program reports after it has delivered; text that is no message is ignored."""
+    for line in lines:
+        with suppress(AnswerRefused):
+            answer = parse_message(line)
+            if isinstance(answer, ErroredAnswer):
+                return answer
+    return None
 
 
 def _start_program(program: Program, limit: float) -> Started:

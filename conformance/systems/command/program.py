@@ -13,6 +13,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import IO
 
+from pantocheck.conformance.systems.process_control import adopt_orphans, die_with_parent
+
 LONGEST_LINE = 1_000_000
 """Largest size of an answer [bytes]; numbers belong into record files."""
 MOST_OUTPUT = 10_000_000
@@ -47,6 +49,8 @@ class Program:
 
     def __init__(self, arguments: Sequence[str], folder: Path) -> None:
         self._mark = uuid.uuid4().hex
+        self._adoption = adopt_orphans()
+        self._adoption.__enter__()
         try:
             self._process = subprocess.Popen(
                 arguments,
@@ -56,9 +60,12 @@ class Program:
                 cwd=folder,
                 env={**os.environ, MARK: self._mark, "TMPDIR": str(folder)},
                 start_new_session=True,
+                # One call of the C library between fork and exec, which takes no lock of another thread.
+                preexec_fn=die_with_parent if os.name == "posix" else None,  # noqa: PLW1509
                 creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),
             )
         except OSError as error:
+            self._adoption.__exit__(None, None, None)
             raise ProgramFailed(f"cannot be started ({error.strerror})") from None
         self._lines: queue.SimpleQueue[bytes | ProgramFailed | None] = queue.SimpleQueue()
         self._errors = bytearray()
@@ -112,6 +119,26 @@ class Program:
             raise ProgramFailed(f"{self._how_it_ended()} before it answered{self._last_words()}")
         return line
 
+    def refuse_late_failure(self) -> None:
+        """Refuse a program that fails after its answer.
+
+        Raises
+        ------
+        ProgramFailed
+            It ended with an exit code that is not 0, or by a signal.
+        """
+        if self._process.returncode:
+            raise ProgramFailed(f"{self._how_it_ended()} after it had delivered{self._last_words()}")
+
+    def late_lines(self) -> list[bytes]:
+        """Lines that followed the last answer, once the program has ended."""
+        lines = []
+        self._readers[0].join(PATIENCE)
+        with contextlib.suppress(queue.Empty):
+            while isinstance(line := self._lines.get_nowait(), bytes):
+                lines.append(line)
+        return lines
+
     def ended(self, patience: float | None = None) -> bool:
         """Wait for the end of the program, by default for `PATIENCE` [s]; False if it still runs."""
         try:
@@ -156,6 +183,7 @@ class Program:
                 )  # fmt: skip
             self._process.kill()
         self.ended()
+        self._adoption.__exit__(None, None, None)
         for reader in self._readers:
             reader.join(PATIENCE)
         for pipe in (self._process.stdin, self._process.stdout, self._process.stderr):

@@ -324,3 +324,14 @@ def test_bad_input_leaves_no_folder(command: tuple[str, ...], tmp_path: Path, mo
     out = Path("new") / ("out.csv" if command[0] in ("drop", "simulate") else "out")
     assert pantocheck(*command, "--out", out).exit_code == 2
     assert not Path("new").exists()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="/dev/full is a device of Linux")
+@pytest.mark.parametrize("redirection", ["> /dev/full", "| head -1 > /dev/null"])
+def test_output_that_cannot_be_written_gives_no_traceback(redirection: str) -> None:
+    command = f"{sys.executable} -c 'from pantocheck.conformance.command_line import main; main()'"
+    shell = f"{command} show en50318-2002/250 {redirection}; {command} --help {redirection}"
+    result = subprocess.run(["sh", "-c", shell], capture_output=True, text=True, check=False, timeout=60)
+    assert "Traceback" not in result.stderr
+    assert "internal error" not in result.stderr
+    assert ("cannot be written" in result.stderr) == ("full" in redirection)

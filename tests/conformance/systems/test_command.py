@@ -2,8 +2,11 @@
 
 import json
 import os
+import signal
+import subprocess
 import sys
 import tempfile
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -17,6 +20,7 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.plan import read_plan
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.results.outcome import Delivered, Errored
+from pantocheck.conformance.results.results_reading import read_results
 from pantocheck.conformance.runner import run_cases
 from pantocheck.conformance.schemas import build_schema
 from pantocheck.conformance.systems.command.program_arguments import split_arguments
@@ -63,6 +67,14 @@ for line in sys.stdin:
         subprocess.Popen([sys.executable, "-c", "import time; time.sleep(1000)"], start_new_session=True)
         subprocess.Popen([sys.executable, "-c", "import time; time.sleep(1000)"])
         hang()
+    if how == "daemon":
+        subprocess.Popen(
+            [sys.executable, "-S", "-c", "import os, time; os.fork() and os._exit(0); time.sleep(1001)"],
+            start_new_session=True, env={}, stdin=-3, stdout=-3, stderr=-3,
+        ).wait()
+    if how == "hang with daemon":
+        subprocess.Popen([sys.executable, "-S", "-c", "import time; time.sleep(1001)"], start_new_session=True, env={})
+        hang()
     if how == "garbage":
         print("Reading licence ...", flush=True)
     if how == "partial":
@@ -108,6 +120,12 @@ for line in sys.stdin:
         shutil.copy("record.csv", "b.csv")
         record["table"] = digest("b.csv")
     say(message="delivered", id=number, record=record, static={"wave_speed_m_s": 121.7}, notes=["as asked"])
+    if how == "late exit":
+        sys.exit(9)
+    if how == "late crash":
+        os.kill(os.getpid(), 11)
+    if how == "late error":
+        say(message="errored", id=number, reason="the licence ended")
 """
 
 
@@ -191,6 +209,9 @@ def test_answers_follow_their_schema() -> None:
         ("link", "error", "p: the file 'record.csv' lies outside the folder of the run"),
         ("absent", "error", "p: there is no file 'record.csv' in the folder of the run"),
         ("changed", "error", "p: the content of 'record.csv' does not agree with its sha256"),
+        ("late exit", "error", "p: ended with exit code 9 after it had delivered"),
+        ("late crash", "error", "p: was ended by SIGSEGV after it had delivered"),
+        ("late error", "error", "the licence ended"),
         ("other table", "error", "p: the sidecar is of 'record.csv', the answer names 'b.csv'"),
     ],
 )
@@ -231,6 +252,73 @@ def test_time_limit_ends_the_program_and_all_its_children(program: Callable[...,
     outcome = program("child", timeout=1.0).run(case_250)
     assert outcome == Errored("p: gave no answer within 1 s")
     assert not running_processes(b"time.sleep(1000)")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="orphans are adopted on Linux")
+@pytest.mark.parametrize("how", ["daemon", "hang with daemon"])
+def test_descendant_without_mark_in_a_session_of_its_own_is_ended(
+    program: Callable[..., System], case_250: Case, how: str
+) -> None:
+    outcome = program(how, timeout=3.0).run(case_250)
+    assert isinstance(outcome, Delivered if how == "daemon" else Errored)
+    assert not running_processes(b"time.sleep(1001)")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the signal of the parent's end is of Linux")
+def test_killed_process_ends_its_program(tmp_path: Path) -> None:
+    """A worker that is killed cannot end its program; the kernel does."""
+    code = (
+        "import pathlib, sys; from pantocheck.conformance.systems.command.program import Program; "
+        "program = Program([sys.executable, '-S', '-c', 'print(1, flush=True); import time; time.sleep(1002)'], "
+        "pathlib.Path(sys.argv[1])); print(program.line(20.0), flush=True); import time; time.sleep(60)"
+    )
+    with subprocess.Popen([sys.executable, "-c", code, str(tmp_path)], stdout=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == b"b'1'\n"
+        process.kill()
+    wait_for_end(b"time.sleep(1002)")
+
+
+def wait_for_end(text: bytes) -> None:
+    limit = time.monotonic() + 5.0
+    while running_processes(text):
+        assert time.monotonic() < limit
+        time.sleep(0.02)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="signals as on Linux")
+@pytest.mark.parametrize(
+    ("number", "jobs", "exit_code"),
+    [(signal.SIGTERM, 1, 143), (signal.SIGHUP, 1, 129), (signal.SIGINT, 2, 130)],
+)
+def test_signal_to_the_main_process_keeps_results_and_ends_programs(
+    case_250: Case, wave: type[Wave], tmp_path: Path, number: int, jobs: int, exit_code: int
+) -> None:
+    """The second case hangs; the first one is finished and must be in the results."""
+    write_record(tmp_path / "record.csv", wave().record(case_250), case_250.id)
+    script, log, out = tmp_path / "p.py", tmp_path / "log", tmp_path / "out"
+    script.write_text(PROGRAM.replace('how == "hang"', 'how == "hang" and case.endswith("300")'))
+    system = f"command:{sys.executable} -S '{script}' hang '{tmp_path}' '{log}'"
+    command = [sys.executable, "-c", "from pantocheck.conformance.command_line import main; main()", "run"]
+    options = ["en50318-2002/*", "--system", system, "--out", str(out), "--formats", "json", "--jobs", str(jobs)]
+    with subprocess.Popen([*command, *options], stderr=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+        limit = time.monotonic() + 60.0
+        while not (log.exists() and '"en50318-2002/300"' in log.read_text() and '"stop"' in log.read_text()[-40:]):
+            if log.exists() and log.read_text().count('"message": "run"') == 2 and log.read_text().count('"stop"') >= 2:
+                break
+            assert time.monotonic() < limit
+            time.sleep(0.05)
+        time.sleep(0.5 if jobs == 1 else 4.0)
+        start = time.monotonic()
+        process.send_signal(number)
+        _, errors = process.communicate(timeout=30)
+        assert time.monotonic() - start < 10.0
+    assert process.returncode == exit_code
+    assert b"Traceback" not in errors
+    assert not running_processes(str(script).encode())
+    verdicts = {case.id: case.verdict for case in read_results(out / "results.json").cases}
+    assert verdicts["en50318-2002/250"] not in ("skip", "error")
+    assert verdicts["en50318-2002/300"] == "skip"
 
 
 def test_program_that_does_not_stop_is_ended_with_a_warning(
