@@ -96,7 +96,7 @@ def _coefficient_table(rows: list[dict[str, Any]]) -> doc.Table:
         "Multiplies": _matrix,
         "Value": lambda row: f"{format_value(row['value'])} {COEFFICIENT_UNITS[row['matrix']]}",
         "95 % interval": lambda row: f"{format_value(row['low_95'], 3)} to {format_value(row['high_95'], 3)}",
-        "Determined": lambda row: "yes" if row["determined"] else f"not determined: {row['reason']}",
+        "Determined": lambda row: "yes" if row["determined"] else "not determined",
     }
     return doc.make_grid("Coefficients", rows, cells)
 

@@ -26,6 +26,8 @@ from pantocheck.conformance.identification.damping.observability import judge_co
 from pantocheck.conformance.identification.mode import MeasuredLine, Mode, ModesFile, SensorShape
 from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.reports.document import WarningBox
+from pantocheck.conformance.reports.mass_drop.damping_report import build_damping_document
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.model import Catenary, Kind, Rayleigh, discretise
 from pantocheck.model.modal.modes import compute_modes, damping_ratios, deflection_at
@@ -276,6 +278,9 @@ def test_permitted_other_line_is_marked_in_every_file(tmp_path: Path, measured: 
     for text in (page, " ".join(paper.split())):
         assert "The line of the fit is NOT the line of the record." in text
         assert difference in text
+    box = build_damping_document(results, "").blocks[0]
+    assert isinstance(box, WarningBox)
+    assert box.sentences[: len(results["warnings"])] == tuple(results["warnings"])
     for name in ("damping.toml", "damping_with_modal.toml"):
         text = (tmp_path / "fit" / name).read_text()
         assert difference in text.splitlines()[0]
