@@ -46,9 +46,6 @@ from pantocheck.conformance.systems.reference_simulator import ReferenceSimulato
 
 SOURCE = library_folder() / "en50318-2002"
 
-MARKS = ("modified copy of", "lowers the trust")
-"""Texts on page 1 that tell the reader of a changed case or of a limits file that lowers the trust of a limit."""
-
 
 @dataclass(frozen=True)
 class Base:
@@ -248,8 +245,9 @@ def grade_trial(base: Base, dossier: Dossier, folder: Path) -> tuple[str, bool]:
         results = base.grade(folder)
     except InputError:
         return "refused", False
-    text = results.to_json().decode()
-    return results.verdict, EXIT_CODES[results.verdict] == 0 and not any(mark in text for mark in MARKS)
+    # Page 1 names a changed copy of a library case, and limits that a limits file weakens.
+    named = any(case.library == "modified" or case.limit_changes for case in results.cases)
+    return results.verdict, EXIT_CODES[results.verdict] == 0 and not named
 
 
 def run_trial(bases: list[Base], number: int, seed: int, folder: Path) -> Trial:
