@@ -36,6 +36,15 @@ def list_identity_warnings(results: dict[str, Any]) -> tuple[str, ...]:
     return (*copies, *(warn_of_changes(case) for case in results["cases"] if case["limit_changes"]))
 
 
+def summarise_identity(results: dict[str, Any]) -> list[str]:
+    """Sentences for the headline on modified copies and weakened limits."""
+    copies = sum(case["library"] == "modified" for case in results["cases"])
+    changed = sum(bool(case["limit_changes"]) for case in results["cases"])
+    sentences = [f"Modified copies of the library: {copies}."] if copies else []
+    cases = "1 case" if changed == 1 else f"{changed} cases"
+    return [*sentences, f"The limits file weakens limits or changes their trust in {cases}."] if changed else sentences
+
+
 def warn_of_changes(case: dict[str, Any]) -> str:
     """Warning on the limits of a case that a limits file weakens."""
     changes = case["limit_changes"]
@@ -76,11 +85,19 @@ def build_scope_section(results: dict[str, Any], anchors: dict[str, str]) -> tup
         cases: list[doc.Inline] = []
         for name in step["cases"]:
             label = doc.Link(name, anchors[name]) if name in anchors else name
-            cases += [", " if cases else "", label, " ", doc.VerdictMark(verdicts[name])]
+            cases += [", " if cases else "", label]
+            if step["state"] != "informative":  # a verdict belongs to other steps of the case, or to a modified copy
+                cases += [" ", doc.VerdictMark(verdicts[name])]
         rows.append((words["step"][step["step"]], step["state"], tuple(cases) or "–"))
     listed = {name for step in results["scope"] for name in step["cases"]}
     outside = [name for name in verdicts if name not in listed]
     states = " ".join(f"{name.capitalize()}: {meaning}." for name, meaning in words["state"].items())
     rest = f" Cases outside these steps: {', '.join(outside)}." if outside else ""
-    columns = (doc.Column("Step of the EN 50318 procedure", share=2), doc.Column("State"), doc.Column("Cases", share=3))
-    return (doc.Section("Scope", (doc.Table(columns, tuple(rows)), doc.SmallPrint(states + rest)), anchor="scope"),)
+    columns = (doc.Column("Step", share=2), doc.Column("State"), doc.Column("Cases", share=3))
+    return (
+        doc.Section(
+            "Scope: steps of the EN 50318 procedure",
+            (doc.Table(columns, tuple(rows)), doc.SmallPrint(states + rest)),
+            anchor="scope",
+        ),
+    )

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from pantocheck.conformance.reports.certificate.criteria_table import criterion_title, format_signed, is_close
+from pantocheck.conformance.reports.certificate.scope_page import summarise_identity
 from pantocheck.conformance.reports.document import BulletList, Section
 from pantocheck.conformance.reports.page_text import format_beside_limits, format_limits
 from pantocheck.conformance.reports.words import name_owner, read_words
@@ -51,7 +52,7 @@ def build_headline(results: dict[str, Any]) -> str:
     if shown := results["information"]:
         more = f" and {len(shown) - NAMES_SHOWN} more" if len(shown) > NAMES_SHOWN else ""
         sentences.append(f"For information, not part of the verdict: {', '.join(shown[:NAMES_SHOWN])}{more}.")
-    return " ".join(sentences)
+    return " ".join([*sentences, *summarise_identity(results)])
 
 
 def describe_record(case: dict[str, Any]) -> str | None:

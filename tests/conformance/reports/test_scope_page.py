@@ -9,8 +9,15 @@ from pypdf import PdfReader
 
 from pantocheck.conformance.command_line.results_output import print_results
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
-from pantocheck.conformance.reports.certificate.scope_page import CHANGES_SHOWN, describe_origin, list_identity_warnings
+from pantocheck.conformance.reports.certificate.scope_page import (
+    CHANGES_SHOWN,
+    build_scope_section,
+    describe_origin,
+    list_identity_warnings,
+    summarise_identity,
+)
 from pantocheck.conformance.reports.certificate.summary_page import build_summary
+from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline
 from pantocheck.conformance.reports.document import Section, Table, VerdictMark, WarningBox
 from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.reports.formats.junit import render_junit
@@ -48,6 +55,7 @@ def test_modified_copy_is_named_in_every_format(copied: dict[str, Any], capsys: 
     ):
         assert text.count("en50318-2002/250") == text.count(COPY) > 0
     assert copied["cases"][0]["library"] == "modified"
+    assert "Modified copies of the library: 1." in build_headline(copied)
 
 
 def test_page_1_names_modified_copy_and_weakened_limit(copied: dict[str, Any]) -> None:
@@ -60,6 +68,8 @@ def test_page_1_names_modified_copy_and_weakened_limit(copied: dict[str, Any]) -
 def test_weakened_limit_is_named_in_every_format(results: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> None:
     changed = describe(results, limit_changes=[CHANGE])
     print_results(Results.model_validate(changed), [])
+    weakened = "The limits file weakens limits or changes their trust in 1 case."
+    assert build_headline(changed).endswith(weakened)
     texts = [render_html(build_certificate(changed)), capsys.readouterr().out, render_junit(changed).decode()]
     texts.append(render_markdown(build_summary(changed)).replace("\\_", "_"))
     assert all(CHANGE in " ".join(text.split()) for text in texts)
@@ -74,6 +84,7 @@ def test_page_1_shows_a_few_weakened_limits_and_their_number(results: dict[str, 
 
 def test_library_case_needs_no_warning(results: dict[str, Any]) -> None:
     document = build_certificate(describe(results))
+    assert not summarise_identity(describe(results))
     assert not [block for block in document.blocks if isinstance(block, WarningBox)]
 
 
@@ -116,6 +127,16 @@ def test_scope_lists_every_step_with_its_cases(results: dict[str, Any]) -> None:
         ("Limits of validity", "not done"),
     ]
     assert VerdictMark("pass") in table.rows[2][2]
+
+
+def test_verdict_of_a_case_does_not_stand_beside_an_informative_step(results: dict[str, Any]) -> None:
+    """The static case passes by its dropper lengths; its apparent mass has no limit."""
+    static = describe(results, steps=["pantograph_model", "static_check"])
+    [scope] = build_scope_section(static, {})
+    table = scope.blocks[0]
+    assert isinstance(table, Table)
+    assert table.rows[0][1:] == ("informative", ("", "en50318-2002/250"))
+    assert VerdictMark("pass") in table.rows[1][2]
 
 
 def test_scope_is_on_page_1_of_the_pdf(results: dict[str, Any]) -> None:
