@@ -1,0 +1,42 @@
+"""Folder of the compiled kernels where neither the installation nor the home of the user can be written."""
+
+import atexit
+import os
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+
+VARIABLE = "NUMBA_CACHE_DIR"
+
+
+def provide_kernel_cache() -> None:
+    """Let numba keep its kernels in a new private folder if it finds no folder of its own; the exit removes it.
+
+    Cached kernels are pickles, so another user must not write them: the folder has a random name and the mode 0700.
+    Processes of a pool inherit it. Without a folder, numba refuses to compile.
+    """
+    home = Path(os.environ.get("XDG_CACHE_HOME") or Path(os.path.expanduser("~")) / ".cache")
+    if VARIABLE in os.environ or any(_is_writable(folder) for folder in (Path(__file__).parent / "__pycache__", home)):
+        return
+    folder = tempfile.mkdtemp(prefix="pantocheck-kernels-")
+    atexit.register(_remove, folder, os.getpid())
+    os.environ[VARIABLE] = folder
+    if "numba" in sys.modules:
+        sys.modules["numba"].config.CACHE_DIR = folder
+    print(
+        "The kernels are compiled for this run only, because neither the installation nor the home folder can be\n"
+        f"  written. Set {VARIABLE} to a folder of yours to keep them.",
+        file=sys.stderr,
+    )
+
+
+def _is_writable(folder: Path) -> bool:
+    """Whether a folder, or the nearest existing folder above it, can be written."""
+    existing = next(path for path in (folder, *folder.parents) if os.path.exists(path))
+    return os.path.isdir(existing) and os.access(existing, os.W_OK | os.X_OK)
+
+
+def _remove(folder: str, process: int) -> None:
+    if os.getpid() == process:
+        shutil.rmtree(folder, ignore_errors=True)

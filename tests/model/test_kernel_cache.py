@@ -1,0 +1,71 @@
+"""Cache of the compiled kernels: a private folder where nothing else can be written."""
+
+import os
+import shutil
+import stat
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from pantocheck.model import kernel_cache
+
+
+def test_private_folder_is_provided_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Kernels are pickles: a folder that others can write, or whose name they can guess, would run their code."""
+    monkeypatch.setattr(kernel_cache, "_is_writable", lambda folder: False)
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    monkeypatch.setitem(sys.modules, "numba", None)
+    monkeypatch.delitem(sys.modules, "numba")
+    monkeypatch.setenv(kernel_cache.VARIABLE, "")
+    monkeypatch.delenv(kernel_cache.VARIABLE)
+    kernel_cache.provide_kernel_cache()
+    kernel_cache.provide_kernel_cache()
+    (folder,) = tmp_path.iterdir()
+    assert os.environ[kernel_cache.VARIABLE] == str(folder)
+    assert stat.S_IMODE(folder.stat().st_mode) == 0o700
+    assert folder.stat().st_uid == os.getuid()
+    assert capsys.readouterr().err.count("kernels are compiled for this run only") == 1
+
+
+def test_folder_of_the_user_is_kept(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(kernel_cache, "_is_writable", lambda folder: False)
+    monkeypatch.setenv(kernel_cache.VARIABLE, str(tmp_path))
+    kernel_cache.provide_kernel_cache()
+    assert os.environ[kernel_cache.VARIABLE] == str(tmp_path)
+
+
+@pytest.mark.parametrize(("path", "writable"), [("", True), ("a/b", True), ("file", False), ("file/a", False)])
+def test_writable_folder_is_found(path: str, writable: bool, tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    assert kernel_cache._is_writable(tmp_path / path) is writable
+
+
+@pytest.mark.skipif(os.getuid() != 0 or shutil.which("setpriv") is None, reason="another user is needed")
+def test_kernels_are_loaded_from_a_read_only_installation_without_home() -> None:
+    """Another user, who may read everything and write nothing but the folder of temporary files."""
+    code = "import os, pantocheck.model.fem.residual_flexibility; print(os.environ['NUMBA_CACHE_DIR'])"
+    user = [
+        "setpriv",
+        "--reuid=65534",
+        "--clear-groups",
+        *(f"--{kind}-caps=+dac_read_search" for kind in ("inh", "ambient")),
+    ]
+    environment = {"PATH": os.environ["PATH"], "HOME": "/nonexistent", "PYTHONPATH": os.pathsep.join(sys.path)}
+    result = subprocess.run(
+        [*user, sys.executable, "-c", code],
+        env=environment,
+        cwd="/",
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=60,
+    )
+    if "setpriv:" in result.stderr:
+        pytest.skip("no capabilities here")
+    assert result.returncode == 0, result.stderr
+    assert result.stderr.count("kernels are compiled for this run only") == 1
+    assert not Path(result.stdout.strip()).exists()  # removed at the exit
