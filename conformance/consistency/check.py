@@ -1,6 +1,6 @@
 """Check of a record, and the finding it can return."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -24,6 +24,11 @@ class Finding:
 
     kind: Literal["contradiction", "doubt", "unchecked"]
     text: str
+
+
+def worst_finding(findings: Iterable[Finding]) -> Finding | None:
+    """First contradiction, or first doubt, or first check not made; None without findings."""
+    return min(findings, key=lambda finding: ("contradiction", "doubt", "unchecked").index(finding.kind), default=None)
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from scipy.signal import lsim
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.pantograph_file import PantographFile
-from pantocheck.conformance.consistency.check import Check, Finding
+from pantocheck.conformance.consistency.check import Check, Finding, worst_finding
 from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE
 from pantocheck.conformance.quantities.signals import PantographSignals
 from pantocheck.conformance.records.record_signals import RecordSignals
@@ -72,17 +72,18 @@ def _check_force_dynamics(case: Case, signals: RecordSignals) -> Finding | None:
         return Finding("unchecked", "force against motion: the record has no contact height")
     if low_pass.cutoff_Hz > HIGHEST_SHARE_OF_RATE * record.rate:
         return Finding("unchecked", f"force against motion: a rate of {record.rate:g} Hz is too low")
-    still = False
+    findings = []
     step = max(1, int(record.rate / (SAMPLES_PER_PERIOD * low_pass.cutoff_Hz)))
     for number, (file, pantograph) in enumerate(zip(case.pantographs, signals.pantographs.values(), strict=True), 1):
         window = _compared_samples(pantograph)
         force = low_pass(pantograph.force.delivered, record.rate)[window][::step]
         height = low_pass(record.contact_height[number - 1], record.rate)[window][::step]
         fit = fit_motion(file, force, height, step / record.rate)
-        still = still or fit is None
-        if fit is not None and (fit.misfit > LARGEST_MISFIT or abs(1 / fit.gain - 1) > LARGEST_GAIN_ERROR):
-            return _diagnose(number, fit, step / record.rate, record.filter_applied_Hz)
-    return Finding("unchecked", "force against motion: the contact point hardly moves") if still else None
+        if fit is None:
+            findings.append(Finding("unchecked", f"force against motion: the head of pantograph {number} hardly moves"))
+        elif fit.misfit > LARGEST_MISFIT or abs(1 / fit.gain - 1) > LARGEST_GAIN_ERROR:
+            findings.append(_diagnose(number, fit, step / record.rate, record.filter_applied_Hz))
+    return worst_finding(findings)
 
 
 def fit_motion(file: PantographFile, force: RealArray, height: RealArray, step: float) -> ResponseFit | None:

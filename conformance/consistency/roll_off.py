@@ -3,7 +3,7 @@
 import numpy as np
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.consistency.check import Check, Finding
+from pantocheck.conformance.consistency.check import Check, Finding, worst_finding
 from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE
 from pantocheck.conformance.records.record_signals import RecordSignals
 
@@ -38,19 +38,20 @@ def _check_roll_off(case: Case, signals: RecordSignals) -> Finding | None:
     above = (frequency > STOP_BAND[0] * cutoff) & (frequency <= STOP_BAND[1] * cutoff)
     gain = low_pass.gain(frequency[above], record.rate)
     window = np.hanning(record.time.size)
+    findings = []
     for number, force in enumerate(record.force, 1):
         amplitude = np.abs(np.fft.rfft((force - force.mean()) * window))
         implied = np.sqrt(np.sum((amplitude[above] / gain) ** 2))
         share = float(implied / max(np.sqrt(np.sum(amplitude[below] ** 2)), np.finfo(float).tiny))
         if share > DOUBT:
-            return Finding(
-                "contradiction" if share > CONTRADICTION else "doubt",
+            text = (
                 f"the force of pantograph {number} is stated to be filtered at {applied:g} Hz with order "
                 f"{low_pass.order}; the unfiltered force would then have {share:.2g} times as much content in "
                 f"{STOP_BAND[0] * cutoff:g}-{STOP_BAND[1] * cutoff:g} Hz as below {cutoff:g} Hz: "
-                "it was not filtered, or with a lower order; deliver it unfiltered",
+                "it was not filtered, or with a lower order; deliver it unfiltered"
             )
-    return None
+            findings.append(Finding("contradiction" if share > CONTRADICTION else "doubt", text))
+    return worst_finding(findings)
 
 
 ROLL_OFF = Check(
