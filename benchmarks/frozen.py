@@ -7,8 +7,8 @@
 new file must hold every id, number and verdict of the frozen file at the same place. It may hold more keys. Texts may
 differ. The lists `warnings` and `notes` are not compared: a remark may move to another key, as the
 near-limit remark moved from `warnings` to `close` of its criterion. The exit code is 1 if a number differs by more than
-1e-12 of its size, if an id or a verdict differs, or if something is missing. Smaller differences are counted, and the
-largest is printed.
+1e-12 of its size, if an id or a verdict differs in another way
+than `CHANGED_VERDICTS` states, or if something is missing. Smaller differences are counted, and the largest is printed.
 """
 
 import argparse
@@ -47,6 +47,20 @@ IDENTIFIERS = {"id", "verdict", "quantity", "trust", "unit", "name", "kind", "ma
 
 TEXT_LISTS = {"warnings", "notes"}
 """Lists of remarks, which are not compared (see above)."""
+
+_STATISTICS = "published statistics are an unverified record"
+
+CHANGED_VERDICTS = {
+    "ac-simple/results.json": {
+        ".verdict": ("pass", "info", "only one of five cases has a limit that counts: the other four do not pass")
+    },
+    "record-system/results.json": {
+        ".verdict": ("pass", "unverified", _STATISTICS),
+        ".cases[0].verdict": ("pass", "unverified", _STATISTICS),
+        ".cases[1].verdict": ("pass", "unverified", _STATISTICS),
+    },
+}
+"""Intended changes of verdicts since the frozen commit (docs/verdicts.md), by file and place: old, new, reason."""
 
 TOLERANCE = 1e-12
 """Largest relative difference that a reordering of sums by the compiler may cause."""
@@ -110,6 +124,15 @@ def differences(frozen: Any, new: Any, path: str = "", key: str = "") -> Iterato
         yield path, f"is {new!r}, was {frozen!r}"
 
 
+def _remove_intended(
+    found: list[tuple[str, float | str]], intended: dict[str, tuple[str, str, str]]
+) -> tuple[list[tuple[str, float | str]], list[tuple[str, float | str]]]:
+    """Differences without the intended ones, and a fault for every intended difference that is not there."""
+    expected = {where: f"is {new!r}, was {old!r}" for where, (old, new, _) in intended.items()}
+    missing = [(where, f"{text} expected") for where, text in expected.items() if (where, text) not in found]
+    return [(where, value) for where, value in found if expected.get(where) != value], list(missing)
+
+
 def compare(folder: Path) -> bool:
     """Compare a folder with the frozen files; true if there is no fault."""
     agreed = True
@@ -121,8 +144,9 @@ def compare(folder: Path) -> bool:
         found = list(
             differences(json.loads(lzma.decompress(path.read_bytes())), json.loads((folder / name).read_text()))
         )
+        found, unchanged = _remove_intended(found, CHANGED_VERDICTS.get(str(name), {}))
         numbers = [(where, value) for where, value in found if isinstance(value, float)]
-        faults = [(where, value) for where, value in found if isinstance(value, str) or value > TOLERANCE]
+        faults = [*unchanged, *(pair for pair in found if isinstance(pair[1], str) or pair[1] > TOLERANCE)]
         changed = [value for _, value in numbers if value > 0]
         print(
             f"{name}: {len(numbers)} numbers, {len(numbers) - len(changed)} bit-identical, "

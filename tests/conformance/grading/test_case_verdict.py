@@ -1,0 +1,135 @@
+"""Verdict of a case and of a run: no pass without a counted limit and a verified record."""
+
+from pathlib import Path
+from typing import Any, get_args
+from xml.etree import ElementTree
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from typer.testing import CliRunner
+
+from pantocheck.conformance.authenticity.recomputation import find_discrepancies
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.command_line.app import app
+from pantocheck.conformance.command_line.results_output import EXIT_CODES
+from pantocheck.conformance.grading.case_verdict import Participation, judge_case
+from pantocheck.conformance.grading.verdicts import WORST_FIRST, Verdict
+from pantocheck.conformance.plan import Plan, prepare_plan
+from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline
+from pantocheck.conformance.reports.formats.junit import render_junit
+from pantocheck.conformance.results.results_format import RecordFacts, RecordState
+from pantocheck.conformance.runner import run_cases
+
+CODE = "published passing code (Wang et al.)"
+PUBLISHED = ("run", "en50318-2002/*", "--system", "record:en50318-2002/known-passing-code", "--formats", "json,junit")
+
+grades = st.lists(st.sampled_from(["pass", "fail", "skip", "error", "info"]), max_size=5)
+
+
+def record(state: RecordState, demanded: bool = True) -> RecordFacts:
+    return RecordFacts(state=state, reason="reason", demanded=demanded)
+
+
+@pytest.mark.parametrize(
+    ("criteria", "state", "verdict"),
+    [
+        (["pass", "info"], "verified", "pass"),
+        (["pass", "info"], "unverified", "unverified"),
+        (["pass"], "contradicted", "error"),
+        (["info", "info"], "verified", "info"),
+        (["info"], "unverified", "info"),
+        ([], "verified", "info"),
+        (["pass", "skip", "info"], "verified", "skip"),
+        (["pass", "skip"], "unverified", "skip"),
+        (["fail", "skip"], "unverified", "fail"),
+    ],
+)
+def test_case_is_as_good_as_its_worst_counted_criterion(
+    criteria: list[Verdict], state: RecordState, verdict: Verdict
+) -> None:
+    assert judge_case(criteria, record(state)) == verdict
+
+
+@given(grades, st.sampled_from(get_args(RecordState)))
+def test_pass_needs_a_counted_criterion_and_a_verified_record(criteria: list[Verdict], state: RecordState) -> None:
+    passes = judge_case(criteria, record(state)) == "pass"
+    assert passes == ("pass" in criteria and set(criteria) <= {"pass", "info"} and state == "verified")
+
+
+def test_profile_that_shows_the_state_does_not_lower_the_verdict() -> None:
+    assert judge_case(["pass"], record("unverified", demanded=False)) == "pass"
+    assert judge_case(["pass"], record("contradicted", demanded=False)) == "error"
+
+
+def test_worst_case_that_takes_part_decides() -> None:
+    cases: list[tuple[str, Verdict]] = [("a", "pass"), ("b", "unverified"), ("c", "fail")]
+    assert Participation().judge_run(cases, "mine") == "fail"
+    assert Participation(information=("c",)).judge_run(cases, "mine") == "unverified"
+    assert Participation(("c",), ("mine",)).judge_run(cases, "mine") == "pass"
+    assert Participation(("c",), ("other",)).judge_run(cases, "mine") == "unverified"
+    assert Participation(("a", "b", "c")).judge_run(cases, "mine") == "info"
+
+
+def test_only_pass_ends_with_exit_code_0() -> None:
+    assert {verdict: EXIT_CODES[verdict] for verdict in WORST_FIRST} == {
+        "pass": 0, "unverified": 1, "info": 1, "skip": 1, "fail": 1, "error": 2
+    }  # fmt: skip
+
+
+def test_record_of_a_run_is_verified_and_its_loss_is_noticed(wave: Any, case_250: Case) -> None:
+    """With its height the record is verified; without it, the motion cannot be checked."""
+    results = run_cases([case_250], wave()).to_dict()
+    assert results["cases"][0]["record"]["state"] == "verified"
+    results["cases"][0]["record"] = None
+    assert any("the state of the record is missing" in text for text in find_discrepancies(results))
+
+
+def test_published_statistics_are_unverified_unless_accepted_by_name(tmp_path: Path) -> None:
+    def exit_code(*arguments: str) -> int:
+        return CliRunner().invoke(app, [*PUBLISHED, "--out", str(tmp_path), *arguments]).exit_code
+
+    def junit() -> ElementTree.Element:
+        return ElementTree.parse(tmp_path / "junit.xml").getroot()
+
+    assert exit_code() == 1
+    assert junit().get("failures") == "2"
+    assert exit_code("--accept-unverified", "another code") == 1
+    assert exit_code("--trust", "primary") == 1  # no limit counts
+    assert exit_code("--accept-unverified", CODE) == 0
+    assert (junit().get("failures"), junit().get("skipped")) == ("0", "2")
+
+
+def test_headline_names_what_keeps_the_result_from_being_better(passing: dict[str, Any]) -> None:
+    first = passing["cases"][0]
+    informative = [first | {"id": str(i), "verdict": "info", "criteria": []} for i in range(4)]
+    results = passing | {"verdict": "info", "cases": [first, *informative]}
+    assert build_headline(results) == "1 of 5 cases passes, 4 have no limit that counts."
+    shown = results | {"verdict": "pass", "information": ["0", "1", "2", "3"]}
+    assert build_headline(shown) == (
+        "All 16 counted criteria in 1 case lie inside their limits. "
+        "For information, not part of the verdict: 0, 1, 2, 3."
+    )
+    unverified = passing | {"cases": [first | {"verdict": "unverified"}]}
+    assert build_headline(unverified) == "0 of 1 case pass, 1 has an unverified record."
+    name = passing["system"]["name"]
+    accepted = build_headline(unverified | {"accepted_unverified": [name]})
+    assert accepted.endswith(f"Accepted by the user: unverified records of {name}.")
+
+
+def test_junit_never_passes_what_does_not_count(results: dict[str, Any]) -> None:
+    """A limit that does not count is skipped; so is a failure in a case for information."""
+    root = ElementTree.fromstring(render_junit(results))
+    assert "provisional limit does not count" in "".join(e.get("message", "") for e in root.iter("skipped"))
+    shown = ElementTree.fromstring(render_junit(results | {"information": ["en50318-2002/300"]}))
+    assert (root.get("failures"), shown.get("failures")) == ("1", "0")
+    assert any(e.get("message", "").startswith("for information: failure: ") for e in shown.iter("skipped"))
+
+
+def test_default_run_takes_the_cases_whose_limits_count() -> None:
+    secondary, provisional = (prepare_plan(Plan(trust=trust)) for trust in ("secondary", "provisional"))
+    ids = {case.id for case in secondary.cases}
+    assert {"en50318-2002/250", "en50318-2018/ac-simple/static"} <= ids
+    assert not ids & {"en50318-2018/ac-simple/320", "vovan2015/contact-force"}
+    assert "en50318-2018/ac-simple/320" in {case.id for case in provisional.cases}
+    assert secondary.participation.information == ()
