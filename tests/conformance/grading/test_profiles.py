@@ -190,6 +190,33 @@ def test_uplift_is_graded_only_if_every_support_has_one(train: Train) -> None:
         assert "supports of the analysis section" in row.reason
 
 
+def test_every_pantograph_of_a_record_is_placed_and_graded(tmp_path: Path) -> None:
+    """The rear pantograph alone has too low a force; without its distance, the record is refused."""
+    time = np.arange(0, 30, 0.005)
+    force = [125 + 30 * np.sqrt(2) * np.sin(2 * np.pi * time), 60 + 30 * np.sqrt(2) * np.sin(2 * np.pi * time)]
+    np.savetxt(
+        tmp_path / "train.csv",
+        np.column_stack([time, *force]),
+        "%.9g",
+        ",",
+        header="time_s,force_1_N,force_2_N",
+        comments="",
+    )
+    sidecar = tmp_path / "train.toml"
+    text = SIDECAR.format(speed=250.0, wave=120.0, space=80.0, supports=[600.0]).replace("= 1", "= 2")
+    text = text.replace("support_position_m = [600.0]", "spacing_m = [100.0]")
+    sidecar.write_text(text)
+    verdicts = {(row.quantity, row.pantograph): row.verdict for row in graded(sidecar).cases[0].criteria}
+    assert (verdicts["statistical_min_N", 1], verdicts["statistical_min_N", 2]) == ("pass", "fail")
+    assert verdicts["max_uplift_at_support_mm", 0] == "skip"
+    sidecar.write_text(text.replace("spacing_m = [100.0]", ""))
+    with pytest.raises(InputError, match="2 pantographs have neither a position nor spacing_m"):
+        graded(sidecar)
+    sidecar.write_text(text.replace("spacing_m", "evaluated_m = [200.0, 1800.0]\nspacing_m"))
+    with pytest.raises(InputError, match="the first pantograph has neither a position nor start_m"):
+        graded(sidecar)
+
+
 def test_uplift_is_skipped_where_the_length_of_a_span_is_not_known(train: Train) -> None:
     path = train()
     path.write_text(path.read_text().replace("span_m = 60.0, ", ""))
