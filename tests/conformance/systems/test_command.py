@@ -155,7 +155,8 @@ def test_delivered_record_is_read(program: Callable[..., System], case_250: Case
     assert isinstance(outcome, Delivered)
     assert_allclose(outcome.record.force, wave().record(case_250).force, rtol=1e-11)  # twelve digits in the file
     assert outcome.static == {"wave_speed_m_s": 121.7}
-    assert outcome.notes == ("as asked",)
+    assert outcome.notes[0] == "as asked"
+    assert "does not state the inputs of its case" in outcome.notes[1]
     assert outcome.warnings == ()
 
 
