@@ -178,3 +178,15 @@ def test_limits_of_a_user_apply_to_the_named_cases_only(tmp_path: Path) -> None:
     cases = overlay_limits(select_cases(["en50318-2002/*"]), read_limits(path))
     upper = {case.id: limit.upper for case in cases for limit in case.limits if limit.quantity == "std_force_N"}
     assert upper == {"en50318-2002/250": 99.0, "en50318-2002/300": 40.0}
+
+
+@pytest.mark.parametrize(
+    ("pantograph", "message"), [(1, "a second limit for std_force_N"), (2, "there is no pantograph 2")]
+)
+def test_limit_given_twice_or_for_a_missing_pantograph_is_refused(
+    edited_case: EditedCase, pantograph: int, message: str
+) -> None:
+    limit = {"quantity": "std_force_N", "trust": "primary", "source": "own"}
+    limits = [{**limit, "pantograph": 1, "upper": 31.0}, {**limit, "pantograph": pantograph, "upper": 99.0}]
+    with pytest.raises(InputError, match=message):
+        load_case(edited_case("250.toml", {"limit": limits}))

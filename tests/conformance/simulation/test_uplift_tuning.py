@@ -13,7 +13,7 @@ from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.simulation import case_run
 from pantocheck.conformance.simulation.case_run import PassageRun
-from pantocheck.conformance.simulation.uplift_tuning import MAX_RUNS, TOLERANCE, TuningFailed, tune_uplift
+from pantocheck.conformance.simulation.uplift_tuning import MAX_RUNS, TuningFailed, tune_uplift
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ def means(run: MeanForces) -> np.ndarray:
 def test_targets_are_met_in_few_runs(gain: float, cross: float, most_runs: int) -> None:
     run = CoupledPantographs(gain, cross)
     tuned = tune_uplift(run, means, (150.0, 150.0), (144.0, 169.0))
-    assert np.abs(tuned.means - [144.0, 169.0]).max() <= TOLERANCE
+    assert np.abs(tuned.means - [144.0, 169.0]).max() <= 0.02  # [N], a thousandth of the spread of published means
     assert run.runs <= most_runs
 
 

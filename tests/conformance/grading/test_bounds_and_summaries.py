@@ -1,0 +1,68 @@
+"""Edges of bounds, and summaries of another run: each value here lies just on the wrong side."""
+
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.library import library_folder
+from pantocheck.conformance.cases.profile_file import BoundMissing, NamedBound, Rule, SpeedFormula, resolve_bounds
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.records.record import Record, RecordInvalid
+from pantocheck.conformance.results.outcome import Errored
+from pantocheck.conformance.systems.record_folder import open_record_folder
+
+SUMMARY = (library_folder() / "en50318-2002" / "known-passing-code" / "250.toml").read_text(encoding="utf-8")
+
+
+def _rule(upper: Any) -> Rule:
+    return Rule(quantity="max_uplift_at_support_mm", upper=upper, trust="secondary", source="own")
+
+
+def test_rule_above_a_speed_does_not_hold_at_this_speed() -> None:
+    rule = _rule(SpeedFormula(per_speed_squared=0.001, constant=70.0, above_km_h=200.0))
+    with pytest.raises(BoundMissing, match="above 200 km/h"):
+        resolve_bounds(rule, 200.0, {}, None)
+    assert resolve_bounds(rule, 200.1, {}, None)[1] == pytest.approx(110.04, rel=1e-6)
+
+
+def test_bound_of_the_record_is_multiplied_by_its_factor() -> None:
+    rule = _rule(NamedBound(given="uplift_space_mm", factor=0.5))
+    assert resolve_bounds(rule, 250.0, {"uplift_space_mm": 120.0}, None) == (None, 60.0)
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "message"),
+    [
+        ("speed_km_h", 248.0, "is of 248 km/h, the case runs at 250 km/h"),
+        ("speed_km_h", 252.0, "is of 252 km/h, the case runs at 250 km/h"),
+        ("filter_cutoff_Hz", 19.9, "has a filter of 19.9 Hz, the case requires 20 Hz"),
+        ("filter_cutoff_Hz", 20.1, "has a filter of 20.1 Hz, the case requires 20 Hz"),
+    ],
+)
+def test_summary_of_a_slower_run_or_a_lower_filter_is_refused(
+    case_250: Case, tmp_path: Path, key: str, value: float, message: str
+) -> None:
+    (tmp_path / "a.toml").write_text(re.sub(rf"(?m)^{key} = .*$", f"{key} = {value}", SUMMARY), encoding="utf-8")
+    outcome = open_record_folder(tmp_path).run(case_250)
+    assert isinstance(outcome, Errored)
+    assert message in outcome.reason
+
+
+def test_summary_with_a_negative_deviation_is_refused(tmp_path: Path) -> None:
+    text = SUMMARY.replace("std_force_N = 27.6", "std_force_N = 27.6\nstd_force_50_N = -1.0")
+    assert text != SUMMARY
+    (tmp_path / "a.toml").write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match="-1 is negative"):
+        open_record_folder(tmp_path)
+
+
+def test_pantograph_that_stands_still_is_refused(two_pantograph_record: Record) -> None:
+    position = two_pantograph_record.position.copy()
+    position[1, 10] = position[1, 9]
+    with pytest.raises(RecordInvalid, match="does not move forwards"):
+        replace(two_pantograph_record, position=np.asarray(position))
