@@ -6,10 +6,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from typer.testing import CliRunner
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import library_folder, list_library, load_case, overlay_limits
 from pantocheck.conformance.cases.limits import Limit, LimitOverride
+from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.grading.case_identity import (
     compare_with_library,
@@ -18,6 +20,7 @@ from pantocheck.conformance.grading.case_identity import (
     list_limit_changes,
 )
 from pantocheck.conformance.results.outcome import Skipped
+from pantocheck.conformance.results.results_reading import read_results
 from pantocheck.conformance.studies.damping_sensitivity import add_damping_study
 
 LIBRARY = list_library(library_folder())
@@ -123,3 +126,21 @@ def test_stricter_limit_is_not_reported(change: dict[str, Any]) -> None:
 def test_removed_limit_is_reported(case_250: Case) -> None:
     changes = list_limit_changes(replace(case_250, limits=case_250.limits[1:]))
     assert changes == ["mean_force_N of pantograph 1: the limit 110 to 120 is removed"]
+
+
+def test_command_names_a_case_file_that_borrows_the_id_of_the_library(
+    edited_case: Callable[[str, dict[str, Any]], Path], tmp_path: Path
+) -> None:
+    """The uplift limit of the copy is 255 mm in place of 55 mm; its id, source and input digest are unchanged."""
+    path = edited_case("250.toml", {"limit.6.upper": 255.0})
+    system = "record:en50318-2002/known-passing-code"
+    out = tmp_path / "out"
+    arguments = ["run", str(path), "--system", system, "--formats", "json,junit,md", "--out", str(out)]
+    output = CliRunner().invoke(app, arguments).output
+    assert "Modified copies of the library: 1." in output
+    assert "modified copy of en50318-2002/250" in output
+    [case] = read_results(out / "results.json").cases
+    assert (case.id, case.library) == ("en50318-2002/250", "modified")
+    assert case.input_digest == load_case(LIBRARY["en50318-2002/250"]).digest
+    for name in ("junit.xml", "summary.md"):
+        assert "modified copy of en50318-2002/250" in (out / name).read_text(encoding="utf-8")
