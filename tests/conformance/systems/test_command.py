@@ -300,7 +300,10 @@ def test_signal_to_the_main_process_keeps_results_and_ends_programs(
     script, log, out = tmp_path / "p.py", tmp_path / "log", tmp_path / "out"
     script.write_text(PROGRAM.replace('how == "hang"', 'how == "hang" and case.endswith("300")'))
     system = f"command:{sys.executable} -S '{script}' hang '{tmp_path}' '{log}'"
-    command = [sys.executable, "-c", "from pantocheck.conformance.command_line import main; main()", "run"]
+    # A parent such as nohup may ignore the signal, and its children inherit that.
+    handler = "signal.default_int_handler" if number == signal.SIGINT else "signal.SIG_DFL"
+    code = f"import signal; signal.signal({int(number)}, {handler})"
+    command = [sys.executable, "-c", f"{code}; from pantocheck.conformance.command_line import main; main()", "run"]
     options = ["en50318-2002/*", "--system", system, "--out", str(out), "--formats", "json", "--jobs", str(jobs)]
     with subprocess.Popen([*command, *options], stderr=subprocess.PIPE, stdout=subprocess.PIPE) as process:
         limit = time.monotonic() + 60.0
@@ -312,7 +315,10 @@ def test_signal_to_the_main_process_keeps_results_and_ends_programs(
         time.sleep(0.5 if jobs == 1 else 4.0)
         start = time.monotonic()
         process.send_signal(number)
-        _, errors = process.communicate(timeout=30)
+        try:
+            _, errors = process.communicate(timeout=30)
+        finally:
+            process.kill()
         assert time.monotonic() - start < 10.0
     assert process.returncode == exit_code
     assert b"Traceback" not in errors
