@@ -136,7 +136,7 @@ def test_command_names_a_case_file_that_borrows_the_id_of_the_library(
     system = "record:en50318-2002/known-passing-code"
     out = tmp_path / "out"
     arguments = ["run", str(path), "--system", system, "--formats", "json,junit,md", "--out", str(out)]
-    output = CliRunner().invoke(app, arguments).output
+    output = " ".join(CliRunner().invoke(app, arguments).output.split())
     assert "Modified copies of the library: 1." in output
     assert "modified copy of en50318-2002/250" in output
     [case] = read_results(out / "results.json").cases
