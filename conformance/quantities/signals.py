@@ -262,7 +262,9 @@ class LineSignals:
     def _at_supports(self) -> tuple[RealArray, RealArray]:
         if self.support_position is None or self.support_uplift is None:
             raise ChannelMissing("the record has no uplift at supports")
-        inside = supports_inside(self.support_position, self.section)
+        # A passing pantograph moves every support: a channel that is exactly constant is a dead sensor, not an uplift.
+        moves = np.ptp(self.support_uplift, axis=1) > 0
+        inside = supports_inside(self.support_position, self.section) & moves
         if not inside.any():
             start, end = self.section
             raise ChannelMissing(f"the record has no support between {start:g} m and {end:g} m")

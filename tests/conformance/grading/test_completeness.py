@@ -68,6 +68,14 @@ def test_uplift_is_skipped_without_any_support_of_the_section(twin: Case, record
     assert result.verdict == "skip"
 
 
+@pytest.mark.parametrize("held", [0.0, 0.012])
+def test_support_with_a_dead_sensor_counts_as_missing(twin: Case, record: Record, held: float) -> None:
+    """A constant channel, for example of the support with the largest uplift, is no measurement of its uplift."""
+    uplift = np.where((record.support_position == 300.0)[:, None], held, record.support_uplift)
+    criterion = find_criterion(grade(twin, replace(record, support_uplift=uplift)), UPLIFT)
+    assert (criterion.verdict, criterion.value) == ("skip", None)
+
+
 def test_support_outside_the_section_is_not_needed(twin: Case, record: Record) -> None:
     inside = (record.support_position >= 240) & (record.support_position <= 360)
     assert grade(twin, keep_supports(record, inside)).verdict == "pass"
