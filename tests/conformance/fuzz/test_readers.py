@@ -1,11 +1,17 @@
 """A short fuzz of every reader; benchmarks/fuzz.py runs the same rounds for any time."""
 
-import importlib.util
+import importlib
 import logging
+import os
 import random
-from collections.abc import Callable
+import signal
+import sys
+import time
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import nullcontext
 from pathlib import Path
-from types import ModuleType
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -20,44 +26,56 @@ from pantocheck.conformance.records.record_reading import open_record, read_samp
 from pantocheck.conformance.runner import run_cases
 from pantocheck.conformance.systems.record_folder import open_record_folder
 
-FUZZ = Path(__file__).parents[3] / "benchmarks" / "fuzz.py"
+BENCHMARKS = Path(__file__).parents[3] / "benchmarks"
 ROUNDS = 12
 
 NAMES = (
     "csv table",
     "csv sidecar",
+    "csv table, digest known",
+    "profile",
     "h5 table",
     "h5 sidecar",
-    "csv table, digest known",
     "h5 table, digest known",
+    "summary record",
+    "failing summary record",
     "case: 250.toml",
     "case: line.toml",
     "case: pantograph.toml",
-    "summary record",
-    "failing summary record",
     "limits",
     "plan",
-    "profile",
     "results as baseline",
     "certificate",
+    "drop: a.csv",
+    "drop: a.h5",
+    "drop: binary.uff",
+    "drop: ascii.uff",
+    "drop: version_5.mat",
+    "drop: version_7_3.mat",
+    "drop: sidecar",
+    "modes",
+    "answer of a program",
 )
 
 
 @pytest.fixture(scope="module")
-def fuzz() -> ModuleType:
-    """The module benchmarks/fuzz.py."""
-    spec = importlib.util.spec_from_file_location("fuzz", FUZZ)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+def fuzz() -> Iterator[SimpleNamespace]:
+    """Modules of the fuzz campaign: `campaign`, `files`, `uses`."""
+    sys.path.insert(0, str(BENCHMARKS))
+    yield SimpleNamespace(
+        campaign=importlib.import_module("fuzz"),
+        files=importlib.import_module("fuzz_files"),
+        uses=importlib.import_module("fuzz_uses"),
+    )
+    sys.path.remove(str(BENCHMARKS))
 
 
 @pytest.fixture(scope="module")
-def targets(fuzz: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
-    """Readers under fuzz by name."""
-    return {target.name: target for target in fuzz.build_targets(tmp_path_factory.mktemp("seeds"))}
+def targets(fuzz: SimpleNamespace, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """Readers under fuzz by name; the formats of extras belong to the campaign only."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(fuzz.files, "OPTIONAL_FORMATS", {})
+        return {target.name: target for target in fuzz.files.build_targets(tmp_path_factory.mktemp("sound"))}
 
 
 def test_every_reader_is_fuzzed(targets: dict[str, Any]) -> None:
@@ -65,21 +83,56 @@ def test_every_reader_is_fuzzed(targets: dict[str, Any]) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_damaged_file_is_read_or_refused(fuzz: ModuleType, targets: dict[str, Any], name: str, tmp_path: Path) -> None:
+def test_damaged_file_is_read_or_refused(
+    fuzz: SimpleNamespace, targets: dict[str, Any], name: str, tmp_path: Path
+) -> None:
+    """The sound file is read (or, with a wrong digest, reported); damaged ones end in one message or a result."""
     logging.getLogger("pypdf").setLevel(logging.CRITICAL)
-    chance = random.Random(name)
-    outcomes = [fuzz.run_round(targets[name], tmp_path, chance) for _ in range(ROUNDS)]
+    target = targets[name]
+    for file, content in target.files.items():
+        (tmp_path / file).write_bytes(content)
+    with pytest.raises(fuzz.uses.Falsehood) if "digest" in name else nullcontext():
+        target.use(tmp_path)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # Libraries warn of damaged files.
+        outcomes = [fuzz.campaign.run_round(target, tmp_path, random.Random(f"{name}/{k}")) for k in range(ROUNDS)]
     assert "refused" in outcomes
 
 
-def test_fuzzer_detects_a_false_pass(fuzz: ModuleType, targets: dict[str, Any], tmp_path: Path) -> None:
+def test_fuzzer_detects_a_false_pass(fuzz: SimpleNamespace, targets: dict[str, Any], tmp_path: Path) -> None:
     """A failing result whose verdict is set to pass is a falsehood."""
     (tmp_path / "a.toml").write_bytes(targets["failing summary record"].files["a.toml"])
     results = run_cases(select_cases(["en50318-2002/250"]), open_record_folder(tmp_path))
     assert results.verdict == "fail"
-    fuzz.check(results)
-    with pytest.raises(fuzz.Falsehood):
-        fuzz.check(results.model_copy(update={"verdict": "pass"}))
+    fuzz.uses.check(results)
+    with pytest.raises(fuzz.uses.Falsehood):
+        fuzz.uses.check(results.model_copy(update={"verdict": "pass"}))
+
+
+def test_campaign_reports_traceback_crash_and_hang(
+    fuzz: SimpleNamespace, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Each kind of failure is counted, its input kept, and the campaign goes on."""
+
+    def crash(_: Path) -> None:
+        os.kill(os.getpid(), signal.SIGKILL)
+
+    def fail(_: Path) -> None:
+        raise KeyError("x")
+
+    def hang(_: Path) -> None:
+        time.sleep(30)
+
+    def read(_: Path) -> None:
+        pass
+
+    uses = {"crash": crash, "fail": fail, "hang": hang, "read": read}
+    targets = [fuzz.files.Target(name, {"a": b"abc"}, "a", use) for name, use in uses.items()]
+    monkeypatch.setattr(fuzz.campaign, "build_targets", lambda folder: targets)
+    monkeypatch.setattr(fuzz.campaign, "SLOWEST_S", 1)
+    assert fuzz.campaign.run_campaign(8, 60.0, 1, tmp_path) == 6
+    assert sorted(folder.name for folder in tmp_path.iterdir()) == [f"{k:06d}" for k in (0, 1, 2, 4, 5, 6)]
+    assert "8 rounds, 6 failures" in capsys.readouterr().out
 
 
 # Values near the limits of the case, the limits themselves, and a few far outside.
