@@ -119,3 +119,40 @@ def test_records_of_different_trains_are_not_compared(
     records = [assessed(*sigma, profile="line-test") for sigma in (subject, measured)]
     with pytest.raises(InputError, match="Compare records of one train"):
         assess_record(records[0], load_profile("line-test"), measured=records[1])
+
+
+def test_line_test_compares_every_pantograph_with_its_measured_counterpart(
+    assessed: Callable[..., AssessedRecord],
+) -> None:
+    """The measured deviations are 28 N and 38 N with 20 % of tolerance: 22.4 to 33.6 N and 30.4 to 45.6 N.
+
+    A train with the forces exchanged fails at both. The sine of whole spans has its deviation within 1 %.
+    """
+    profile = load_profile("line-test")
+    measured = assessed(28.0, 38.0, profile="line-test")
+    for sigma, verdict in (((28.5, 38.5), "pass"), ((38.5, 28.5), "fail")):
+        subject = assessed(*sigma, profile="line-test")
+        (case,) = assess_record(subject, profile, "provisional", measured).cases
+        rows = {c.pantograph: c for c in case.criteria if c.quantity == "std_force_N"}
+        assert {number: row.verdict for number, row in rows.items()} == {1: verdict, 2: verdict}
+        assert (rows[1].lower, rows[1].upper) == pytest.approx((22.4, 33.6), rel=0.01)
+        assert (rows[2].lower, rows[2].upper) == pytest.approx((30.4, 45.6), rel=0.01)
+
+
+@pytest.mark.parametrize(("sigma", "close"), [(41.0, True), (40.4, False)])
+def test_uncertainty_of_the_measured_record_counts_for_its_own_pantograph(
+    assessed: Callable[..., AssessedRecord], sigma: float, close: bool
+) -> None:
+    """3 N of the subject and 4 N of the measured record make 5 N; 41.0 N and 40.4 N lie 4.6 N and 5.2 N below 45.6 N.
+
+    The smaller uncertainties of pantograph 1, 0.3 N and 0.4 N, leave its 28.5 N far from both limits.
+    """
+    profile = load_profile("line-test")
+    uncertainty = [{1: {"std_force_N": 0.1 * half}, 2: {"std_force_N": half}} for half in (3.0, 4.0)]
+    subject = replace(assessed(28.5, sigma, profile="line-test"), uncertainty=uncertainty[0])
+    measured = replace(assessed(28.0, 38.0, profile="line-test"), uncertainty=uncertainty[1])
+    (case,) = assess_record(subject, profile, "provisional", measured).cases
+    rows = {c.pantograph: c for c in case.criteria if c.quantity == "std_force_N"}
+    assert (rows[1].verdict, rows[2].verdict) == ("pass", "pass")
+    assert rows[1].close == []
+    assert ["its uncertainty of 5 N" in remark for remark in rows[2].close] == [True] * close

@@ -20,6 +20,22 @@ def test_units_and_directions_become_si_and_upward(tmp_path: Path, record: DropR
     assert read.signals[:, 2] == pytest.approx(record.signals[:, 2], rel=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("unit", "factor"),
+    [
+        *(("m/s2", 1.0), ("mm/s2", 0.001), ("g", 9.80665), ("mg", 0.00980665)),
+        *(("m/s", 1.0), ("mm/s", 0.001), ("km/h", 1 / 3.6), ("m", 1.0), ("cm", 0.01), ("mm", 0.001)),
+    ],
+)
+def test_every_unit_of_a_sensor_becomes_si(tmp_path: Path, record: DropRecord, unit: str, factor: float) -> None:
+    """The factors are definitions, the standard acceleration of gravity included; nine digits are written."""
+    write_drop_csv(record, tmp_path / "r.csv")
+    changes = {f"channel.{column}.unit": unit for column in range(3)}
+    edit_toml(tmp_path / "r.toml", changes | {"record.quantity": None})
+    (read,) = read_drop_records(tmp_path / "r.csv")
+    assert read.signals == pytest.approx(factor * record.signals, rel=1e-7, abs=1e-8 * factor)
+
+
 def test_clipping_is_marked(tmp_path: Path, record: DropRecord) -> None:
     signals = record.signals.copy()
     signals[50:60, 0] = signals[:, 0].max()

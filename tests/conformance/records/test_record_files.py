@@ -88,6 +88,66 @@ def test_speed_in_kilometres_per_hour_is_integrated_to_positions(tmp_path: Path)
     assert_allclose(samples.force[:, 0], [120.0, 110.0])
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_order_of_columns_and_missing_supports_leave_every_row_at_its_number(
+    tmp_path: Path, two_pantograph_record: Record, seed: int
+) -> None:
+    """Columns in any order, and the uplift of any of the supports: each row keeps its pantograph and its support.
+
+    Fifteen digits are written and one factor is applied, so that the values agree to rounding.
+    """
+    record, random = two_pantograph_record, np.random.default_rng(seed)
+    assert record.contact_height is not None
+    assert record.support_uplift is not None
+    assert record.support_position is not None
+    supports = np.flatnonzero([[0, 1, 1], [0, 0, 1], [1, 0, 1], [1, 1, 1]][seed])
+    columns = {"time_ms": 1e3 * record.time}
+    for row in range(2):
+        columns[f"position_{row + 1}_km"] = 1e-3 * record.position[row]
+        columns[f"force_{row + 1}_kN"] = 1e-3 * record.force[row]
+        columns[f"contact_height_{row + 1}_cm"] = 1e2 * record.contact_height[row]
+    columns |= {f"uplift_{row + 1}_mm": 1e3 * record.support_uplift[row] for row in supports}
+    names = [str(name) for name in random.permutation(list(columns))]
+    sidecar = edit_toml(write_record(tmp_path / "a.csv", record), {"sha256": None})
+    write_csv_table(tmp_path / "a.csv", names, np.column_stack([columns[name] for name in names]), 15)
+    back, _ = read_record(sidecar)
+    for key in ("position", "force", "contact_height"):
+        assert_allclose(getattr(back, key), getattr(record, key), rtol=1e-13, atol=1e-15, err_msg=key)
+    assert_allclose(back.support_position, record.support_position[supports], rtol=0)
+    assert_allclose(back.support_uplift, record.support_uplift[supports], rtol=1e-13, atol=1e-15)
+
+
+@pytest.mark.parametrize("channels", [("time", "position"), ("position",), ("time",), ("time", "speed")])
+def test_rear_pantographs_run_behind_the_first(tmp_path: Path, channels: tuple[str, ...]) -> None:
+    """The second runs 100 m behind the first and the third 50 m behind it, from any channels that place the train.
+
+    At 216 km/h, 60 m/s, a sample every 3 m is a sample every 0.05 s. Twelve digits are written: 1e-9 of the position.
+    """
+    values = {
+        "time_ms": 50.0 * np.arange(100),
+        "position_1_km": 0.5 + 0.003 * np.arange(100),
+        "speed_km_h": np.full(100, 216.0),
+    }
+    columns = {name: values[name] for name in values if name.startswith(channels)}
+    columns |= {f"force_{row}_kN": np.full(100, 0.1 + 0.01 * row) for row in (1, 2, 3)}
+    write_csv_table(tmp_path / "a.csv", list(columns), np.column_stack(list(columns.values())), 12)
+    sidecar = {
+        "schema": "pantocheck.record/1",
+        "file": "a.csv",
+        "speed_km_h": 216.0,
+        "pantographs": 3,
+        "filter_applied_Hz": "none",
+        "spacing_m": [100.0, 50.0],
+        "start_m": 500.0,
+    }
+    (tmp_path / "a.toml").write_text(tomli_w.dumps(sidecar))
+    record, _ = read_record(tmp_path / "a.csv")
+    assert_allclose(record.position[:, 0], [500.0, 400.0, 350.0], rtol=1e-9)
+    assert_allclose(record.position[:, -1], [797.0, 697.0, 647.0], rtol=1e-9)
+    assert_allclose(record.time[-1] - record.time[0], 99 * 0.05, rtol=1e-9)
+    assert record.evaluated == pytest.approx((500.0, 647.0))  # the track that all pantographs cross
+
+
 @pytest.mark.parametrize("name", ["a.csv", "a.h5"])
 def test_same_record_same_bytes(written: Writer, name: str) -> None:
     first = written(name).read_bytes()

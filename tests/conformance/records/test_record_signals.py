@@ -124,6 +124,36 @@ def test_truncated_record_has_no_values(length: float) -> None:
     assert "the analysis section is 200 m to 400 m" in evaluation.skipped[1]["mean_force_N"]
 
 
+@pytest.mark.parametrize("samples", [-20.0, -0.5, 0.0, 0.9, 1.1, 2.0, 5.0, 9.9, 100.0])
+@pytest.mark.parametrize("rate", [250.0, 1000.0])
+def test_every_pantograph_covers_the_section_to_one_sample(rate: float, samples: float) -> None:
+    """The front begins, or the rear ends, some samples inside the section, which may end between two samples."""
+    time = np.arange(int(12 * rate)) / rate
+    position = np.array([SPEED * time, SPEED * time - 100])
+    force = np.array([[110.0], [130.0]]) + 20 * np.sin(2 * np.pi * 2 * time)
+    start, end, missing = position[0, 0], position[1, -1], samples * SPEED / rate
+    for number, section in ((1, (start - missing, end)), (2, (start, end + missing))):
+        evaluation = evaluate_record(record(force, rate, position=position, evaluated=section), LowPass())
+        assert ("mean_force_N" in evaluation.values[number]) is (samples <= 1)
+        assert samples <= 1 or "the record covers" in evaluation.skipped[number]["mean_force_N"]
+        assert "mean_force_N" in evaluation.values[3 - number]
+
+
+def test_minimum_may_be_negative() -> None:
+    """Adhesion of a model without unilateral contact: the rear alone goes from 100 N to -20 N, both to -60 N for 0.4 s.
+
+    A minimum clipped at zero, or without its sign, would meet a lower limit. The step of the filter of 20 Hz has
+    settled after a quarter of the 0.4 s: the minimum is below the level by its overshoot alone, less than 15 %.
+    """
+    time = np.arange(12_000) / RATE
+    inside = np.abs(time - 6.5) < 0.2
+    force = np.where(inside, [[-60.0], [-20.0]], 100.0)
+    position = np.array([SPEED * time, SPEED * time])
+    found = evaluate_record(record(force, position=position), LowPass()).values
+    assert -60 - 0.15 * 160 < found[1]["min_force_N"] <= -60
+    assert -20 - 0.15 * 120 < found[2]["min_force_N"] <= -20
+
+
 def test_short_section_has_no_low_band() -> None:
     evaluation = evaluate_record(record(evaluated=(200.0, 220.0)), LowPass())
     assert "lasts 0.4 s" in evaluation.skipped[1]["rms_0_5_N"]

@@ -1,0 +1,99 @@
+"""Assessed record: bootstrap blocks of one span, and facts on the line from the record or from the user."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import tomli_w
+
+from pantocheck.conformance.cases.library import library_folder
+from pantocheck.conformance.cases.profile_file import load_profile
+from pantocheck.conformance.grading.assessed_record import AssessedRecord, load_assessed_record
+from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
+from pantocheck.conformance.quantities.evaluation import LINE
+from pantocheck.conformance.records.measured.block_bootstrap import bootstrap_uncertainties
+from pantocheck.conformance.records.sidecar_tables import LineTable
+from tests.helpers.toml_edit import edit_toml
+
+SPEED, RATE, SUMMARY = 60.0, 200.0, library_folder() / "en50318-2002" / "known-passing-code" / "250.toml"
+NOTHING = LineTable()
+
+Load = Callable[..., AssessedRecord]
+
+
+@pytest.fixture
+def load(tmp_path: Path) -> Load:
+    """Assessed record of two pantographs 90 m apart over 1.8 km; force in kN. Keys of the sidecar may be changed."""
+
+    def load(keys: dict[str, Any], line: LineTable = NOTHING) -> AssessedRecord:
+        time = np.arange(30 * RATE) / RATE
+        noise = np.random.default_rng(2).normal(0, 5, (2, time.size))
+        force = np.array([[120.0], [110.0]]) + 30 * np.sin(2 * np.pi * (SPEED * time - [[0.0], [90.0]]) / 45) + noise
+        columns = np.column_stack([time, *(1e-3 * force)])
+        write_csv_table(tmp_path / "train.csv", ["time_s", "force_1_kN", "force_2_kN"], columns, 12)
+        sidecar = {
+            "schema": "pantocheck.record/1",
+            "file": "train.csv",
+            "speed_km_h": 3.6 * SPEED,
+            "pantographs": 2,
+            "filter_applied_Hz": "none",
+            "start_m": 0.0,
+            "spacing_m": [90.0],
+        }
+        (tmp_path / "train.toml").write_text(tomli_w.dumps(sidecar | keys))
+        return load_assessed_record(tmp_path / "train.toml", load_profile("acceptance-ac"), line)
+
+    return load
+
+
+@pytest.mark.parametrize(
+    ("line", "keys", "length"),
+    [
+        (NOTHING, {"line": {"span_m": 45.0}}, 45.0),
+        (LineTable(span_m=54.0), {"line": {"span_m": 45.0}}, 54.0),
+        (LineTable(span_m=54.0), {"support_position_m": [0.0, 63.0, 126.0]}, 54.0),
+        (NOTHING, {"support_position_m": [0.0, 63.0, 126.0, 184.5]}, 63.0),
+        (NOTHING, {"support_position_m": [126.0, 0.0, 63.0, 126.0]}, 63.0),
+        (NOTHING, {"support_position_m": [0.0, 4.0, 54.0, 58.0, 112.0, 116.0, 900.0]}, 52.0),  # 50 m and 54 m
+        (NOTHING, {"support_position_m": [0.0, 300.0, 303.0]}, 60.0),
+        (NOTHING, {}, 60.0),
+    ],
+)
+def test_bootstrap_block_is_a_span(load: Load, line: LineTable, keys: dict[str, Any], length: float) -> None:
+    """The span that the user states, that of the record, the median plausible distance of its supports, or 60 m.
+
+    The uncertainties are the same numbers as with blocks of that length: the digest seeds the bootstrap.
+    """
+    record = load(keys, line)
+    assert f"blocks of {length:g} m" in record.notes[-1]
+    assert record.prepared is not None
+    for number, pooled in record.prepared.pantographs.items():
+        assert record.uncertainty[number] == bootstrap_uncertainties(pooled, length / SPEED, record.digest)
+    assert record.uncertainty[1] != record.uncertainty[2]
+
+
+def test_fact_of_the_user_replaces_that_of_the_record(load: Load) -> None:
+    """216 km/h is 60 m/s, half of 120 m/s and 0.4 of 150 m/s."""
+    stated = {"line": {"wave_speed_m_s": 120.0, "uplift_space_mm": 80.0}}
+    for line, wave_speed, ratio in ((NOTHING, 120.0, 0.5), (LineTable(wave_speed_m_s=150.0), 150.0, 0.4)):
+        record = load(stated, line)
+        values = record.values.values[LINE]
+        assert (values["wave_speed_m_s"], values["speed_over_wave_speed"]) == (wave_speed, pytest.approx(ratio))
+        assert record.line.uplift_space_mm == 80.0
+    assert "wave_speed_m_s" not in load({}).values.values[LINE]
+
+
+@pytest.mark.parametrize(
+    ("user", "line", "wave_speed"), [(None, None, 125.0), (None, 100.0, 100.0), (80.0, 100.0, 80.0)]
+)
+def test_wave_speed_of_a_summary_yields_to_stated_facts(
+    tmp_path: Path, user: float | None, line: float | None, wave_speed: float
+) -> None:
+    """The summary has 125 m/s among its quantities; its line table and the user state the line that is assessed."""
+    path = tmp_path / "a.toml"
+    path.write_text(SUMMARY.read_text())
+    edit_toml(path, {"quantities.wave_speed_m_s": 125.0, "line": {} if line is None else {"wave_speed_m_s": line}})
+    record = load_assessed_record(path, load_profile("acceptance-ac"), LineTable(wave_speed_m_s=user))
+    assert record.values.values[LINE]["speed_over_wave_speed"] == pytest.approx(250 / 3.6 / wave_speed)
