@@ -13,7 +13,7 @@ PAGE = Path(__file__).parents[2] / "docs" / "systems.md"
 
 
 def test_conversation_follows_the_schemas() -> None:
-    shown = PAGE.read_text(encoding="utf-8").split("## A whole conversation")[1].split("```")[1].strip().splitlines()
+    shown = PAGE.read_text(encoding="utf-8").split("## Example of a conversation")[1].split("```")[1].strip().splitlines()
     messages = [(line[0], json.loads(line[2:])) for line in shown]
     assert [message["message"] for _, message in messages] == ["start", "started", "run", "delivered", "stop"]
     for side, message in messages:
