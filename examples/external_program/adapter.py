@@ -1,7 +1,8 @@
 """Adapter of a program that reads input files and writes output files.
 
-The program is `pantocheck simulate` in a separate process; replace `simulate` with yours. The steps remain: write the
-input of the program from the case, run the program with a time limit, and deliver its files.
+The program of this example is `pantocheck simulate` in a separate process. For your own program, replace the function
+`simulate` and the input files. The steps stay the same: write the input files of a case, run the program with a time
+limit, and deliver its output files.
 
 Try it:  pantocheck run 'en50318-2002/*' --system 'command:python3 examples/external_program/adapter.py pantocheck'
 The argument is the command that starts the program.
@@ -16,11 +17,11 @@ from itertools import pairwise
 from pathlib import Path
 
 PROTOCOL = "pantocheck.command/1"
-PROVENANCE = {"trust": "provisional", "source": "given over the protocol"}
+PROVENANCE = {"trust": "provisional", "source": "received over the protocol"}
 
 
-def toml(table, path=()):
-    """Nested tables as TOML text: plain values first, then tables, then lists of tables."""
+def toml_lines(table, path=()):
+    """Lines of TOML of nested tables: plain values first, then tables, then lists of tables."""
     tables = {key: value for key, value in table.items() if isinstance(value, dict)}
     lists = {
         key: value for key, value in table.items() if isinstance(value, list) and value and isinstance(value[0], dict)
@@ -30,26 +31,26 @@ def toml(table, path=()):
             yield f"{key} = {json.dumps(value)}"
     for key, value in tables.items():
         yield f"[{'.'.join((*path, key))}]"
-        yield from toml(value, (*path, key))
+        yield from toml_lines(value, (*path, key))
     for key, values in lists.items():
         for value in values:
             yield f"[[{'.'.join((*path, key))}]]"
-            yield from toml(value, (*path, key))
+            yield from toml_lines(value, (*path, key))
 
 
-def sourced(table):
-    """Add the source of the numbers to every table, as the input of this program requires."""
+def add_provenance(table):
+    """Add trust and source to every table, because the program requires them."""
     return {key: {**value, **PROVENANCE} if isinstance(value, dict) else value for key, value in table.items()}
 
 
 def write_input(case):
     """Write the case, its line and its pantographs as files."""
-    Path("line.toml").write_text("\n".join(toml(sourced(case["line"]))), encoding="utf-8")
+    Path("line.toml").write_text("\n".join(toml_lines(add_provenance(case["line"]))), encoding="utf-8")
     uses = []
     for i, train in enumerate(case["pantographs"], 1):
         parts = {key: train[key] for key in ("chain", "matrices", "modes", "contact") if train[key] is not None}
         model = {"title": f"pantograph {i}", **parts}
-        Path(f"pantograph{i}.toml").write_text("\n".join(toml(sourced(model))), encoding="utf-8")
+        Path(f"pantograph{i}.toml").write_text("\n".join(toml_lines(add_provenance(model))), encoding="utf-8")
         forces = {key: train[key] for key in ("uplift_force_N", "target_mean_force_N")}
         uses.append({"model": f"pantograph{i}.toml", **forces, **PROVENANCE})
     span, starts = case["line"]["geometry"]["span_m"], [train["start_m"] for train in case["pantographs"]]
@@ -70,11 +71,11 @@ def write_input(case):
     }
     if content["evaluated_spans"][0] == content["evaluated_spans"][1]:
         content["evaluated_spans"].pop()
-    Path("case.toml").write_text("\n".join(toml(content)), encoding="utf-8")
+    Path("case.toml").write_text("\n".join(toml_lines(content)), encoding="utf-8")
 
 
 def simulate(program, time_limit):
-    """Run the program; its output goes to standard error, of which Pantocheck keeps the end."""
+    """Run the program. Its output goes to the standard error; if it fails, the report quotes the end."""
     subprocess.run(
         [*program, "simulate", "case.toml", "--out", "record.h5"],
         stdout=sys.stderr, timeout=time_limit, check=True, env={**os.environ, "OMP_NUM_THREADS": "1"},
@@ -89,7 +90,7 @@ def name_case(case):
     sidecar.write_text("\n".join([f'case_digest = "{case["case_digest"]}"', *kept]), encoding="utf-8")
 
 
-def digest(name):
+def describe_file(name):
     """Name and SHA-256 of a file."""
     return {"file": name, "sha256": hashlib.sha256(Path(name).read_bytes()).hexdigest()}
 
@@ -115,7 +116,7 @@ def main(program):
             try:
                 simulate(program, 0.9 * message["time_limit_s"])
                 name_case(message["case"])
-                record = {"sidecar": digest("record.toml"), "table": digest("record.h5")}
+                record = {"sidecar": describe_file("record.toml"), "table": describe_file("record.h5")}
                 answer = {"message": "delivered", "id": message["id"], "record": record}
             except (OSError, subprocess.SubprocessError) as error:
                 answer = {"message": "errored", "id": message["id"], "reason": str(error)}

@@ -1,4 +1,4 @@
-"""Adapter of `simulator.py`: the whole protocol of Pantocheck with the standard library.
+"""Adapter of `simulator.py`: the complete protocol of Pantocheck, with the standard library of Python only.
 
 Try it:  pantocheck run 'en50318-2002/*' --system 'command:python3 examples/string_catenary/adapter.py'
 """
@@ -13,26 +13,26 @@ NAME, VERSION = "string catenary", "1.0"
 
 
 def reason_to_skip(case):
-    """Reason why the simulator does not support a case; None if it does. A skipped case is no failure."""
+    """Reason why the simulator does not support a case; None if it does. A skipped case does not count as a failure."""
     line, trains = case["line"], case["pantographs"]
     if case["speed_km_h"] is None:
         return "checks of the line at rest are not supported"
     if len(trains) != 1:
         return "only one pantograph is supported"
     if trains[0]["uplift_force_N"] is None or trains[0]["target_mean_force_N"] is not None:
-        return "the uplift force is not tuned"
+        return "tuning of the uplift force is not supported"
     if trains[0]["chain"] is None:
-        return "the pantograph has to be a chain of masses"
+        return "only pantographs with a chain of masses are supported"
     if trains[0]["chain"]["base_spring_unstretched"] != "working_height":
-        return "the base spring is unstretched at the working height here"
+        return "only a base spring that is unstretched at the working height is supported"
     if line["stitch_wire"] or line["contact_wire"]["number"] > 1 or line["damping"]["modal"]:
         return "stitch wires, twin contact wires and modal damping are not supported"
     if line["geometry"]["stagger_contact_wire_m"] or line["geometry"]["stagger_messenger_m"]:
-        return "only the vertical plane is simulated: no stagger"
+        return "stagger is not supported: only the vertical plane is simulated"
     if line["droppers"]["stiffness_N_m"] is None or line["droppers"]["mass_kg_m"]:
-        return "droppers need a stiffness of their own and no mass per length"
+        return "only droppers with stiffness_N_m and without mass_kg_m are supported"
     if line["steady_arm"]["vertical_stiffness_N_m"] is None or line["steady_arm"]["vertical_damper_N_s_m"]:
-        return "steady arms need a vertical stiffness, and have no damper"
+        return "only steady arms with a vertical stiffness and without a damper are supported"
     return None
 
 
@@ -40,9 +40,9 @@ def run(case):
     """Simulate a case, write its record into the working folder, and build the answer without its id."""
     import simulator
 
-    began = time.perf_counter()
+    start = time.perf_counter()
     supports, history = simulator.simulate(case)
-    wall = time.perf_counter() - began
+    wall = time.perf_counter() - start
     names = ["time_s", "position_1_m", "force_1_N", "contact_height_1_m"]
     names += [f"uplift_{i + 1}_m" for i in range(len(supports))]
     with open("record.csv", "w") as table:
@@ -61,16 +61,16 @@ def run(case):
     }
     with open("record.toml", "w") as file:
         for key, value in sidecar.items():
-            print(key, "=", json.dumps(value), file=file)  # JSON and TOML are equal for these values
+            print(key, "=", json.dumps(value), file=file)  # these values look the same in JSON and TOML
         print(f"[system]\nname = {json.dumps(NAME)}\nversion = {json.dumps(VERSION)}", file=file)
         print(f"[run]\nwall_s = {wall:.3f}\nsimulated_s = {history[-1, 0]:.9g}", file=file)
         print(f"dt_s = {case['discretisation']['time_step_s']}", file=file)
         print(f"element_m = {case['discretisation']['element_m']}", file=file)
-    record = {"sidecar": digest("record.toml"), "table": digest("record.csv")}
+    record = {"sidecar": describe_file("record.toml"), "table": describe_file("record.csv")}
     return {"message": "delivered", "record": record, "notes": ["Finite differences, explicit time stepping."]}
 
 
-def digest(name):
+def describe_file(name):
     """Name and SHA-256 of a file."""
     with open(name, "rb") as file:
         return {"file": name, "sha256": hashlib.sha256(file.read()).hexdigest()}
