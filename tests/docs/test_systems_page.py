@@ -13,8 +13,8 @@ PAGE = Path(__file__).parents[2] / "docs" / "systems.md"
 
 
 def test_conversation_follows_the_schemas() -> None:
-    shown = PAGE.read_text(encoding="utf-8").split("## Example of a conversation")[1].split("```")[1].strip().splitlines()
-    messages = [(line[0], json.loads(line[2:])) for line in shown]
+    example = PAGE.read_text(encoding="utf-8").split("## Example of a conversation")[1].split("```")[1]
+    messages = [(line[0], json.loads(line[2:])) for line in example.strip().splitlines()]
     assert [message["message"] for _, message in messages] == ["start", "started", "run", "delivered", "stop"]
     for side, message in messages:
         jsonschema.validate(message, build_schema("command-request" if side == ">" else "command-answer"))
