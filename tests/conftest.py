@@ -6,4 +6,4 @@ import os
 for _library in ("OMP", "OPENBLAS", "MKL"):
     os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
 
-pytest_plugins = ["helpers.example_results"]
+pytest_plugins = ["helpers.case_fixtures", "helpers.example_results", "helpers.record_fixtures"]

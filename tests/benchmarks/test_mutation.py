@@ -55,11 +55,11 @@ EXPECTED = {
 
 
 @pytest.fixture(autouse=True)
-def scripts(monkeypatch):
+def scripts(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(BENCHMARKS)
 
 
-def test_operators_change_code_and_never_texts():
+def test_operators_change_code_and_never_texts() -> None:
     from mutation_mutants import find_mutants
 
     mutants = find_mutants("toy.py", MODULE.encode())
@@ -70,7 +70,7 @@ def test_operators_change_code_and_never_texts():
         assert len(text.splitlines()) == len(MODULE.splitlines())
 
 
-def test_ids_survive_line_shifts():
+def test_ids_survive_line_shifts() -> None:
     from mutation_mutants import find_mutants
 
     shifted = MODULE.replace("import logging\n", "import logging\n# one line more\n\n")
@@ -80,7 +80,7 @@ def test_ids_survive_line_shifts():
 
 
 @pytest.fixture
-def toy(tmp_path) -> Path:
+def toy(tmp_path: Path) -> Path:
     """Package of one module: `reaches` is tested on both sides of the limit but not at it, `unused` not at all."""
     root = tmp_path / "toy-root"
     (root / "toy").mkdir(parents=True)
@@ -104,7 +104,7 @@ def toy(tmp_path) -> Path:
     return root
 
 
-def test_sample_depends_on_the_seed_alone(toy, tmp_path):
+def test_sample_depends_on_the_seed_alone(toy: Path, tmp_path: Path) -> None:
     from dataclasses import replace
 
     from mutation_project import Settings, Sources
@@ -116,7 +116,7 @@ def test_sample_depends_on_the_seed_alone(toy, tmp_path):
     assert samples[0] == samples[1] != samples[2]
 
 
-def test_outcomes_on_a_toy_package(toy, tmp_path):
+def test_outcomes_on_a_toy_package(toy: Path, tmp_path: Path) -> None:
     pytest.importorskip("coverage", reason="the extra `mutation` is not installed")
     before = (toy / "toy" / "limits.py").read_bytes()
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from helpers.wave_system import Wave
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.pytest_plugin import collection  # noqa: F401 - once here, or anew in every session below
 from pantocheck.conformance.records.record_writing import write_record
@@ -36,16 +37,16 @@ CODE = "published passing code (Wang et al.)"
 ALONE = ("-p", "no:hypothesispytest")
 
 
-def session(pytester, *arguments):
+def session(pytester: pytest.Pytester, *arguments: str) -> pytest.RunResult:
     return pytester.runpytest_inprocess(*ALONE, *arguments)
 
 
-def process(pytester, *arguments):
+def process(pytester: pytest.Pytester, *arguments: str) -> pytest.RunResult:
     return pytester.runpytest_subprocess(*ALONE, *arguments)
 
 
 @pytest.fixture
-def plan(pytester, wave):
+def plan(pytester: pytest.Pytester, wave: type[Wave]) -> Path:
     """Plan for records of both cases: sines, whose extremes are outside the limits."""
     pytester.path.joinpath("records").mkdir()
     for case in select_cases(["en50318-2002/*"]):
@@ -57,7 +58,7 @@ def plan(pytester, wave):
     return path
 
 
-def outcomes_250(verdicts):
+def outcomes_250(verdicts: dict[str, str]) -> list[str]:
     return [f"conformance.toml::en50318-2002/250::{name} {verdict}*" for name, verdict in verdicts.items()]
 
 

@@ -3,6 +3,7 @@
 import json
 import re
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Literal
 
 import jsonschema
@@ -10,27 +11,30 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from helpers.wave_system import Wave
+from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases, source_text
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.grading.criterion_grading import criterion_name
+from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.records.record_writing import write_record
-from pantocheck.conformance.results.outcome import Delivered, Errored, Skipped
+from pantocheck.conformance.results.outcome import Delivered, Errored, Outcome, Skipped
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.runner import RunInterrupted, run_cases
 from pantocheck.conformance.schemas import build_schema
-from pantocheck.conformance.systems.record_folder import open_record_folder
+from pantocheck.conformance.systems.record_folder import RecordFolder, open_record_folder
 
 
 @dataclass(frozen=True)
 class Scripted:
     """System that delivers the scripted outcome of each case, or raises the scripted exception."""
 
-    script: dict[str, object]
+    script: dict[str, Outcome | BaseException]
     name: str = "scripted"
     version: str = "1"
     kind: Literal["builtin"] = "builtin"
 
-    def run(self, case):
+    def run(self, case: Case) -> Outcome:
         step = self.script[case.id]
         if isinstance(step, BaseException):
             raise step
@@ -38,11 +42,11 @@ class Scripted:
 
 
 @pytest.fixture
-def cases():
+def cases() -> list[Case]:
     return select_cases(["en50318-2002/*"])
 
 
-def limited(case, *bounds, trust="secondary"):
+def limited(case: Case, *bounds: tuple[str, float | None, float | None], trust: Trust = "secondary") -> Case:
     """Case with the given limits only, each as (quantity, lower, upper)."""
     limits = tuple(
         Limit(quantity=name, lower=lower, upper=upper, trust=trust, source="test") for name, lower, upper in bounds
@@ -50,7 +54,7 @@ def limited(case, *bounds, trust="secondary"):
     return replace(case, limits=limits)
 
 
-def test_results_follow_their_schema_and_hold_the_numbers(cases, wave):
+def test_results_follow_their_schema_and_hold_the_numbers(cases: list[Case], wave: type[Wave]) -> None:
     results = run_cases(cases, wave())
     content = json.loads(results.to_json())
     jsonschema.validate(content, build_schema("results"))
@@ -86,12 +90,12 @@ def test_results_follow_their_schema_and_hold_the_numbers(cases, wave):
     assert Results.model_validate(content).to_json() == results.to_json()
 
 
-def test_results_are_reproducible_apart_from_times(cases, wave):
+def test_results_are_reproducible_apart_from_times(cases: list[Case], wave: type[Wave]) -> None:
     first, second = (re.sub(rb'"started": "[^"]*"', b"", run_cases(cases, wave()).to_json()) for _ in "ab")
     assert first == second
 
 
-def test_verdicts_of_cases(case_250, wave):
+def test_verdicts_of_cases(case_250: Case, wave: type[Wave]) -> None:
     inside, outside = ("mean_force_N", 110.0, 120.0), ("std_force_N", 40.0, 50.0)
     by_verdict = {
         "pass": limited(case_250, inside),
@@ -105,7 +109,7 @@ def test_verdicts_of_cases(case_250, wave):
     assert run_cases([limited(case_250)], wave()).verdict == "info"
 
 
-def test_provisional_limit_counts_only_on_request(case_250, wave):
+def test_provisional_limit_counts_only_on_request(case_250: Case, wave: type[Wave]) -> None:
     case = limited(case_250, ("std_force_N", 40.0, 50.0), trust="provisional")
     (criterion,) = run_cases([case], wave()).cases[0].criteria
     assert criterion.verdict == "info"
@@ -114,7 +118,7 @@ def test_provisional_limit_counts_only_on_request(case_250, wave):
     assert run_cases([limited(case_250, ("std_force_N", 40.0, 50.0))], wave(), trust="primary").verdict == "info"
 
 
-def test_exception_in_one_case_leaves_the_other_cases(cases, wave):
+def test_exception_in_one_case_leaves_the_other_cases(cases: list[Case], wave: type[Wave]) -> None:
     good = Delivered(wave().record(cases[1]))
     results = run_cases(cases, Scripted({cases[0].id: ZeroDivisionError("no mass\n at all"), cases[1].id: good}))
     assert [case.verdict for case in results.cases] == ["error", "fail"]
@@ -123,7 +127,7 @@ def test_exception_in_one_case_leaves_the_other_cases(cases, wave):
     jsonschema.validate(json.loads(results.to_json()), build_schema("results"))
 
 
-def test_skipped_errored_and_foreign_outcomes(cases, wave):
+def test_skipped_errored_and_foreign_outcomes(cases: list[Case], wave: type[Wave]) -> None:
     case = cases[0]
     for outcome, verdict, reason in (
         (Skipped("no stitch wires"), "skip", "no stitch wires"),
@@ -139,7 +143,7 @@ def test_skipped_errored_and_foreign_outcomes(cases, wave):
         assert reason in (result.reason or "")
 
 
-def test_truncated_record_never_passes(case_250, wave):
+def test_truncated_record_never_passes(case_250: Case, wave: type[Wave]) -> None:
     whole = wave().record(case_250)
     n = int(250 / case_250.speed * 1000)
     cut = replace(
@@ -156,7 +160,7 @@ def test_truncated_record_never_passes(case_250, wave):
     )
 
 
-def test_short_run_out_gives_a_warning(case_250, wave):
+def test_short_run_out_gives_a_warning(case_250: Case, wave: type[Wave]) -> None:
     record = wave().record(case_250)
     n = int(np.searchsorted(record.position[0], 362.0))
     cut = replace(
@@ -168,7 +172,7 @@ def test_short_run_out_gives_a_warning(case_250, wave):
     assert not any("run-out" in warning for warning in run_cases([case_250], wave()).cases[0].warnings)
 
 
-def test_value_closer_to_a_limit_than_its_discretisation_error_is_marked(case_250, wave):
+def test_value_closer_to_a_limit_than_its_discretisation_error_is_marked(case_250: Case, wave: type[Wave]) -> None:
     """The standard deviation is 28 N with an error of 0.28 N; the remark is in one place only."""
     for upper, marked in ((28.2, True), (28.4, False)):
         (result,) = run_cases([limited(case_250, ("std_force_N", None, upper))], wave()).cases
@@ -177,7 +181,7 @@ def test_value_closer_to_a_limit_than_its_discretisation_error_is_marked(case_25
         assert not any("discretisation error" in warning for warning in result.warnings)
 
 
-def test_list_valued_static_quantity_is_graded_item_by_item(case_250, wave):
+def test_list_valued_static_quantity_is_graded_item_by_item(case_250: Case, wave: type[Wave]) -> None:
     lengths = (1.017, 0.896, 0.81)
     limits = tuple(
         Limit(quantity="dropper_length_m", item=i, lower=x - 0.001, upper=x + 0.001, trust="secondary", source="test")
@@ -189,14 +193,14 @@ def test_list_valued_static_quantity_is_graded_item_by_item(case_250, wave):
     assert result.quantities["0"]["dropper_length_m"] == list(lengths)
 
 
-def test_unknown_quantity_of_a_line_at_rest_is_an_error():
+def test_unknown_quantity_of_a_line_at_rest_is_an_error() -> None:
     """If it were ignored, a case with a misspelt name would be skipped for lack of values."""
     (case,) = select_cases(["en50318-2018/ac-simple/static"])
     (result,) = run_cases([case], Scripted({case.id: Delivered(static={"dropper_lenght_m": (1.0,)})})).cases
     assert (result.verdict, result.reason) == ("error", "the system delivered an unknown quantity 'dropper_lenght_m'")
 
 
-def test_item_of_the_line_close_to_its_limit_is_marked(case_250, wave):
+def test_item_of_the_line_close_to_its_limit_is_marked(case_250: Case, wave: type[Wave]) -> None:
     """A dropper 0.4 mm from its limit with a discretisation error of 1 mm; the criterion names dropper and owner."""
     limit = Limit(quantity="dropper_length_m", item=2, lower=0.8956, upper=1.0, trust="secondary", source="test")
     outcome = Delivered(
@@ -210,7 +214,7 @@ def test_item_of_the_line_close_to_its_limit_is_marked(case_250, wave):
     assert [remark.split(",")[0] for remark in criterion.close] == ["lies 0.0004 m from a limit"]
 
 
-def test_case_is_skipped_if_a_required_case_failed_or_was_not_run(cases, wave):
+def test_case_is_skipped_if_a_required_case_failed_or_was_not_run(cases: list[Case], wave: type[Wave]) -> None:
     first = limited(cases[0], ("mean_force_N", 0.0, 1.0))
     second = replace(cases[1], file=cases[1].file.model_copy(update={"requires": (first.id,)}))
     results = run_cases([second, first], wave())
@@ -221,7 +225,7 @@ def test_case_is_skipped_if_a_required_case_failed_or_was_not_run(cases, wave):
     assert run_cases([second], wave()).cases[0].reason == f"requires {first.id}, which was not run"
 
 
-def test_interrupted_run_keeps_the_finished_cases(cases, wave):
+def test_interrupted_run_keeps_the_finished_cases(cases: list[Case], wave: type[Wave]) -> None:
     system = Scripted({cases[0].id: Delivered(wave().record(cases[0])), cases[1].id: KeyboardInterrupt()})
     seen = []
     with pytest.raises(RunInterrupted) as caught:
@@ -237,14 +241,14 @@ def test_interrupted_run_keeps_the_finished_cases(cases, wave):
 
 
 @pytest.fixture
-def recorded(cases, wave, tmp_path):
+def recorded(cases: list[Case], wave: type[Wave], tmp_path: Path) -> RecordFolder:
     for case in cases:
         path = tmp_path / f"{case.file.speed_km_h:g}.csv"
         write_record(path, wave().record(case), case.id, {"name": "w", "version": "2"})
     return open_record_folder(tmp_path)
 
 
-def test_parallel_run_gives_the_same_results(cases, recorded):
+def test_parallel_run_gives_the_same_results(cases: list[Case], recorded: RecordFolder) -> None:
     after = replace(cases[0], file=cases[0].file.model_copy(update={"id": "after", "requires": (cases[1].id,)}))
     ordered = [after, *cases]
     sequential, parallel = run_cases(ordered, recorded), run_cases(ordered, recorded, jobs=2)
@@ -253,7 +257,7 @@ def test_parallel_run_gives_the_same_results(cases, recorded):
     assert sequential.system.name == "w"
 
 
-def test_cases_that_require_each_other_are_skipped(cases, recorded):
+def test_cases_that_require_each_other_are_skipped(cases: list[Case], recorded: RecordFolder) -> None:
     loop = [
         replace(case, file=case.file.model_copy(update={"requires": (other.id,)}))
         for case, other in zip(cases, cases[::-1], strict=True)

@@ -1,6 +1,7 @@
 """Simulator against independent formulations that share only the line with it."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ from scipy.sparse.linalg import eigsh
 
 from helpers.central_differences import contact_force
 from helpers.lines import PANTOGRAPH_2002, Array, simple_line
-from pantocheck.model import Kind, Passage, Rayleigh, discretise, simulate_passage
+from pantocheck.model import Kind, Passage, Rayleigh, Wire, discretise, simulate_passage
 from pantocheck.model.modal.modes import compute_modes
 from pantocheck.model.pantograph import preload_springs
 
@@ -51,11 +52,11 @@ def test_compute_modes_agrees_with_scikit_fem_on_a_whole_line() -> None:
         basis = skfem.Basis(mesh, skfem.ElementLineHermite())
 
         @skfem.BilinearForm
-        def stiffness(u, v, w, wire=wire):  # type: ignore[no-untyped-def]
+        def stiffness(u: Any, v: Any, w: Any, wire: Wire = wire) -> Any:
             return wire.bending_stiffness * dd(u)[0][0] * dd(v)[0][0] + wire.tension * d(u)[0] * d(v)[0]
 
         @skfem.BilinearForm
-        def mass(u, v, w, wire=wire):  # type: ignore[no-untyped-def]
+        def mass(u: Any, v: Any, w: Any, wire: Wire = wire) -> Any:
             return wire.mass_per_length * u * v
 
         blocks.append((stiffness.assemble(basis).tolil(), mass.assemble(basis).tolil(), basis))

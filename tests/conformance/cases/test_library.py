@@ -1,11 +1,11 @@
 """Library: published numbers, and selection of cases by id, glob and path."""
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from helpers.case_fixtures import EditedCase
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import (
     library_folder,
@@ -18,8 +18,6 @@ from pantocheck.conformance.cases.library import (
 )
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.plan import Plan, prepare_plan
-
-EditedCase = Callable[[str, dict[str, Any]], Path]
 
 LIMITS = {  # Wang et al., Table III
     "en50318-2002/250": {

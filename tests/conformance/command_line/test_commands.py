@@ -14,6 +14,7 @@ import pytest
 import typer
 from typer.testing import CliRunner, Result
 
+from helpers.case_fixtures import EditedCase
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import library_folder, select_cases
 from pantocheck.conformance.command_line import run_command, self_test_command
@@ -269,8 +270,8 @@ def test_cases_and_show_state_trust_and_source() -> None:
         assert text in shown
 
 
-def test_control_characters_of_a_file_do_not_reach_the_terminal(own_case: Callable[..., Path]) -> None:
-    path = own_case("250.toml", 'title = "EN', 'title = "\\u001b[31m[bold]EN')
+def test_control_characters_of_a_file_do_not_reach_the_terminal(edited_case: EditedCase) -> None:
+    path = edited_case("250.toml", {"title": "\x1b[31m[bold]EN 50318"})
     shown = pantocheck("show", path).output
     assert "\x1b" not in shown
     assert "[31m[bold]EN" in shown

@@ -7,6 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.signal import lsim
 
+from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.consistency.check import CheckName, Finding
 from pantocheck.conformance.consistency.force_dynamics import fit_motion
@@ -16,7 +17,6 @@ from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.results.outcome import Delivered
-from tests.conformance.conftest import Wave
 
 
 @pytest.fixture

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.consistency.record_checks import check_record
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
-from tests.conformance.conftest import Wave
 
 NOISE = LowPass(cutoff_Hz=100.0)(np.random.default_rng(1).normal(0.0, 12.0, 20_000), 1000.0)
 """Force between the cut-off of 20 Hz and 100 Hz from a fixed seed [N]."""

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from helpers.toml_edit import edit_toml
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.profile_file import load_profile
@@ -18,7 +19,6 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.records.sidecar_tables import LineTable
-from tests.helpers.toml_edit import edit_toml
 
 LINE_TEST = load_profile("line-test")
 

@@ -1,6 +1,5 @@
 """Identity of a case: copies of library cases, digests of limits, limits that a limits file weakens."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -8,6 +7,7 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
+from helpers.case_fixtures import EditedCase
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import library_folder, list_library, load_case, overlay_limits
 from pantocheck.conformance.cases.limits import Limit, LimitOverride
@@ -31,7 +31,7 @@ def test_every_library_case_is_identical_to_itself(name: str) -> None:
     assert compare_with_library(load_case(LIBRARY[name])) == "identical"
 
 
-def test_copy_with_the_same_content_is_identical(edited_case: Callable[[str, dict[str, Any]], Path]) -> None:
+def test_copy_with_the_same_content_is_identical(edited_case: EditedCase) -> None:
     assert compare_with_library(load_case(edited_case("250.toml", {}))) == "identical"
 
 
@@ -50,9 +50,7 @@ def test_copy_with_the_same_content_is_identical(edited_case: Callable[[str, dic
         ("pantograph.toml", {"title": "Another pantograph"}),
     ],
 )
-def test_copy_with_other_content_is_modified(
-    edited_case: Callable[[str, dict[str, Any]], Path], file: str, changes: dict[str, Any]
-) -> None:
+def test_copy_with_other_content_is_modified(edited_case: EditedCase, file: str, changes: dict[str, Any]) -> None:
     """A wider limit, other inputs, another source or title: the id alone does not make a library case."""
     assert compare_with_library(load_case(edited_case(file, changes))) == "modified"
 
@@ -61,7 +59,7 @@ def test_second_pantograph_makes_a_modified_copy(two_pantograph_case: Case) -> N
     assert compare_with_library(two_pantograph_case) == "modified"
 
 
-def test_other_id_is_an_own_case(edited_case: Callable[[str, dict[str, Any]], Path]) -> None:
+def test_other_id_is_an_own_case(edited_case: EditedCase) -> None:
     assert compare_with_library(load_case(edited_case("250.toml", {"id": "en50318-2002/250-copy"}))) == "own"
 
 
@@ -128,9 +126,7 @@ def test_removed_limit_is_reported(case_250: Case) -> None:
     assert changes == ["mean_force_N of pantograph 1: the limit 110 to 120 is removed"]
 
 
-def test_command_names_a_case_file_that_borrows_the_id_of_the_library(
-    edited_case: Callable[[str, dict[str, Any]], Path], tmp_path: Path
-) -> None:
+def test_command_names_a_case_file_that_borrows_the_id_of_the_library(edited_case: EditedCase, tmp_path: Path) -> None:
     """The uplift limit of the copy is 255 mm in place of 55 mm; its id, source and input digest are unchanged."""
     path = edited_case("250.toml", {"limit.6.upper": 255.0})
     system = "record:en50318-2002/known-passing-code"

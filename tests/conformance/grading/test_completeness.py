@@ -10,6 +10,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from helpers.toml_edit import edit_toml
+from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.input_files.input_error import InputError
@@ -20,8 +22,6 @@ from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.results.results_format import CaseResult, Criterion
 from pantocheck.conformance.runner import run_case
 from pantocheck.conformance.systems.record_folder import open_record_folder
-from tests.conformance.conftest import Wave
-from tests.helpers.toml_edit import edit_toml
 
 UPLIFT, FORCES = "max_uplift_at_support_mm", ("mean_force_N", "std_force_N", "contact_loss_pct")
 

@@ -5,13 +5,13 @@ from typing import Any
 
 import numpy as np
 
+from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.grading.extended_band import NOT_VALIDATED
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.runner import run_cases
-from tests.conformance.conftest import Wave
 
 
 def rippled(wave: type[Wave], case: Case, amplitude: float) -> Record:

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.grading.case_evaluation import section_spread
@@ -13,7 +14,6 @@ from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals, evaluate_record
 from pantocheck.conformance.reports.certificate.criteria_table import remark_shift
 from pantocheck.conformance.results.outcome import Delivered
-from tests.conformance.conftest import Wave
 
 
 @pytest.fixture

@@ -1,18 +1,14 @@
 """Validation messages: each mistake gives one message with file, key, content found and next step."""
 
 import math
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from helpers.toml_edit import edit_toml
-from pantocheck.conformance.cases.library import load_case, read_limits
+from helpers.case_fixtures import EditedCase
+from pantocheck.conformance.cases.library import library_folder, load_case, read_limits
 from pantocheck.conformance.input_files.input_error import InputError
-
-CaseCopy = Callable[[str, str, str], Path]
-"""Copies the case at 250 km/h with one text replaced in one of its files; gives the path of the case."""
 
 LINE, PANTOGRAPH, CASE = "line.toml", "pantograph.toml", "250.toml"
 
@@ -170,10 +166,9 @@ LINE, PANTOGRAPH, CASE = "line.toml", "pantograph.toml", "250.toml"
     ],
 )
 def test_message_names_file_key_and_next_step(
-    own_case: CaseCopy, file: str, changes: dict[str, Any], message: str
+    edited_case: EditedCase, file: str, changes: dict[str, Any], message: str
 ) -> None:
-    path = own_case(CASE, "", "")
-    edit_toml(path.with_name(file), changes)
+    path = edited_case(file, changes)
     with pytest.raises(InputError) as caught:
         load_case(path)
     assert str(caught.value).startswith(message)
@@ -193,9 +188,13 @@ def test_message_names_file_key_and_next_step(
         ("order = 6", "order = " + "[" * 100_000, "holds a number or a nesting that is too long to read."),
     ],
 )
-def test_text_that_is_not_toml_is_refused(own_case: CaseCopy, old: str, new: str, message: str) -> None:
+def test_text_that_is_not_toml_is_refused(tmp_path: Path, old: str, new: str, message: str) -> None:
+    text = (library_folder() / "en50318-2002" / CASE).read_text(encoding="utf-8")
+    assert old in text
+    path = tmp_path / CASE
+    path.write_text(text.replace(old, new), encoding="utf-8")
     with pytest.raises(InputError) as caught:
-        load_case(own_case(CASE, old, new))
+        load_case(path)
     assert str(caught.value).startswith(f"case '250.toml': {message}")
     assert caught.value.hint
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,6 +10,7 @@ import tomli_w
 from numpy.testing import assert_allclose
 
 from helpers.toml_edit import edit_toml
+from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import library_folder
 from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
@@ -19,15 +20,12 @@ from pantocheck.conformance.records.record_reading import read_record, read_samp
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.records.samples import complete_samples
 
-if TYPE_CHECKING:
-    from tests.conformance.conftest import Wave
-
 Writer = Callable[[str], Path]
 CHANNELS = ("time", "position", "force", "contact_height", "support_position", "support_uplift")
 
 
 @pytest.fixture
-def record(wave: type["Wave"], case_250: Case) -> Record:
+def record(wave: type[Wave], case_250: Case) -> Record:
     return wave().record(case_250)
 
 

@@ -1,12 +1,14 @@
 """Quantities of a record: values computed by hand, and a reason for each quantity that is not available."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from numpy.typing import ArrayLike
 
-from pantocheck.conformance.quantities.evaluation import LINE
+from pantocheck.conformance.quantities.evaluation import LINE, Value
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.quantities.force_quantities import PANTOGRAPH_QUANTITIES
 from pantocheck.conformance.quantities.registry import (
@@ -18,22 +20,22 @@ from pantocheck.conformance.records.record_signals import evaluate_record
 RATE, SPEED = 1000.0, 50.0
 
 
-def record(force=None, rate: float = RATE, length: float = 600.0, **changes) -> Record:
+def record(force: ArrayLike | None = None, rate: float = RATE, length: float = 600.0, **changes: Any) -> Record:
     """100 N and sines of 20 N at 2 Hz, 10 N at 10 Hz, 8 N at 30 Hz; whole periods in the 4 s of 200 m to 400 m."""
     time = np.arange(int(length / SPEED * rate)) / rate
     if force is None:
         force = 100 + sum(a * np.sin(2 * np.pi * f * time) for a, f in ((20, 2), (10, 10), (8, 30)))
-    given = {
+    fields: dict[str, Any] = {
         "time": time,
         "speed": SPEED,
         "position": SPEED * time[None],
         "force": np.atleast_2d(force),
         "evaluated": (200.0, 400.0),
     }
-    return Record(**(given | changes))
+    return Record(**(fields | changes))
 
 
-def values(item: Record, **filter_settings) -> dict[str, float]:
+def values(item: Record, **filter_settings: Any) -> dict[str, Value]:
     return evaluate_record(item, LowPass(**filter_settings)).values[1]
 
 

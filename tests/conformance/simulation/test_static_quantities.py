@@ -24,7 +24,7 @@ def shortened(name: str, spans: int = 8) -> Case:
 
 
 @pytest.fixture(scope="module")
-def simple():
+def simple() -> tuple[Case, dict[str, Any]]:
     case = shortened("en50318-2018/ac-simple/static")
     return case, compute_static_quantities(case, discretise(build_catenary(case.line), 0.5))
 

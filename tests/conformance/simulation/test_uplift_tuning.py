@@ -1,15 +1,17 @@
 """Tuning of the uplift forces: few runs, the run of the tuned forces is kept, and a failure has a name."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from helpers.case_fixtures import EditedCase
+from helpers.wave_system import Wave
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.command_line.app import app
-from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.simulation import case_run
 from pantocheck.conformance.simulation.case_run import PassageRun
@@ -21,7 +23,7 @@ class MeanForces:
     """Result of a made-up run."""
 
     uplift: tuple[float, ...]
-    means: np.ndarray
+    means: RealArray
 
 
 class CoupledPantographs:
@@ -35,7 +37,7 @@ class CoupledPantographs:
         return MeanForces(forces, self.matrix @ np.array(forces) + 3.0)
 
 
-def means(run: MeanForces) -> np.ndarray:
+def means(run: MeanForces) -> RealArray:
     return run.means
 
 
@@ -72,16 +74,15 @@ def test_mean_that_does_not_follow_its_uplift_force_is_a_failure() -> None:
 
 
 @pytest.fixture
-def untunable(own_case, wave, monkeypatch: pytest.MonkeyPatch) -> Path:
+def untunable(edited_case: EditedCase, wave: type[Wave], monkeypatch: pytest.MonkeyPatch) -> Path:
     """A case with a target that no run meets: every run has a mean contact force of 119 N."""
-    case: Path = own_case("250.toml", "uplift_force_N = 120.0", "target_mean_force_N = 150.0")
+    changes = {"pantograph.0.uplift_force_N": None, "pantograph.0.target_mean_force_N": 150.0}
 
     def run_once(case: Case, line: object, steps: object, uplift_forces: tuple[float, ...]) -> PassageRun:
-        record: Record = wave().record(case)
-        return PassageRun(replace(record), RunTable(), uplift_forces)
+        return PassageRun(wave().record(case), RunTable(), uplift_forces)
 
     monkeypatch.setattr(case_run, "_run_once", run_once)
-    return case
+    return edited_case("250.toml", changes)
 
 
 def test_simulate_reports_failed_tuning_with_exit_code_2(untunable: Path, tmp_path: Path) -> None:

@@ -1,26 +1,30 @@
 """Damping study of a case: one column of the table per damping model."""
 
 from dataclasses import dataclass
+from typing import Literal
 
+from helpers.wave_system import Wave
+from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.results.outcome import Delivered, Skipped
+from pantocheck.conformance.results.outcome import Delivered, Outcome, Skipped
 from pantocheck.conformance.runner import run_cases
 from pantocheck.conformance.studies.damping_sensitivity import CASE_DAMPING, MODELS, add_damping_study
+from pantocheck.conformance.systems.system import System
 
 
-def damping_dependent(wave):
+def damping_dependent(wave: type[Wave]) -> System:
     """System with a standard deviation of the force of 20 N plus 1e5 N/s times the stiffness coefficient."""
 
     @dataclass(frozen=True)
-    class Damped(wave):
-        def run(self, case):
+    class Damped(Wave):
+        def run(self, case: Case) -> Delivered:
             stiffness = case.line.damping.contact_wire.stiffness_coefficient_s
             return Delivered(wave(sigma=20 + 1e5 * stiffness).record(case))
 
     return Damped()
 
 
-def test_every_model_has_its_column(case_250, wave):
+def test_every_model_has_its_column(case_250: Case, wave: type[Wave]) -> None:
     studied = add_damping_study(case_250)
     (result,) = run_cases([studied], damping_dependent(wave)).cases
     (table,) = result.tables
@@ -33,16 +37,20 @@ def test_every_model_has_its_column(case_250, wave):
     assert len(result.charts) == 1
 
 
-def test_grading_does_not_depend_on_the_study(case_250, wave):
+def test_grading_does_not_depend_on_the_study(case_250: Case, wave: type[Wave]) -> None:
     plain, studied = (run_cases([case], wave()).cases[0] for case in (case_250, add_damping_study(case_250)))
     assert studied.criteria == plain.criteria
     assert studied.input_digest == plain.input_digest
 
 
-def test_warning_names_each_model_that_the_system_cannot_run(case_250, wave):
+def test_warning_names_each_model_that_the_system_cannot_run(case_250: Case, wave: type[Wave]) -> None:
     @dataclass(frozen=True)
-    class OneModel(wave):
-        def run(self, case):
+    class OneModel:
+        name: str = "one model"
+        version: str = "1"
+        kind: Literal["builtin"] = "builtin"
+
+        def run(self, case: Case) -> Outcome:
             return wave().run(case) if case.id == case_250.id else Skipped("there is no record of this case")
 
     (result,) = run_cases([add_damping_study(case_250)], OneModel()).cases
@@ -52,6 +60,6 @@ def test_warning_names_each_model_that_the_system_cannot_run(case_250, wave):
     assert result.tables[0].columns == ["Quantity", "Pantograph or line", CASE_DAMPING]
 
 
-def test_static_cases_and_studies_get_no_damping_study():
+def test_static_cases_and_studies_get_no_damping_study() -> None:
     for case in select_cases(["en50318-2018/ac-simple/static", "vovan2015/contact-force"]):
         assert add_damping_study(case) is case

@@ -14,6 +14,7 @@ import jsonschema
 import pytest
 from numpy.testing import assert_allclose
 
+from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.input_files.input_error import InputError
@@ -27,7 +28,6 @@ from pantocheck.conformance.systems.command.program_arguments import split_argum
 from pantocheck.conformance.systems.command.protocol_messages import AnswerRefused, parse_message
 from pantocheck.conformance.systems.system import System
 from pantocheck.conformance.systems.system_choice import choose_system
-from tests.conformance.conftest import Wave
 
 # Program with one fault, which its first argument names.
 PROGRAM = """
@@ -130,18 +130,18 @@ for line in sys.stdin:
 
 
 @pytest.fixture
-def cases():
+def cases() -> list[Case]:
     return select_cases(["en50318-2002/*"])
 
 
 @pytest.fixture
-def program(case_250, wave, tmp_path):
+def program(case_250: Case, wave: type[Wave], tmp_path: Path) -> Callable[..., System]:
     """Function that starts the program with a fault and a time limit."""
     write_record(tmp_path / "record.csv", wave().record(case_250), case_250.id)
     script = tmp_path / "a program.py"
     script.write_text(PROGRAM)
 
-    def system(how, timeout=20.0):
+    def system(how: str, timeout: float = 20.0) -> System:
         text = f"{sys.executable} -S '{script}' '{how}' '{tmp_path}' '{tmp_path / 'log'}'"
         return choose_system(f"command:{text}", timeout)
 

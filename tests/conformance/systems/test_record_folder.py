@@ -4,6 +4,8 @@ from pathlib import Path
 
 import pytest
 
+from helpers.toml_edit import edit_toml
+from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
 from pantocheck.conformance.input_files.input_error import InputError
@@ -12,8 +14,6 @@ from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.results.outcome import Delivered, Skipped
 from pantocheck.conformance.systems.record_folder import open_record_folder
 from pantocheck.conformance.systems.system_choice import choose_system
-from tests.conformance.conftest import Wave
-from tests.helpers.toml_edit import edit_toml
 
 
 def test_record_is_found_by_its_case(case_250: Case, wave: type[Wave], tmp_path: Path) -> None:

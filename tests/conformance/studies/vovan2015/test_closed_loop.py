@@ -3,6 +3,7 @@
 import pytest
 from numpy.testing import assert_allclose
 
+from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.identification.damping.damping_results import build_damping_results
 from pantocheck.conformance.identification.identify import identify_modes
@@ -13,7 +14,7 @@ ELEMENT = 2.25
 
 
 @pytest.fixture(scope="module")
-def short_case():
+def short_case() -> Case:
     """The line with three spans and a record of 80 s; after 50 s the messenger wire is uncertain by 20 %."""
     (case,) = select_cases(["vovan2015/mass-drop/printed"])
     mass_drop = case.file.mass_drop
@@ -27,7 +28,7 @@ def short_case():
     return type(case)(file, case.line.model_copy(update={"geometry": geometry}), (), case.limits)
 
 
-def test_fitted_coefficients_of_both_wires_are_within_five_percent(short_case):
+def test_fitted_coefficients_of_both_wires_are_within_five_percent(short_case: Case) -> None:
     drop = simulate_drop(short_case, 1)
     assert drop.decay.last_slack is not None
     (identification,) = identify_modes((drop.record,), short_case.file.mass_drop.highest_Hz)

@@ -6,10 +6,12 @@ from typing import Literal
 import pytest
 from numpy.testing import assert_allclose
 
+from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.damping_file import Damping
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.grading.case_grading import grade_case
-from pantocheck.conformance.results.outcome import Delivered, Skipped, StudyResult
+from pantocheck.conformance.results.outcome import Delivered, Outcome, Skipped, StudyResult
+from pantocheck.conformance.results.results_format import CaseResult, Criterion
 from pantocheck.conformance.studies.band_charts import draw_band_bars
 from pantocheck.conformance.studies.study_dispatch import run_study
 from pantocheck.conformance.studies.vovan2015.damping_change import band_changes
@@ -24,12 +26,12 @@ class Unrefined:
     version: str = "1"
     kind: Literal["builtin"] = "builtin"
 
-    def run(self, case):
+    def run(self, case: Case) -> Outcome:
         return ReferenceSimulator().run_unrefined(case)
 
 
 @pytest.fixture(scope="module")
-def case():
+def case() -> Case:
     (case,) = select_cases(["vovan2015/contact-force"])
     # Only the signs of the changes are graded; they are right with three spans and a coarse mesh.
     coarse = case.file.discretisation.model_copy(update={"element_m": 1.0, "time_step_s": 0.002})
@@ -38,7 +40,7 @@ def case():
     return replace(case, file=file.model_copy(update={"study": study}))
 
 
-def build_damping(mass, stiffness):
+def build_damping(mass: float, stiffness: float) -> Damping:
     rayleigh = {"mass_coefficient_1_s": mass, "stiffness_coefficient_s": stiffness}
     return Damping.model_validate(
         {
@@ -51,7 +53,9 @@ def build_damping(mass, stiffness):
     )
 
 
-def run_and_grade(case, before=None, after=None):
+def run_and_grade(
+    case: Case, before: Damping | None = None, after: Damping | None = None
+) -> tuple[dict[tuple[str, int], Criterion], CaseResult]:
     if before is not None:
         case = replace(case, dampings={"initial": before})
     if after is not None:
@@ -65,12 +69,12 @@ FRONT, REAR = ("change_rms_20_50_pct", 1), ("change_rms_20_50_pct", 2)
 DIFFERENCE = ("rear_over_front_change_20_50_pct", 0)
 
 
-def printed_changes(case):
+def printed_changes(case: Case) -> dict[int, dict[str, float]]:
     printed = {(table.model, table.pantograph): dict(table.values) for table in case.file.study.printed}
     return band_changes(*({p: printed[name, p] for p in (1, 2)} for name in ("initial", "updated")))
 
 
-def test_changes_of_the_printed_table(case):
+def test_changes_of_the_printed_table(case: Case) -> None:
     """Table 1: 34.0 to 29.6 N, 26.0 to 29.7 N, 32.9 to 42.5 N."""
     changes = printed_changes(case)
     assert_allclose(changes[1]["change_rms_0_5_pct"], 0.0, atol=1e-12)
@@ -80,20 +84,20 @@ def test_changes_of_the_printed_table(case):
     assert_allclose(changes[0]["rear_over_front_change_20_50_pct"], 14.95, atol=0.01)
 
 
-def test_changes_of_the_rear_pantograph_alone():
+def test_changes_of_the_rear_pantograph_alone() -> None:
     """Without values of the front pantograph there is no difference between rear and front."""
     values = [{2: {"rms_20_50_N": value}} for value in (32.0, 40.0)]
     assert band_changes(*values) == {2: {"change_rms_20_50_pct": 25.0}}
 
 
-def test_the_printed_values_meet_every_limit(case):
+def test_the_printed_values_meet_every_limit(case: Case) -> None:
     """The limits express the findings of the paper."""
     static = replace(case, file=case.file.model_copy(update={"speed_km_h": None, "study": None}))
     result = grade_case(static, Delivered(study=StudyResult(printed_changes(case))), "primary")
     assert {row.verdict for row in result.criteria} == {"pass"}
 
 
-def test_updated_damping_raises_the_force_above_20_hz(case):
+def test_updated_damping_raises_the_force_above_20_hz(case: Case) -> None:
     rows, result = run_and_grade(case)
     assert [rows[key].verdict for key in (LOW, FRONT, REAR, DIFFERENCE)] == ["pass"] * 4
     assert all(row.margin is not None for row in rows.values())
@@ -101,7 +105,7 @@ def test_updated_damping_raises_the_force_above_20_hz(case):
     assert any("span 8" in chart.caption for chart in result.charts)
 
 
-def test_chart_mentions_printed_values_only_if_it_shows_them():
+def test_chart_mentions_printed_values_only_if_it_shows_them() -> None:
     values = {"initial": {1: {"rms_0_5_N": 30.0}}}
     (computed_only,), (compared,) = (
         draw_band_bars(values, printed, ["rms_0_5_N"]) for printed in ({}, {("initial", 1): {"rms_0_5_N": 34.0}})
@@ -112,18 +116,18 @@ def test_chart_mentions_printed_values_only_if_it_shows_them():
     assert "printed" not in computed_only.caption + computed_only.alternative
 
 
-def test_exchanged_models_are_detected_above_20_hz(case):
+def test_exchanged_models_are_detected_above_20_hz(case: Case) -> None:
     """Damping that grows with frequency lowers the force above 20 Hz on both pantographs, most on the rear."""
     rows, _ = run_and_grade(case, before=case.line.damping, after=case.dampings["initial"])
     assert [rows[key].verdict for key in (FRONT, REAR, DIFFERENCE)] == ["fail"] * 3
 
 
-def test_excessive_mass_damping_is_detected_below_5_hz(case):
+def test_excessive_mass_damping_is_detected_below_5_hz(case: Case) -> None:
     """A mass coefficient of 1.5 1/s is 13 % of critical damping at 0.9 Hz."""
     assert run_and_grade(case, after=build_damping(1.5, 1e-4))[0][LOW].verdict == "fail"
 
 
-def test_removed_damping_is_detected_between_5_and_20_hz(case):
+def test_removed_damping_is_detected_between_5_and_20_hz(case: Case) -> None:
     """A line with almost no damping cannot have a lower force in this band."""
     assert (
         run_and_grade(case, before=build_damping(0.3, 1e-3), after=build_damping(0.0, 1e-6))[0][MIDDLE].verdict
@@ -135,10 +139,10 @@ def test_removed_damping_is_detected_between_5_and_20_hz(case):
     )
 
 
-def test_study_is_skipped_without_a_record_of_each_model(case):
+def test_study_is_skipped_without_a_record_of_each_model(case: Case) -> None:
     @dataclass(frozen=True)
     class OneModel(Unrefined):
-        def run(self, case):
+        def run(self, case: Case) -> Outcome:
             return Skipped("there is no record of this case")
 
     result = grade_case(case, run_study(case, OneModel()), "primary")

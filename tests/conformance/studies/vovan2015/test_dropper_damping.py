@@ -7,21 +7,22 @@ from numpy.testing import assert_allclose
 
 from helpers.computed_modes import grade_findings
 from helpers.lines import simple_line
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.studies.vovan2015.dropper_damping import find_transition, run_dropper_damping
 from pantocheck.model import Kind, Passage, Rayleigh, chain, discretise, simulate_passage
-from pantocheck.model.discretised_line import with_damping, with_viscous_part_kept
+from pantocheck.model.discretised_line import DiscretisedLine, with_damping, with_viscous_part_kept
 
 COEFFICIENTS = np.geomspace(1e-6, 1e-1, 51)
 
 
-def low_pass_curve(corner):
+def low_pass_curve(corner: float) -> RealArray:
     """Force proportional to 1 / (1 + (a / corner)^2) for a coefficient a."""
     return 1000 / (1 + (COEFFICIENTS / corner) ** 2)
 
 
-def test_levels_of_a_known_curve():
+def test_levels_of_a_known_curve() -> None:
     """The force falls to 90 % at a third of the corner, to half at the corner, to 10 % at three times the corner.
 
     The coefficients lie 26 % apart.
@@ -33,18 +34,18 @@ def test_levels_of_a_known_curve():
     assert_allclose(findings["dropper_locked_force_pct"], 100 / (1 + 50**2), rtol=1e-3)
 
 
-def test_dropper_that_is_never_slack_has_no_transition():
+def test_dropper_that_is_never_slack_has_no_transition() -> None:
     with np.errstate(all="raise"):
         assert find_transition(COEFFICIENTS, np.zeros(COEFFICIENTS.size)) == {}
 
 
-def grade_force(force):
+def grade_force(force: RealArray) -> dict[str, str]:
     (case,) = select_cases(["vovan2015/dropper-damping"])
     rows = grade_findings(case, {LINE: find_transition(COEFFICIENTS, force)})
     return {quantity.removeprefix("dropper_"): row.verdict for (quantity, _), row in rows.items()}
 
 
-def test_wrong_transition_is_detected():
+def test_wrong_transition_is_detected() -> None:
     start, middle, end, locked = "transition_start_s", "transition_middle_s", "transition_end_s", "locked_force_pct"
     assert grade_force(low_pass_curve(2e-3)) == dict.fromkeys((start, middle, end, locked), "pass")
     assert grade_force(low_pass_curve(2e-4))[start] == "fail"
@@ -52,14 +53,14 @@ def test_wrong_transition_is_detected():
     assert late == {start: "fail", middle: "fail", end: "skip", locked: "fail"}  # the end is not reached
 
 
-def test_dropper_that_never_locks_is_detected():
+def test_dropper_that_never_locks_is_detected() -> None:
     """The missing transition is skipped, and the remaining force exceeds its limit."""
     verdicts = grade_force(np.full(COEFFICIENTS.size, 1000.0))
     assert verdicts["transition_middle_s"] == "skip"
     assert verdicts["locked_force_pct"] == "fail"
 
 
-def test_only_compensation_of_the_elastic_force_locks_a_dropper():
+def test_only_compensation_of_the_elastic_force_locks_a_dropper() -> None:
     (case,) = select_cases(["vovan2015/dropper-damping"])
     coarse = case.file.discretisation.model_copy(update={"element_m": 1.5, "time_step_s": 0.002})
     study = case.file.study.model_copy(update={"coefficients_s": (1e-6, 3e-3, 1e-1), "x_m": 283.5})
@@ -77,7 +78,7 @@ def test_only_compensation_of_the_elastic_force_locks_a_dropper():
     assert outcome.record is not None
 
 
-def test_both_laws_are_the_same_while_every_dropper_is_taut():
+def test_both_laws_are_the_same_while_every_dropper_is_taut() -> None:
     """The laws give two linear systems with the same matrices until one dropper becomes slack.
 
     The measured difference is rounding, 1e-13 of the displacement. A dashpot with an error of 0.1 % would give 2e-5.
@@ -106,7 +107,7 @@ class RunComparison:
     difference: float
 
 
-def compare_runs(mesh, other, uplift):
+def compare_runs(mesh: DiscretisedLine, other: DiscretisedLine, uplift: float) -> RunComparison:
     """Compare passages of a head with a constant uplift force [N] over most of two lines."""
     head = chain(np.array([5.0]), np.array([0.0]), np.array([20.0]), uplift, 0, 50e3)
     droppers = mesh.catenary.droppers

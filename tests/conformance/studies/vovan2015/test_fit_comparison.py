@@ -10,6 +10,7 @@ from pantocheck.conformance.identification.damping import observability
 from pantocheck.conformance.identification.damping.damping_format import DampingResults, Observability
 from pantocheck.conformance.reports.figures.damping_figures import draw_observability
 from pantocheck.conformance.reports.mass_drop.damping_report import describe_observability
+from pantocheck.conformance.results.results_format import Chart
 from pantocheck.conformance.studies.vovan2015 import fit_comparison
 
 OBSERVED = tuple(
@@ -34,14 +35,14 @@ RESULTS = DampingResults.model_construct(coefficients=(), observability=OBSERVED
 
 
 @pytest.fixture
-def chart(monkeypatch):
+def chart(monkeypatch: pytest.MonkeyPatch) -> Chart:
     monkeypatch.setattr(fit_comparison, "build_damping_results", lambda *_: RESULTS)
     (case,) = select_cases(["vovan2015/mass-drop/updated"])
     ((chart,),) = fit_comparison.build_fit_report(case, SimpleNamespace(modes=()))[1:]
     return chart
 
 
-def test_well_determined_coefficient_with_a_small_share_is_not_observable(chart):
+def test_well_determined_coefficient_with_a_small_share_is_not_observable(chart: Chart) -> None:
     assert "above the dashed line it is observable" not in chart.caption
     assert f"{100 * observability.THRESHOLDS.largest_share:g} %" in chart.caption
     assert chart.marks[0].label == "needed"
@@ -53,7 +54,7 @@ def test_well_determined_coefficient_with_a_small_share_is_not_observable(chart)
     }
 
 
-def test_drawn_thresholds_are_those_of_the_fit(chart):
+def test_drawn_thresholds_are_those_of_the_fit(chart: Chart) -> None:
     assert chart.marks[0].low == observability.THRESHOLDS.plausible_over_std
     rows, thresholds = [row.model_dump() for row in OBSERVED], observability.THRESHOLDS.model_dump()
     left, right = draw_observability.__wrapped__(rows, thresholds).axes
@@ -64,7 +65,7 @@ def test_drawn_thresholds_are_those_of_the_fit(chart):
     assert f"at least {thresholds['plausible_over_std']:g} times its standard deviation" in description
 
 
-def test_caption_names_the_smallest_drawn_ratio(chart):
+def test_caption_names_the_smallest_drawn_ratio(chart: Chart) -> None:
     (bars,) = chart.series
     assert bars.y == [40.0, 10.0, fit_comparison.SMALLEST_DRAWN_RATIO]
     assert (

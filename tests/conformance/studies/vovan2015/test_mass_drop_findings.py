@@ -1,5 +1,6 @@
 """Findings on the modes of the line: the updated damping models meet them, wrong models do not."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
@@ -9,8 +10,9 @@ from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.studies.vovan2015.group_findings import compute_group_findings
-from pantocheck.model import Kind, Rayleigh
+from pantocheck.model import Catenary, Kind, Rayleigh
 
+LineChange = Callable[[Catenary], Catenary]
 CRITERIA = {
     ("modes_in_group", 1),
     ("mode_frequency_Hz", 1),
@@ -21,9 +23,11 @@ CRITERIA = {
 }
 
 
-def failed_criteria(model, change=lambda line: line, spans=6, highest=6.0):
+def failed_criteria(
+    model: str, change: LineChange = lambda line: line, highest: float = 6.0
+) -> set[tuple[str, int | None]]:
     (case,) = select_cases([f"vovan2015/mass-drop/{model}"])
-    modes = computed_modes(change(build_catenary(case.line)), spans, highest)
+    modes = computed_modes(change(build_catenary(case.line)), 6, highest)
     rows = grade_findings(case, {LINE: compute_group_findings(modes)})
     assert set(rows) == CRITERIA
     assert all(row.margin is not None or row.verdict == "skip" for row in rows.values())
@@ -31,22 +35,22 @@ def failed_criteria(model, change=lambda line: line, spans=6, highest=6.0):
 
 
 @pytest.mark.parametrize("model", ["printed", "updated", "updated-modal"])
-def test_fitted_models_meet_every_finding(model):
+def test_fitted_models_meet_every_finding(model: str) -> None:
     assert failed_criteria(model) == set()
 
 
-def test_damping_of_the_initial_model_rises_instead_of_falling():
+def test_damping_of_the_initial_model_rises_instead_of_falling() -> None:
     assert failed_criteria("initial") == {("damping_decrease_pct", None), ("damping_rise_pct", None)}
 
 
-def with_tension(factor):
+def with_tension(factor: float) -> LineChange:
     """Change of the tension of every wire; frequencies are proportional to its square root."""
     return lambda line: replace(
         line, wires=tuple(replace(wire, tension=factor * wire.tension) for wire in line.wires)
     )  # fmt: skip
 
 
-def with_rayleigh(mass, stiffness):
+def with_rayleigh(mass: float, stiffness: float) -> LineChange:
     damping = dict.fromkeys((Kind.CONTACT_WIRE, Kind.MESSENGER_WIRE), Rayleigh(mass, stiffness))
     return lambda line: replace(line, damping=damping)
 
@@ -63,28 +67,30 @@ def with_rayleigh(mass, stiffness):
         (with_rayleigh(0.05, 3e-4), {("damping_rise_pct", None)}),
     ],
 )
-def test_wrong_model_fails_the_criterion_of_its_fault(change, expected):
+def test_wrong_model_fails_the_criterion_of_its_fault(
+    change: LineChange, expected: set[tuple[str, int | None]]
+) -> None:
     failed = failed_criteria("updated", change)
     assert expected <= failed
     # Each fault is small enough that other criteria still pass.
     assert failed - expected <= {("damping_decrease_pct", None)}
 
 
-def test_wrong_frequency_of_the_second_group_is_detected():
+def test_wrong_frequency_of_the_second_group_is_detected() -> None:
     """A tension four times too high raises 1.75 Hz to 3.5 Hz."""
     assert {("mode_frequency_Hz", 1), ("mode_frequency_Hz", 2)} <= failed_criteria(
         "updated", with_tension(4.0), highest=12.0
     )
 
 
-def test_missing_mode_of_the_first_group_is_detected():
+def test_missing_mode_of_the_first_group_is_detected() -> None:
     (case,) = select_cases(["vovan2015/mass-drop/updated"])
     modes = computed_modes(build_catenary(case.line), 6, 6.0)[1:]
     rows = grade_findings(case, {LINE: compute_group_findings(modes)})
     assert rows["modes_in_group", 1].verdict == "fail"
 
 
-def test_damping_against_group_is_skipped_without_enough_groups():
+def test_damping_against_group_is_skipped_without_enough_groups() -> None:
     (case,) = select_cases(["vovan2015/mass-drop/updated"])
     rows = grade_findings(case, {LINE: compute_group_findings(computed_modes(build_catenary(case.line), 6, 2.0))})
     assert rows["damping_decrease_pct", None].verdict == "skip"

@@ -5,34 +5,37 @@ from dataclasses import replace
 
 import pytest
 
+from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.quantities.evaluation import Value
 from pantocheck.conformance.studies.vovan2015.paper_tables import build_findings_table, build_provenance_table
 
 CHANGE = Limit(quantity="change_rms_0_5_pct", upper=0.0, trust="primary", source="test", note="less below 5 Hz")
 SECOND = Limit(quantity="mode_frequency_Hz", item=2, lower=1.0, upper=2.0, trust="primary", source="test")
 
 
-def computed_and_agreement(limit, value):
+def computed_and_agreement(limit: Limit, value: Value) -> list[str]:
     (row,) = build_findings_table([limit], {limit.owner: {limit.quantity: value}}, {}).rows
     return row[2:]
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
-def test_finding_without_finite_value_is_not_evaluated(value):
+def test_finding_without_finite_value_is_not_evaluated(value: float) -> None:
     """The criterion of such a value is skipped, so the table calls it neither reproduced nor not reproduced."""
     assert computed_and_agreement(CHANGE, value) == ["-", "not evaluated"]
     assert computed_and_agreement(SECOND, (1.5, value)) == ["-", "not evaluated"]
 
 
-def test_finding_is_reproduced_inside_its_limit():
+def test_finding_is_reproduced_inside_its_limit() -> None:
     assert computed_and_agreement(CHANGE, -3.0) == ["-3 %", "reproduced"]
     assert computed_and_agreement(CHANGE, 3.0) == ["3 %", "not reproduced"]
     assert computed_and_agreement(SECOND, (0.5, 1.5)) == ["1.5 Hz", "reproduced"]
     assert computed_and_agreement(SECOND, (1.5,)) == ["-", "not evaluated"]
 
 
-def limit_rows(case):
+def limit_rows(case: Case) -> list[list[str]]:
     return [row for row in build_provenance_table(case).rows if row[0].startswith("limit of")]
 
 
@@ -49,7 +52,9 @@ def limit_rows(case):
         ("vovan2015", "provisional", "assumed"),
     ],
 )
-def test_limit_is_printed_in_the_paper_only_if_its_source_names_the_paper(source, trust, origin):
+def test_limit_is_printed_in_the_paper_only_if_its_source_names_the_paper(
+    source: str | list[str], trust: Trust, origin: str
+) -> None:
     """Limits that a user puts in place of those of a study may be primary without being printed in its paper."""
     (case,) = select_cases(["vovan2015/contact-force"])
     limit = Limit(quantity="change_rms_0_5_pct", upper=0.0, trust=trust, source=source)
@@ -58,7 +63,7 @@ def test_limit_is_printed_in_the_paper_only_if_its_source_names_the_paper(source
 
 
 @pytest.mark.parametrize("pattern", ["vovan2015/contact-force", "vovan2015/mass-drop/printed"])
-def test_primary_limits_of_the_library_are_printed_in_the_paper(pattern):
+def test_primary_limits_of_the_library_are_printed_in_the_paper(pattern: str) -> None:
     (case,) = select_cases([pattern])
     expected = ["printed in the paper" if limit.trust == "primary" else "assumed" for limit in case.limits]
     assert [row[1] for row in limit_rows(case)] == expected

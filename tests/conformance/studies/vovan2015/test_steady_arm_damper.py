@@ -1,5 +1,6 @@
 """Gain of damping by dampers at the steady arms: it fades with frequency, and other damping is detected."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -7,58 +8,62 @@ import pytest
 from numpy.testing import assert_allclose
 
 from helpers.computed_modes import ELEMENT, grade_findings
+from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.studies.vovan2015.steady_arm_damper import damping_gains
-from pantocheck.model import Kind, Rayleigh, discretise
+from pantocheck.model import Catenary, Kind, Rayleigh, discretise
 from pantocheck.model.modal.modes import compute_modes_below, damping_ratios
+
+LineChange = Callable[[Catenary], Catenary]
+Grading = Callable[[LineChange], dict[tuple[str, int | None], str]]
 
 
 @pytest.fixture(scope="module")
-def case():
+def case() -> Case:
     (case,) = select_cases(["vovan2015/steady-arm-damper"])
     return case
 
 
 @pytest.fixture(scope="module")
-def verdicts_for(case):
+def verdicts_for(case: Case) -> Grading:
     """Function that grades a change of the line in place of the dampers: verdicts by quantity and band."""
     line = build_catenary(case.line)
     mesh = discretise(line, ELEMENT)
     shapes = compute_modes_below(mesh, case.file.study.bands_Hz[-1][1])
 
-    def medians(variant):
+    def medians(variant: Catenary) -> list[float]:
         ratio = damping_ratios(discretise(variant, ELEMENT), shapes)
         inside = [(shapes.frequency >= low) & (shapes.frequency < high) for low, high in case.file.study.bands_Hz]
         return [float(np.median(ratio[band])) for band in inside]
 
-    def grade_change(change):
+    def grade_change(change: LineChange) -> dict[tuple[str, int | None], str]:
         rows = grade_findings(case, {LINE: damping_gains(medians(line), medians(change(line)))})
         return {(name.removeprefix("damping_gain_"), band): row.verdict for (name, band), row in rows.items()}
 
     return grade_change
 
 
-def with_dampers(damper):
+def with_dampers(damper: float) -> LineChange:
     return lambda line: replace(
         line, steady_arms=tuple(replace(arm, vertical_damper=damper) for arm in line.steady_arms)
     )
 
 
-def test_gains_calculated_by_hand():
+def test_gains_calculated_by_hand() -> None:
     findings = damping_gains([0.002, 0.004, 0.003], [0.003, 0.006, 0.003])
     assert_allclose(findings["damping_gain_pct"], [50, 50, 0], atol=1e-9)
     assert_allclose(findings["damping_gain_fading_pct"], 50)
 
 
-def test_list_of_gains_ends_before_a_band_without_modes():
+def test_list_of_gains_ends_before_a_band_without_modes() -> None:
     findings = damping_gains([0.002, np.nan, 0.003], [0.003, 0.006, 0.003])
     assert_allclose(findings["damping_gain_pct"], [50])
     assert "damping_gain_fading_pct" not in findings
 
 
-def test_computed_damping_reproduces_the_findings(verdicts_for, case):
+def test_computed_damping_reproduces_the_findings(verdicts_for: Grading, case: Case) -> None:
     """The first group is not tested: the computed gain misses the finding of the paper there."""
     verdicts = verdicts_for(with_dampers(case.file.study.damper_N_s_m))
     assert [verdicts["pct", band] for band in range(2, 7)] == ["pass"] * 5
@@ -66,18 +71,18 @@ def test_computed_damping_reproduces_the_findings(verdicts_for, case):
     assert verdicts["pct", 9] == "pass"
 
 
-def test_no_gain_without_a_damper(verdicts_for):
+def test_no_gain_without_a_damper(verdicts_for: Grading) -> None:
     verdicts = verdicts_for(lambda line: line)
     assert [verdicts["pct", band] for band in range(2, 7)] == ["fail"] * 5
     assert verdicts["pct", 9] == "pass"
 
 
-def test_damping_raised_in_every_band_is_detected(verdicts_for):
+def test_damping_raised_in_every_band_is_detected(verdicts_for: Grading) -> None:
     """Twice the damping of every component changes the band without a visible effect, too."""
     verdicts = verdicts_for(lambda line: replace(line, damping={kind: Rayleigh(0.2, 2e-4) for kind in Kind}))
     assert verdicts["pct", 9] == "fail"
 
 
-def test_gain_that_grows_with_frequency_is_detected(verdicts_for):
+def test_gain_that_grows_with_frequency_is_detected(verdicts_for: Grading) -> None:
     verdicts = verdicts_for(lambda line: replace(line, damping={kind: Rayleigh(0.1, 5e-4) for kind in Kind}))
     assert verdicts["fading_pct", None] == "fail"
