@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import tomli_w
 
+from helpers.toml_edit import edit_toml
 from pantocheck.conformance.cases.library import library_folder
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.grading.assessed_record import AssessedRecord, load_assessed_record
@@ -15,7 +16,6 @@ from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.records.measured.block_bootstrap import bootstrap_uncertainties
 from pantocheck.conformance.records.sidecar_tables import LineTable
-from tests.helpers.toml_edit import edit_toml
 
 SPEED, RATE, SUMMARY = 60.0, 200.0, library_folder() / "en50318-2002" / "known-passing-code" / "250.toml"
 NOTHING = LineTable()
