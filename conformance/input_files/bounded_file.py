@@ -32,7 +32,7 @@ class _RawFile(io.FileIO):
 
     def readinto(self, buffer: Any) -> int:
         count = super().readinto(buffer) or 0
-        if self.tell() > self._size:
+        if count and self.tell() > self._size:
             raise InputError(self._where, "grows while it is read", "Read it after the writing program has ended.")
         return count
 

@@ -1,9 +1,16 @@
 """MDF 4 tables (ASAM), with a sidecar that names the channels; needs the extra `mdf`."""
 
+import gc
+import logging
+import sys
+import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
 
+from pantocheck.conformance.input_files.bounded_file import MAX_FILE_BYTES, open_file
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.measured_table import (
     SAMPLED_TOGETHER,
@@ -24,7 +31,12 @@ def read_mdf_table(path: Path, names: tuple[str, ...], largest: int) -> list[Mea
     where = f"record '{path.name}'"
     if not names:
         raise InputError(where, "has no sidecar", "Name its channels in a TOML file of the same name beside it.")
-    with refuse_damage(where, "MDF", MdfException), MDF(path) as file:
+    with (
+        open_file(path, where, MAX_FILE_BYTES) as content,
+        refuse_damage(where, "MDF", MdfException),
+        _silence_library(),
+        MDF(content) as file,
+    ):
         missing = [name for name in names if name not in file.channels_db]
         if missing:
             raise InputError(
@@ -43,3 +55,21 @@ def read_mdf_table(path: Path, names: tuple[str, ...], largest: int) -> list[Mea
         raise InputError(where, "its channels differ in sampling interval", SAMPLED_TOGETHER)
     columns = tuple(TableColumn(signal.name, unit=str(signal.unit) or None) for signal in signals)
     return [MeasuredTable(path.name, values, columns, time=time)]
+
+
+@contextmanager
+def _silence_library() -> Iterator[None]:
+    """Suppress the log of the library, and the tracebacks that its half-built objects print when they are deleted."""
+    logger, hook = logging.getLogger("asammdf"), sys.unraisablehook
+    level = logger.level
+    logger.setLevel(logging.CRITICAL + 1)
+    sys.unraisablehook = lambda _: None
+    try:
+        yield
+    except Exception as error:
+        traceback.clear_frames(error.__traceback__)
+        gc.collect()  # Deletes these objects now.
+        raise
+    finally:
+        logger.setLevel(level)
+        sys.unraisablehook = hook

@@ -30,7 +30,14 @@ DROP_LINE = re.compile(
 def read_uff_table(path: Path, names: tuple[str, ...], largest: int) -> list[MeasuredTable]:
     """Read the run of a universal file; arguments and errors as in `table_formats.Reader`."""
     where = f"record '{path.name}'"
-    sets = [data_set for data_set in _read_sets(path, where) if data_set.get("func_type") == TIME_RESPONSE]
+    # pyuff raises plain `Exception` for some damaged files, and leaves out keys for others.
+    with refuse_damage(where, "a universal file", Exception):
+        return [_build_table(_read_sets(path, where), path.name, names, largest)]
+
+
+def _build_table(sets: list[dict[str, Any]], source: str, names: tuple[str, ...], largest: int) -> MeasuredTable:
+    """Table of the time responses among data sets."""
+    where, sets = f"record '{source}'", [data_set for data_set in sets if data_set.get("func_type") == TIME_RESPONSE]
     if not sets:
         raise InputError(where, "holds no time response (data set 58, function type 1)", "Export time histories.")
     values = stack_channels([np.real(data_set["data"]).astype(np.float64) for data_set in sets], where, largest)
@@ -45,16 +52,14 @@ def read_uff_table(path: Path, names: tuple[str, ...], largest: int) -> list[Mea
         _read_stated_facts(data_set) if names else _read_column(data_set, f"{where}, data set {number}")
         for number, data_set in enumerate(sets, 1)
     )
-    return [MeasuredTable(path.name, values, columns, rate=1 / step, attributes=_read_attributes(sets[0]))]
+    return MeasuredTable(source, values, columns, rate=1 / step, attributes=_read_attributes(sets[0]))
 
 
 def _read_sets(path: Path, where: str) -> list[dict[str, Any]]:
     """All data sets 58 of a file."""
-    # pyuff raises plain `Exception` for some files that it cannot read.
-    with refuse_damage(where, "a universal file", Exception):
-        universal = pyuff.UFF(str(path))
-        kinds = [int(kind) for kind in universal.get_set_types()]
-        sets = [universal.read_sets(i) for i, kind in enumerate(kinds) if kind == 58]
+    universal = pyuff.UFF(str(path))
+    kinds = [int(kind) for kind in universal.get_set_types()]
+    sets = [universal.read_sets(i) for i, kind in enumerate(kinds) if kind == 58]
     for number, data_set in enumerate(sets, 1):
         if len(data_set["data"]) != int(data_set["num_pts"]):
             raise InputError(

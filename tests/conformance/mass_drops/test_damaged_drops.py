@@ -61,6 +61,14 @@ def cut_hdf5(folder: Path, record: DropRecord) -> Path:
     return folder / "r.h5"
 
 
+def unknown_number_type(folder: Path, record: DropRecord) -> Path:
+    """Universal file whose first data set states a type of numbers that does not exist (0 in place of 4)."""
+    write_drop_uff(record, folder / "r.uff")
+    content = (folder / "r.uff").read_bytes()
+    (folder / "r.uff").write_bytes(content.replace(b"         4       400", b"         0       400", 1))
+    return folder / "r.uff"
+
+
 def without_sidecar(folder: Path, record: DropRecord) -> Path:
     write_drop_csv(record, folder / "r.csv")
     (folder / "r.toml").unlink()
@@ -94,6 +102,7 @@ DAMAGES = {
     "mixed units": (sidecar_damage('unit = "m/s2"', 'unit = "mm"'), "mixes"),
     "channel twice": (sidecar_damage("column = 2", "column = 1"), "column 1 is described twice"),
     "cut binary": (cut_binary, "missing: S2_z"),
+    "unknown number type": (unknown_number_type, "damaged or not a universal file"),
     "cut hdf5": (cut_hdf5, "damaged"),
     "no sidecar": (without_sidecar, "no sidecar"),
     "empty csv": (empty("r.csv"), "is empty"),

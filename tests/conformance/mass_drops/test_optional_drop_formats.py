@@ -1,5 +1,6 @@
 """TDMS and MDF records of mass drops, whose libraries are extras."""
 
+import gc
 import sys
 from pathlib import Path
 from types import SimpleNamespace
@@ -26,18 +27,36 @@ def test_tdms(tmp_path: Path, record: DropRecord) -> None:
     assert_same_record(read_drop_records(tmp_path / "r.tdms")[0], record, 0.0)
 
 
-def test_mdf(tmp_path: Path, record: DropRecord) -> None:
+def write_mdf(record: DropRecord, path: Path) -> None:
+    """Record as MDF 4 with its sidecar."""
     asammdf = pytest.importorskip("asammdf", reason="extra mdf")
-    write_drop_csv(record, tmp_path / "r.csv")
-    file = asammdf.MDF(version="4.10")
-    signals = [
-        asammdf.Signal(record.signals[:, c], record.time, name=channel.name, unit="m/s2")
-        for c, channel in enumerate(record.channels)
-    ]
-    file.append(signals)
-    file.save(tmp_path / "r.mf4", overwrite=True)
-    file.close()
+    write_drop_csv(record, path.with_suffix(".csv"))
+    with asammdf.MDF(version="4.10") as file:
+        file.append(
+            [
+                asammdf.Signal(record.signals[:, c], record.time, name=channel.name, unit="m/s2")
+                for c, channel in enumerate(record.channels)
+            ]
+        )
+        file.save(path, overwrite=True)
+
+
+def test_mdf(tmp_path: Path, record: DropRecord) -> None:
+    write_mdf(record, tmp_path / "r.mf4")
     assert_same_record(read_drop_records(tmp_path / "r.mf4")[0], record, 0.0)
+
+
+def test_damaged_mdf_ends_in_one_message(tmp_path: Path, record: DropRecord, capfd: pytest.CaptureFixture[str]) -> None:
+    """Objects of the library that are half built print no traceback when they are deleted (a pytest error here)."""
+    write_mdf(record, tmp_path / "r.mf4")
+    content = (tmp_path / "r.mf4").read_bytes()
+    capfd.readouterr()
+    for length in (70, 200, 1000):
+        (tmp_path / "r.mf4").write_bytes(content[:length])
+        with pytest.raises(InputError, match="is damaged or not MDF"):
+            read_drop_records(tmp_path / "r.mf4")
+    gc.collect()
+    assert capfd.readouterr() == ("", "")
 
 
 def test_tdms_with_channels_of_two_rates_is_refused(tmp_path: Path, record: DropRecord) -> None:
