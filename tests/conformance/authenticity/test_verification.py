@@ -72,12 +72,40 @@ TAMPERINGS = {
     "deviation": (lambda r: set_quantity(r, "std_force_N", 25.0), "std_force_N 25 stated"),
     "maximum below what is drawn": (lambda r: set_quantity(r, "max_force_N", 165.0), "max_force_N 165 stated"),
     "minimum above what is drawn": (lambda r: set_quantity(r, "min_force_N", 70.0), "min_force_N 70 stated"),
+    "quantity of a value gone": (
+        lambda r: r["cases"][1]["quantities"]["1"].pop("std_force_N"),
+        "graded, nothing reported among the quantities",
+    ),
+    "statistics without a curve": (
+        lambda r: (r["cases"][0].update(traces={}), set_quantity(r, "statistical_max_N", 190.0)),
+        "statistical_max_N 190 stated",
+    ),
+    "statistics of the rear without a curve": (
+        lambda r: (r["cases"][0]["traces"].pop("2"), r["cases"][0]["quantities"]["2"].update(cov_20=0.2)),
+        "pantograph 2: cov_20 0.2 stated",
+    ),
+    "maximum slightly below what is drawn": (lambda r: set_extreme(r, max, 1 - 1e-4), "max_force_N"),
+    "minimum slightly above what is drawn": (lambda r: set_extreme(r, min, 1 + 2e-4), "min_force_N"),
+    "pass without criteria": (
+        lambda r: r["cases"][0].update(criteria=[], verdict="pass", reason="not needed"),
+        "verdict 'pass' stated, 'info' follows from the criteria",
+    ),
+    "unverified without criteria": (
+        lambda r: r["cases"][0].update(criteria=[], verdict="unverified", reason="not needed"),
+        "verdict 'unverified' stated, 'info' follows from the criteria",
+    ),
     "band": (lambda r: set_quantity(r, "rms_20_50_N", 9.0), "follows from the spectrum"),
 }
 
 
 def set_quantity(results: dict[str, Any], name: str, value: float) -> None:
     results["cases"][0]["quantities"]["1"][name] = value
+
+
+def set_extreme(results: dict[str, Any], extreme: Callable[[list[float]], float], factor: float) -> None:
+    """Set an extreme of pantograph 2 to a factor of the drawn one; curves are printed with 2e-5 of their largest."""
+    case, name = results["cases"][0], f"{extreme.__name__}_force_N"
+    case["quantities"]["2"][name] = factor * extreme(case["traces"]["2"]["force_20_N"])
 
 
 @pytest.mark.parametrize("name", TAMPERINGS)

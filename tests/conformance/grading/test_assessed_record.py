@@ -13,6 +13,7 @@ from pantocheck.conformance.cases.library import library_folder
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.grading.assessed_record import AssessedRecord, load_assessed_record
 from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
+from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.records.measured.block_bootstrap import bootstrap_uncertainties
 from pantocheck.conformance.records.sidecar_tables import LineTable
@@ -97,3 +98,19 @@ def test_wave_speed_of_a_summary_yields_to_stated_facts(
     edit_toml(path, {"quantities.wave_speed_m_s": 125.0, "line": {} if line is None else {"wave_speed_m_s": line}})
     record = load_assessed_record(path, load_profile("acceptance-ac"), LineTable(wave_speed_m_s=user))
     assert record.values.values[LINE]["speed_over_wave_speed"] == pytest.approx(250 / 3.6 / wave_speed)
+
+
+@pytest.mark.parametrize(
+    ("cutoff", "fits"), [(10.0, False), (19.97, False), (19.99, True), (20.01, True), (20.03, False), (50.0, False)]
+)
+def test_summary_has_the_filter_of_the_profile(tmp_path: Path, cutoff: float, fits: bool) -> None:
+    """A tolerance of a thousandth for printed numbers: a lower filter lowers the deviation."""
+    path = tmp_path / "a.toml"
+    path.write_text(SUMMARY.read_text())
+    edit_toml(path, {"filter_cutoff_Hz": cutoff})
+    if fits:
+        assert load_assessed_record(path, load_profile("acceptance-ac"), NOTHING).pantographs == (1,)
+    else:
+        message = f"filtered at {cutoff:g} Hz, profile acceptance-ac requires 20 Hz"
+        with pytest.raises(InputError, match=message):
+            load_assessed_record(path, load_profile("acceptance-ac"), NOTHING)

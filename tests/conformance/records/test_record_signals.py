@@ -192,6 +192,31 @@ def test_registry_has_every_name_of_the_contract() -> None:
     )
 
 
+@pytest.mark.parametrize(
+    ("shift", "even"), [(0.005, True), (-0.005, True), (0.02, False), (-0.02, False), (0.5, False)]
+)
+@pytest.mark.parametrize("sample", [1, 6000, 11_998])
+def test_time_is_even_to_a_hundredth_of_a_step(sample: int, shift: float, even: bool) -> None:
+    """The time of one sample is shifted by a share of the step, as printing with few digits does."""
+    good = record(np.full((2, 12_000), 100.0), position=SPEED * np.arange(12_000) / RATE - np.array([[0.0], [100.0]]))
+    time = good.time.copy()
+    time[sample] += shift / RATE
+    if even:
+        assert replace(good, time=time).rate == pytest.approx(RATE, rel=1e-9)
+    else:
+        with pytest.raises(ValueError, match="not evenly spaced"):
+            replace(good, time=time)
+
+
+@pytest.mark.parametrize("sample", [1, 300, 6000, 11_998])
+def test_record_without_one_sample_is_refused(sample: int) -> None:
+    """All channels of two pantographs lack the same sample, as after a lost line of a file."""
+    good = record(np.full((2, 12_000), 100.0), position=SPEED * np.arange(12_000) / RATE - np.array([[0.0], [100.0]]))
+    kept = np.delete(np.arange(12_000), sample)
+    with pytest.raises(ValueError, match="not evenly spaced"):
+        replace(good, time=good.time[kept], position=good.position[:, kept], force=good.force[:, kept])
+
+
 def test_impossible_record_is_rejected() -> None:
     good = record()
     bad = good.force.copy()

@@ -14,6 +14,7 @@ import jsonschema
 import pytest
 from numpy.testing import assert_allclose
 
+from helpers.toml_edit import edit_toml
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
@@ -234,6 +235,13 @@ def test_crash_does_not_stop_other_cases_and_record_of_another_case_is_refused(
     first, second = run_cases(cases, program("crash")).cases
     assert first.reason == "p: ended with exit code 1 before it answered; its last words: no licence left"
     assert second.reason == "p: the record is of case 'en50318-2002/250' in place of 'en50318-2002/300'"
+
+
+def test_record_that_names_no_case_is_refused(program: Callable[..., System], case_250: Case, tmp_path: Path) -> None:
+    """A record without a case may be of any run, although the program answers for this one."""
+    system = program("well")
+    edit_toml(tmp_path / "record.toml", {"case": None})
+    assert system.run(case_250) == Errored("p: the record is of case None in place of 'en50318-2002/250'")
 
 
 def running_processes(text: bytes) -> list[str]:

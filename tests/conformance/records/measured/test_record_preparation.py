@@ -127,6 +127,28 @@ def test_missing_values_are_a_gap_and_two_of_them_are_bridged() -> None:
     assert np.isfinite(values(cut)["std_force_N"])
 
 
+@pytest.mark.parametrize(("missing", "sections"), [(1, 1), (4, 1), (6, 2), (12, 2), (24, 2)])
+@pytest.mark.parametrize("lost", [False, True])
+def test_gap_of_the_rear_pantograph_is_bridged_up_to_ten_milliseconds(missing: int, sections: int, lost: bool) -> None:
+    """At 500 Hz a gap of k samples lasts 2 k ms; 12 ms or more could hide a peak below 20 Hz.
+
+    Where the force of the rear alone is missing, the front has no gap. Where the samples are lost, both have one.
+    """
+    samples = by_time(20.0)
+    force = np.vstack([samples.force, force_at(samples.position - 200.0)])
+    gap = slice(5000, 5000 + missing)
+    if lost:
+        kept = np.delete(np.arange(samples.time.size), gap)
+        two = RecordSamples(force[:, kept], samples.time[kept], position=samples.position[:, kept])
+    else:
+        force[1, gap] = np.nan
+        two = RecordSamples(force, samples.time, position=samples.position)
+    found = ready(two, pantographs=2, spacing_m=[200.0])
+    parts = [len(found.pantographs[number].parts) for number in (1, 2)]
+    assert parts == [sections if lost else 1, sections]
+    assert any("pantograph 2 is evaluated over 2 sections" in text for text in found.warnings) is (sections == 2)
+
+
 def test_change_of_speed_is_cut() -> None:
     """Half of the record runs 10 % too slow: it is cut, with a warning."""
     time = np.arange(0, 60, 0.002)
@@ -163,6 +185,22 @@ def test_outliers_are_reported_and_graded() -> None:
     assert values(found)["max_force_N"] > values(ready(samples))["max_force_N"] + 10
     assert find_outliers(samples.force[0]).size == 0
     assert list(find_outliers(force[0])) == [6000]
+
+
+@pytest.mark.parametrize("row", [0, 1])
+def test_outlier_is_reported_for_its_pantograph(row: int) -> None:
+    """One sample of 900 N at 12 s: 833.3 m for the front, 633.3 m for the rear 200 m behind it."""
+    samples = by_time(20.0)
+    force = np.vstack([samples.force, force_at(samples.position - 200.0)])
+    force[row, 6000] = 900.0
+    two = RecordSamples(force, samples.time, position=samples.position)
+    found = ready(two, pantographs=2, spacing_m=[200.0])
+    outliers = [text for text in found.warnings if "outlier" in text]
+    place = ("833.3 m", "633.3 m")[row]
+    assert len(outliers) == 1
+    assert outliers[0].startswith(
+        f"the force of pantograph {row + 1} has 1 outlier, which are graded: 900 N at {place}"
+    )
 
 
 def test_noise_of_a_million_samples_has_no_outlier() -> None:

@@ -1,0 +1,55 @@
+"""Sampling rate of a mass-drop record: its sources agree to a thousandth, and no sample is missing from its time."""
+
+import numpy as np
+import pytest
+
+from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.measured_table import MeasuredTable, TableColumn
+from pantocheck.conformance.mass_drops.drop_sidecar import DropSidecar
+from pantocheck.conformance.mass_drops.sampling_rate import find_sampling_rate
+
+RATE, N = 400.0, 1200
+
+
+def build_table(time: RealArray | None = None, rate: float | None = None) -> MeasuredTable:
+    size = N if time is None else time.size
+    return MeasuredTable("r.csv", np.zeros((size, 1)), (TableColumn(name="S1_z"),), time, rate)
+
+
+def build_sidecar(rate: float) -> DropSidecar:
+    channel = {"column": 1, "name": "S1_z", "sensor": 1, "unit": "mg", "direction": "+z"}
+    return DropSidecar.model_validate({"record": {"sampling_rate_hz": rate}, "channel": [channel]})
+
+
+@pytest.mark.parametrize(
+    ("factor", "agrees"),
+    [(0.98, False), (0.9989, False), (0.9991, True), (1.0009, True), (1.0011, False), (1.02, False)],
+)
+@pytest.mark.parametrize("source", ["the file", "the time column"])
+def test_sources_agree_to_a_thousandth(source: str, factor: float, agrees: bool) -> None:
+    """Every frequency is proportional to the rate: 2 % is five times the scatter of an identified frequency."""
+    other = factor * RATE
+    table = build_table(rate=other) if source == "the file" else build_table(time=np.arange(N) / other)
+    if agrees:
+        assert find_sampling_rate(table, build_sidecar(RATE)) == RATE
+        assert find_sampling_rate(table, None) == pytest.approx(other, rel=1e-9)
+    else:
+        with pytest.raises(InputError, match=f"the sidecar says 400 samples per second, {source} says {other:g}"):
+            find_sampling_rate(table, build_sidecar(RATE))
+
+
+@pytest.mark.parametrize("sample", [1, 2, 600, N - 3])
+@pytest.mark.parametrize("missing", [1, 2])
+def test_missing_sample_is_found_anywhere(sample: int, missing: int) -> None:
+    """One sample of 1200 changes the rate by less than a thousandth: the gap itself shows it."""
+    time = np.delete(np.arange(N) / RATE, slice(sample, sample + missing))
+    with pytest.raises(InputError, match="the time column steps by"):
+        find_sampling_rate(build_table(time), None)
+
+
+@pytest.mark.parametrize("digits", [3, 4, 6])
+def test_printed_times_are_even(digits: int) -> None:
+    """A step of 2.5 ms, printed to a millisecond, is 2 ms or 3 ms: less than half a step from the mean."""
+    time = np.round(np.arange(N) / RATE, digits)
+    assert find_sampling_rate(build_table(time), None) == pytest.approx(RATE, rel=1e-3)
