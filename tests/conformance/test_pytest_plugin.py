@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from helpers.toml_edit import edit_toml, write_toml
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.pytest_plugin import collection  # noqa: F401 - once here, or anew in every session below
@@ -51,11 +52,9 @@ def plan(pytester: pytest.Pytester, wave: type[Wave]) -> Path:
     pytester.path.joinpath("records").mkdir()
     for case in select_cases(["en50318-2002/*"]):
         write_record(pytester.path / "records" / f"{case.file.speed_km_h:g}.csv", wave().record(case), case.id)
-    path = pytester.path / "conformance.toml"
-    path.write_text(
-        'cases = ["en50318-2002/250", "en50318-2002/300"]\nsystem = "record:records"\nformats = ["json", "junit"]\n'
-    )
-    return path
+    cases = ["en50318-2002/250", "en50318-2002/300"]
+    content = {"cases": cases, "system": "record:records", "formats": ["json", "junit"]}
+    return write_toml(pytester.path / "conformance.toml", content)
 
 
 def outcomes_250(verdicts: dict[str, str]) -> list[str]:
@@ -104,8 +103,7 @@ def test_ids_select_items_and_options_replace_those_of_the_plan(pytester: pytest
 def test_each_case_is_run_once_in_a_session(pytester: pytest.Pytester, plan: Path, workers: tuple[str, ...]) -> None:
     (pytester.path / "skipper.py").write_text(SKIPPER)
     log = pytester.path / "log"
-    text = plan.read_text().replace("record:records", f"command:{sys.executable} skipper.py {log}")
-    plan.write_text(text)
+    edit_toml(plan, {"system": f"command:{sys.executable} skipper.py {log}"})
     done = process(pytester, "-rs", "conformance.toml", *workers)
     done.assert_outcomes(skipped=16)
     done.stdout.fnmatch_lines(["SKIPPED*no such line"])
@@ -116,14 +114,14 @@ def test_each_case_is_run_once_in_a_session(pytester: pytest.Pytester, plan: Pat
 
 def test_error_of_a_case_fails_its_criteria_with_the_reason(pytester: pytest.Pytester, plan: Path) -> None:
     (pytester.path / "skipper.py").write_text(SKIPPER.replace("print(json.dumps(answer), flush=True)", "sys.exit(3)"))
-    plan.write_text(plan.read_text().replace("record:records", f"command:{sys.executable} skipper.py log"))
+    edit_toml(plan, {"system": f"command:{sys.executable} skipper.py log"})
     done = session(pytester, "conformance.toml")
     done.assert_outcomes(failed=16)
     done.stdout.fnmatch_lines(["error: *ended with exit code 3 before it answered"])
 
 
 def test_missing_records_are_reported_in_one_line(pytester: pytest.Pytester, plan: Path) -> None:
-    plan.write_text(plan.read_text().replace("record:records", "record:nowhere"))
+    edit_toml(plan, {"system": "record:nowhere"})
     done = session(pytester, "conformance.toml")
     done.assert_outcomes(failed=16)
     done.stdout.fnmatch_lines(["system record:*nowhere: there is no such folder."])
@@ -131,10 +129,10 @@ def test_missing_records_are_reported_in_one_line(pytester: pytest.Pytester, pla
 
 
 def test_drift_from_a_baseline_fails_the_session(pytester: pytest.Pytester, plan: Path) -> None:
-    plan.write_text(plan.read_text().replace("record:records", PUBLISHED) + f'accept_unverified = ["{CODE}"]\n')
+    edit_toml(plan, {"system": PUBLISHED, "accept_unverified": [CODE]})
     assert session(pytester, "conformance.toml", "--pantocheck-out", "before").ret == 0
     (pytester.path / "before" / "results.json").rename(pytester.path / "baseline.json")
-    plan.write_text(plan.read_text() + 'baseline = "baseline.json"\n')
+    edit_toml(plan, {"baseline": "baseline.json"})
     chosen = ("conformance.toml", "-k", "mean_force")
     assert session(pytester, *chosen).ret == 0
     content = json.loads((pytester.path / "baseline.json").read_text())
@@ -148,11 +146,11 @@ def test_drift_from_a_baseline_fails_the_session(pytester: pytest.Pytester, plan
 
 def test_session_passes_only_with_the_verdict_pass(pytester: pytest.Pytester, plan: Path) -> None:
     """Published statistics are inside all limits, but unverified: exit 0 only if the user accepts the system."""
-    plan.write_text(plan.read_text().replace("record:records", PUBLISHED))
+    edit_toml(plan, {"system": PUBLISHED})
     done = session(pytester, "conformance.toml")
     done.assert_outcomes(failed=16)
     done.stdout.fnmatch_lines(["the record is unverified: published statistics*"])
-    plan.write_text(plan.read_text() + f'accept_unverified = ["{CODE}"]\n')
+    edit_toml(plan, {"accept_unverified": [CODE]})
     accepted = session(pytester, "conformance.toml")
     accepted.assert_outcomes(passed=16)
     assert accepted.ret == 0
@@ -162,7 +160,7 @@ def test_session_passes_only_with_the_verdict_pass(pytester: pytest.Pytester, pl
 
 
 def test_case_for_information_does_not_fail_the_session(pytester: pytest.Pytester, plan: Path) -> None:
-    plan.write_text(plan.read_text() + 'information = ["*/300", "*/250"]\n')
+    edit_toml(plan, {"information": ["*/300", "*/250"]})
     done = session(pytester, "-rs", "conformance.toml")
     assert done.parseoutcomes().get("failed", 0) == 0
     done.stdout.fnmatch_lines(["SKIPPED*for information: max_force_N of pantograph 1*below the lower limit"])

@@ -10,6 +10,7 @@ import pytest
 import yaml
 from typer.testing import CliRunner
 
+from helpers.toml_edit import edit_toml
 from pantocheck.conformance.cases.library import library_folder
 from pantocheck.conformance.command_line.app import app
 
@@ -30,16 +31,16 @@ def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     script.write_text('#!/bin/sh\nmkdir -p "$1" && cp solver/*.toml "$1"\n')
     script.chmod(0o755)
     plan = tmp_path / "conformance.toml"
-    text = plan.read_text().replace('"html", "pdf", ', "")  # the certificate is tested elsewhere
-    text += 'accept_unverified = ["published passing code (Wang et al.)"]\n'
-    first = "".join(line for line in text.splitlines(True) if not line.startswith(("baseline", "drift")))
-    plan.write_text(first)
+    formats = ["json", "junit", "md", "badge"]  # the certificate is tested elsewhere
+    edit_toml(plan, {"accept_unverified": ["published passing code (Wang et al.)"], "formats": formats})
+    gated = plan.read_text()
+    edit_toml(plan, {"baseline": None, "drift_pct": None})
     monkeypatch.chdir(tmp_path)
     subprocess.run(["./simulate.sh", "records"], check=True)
     assert CliRunner().invoke(app, ["run", "--plan", "conformance.toml"]).exit_code == 0
     (tmp_path / "baseline").mkdir()
     shutil.move(tmp_path / "report" / "results.json", tmp_path / "baseline")
-    plan.write_text(text)
+    plan.write_text(gated)
     return tmp_path
 
 
@@ -61,7 +62,7 @@ def test_job_passes_and_fails_by_the_baseline(project: Path) -> None:
     assert run_job(project) == 0
     solver = project / "solver" / "250.toml"
     # A standard deviation 2 % larger is within its limits, so only the baseline detects it.
-    solver.write_text(solver.read_text().replace("std_force_N = 27.6", "std_force_N = 28.15"))
+    edit_toml(solver, {"pantograph.0.std_force_N": 28.15})
     assert run_job(project) == 1
     assert "drift of std_force_N" in (project / "report" / "junit.xml").read_text()
     assert [line.split(":")[0] for line in (project / "page.md").read_text().splitlines() if line[:2] == "# "] == [

@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 
 from helpers.case_fixtures import EditedCase
+from helpers.toml_edit import write_toml
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import (
     library_folder,
@@ -156,14 +157,15 @@ def test_two_pantographs_start_and_end_on_the_line(two_pantograph_case: Case, ed
 
 def test_limits_of_a_user_replace_and_add(tmp_path: Path, case_250: Case) -> None:
     path = tmp_path / "limits.toml"
-    entry = '[[limit]]\ncase = "*/250"\nquantity = "{}"\nupper = {}\ntrust = "primary"\nsource = "my copy"\n'
-    path.write_text(entry.format("std_force_N", 30.0) + entry.format("rms_20_50_N", 9.0))
+    entry = {"case": "*/250", "trust": "primary", "source": "my copy"}
+    deviation, band = ({"quantity": "std_force_N", "upper": 30.0}, {"quantity": "rms_20_50_N", "upper": 9.0})
+    write_toml(path, {"limit": [entry | deviation, entry | band]})
     (case,) = overlay_limits([case_250], read_limits(path))
     limits = {limit.quantity: limit for limit in case.limits}
     assert len(limits) == 9
     assert (limits["std_force_N"].lower, limits["std_force_N"].upper) == (None, 30.0)
     assert limits["std_force_N"].source == "my copy"
-    path.write_text(entry.format("std_force_N", 30.0).replace("*/250", "*/251"))
+    write_toml(path, {"limit": [entry | deviation | {"case": "*/251"}]})
     with pytest.raises(InputError, match=r"no case of this run matches '\*/251'"):
         overlay_limits([case_250], read_limits(path))
 

@@ -1,14 +1,15 @@
 """Baseline: a drifted value fails even within its limits, and a missing value is skipped."""
 
 import json
-from collections.abc import Callable
+import math
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
-from click.testing import Result
-from typer.testing import CliRunner
+from typer.testing import CliRunner, Result
 
+from helpers.toml_edit import change_keys, write_toml
 from pantocheck.conformance.authenticity.recomputation import find_discrepancies
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.command_line.app import app
@@ -122,31 +123,44 @@ def test_baseline_on_the_command_line_and_in_a_plan(results: Results, tmp_path: 
     assert "fail" in (tmp_path / "out" / "badge.svg").read_text().lower()
     assert pantocheck(*command, "--baseline", base, "--drift", "3").exit_code == 0
     plan = tmp_path / "plan.toml"
-    plan.write_text(
-        f'system = "{PASSING}"\ncases = ["en50318-2002/*"]\nbaseline = "baseline.json"\nformats = ["json"]\n'
-        f'accept_unverified = ["{results.system.name}"]\n'
+    write_toml(
+        plan,
+        {
+            "system": PASSING,
+            "cases": ["en50318-2002/*"],
+            "baseline": "baseline.json",
+            "formats": ["json"],
+            "accept_unverified": [results.system.name],
+        },
     )
     assert pantocheck("run", "--plan", plan, "--out", tmp_path / "p").exit_code == 1
     assert pantocheck("run", "--plan", plan, "--out", tmp_path / "p", "--drift", "3").exit_code == 0
 
 
 @pytest.mark.parametrize(
-    ("change", "message"),
+    ("text", "message"),
+    [("", "not JSON"), ('{"suite": ', "not JSON"), ("[" * 100_000, "not JSON"), ("{}", "key suite: field required")],
+)
+def test_file_that_is_no_results_is_rejected(tmp_path: Path, text: str, message: str) -> None:
+    path = tmp_path / "b.json"
+    path.write_text(text)
+    with pytest.raises(InputError, match=message):
+        read_results(path)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
     [
-        (lambda text: "", "not JSON"),
-        (lambda text: text[:100], "not JSON"),
-        (lambda text: "[" * 100_000, "not JSON"),
-        (lambda text: "{}", "key suite: field required"),
-        (lambda text: text.replace("27.6", "NaN"), "finite"),
-        (lambda text: text.replace("27.6", "1e300"), "less than or equal to"),
-        (lambda text: text.replace('"1": {', '"front": {', 1), "should match pattern"),
+        ({"cases.0.quantities.1.std_force_N": math.nan}, "finite"),
+        ({"cases.0.quantities.1.std_force_N": 1e300}, "less than or equal to"),
+        ({"cases.0.quantities.front": {"std_force_N": 27.6}}, "should match pattern"),
     ],
 )
-def test_wrong_baseline_is_rejected(
-    results: Results, tmp_path: Path, change: Callable[[str], str], message: str
-) -> None:
+def test_wrong_baseline_is_rejected(results: Results, tmp_path: Path, changes: dict[str, Any], message: str) -> None:
+    content = results.to_dict()
+    change_keys(content, changes)
     path = tmp_path / "b.json"
-    path.write_text(change(results.to_json().decode()))
+    path.write_text(json.dumps(content))
     with pytest.raises(InputError, match=message):
         read_results(path)
 

@@ -22,7 +22,7 @@ def rippled(wave: type[Wave], case: Case, amplitude: float) -> Record:
 
 def warnings(wave: type[Wave], case: Case, fine: float | None, **run: Any) -> list[str]:
     @dataclass(frozen=True)
-    class Rippled(wave):
+    class Rippled(Wave):
         def run(self, case: Case) -> Delivered:
             refined = None if fine is None else Delivered(rippled(wave, case, fine))
             return Delivered(rippled(wave, case, 10.0), run=RunTable(**run), refined=refined)
@@ -52,7 +52,7 @@ def test_record_without_the_band_has_no_warning(case_250: Case, wave: type[Wave]
     """A force filtered at 20 Hz has no values above: they are skipped with the reason."""
 
     @dataclass(frozen=True)
-    class Filtered(wave):
+    class Filtered(Wave):
         def run(self, case: Case) -> Delivered:
             return Delivered(replace(wave().record(case), filter_applied_Hz=20.0))
 

@@ -2,6 +2,7 @@
 
 import json
 import re
+import shutil
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -9,9 +10,9 @@ from typing import Any
 import jsonschema
 import numpy as np
 import pytest
-from click.testing import Result
-from typer.testing import CliRunner
+from typer.testing import CliRunner, Result
 
+from helpers.toml_edit import edit_toml, write_toml
 from pantocheck.conformance.authenticity.recomputation import find_discrepancies
 from pantocheck.conformance.cases.library import library_folder
 from pantocheck.conformance.cases.limits import Limit
@@ -27,15 +28,14 @@ from pantocheck.conformance.schemas import build_schema
 NAMES = ("acceptance-ac", "acceptance-dc-3kv", "acceptance-dc-1500v", "line-test")
 PASSING = library_folder() / "en50318-2002" / "known-passing-code"
 
-SIDECAR = """schema = "pantocheck.record/1"
-file = "train.csv"
-speed_km_h = {speed}
-pantographs = 1
-filter_applied_Hz = "none"
-support_position_m = {supports}
-line = {{ span_m = 60.0, wave_speed_m_s = {wave}, uplift_space_mm = {space} }}
-"""
-
+SIDECAR: dict[str, Any] = {
+    "schema": "pantocheck.record/1",
+    "file": "train.csv",
+    "speed_km_h": 250.0,
+    "pantographs": 1,
+    "filter_applied_Hz": "none",
+    "line": {"span_m": 60.0, "wave_speed_m_s": 120.0, "uplift_space_mm": 80.0},
+}
 
 Train = Callable[..., Path]
 """Writes a record with the given mean, sigma, speed, wave speed, uplift space, number of spans and supports."""
@@ -63,10 +63,9 @@ def train(tmp_path: Path) -> Train:
         table = np.column_stack([position, force, *uplift])
         names = ",".join(["position_1_m", "force_1_N", *(f"uplift_{i + 1}_mm" for i in range(len(supports)))])
         np.savetxt(tmp_path / "train.csv", table, "%.9g", ",", header=names, comments="")
-        (tmp_path / "train.toml").write_text(
-            SIDECAR.format(speed=speed, wave=wave, space=space, supports=list(map(float, supports)))
-        )
-        return tmp_path / "train.toml"
+        line = SIDECAR["line"] | {"wave_speed_m_s": wave, "uplift_space_mm": space}
+        keys = {"speed_km_h": speed, "support_position_m": list(map(float, supports)), "line": line}
+        return write_toml(tmp_path / "train.toml", SIDECAR | keys)
 
     return write
 
@@ -151,9 +150,7 @@ def test_rule_outside_its_speed_range_is_skipped(train: Train) -> None:
 
 
 def test_unknown_fact_of_the_line_omits_the_rule_with_a_warning(train: Train) -> None:
-    path = train()
-    path.write_text("\n".join(text for text in path.read_text().splitlines() if not text.startswith("line =")))
-    results = graded(path)
+    results = graded(edit_toml(train(), {"line": None}))
     assert {row.quantity for row in results.cases[0].criteria} == {"mean_force_N", "cov_20", "statistical_min_N"}
     left_out = [text for text in results.cases[0].warnings if "is not graded" in text]
     assert len(left_out) == 2
@@ -203,23 +200,21 @@ def test_every_pantograph_of_a_record_is_placed_and_graded(tmp_path: Path) -> No
         comments="",
     )
     sidecar = tmp_path / "train.toml"
-    text = SIDECAR.format(speed=250.0, wave=120.0, space=80.0, supports=[600.0]).replace("= 1", "= 2")
-    text = text.replace("support_position_m = [600.0]", "spacing_m = [100.0]")
-    sidecar.write_text(text)
+    two = SIDECAR | {"pantographs": 2}
+    write_toml(sidecar, two | {"spacing_m": [100.0]})
     verdicts = {(row.quantity, row.pantograph): row.verdict for row in graded(sidecar).cases[0].criteria}
     assert (verdicts["statistical_min_N", 1], verdicts["statistical_min_N", 2]) == ("pass", "fail")
     assert verdicts["max_uplift_at_support_mm", 0] == "skip"
-    sidecar.write_text(text.replace("spacing_m = [100.0]", ""))
+    write_toml(sidecar, two)
     with pytest.raises(InputError, match="2 pantographs have neither a position nor spacing_m"):
         graded(sidecar)
-    sidecar.write_text(text.replace("spacing_m", "evaluated_m = [200.0, 1800.0]\nspacing_m"))
+    write_toml(sidecar, two | {"spacing_m": [100.0], "evaluated_m": [200.0, 1800.0]})
     with pytest.raises(InputError, match="the first pantograph has neither a position nor start_m"):
         graded(sidecar)
 
 
 def test_uplift_is_skipped_where_the_length_of_a_span_is_not_known(train: Train) -> None:
-    path = train()
-    path.write_text(path.read_text().replace("span_m = 60.0, ", ""))
+    path = edit_toml(train(), {"line.span_m": None})
     row = by_quantity(graded(path))["max_uplift_at_support_mm"]
     assert row.verdict == "skip"
     assert "state span_m" in row.reason
@@ -340,19 +335,19 @@ def test_bad_options_end_with_one_message_and_exit_code_2(
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "message"),
+    ("changes", "message"),
     [
-        ("upper = 0.3", "upper = 0.3\ntolerance = 1.0", "needs exactly one kind of bound"),
-        ("upper = 0.3", "", "needs exactly one kind of bound"),
-        ('quantity = "cov_20"', 'quantity = "cov_2"', "there is no quantity 'cov_2'"),
-        ('quantity = "cov_20"', 'quantity = "damping_ratio"', "damping_ratio is no quantity of a run"),
-        ("constant = 70.0", "constant_kN = 0.07", "constant_kN"),
-        ('given = "uplift_space_mm"', 'given = "luck"', "found 'luck', expected 'uplift_space_mm'"),
+        ({"rule.1.tolerance": 1.0}, "needs exactly one kind of bound"),
+        ({"rule.1.upper": None}, "needs exactly one kind of bound"),
+        ({"rule.1.quantity": "cov_2"}, "there is no quantity 'cov_2'"),
+        ({"rule.1.quantity": "damping_ratio"}, "damping_ratio is no quantity of a run"),
+        ({"rule.0.upper.constant": None, "rule.0.upper.constant_kN": 0.07}, "constant_kN"),
+        ({"rule.4.upper.given": "luck"}, "found 'luck', expected 'uplift_space_mm'"),
     ],
 )
-def test_wrong_profile_names_its_key(tmp_path: Path, old: str, new: str, message: str) -> None:
-    text = (library_folder() / "profiles" / "acceptance-ac.toml").read_text()
-    assert old in text
-    (tmp_path / "own.toml").write_text(text.replace(old, new))
+def test_wrong_profile_names_its_key(tmp_path: Path, changes: dict[str, Any], message: str) -> None:
+    path = tmp_path / "own.toml"
+    shutil.copy(library_folder() / "profiles" / "acceptance-ac.toml", path)
+    edit_toml(path, changes)
     with pytest.raises(InputError, match=message):
-        load_profile(str(tmp_path / "own.toml"))
+        load_profile(str(path))

@@ -9,9 +9,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import Result
 from numpy.testing import assert_allclose
-from typer.testing import CliRunner
+from typer.testing import CliRunner, Result
 
 from helpers.toml_edit import edit_toml
 from pantocheck.conformance.cases.damping_file import Damping
