@@ -190,3 +190,14 @@ def test_pairs_by_frequency_and_shape() -> None:
     for p in pairs:
         assert p.mac == pytest.approx(1.0)
     assert modal_assurance(np.array([1.0, 0.0]), np.array([0.0, 1.0])) == 0.0
+
+
+@pytest.mark.parametrize(("mac", "paired"), [(0.1, False), (0.3, False), (0.49, False), (0.51, True), (0.9, True)])
+def test_modes_of_different_shapes_are_no_pair(mac: float, paired: bool) -> None:
+    """Two measured modes at the computed frequencies; shapes (1, t) and (1, 0) have the MAC 1 / (1 + t^2)."""
+    frequency, shape = np.array([1.0, 1.3]), np.array([2j, 2j * np.sqrt(1 / mac - 1)])
+    computed = np.array([[1.0, 0.0], [np.sqrt(1 / mac - 1), -1.0]])  # the second one is orthogonal to the first shape
+    same = np.array([0.0, 1.0])
+    pairs = pair_modes(frequency, [shape, same.astype(complex)], frequency, [computed, np.array([same[::-1], same])])
+    assert [(pair.measured, pair.computed) for pair in pairs] == [(0, 0)] * paired + [(1, 1)]
+    assert [pair.mac for pair in pairs] == pytest.approx([mac] * paired + [1.0])
