@@ -24,7 +24,7 @@ from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.studies.damping_sensitivity import add_damping_study
 from pantocheck.conformance.systems.command.program_arguments import split_arguments
 from pantocheck.conformance.systems.system import System
-from pantocheck.conformance.systems.system_choice import choose_system
+from pantocheck.conformance.systems.system_choice import TIMEOUT_S, choose_system
 
 Names = Annotated[tuple[str, ...], Field(strict=False, max_length=1000)]
 
@@ -34,14 +34,14 @@ class Plan(InputTable):
 
     cases: Annotated[
         Names,
-        Field(description="ids, globs or paths of cases; default: those whose limits count"),
+        Field(description="ids, globs or paths of cases; default: cases whose limits count"),
     ] = ()
     system: Annotated[str, Field(description="builtin, record:DIR or command:PROGRAM ARGUMENTS")] = "builtin"
     information: Annotated[
         Names, Field(description="ids or globs of cases that are shown, but do not take part in the verdict")
     ] = ()
     accept_unverified: Annotated[Names, Field(description="names of systems whose unverified records may pass")] = ()
-    timeout_s: Annotated[float, Field(gt=0, description="time that a program may take for a case [s]")] = 600.0
+    timeout_s: Annotated[float, Field(gt=0, description="time limit of a program for a case [s]")] = TIMEOUT_S
     out: Annotated[str, Field(description="folder of the results")] = "report"
     formats: Annotated[Names, Field(description="formats of the report: html, pdf, json, junit, md, badge")] = (
         "html",
@@ -50,7 +50,7 @@ class Plan(InputTable):
         "junit",
         "md",
     )
-    trust: Annotated[Trust, Field(description="lowest trust of the limits that carry a verdict")] = "secondary"
+    trust: Annotated[Trust, Field(description="lowest trust of the limits that count")] = "secondary"
     limits: Annotated[str | None, Field(description="file of limits that replace or extend those of the cases")] = None
     baseline: Annotated[str | None, Field(description="earlier results.json; a value that drifts from it fails")] = None
     drift_pct: Annotated[float, Field(gt=0, le=100, description="largest drift of a value from its baseline [%]")] = 1.0

@@ -1,4 +1,4 @@
-"""Runner: cases on a system, in sequence or in parallel; an exception ends the case that raised it, not the run."""
+"""Runner: runs cases on a system, in sequence or in parallel. An exception ends only the case that raised it."""
 
 import multiprocessing
 import os
@@ -19,7 +19,7 @@ from pantocheck.conformance.results.results_format import CaseResult, Results, S
 from pantocheck.conformance.studies.study_dispatch import run_study
 from pantocheck.conformance.systems.process_control import (
     adopt_orphans,
-    die_with_parent,
+    end_with_parent,
     interruption_exit_code,
 )
 from pantocheck.conformance.systems.system import System
@@ -153,7 +153,7 @@ def _check_requirements(case: Case, finished: dict[str, CaseResult], cases: Sequ
         if name not in finished:
             return build_ungraded(case, "skip", f"requires {name}, which was not run")
         if finished[name].verdict in {"fail", "error"}:
-            return build_ungraded(case, "skip", f"requires {name}, which ended in {finished[name].verdict}")
+            return build_ungraded(case, "skip", f"requires {name}, whose verdict is {finished[name].verdict}")
         if name in by_id:
             required += [other for other in by_id[name].file.requires if other not in required]
     return None
@@ -181,7 +181,11 @@ def _run_in_parallel(
                     running[pool.submit(run_case, case, system, trust)] = case
             if running and (lost := _keep_finished(running, keep)):
                 for case in (*lost, *running.values()):
-                    keep(build_ungraded(case, "error", "the process of this case, or a parallel one, died"))
+                    keep(
+                        build_ungraded(
+                            case, "error", "the process of this case, or of a parallel case, ended unexpectedly"
+                        )
+                    )
                 running.clear()
                 pool.shutdown(wait=False)
                 pool = _start_pool(jobs)
@@ -193,7 +197,7 @@ def _run_in_parallel(
 
 
 def _end_workers(workers: set[BaseProcess]) -> None:
-    """End the processes of a pool: a signal lets each end its program, and a kernel that goes on is killed."""
+    """End the workers of a pool: a signal lets each worker end its program; a worker that still runs is killed."""
     for worker in workers:
         worker.terminate()
     limit = time.monotonic() + GRACE
@@ -226,15 +230,14 @@ def _start_pool(jobs: int) -> Executor:
 
 
 def _handle_signals() -> None:
-    """In a worker: a signal ends the program of its case; only the parent process reports it."""
+    """Let a signal end a worker and the program of its case; only the parent process reports the signal."""
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, _exit_on_signal)
-    die_with_parent(signal.SIGTERM)
+    end_with_parent(signal.SIGTERM)
 
 
 def _exit_on_signal(number: int, frame: FrameType | None) -> None:
-    # An exception, so that a system can stop its own processes before this process ends. The pool keeps the process
-    # alive after it; the alarm ends it.
+    # The exception lets a system end its processes first. The pool would keep this process alive; the alarm ends it.
     if hasattr(signal, "alarm"):
         signal.alarm(int(GRACE))
     raise SystemExit(128 + number)

@@ -1,4 +1,4 @@
-"""Tables of studies: cases that compare several runs and grade the comparison."""
+"""Table `[study]` of a case file. A study compares several runs of the case."""
 
 from typing import Annotated, Literal
 
@@ -17,7 +17,7 @@ Interval = Annotated[tuple[float, float], Field(strict=False)]
 
 
 class Printed(InputTable):
-    """Published values of a pantograph under a damping model, shown beside the computed values."""
+    """Printed values of a pantograph under a damping model, for comparison with the computed values."""
 
     model: Annotated[str, Field(max_length=100, description="name of the damping model")]
     pantograph: Annotated[int, Field(ge=1, le=20, description="number in running order")]
@@ -25,17 +25,17 @@ class Printed(InputTable):
 
 
 class DampingChange(SourcedTable):
-    """Change of a passage from an earlier damping to the damping of the case."""
+    """Study of a changed damping: the passage runs with an earlier damping and with the damping of the case."""
 
     kind: Literal["damping-change"]
     before: Annotated[DampingModels, Field(min_length=1, max_length=1, description="damping file of the earlier run")]
     after: Annotated[str, Field(max_length=100, description="name of the damping of the case")]
-    span: Annotated[int, Field(ge=1, description="number of the span whose force is drawn, from 1")]
+    span: Annotated[int, Field(ge=1, description="number of the span for the figure of the force, from 1")]
     printed: Annotated[tuple[Printed, ...], Field(strict=False, max_length=40)] = ()
 
 
 class ReleaseVelocity(SourcedTable):
-    """Velocity of a sensor after a release under several damping models, in time windows."""
+    """Study of a release: velocity of a sensor in several time windows, under several damping models."""
 
     kind: Literal["release-velocity"]
     models: Annotated[DampingModels, Field(min_length=2)]
@@ -52,13 +52,13 @@ class ReleaseVelocity(SourcedTable):
         for i, (start, end) in enumerate(self.windows_s, 1):
             if not 0 <= start < end:
                 raise validation_problem(
-                    f"windows_s[{i}]", f"{start:g} s to {end:g} s is not a window", "Give [from, to]."
+                    f"windows_s[{i}]", f"from {start:g} s to {end:g} s", "Give [start, end] with 0 <= start < end."
                 )
         return self
 
 
 class DropperDamping(SourcedTable):
-    """Passage of the case for stiffness coefficients of the droppers over many orders of magnitude."""
+    """Study of the dropper damping: the passage runs once for each stiffness coefficient of the droppers."""
 
     kind: Literal["dropper-damping"]
     coefficients_s: Annotated[PositiveList, Field(min_length=4, description="stiffness coefficients, ascending [s]")]
@@ -74,7 +74,7 @@ class DropperDamping(SourcedTable):
 
 
 class SteadyArmDamper(SourcedTable):
-    """Identified damping with and without a vertical damper at every steady arm, by frequency band."""
+    """Study of dampers at the steady arms: damping is identified with and without them, by frequency band."""
 
     kind: Literal["steady-arm-damper"]
     damper_N_s_m: Annotated[Positive, Field(le=1e6, description="vertical damper between wire and ground [N s/m]")]
@@ -85,7 +85,7 @@ class SteadyArmDamper(SourcedTable):
 
 
 class DampingSensitivity(SourcedTable):
-    """Passage of the case under several damping models, for comparison without verdict."""
+    """Study of the sensitivity to damping: the passage runs under several damping models; they are not graded."""
 
     kind: Literal["damping-sensitivity"]
     models: Annotated[DampingModels, Field(min_length=1)]
@@ -93,5 +93,5 @@ class DampingSensitivity(SourcedTable):
 
 Study = Annotated[
     DampingChange | DampingSensitivity | ReleaseVelocity | DropperDamping | SteadyArmDamper,
-    Field(discriminator="kind", description="kind of comparison"),
+    Field(discriminator="kind", description="kind of study"),
 ]

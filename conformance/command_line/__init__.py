@@ -30,7 +30,7 @@ def main() -> None:
             raise
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # the interpreter flushes again
         if error.errno in FULL:
-            text = f"The standard output cannot be written ({error.strerror}).\n  Free space on its device."
+            text = f"Standard output cannot be written ({error.strerror}).\n  Free space on the device."
             print(text, file=sys.stderr)
             exit_code = 2
     sys.exit(exit_code)

@@ -30,7 +30,7 @@ def drop_command(
     out: Annotated[Path, typer.Option(help="Record to write: NAME.uff, NAME.csv or NAME.h5.")],
     number: Annotated[
         int | None,
-        typer.Option("--drop", help="Number of the drop, from 1; all, as NAME-1, NAME-2, ..., if omitted.", min=1),
+        typer.Option("--drop", help="Number of the drop, from 1. Default: all drops, as NAME-1, NAME-2, ...", min=1),
     ] = None,
 ) -> None:
     """Simulate the mass drops of a case and write their records.

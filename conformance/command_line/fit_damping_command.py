@@ -32,7 +32,8 @@ def fit_damping_command(
     ],
     element: Annotated[float, typer.Option(help="Element length [m].", min=0.05, max=5.0)] = 0.5,
     other_line: Annotated[
-        bool, typer.Option("--other-line", help="Fit a line that is not the line of the record; the result says so.")
+        bool,
+        typer.Option("--other-line", help="Permit a line that differs from that of the record; the result is marked."),
     ] = False,
 ) -> None:
     """Fit a damping model of a line to identified modes.

@@ -25,7 +25,7 @@ from pantocheck.conformance.reports.mass_drop.identification_report import (
 def identify_command(
     records: Annotated[
         list[Path],
-        typer.Argument(help=f"Records: {list_suffixes(TABLE_FORMATS)}; a sidecar .toml of the same name is read, too."),
+        typer.Argument(help=f"Records: {list_suffixes(TABLE_FORMATS)}; a sidecar .toml of the same name is also read."),
     ],
     out: Annotated[Path, typer.Option(help="Folder for modes.json, identification.json, .html and .pdf.")],
     poles: Annotated[

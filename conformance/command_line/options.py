@@ -29,11 +29,9 @@ TrustOption = Annotated[
 ]
 AcceptUnverifiedOption = Annotated[
     list[str] | None,
-    typer.Option(metavar="NAME", help="Name of a system whose unverified records may pass; repeat for several."),
+    typer.Option(metavar="NAME", help="System whose unverified records may pass; repeat the option for several."),
 ]
-BaselineOption = Annotated[
-    Path | None, typer.Option(help="Earlier results.json; a value that drifts from it fails, apart from the limits.")
-]
+BaselineOption = Annotated[Path | None, typer.Option(help="Earlier results.json; a value that drifts from it fails.")]
 DriftOption = Annotated[
     float | None, typer.Option(help="Allowed drift of a value from the baseline [%].", show_default="1")
 ]

@@ -24,7 +24,7 @@ def show_command(
     case: Annotated[str, typer.Argument(help="Id, glob or path of a case, e.g. en50318-2002/250.")],
     at_rest: Annotated[
         bool,
-        typer.Option("--at-rest", help="Compute the line at rest and the frequency response of the pantographs, too."),
+        typer.Option("--at-rest", help="Also compute the line at rest and the frequency response of the pantographs."),
     ] = False,
     drawing: Annotated[
         Path | None, typer.Option(help="SVG file for a drawing of the line to scale, in elevation and in plan.")
@@ -42,7 +42,7 @@ def show_command(
     cases = _without_required(case, select_cases([case]))
     if drawing is not None:
         if any(each.line != cases[0].line for each in cases):
-            raise InputError(f"case '{case}'", "these cases have several lines", "Draw one case at a time.")
+            raise InputError(f"case '{case}'", "the cases have different lines", "Give the id of one case.")
         _draw(cases[0], drawing)
     for each in cases:
         for part in [*build_case_tables(each), *(build_rest_tables(each) if at_rest else [])]:

@@ -1,4 +1,4 @@
-"""Contact height against contact force: the pantograph of the case, driven by the force, must move as recorded.
+"""Dynamics check: the pantograph of the case, driven by the recorded force, must move like the contact height.
 
 A chain of masses M z'' + C z' + K z = f - F(t) e_head is linear. The motion of its head is the response to F from rest,
 plus the free motion of an initial state, plus a constant. The last two are fitted. The response has no free parameter:
@@ -20,7 +20,7 @@ from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 
 LARGEST_MISFIT = 0.1
-"""Largest unexplained share of the motion. Rounding, a filter on one channel or another integration: below 0.02."""
+"""Largest accepted misfit. Rounding, a filter of one channel or another integration scheme give less than 0.02."""
 
 LARGEST_GAIN_ERROR = 0.03
 """Largest relative error of the gain; correct records stay below 0.005."""
@@ -69,9 +69,9 @@ class ResponseFit:
 def _check_force_dynamics(case: Case, signals: RecordSignals) -> Finding | None:
     record, low_pass = signals.record, case.file.filter.low_pass
     if record.contact_height is None:
-        return Finding("unchecked", "force against motion: the record has no contact height")
+        return Finding("unchecked", "the dynamics check was not made: the record has no contact height")
     if low_pass.cutoff_Hz > HIGHEST_SHARE_OF_RATE * record.rate:
-        return Finding("unchecked", f"force against motion: a rate of {record.rate:g} Hz is too low")
+        return Finding("unchecked", f"the dynamics check was not made: a rate of {record.rate:g} Hz is too low")
     findings = []
     step = max(1, int(record.rate / (SAMPLES_PER_PERIOD * low_pass.cutoff_Hz)))
     for number, (file, pantograph) in enumerate(zip(case.pantographs, signals.pantographs.values(), strict=True), 1):
@@ -80,7 +80,8 @@ def _check_force_dynamics(case: Case, signals: RecordSignals) -> Finding | None:
         height = low_pass(record.contact_height[number - 1], record.rate)[window][::step]
         fit = fit_motion(file, force, height, step / record.rate)
         if fit is None:
-            findings.append(Finding("unchecked", f"force against motion: the head of pantograph {number} hardly moves"))
+            reason = f"the head of pantograph {number} hardly moves"
+            findings.append(Finding("unchecked", f"the dynamics check was not made: {reason}"))
         elif fit.misfit > LARGEST_MISFIT or abs(1 / fit.gain - 1) > LARGEST_GAIN_ERROR:
             findings.append(_diagnose(number, fit, step / record.rate, record.filter_applied_Hz))
     return worst_finding(findings)
@@ -157,23 +158,22 @@ def _compared_samples(pantograph: PantographSignals) -> slice:
 
 
 def _diagnose(number: int, fit: ResponseFit, step: float, filter_applied_Hz: float | None) -> Finding:
-    mismatch = f"pantograph {number}: contact force and contact height do not belong together"
+    mismatch = f"pantograph {number}: the contact force contradicts the contact height"
     if fit.unexplained < CLEAR:
-        cause = f"the height follows from {1 / fit.gain:.3g} times the force; check its gain and unit"
+        cause = f"the height corresponds to {1 / fit.gain:.3g} times the force; check gain and unit of the force"
         return Finding("contradiction", f"{mismatch}: {cause}")
-    samples, correlation = _lag(fit, round(LONGEST_LAG_S / step))
+    samples, correlation = _find_lag(fit, round(LONGEST_LAG_S / step))
     delay = -samples * step
     if not samples or not correlation >= 1 - CLEAR:  # the correlation with a constant force is nan
         share = 100 * max(0.0, 1 - fit.unexplained)
-        return Finding("contradiction", f"{mismatch}: the force explains {share:.0f} % of the motion")
-    side = "later" if delay > 0 else "earlier"
-    text = f"{mismatch}: the force is about {abs(delay):.1g} s {side} than the height that follows from it"
+        return Finding("contradiction", f"{mismatch}: the force explains only {share:.0f} % of the motion")
+    text = f"{mismatch}: the force {'lags' if delay > 0 else 'leads'} the height by about {abs(delay):.1g} s"
     if filter_applied_Hz is not None and 0 < delay < CAUSAL_DELAY_PERIODS / filter_applied_Hz:
         return Finding("doubt", f"{text}, as after a causal filter")
     return Finding("contradiction", text)
 
 
-def _lag(fit: ResponseFit, longest: int) -> tuple[int, float]:
+def _find_lag(fit: ResponseFit, longest: int) -> tuple[int, float]:
     """Lag of the motion behind the response [samples], and their correlation at this lag."""
     n = fit.motion.size
     limit = min(longest, n // 3)
@@ -189,7 +189,7 @@ def _lag(fit: ResponseFit, longest: int) -> tuple[int, float]:
 DYNAMICS = Check(
     name="dynamics",
     must_hold="the pantograph of the case, driven by the force, moves like the contact height",
-    why="gain, unit, sign and time of the force show in the motion, without any model of the line",
+    why="a wrong gain, unit, sign or time of the force shows in the motion",
     needs="contact force and contact height",
     run=_check_force_dynamics,
 )

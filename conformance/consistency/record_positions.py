@@ -1,4 +1,4 @@
-"""Positions of the pantographs against the analysis section and the speed of the train."""
+"""Checks of the positions: coverage of the analysis section, and motion with the speed of the train."""
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.consistency.check import Check, Finding
@@ -33,15 +33,15 @@ def _check_motion(_: Case, signals: RecordSignals) -> Finding | None:
 COVERAGE = Check(
     name="coverage",
     must_hold="every pantograph crosses the whole analysis section",
-    why="statistics of half a section look like any others",
+    why="a record that ends early can have plausible statistics",
     needs="position",
     run=_check_coverage,
 )
 
 MOTION = Check(
     name="motion",
-    must_hold="positions advance with the speed of the train",
-    why="a wrong rate or unit of position moves the analysis section",
+    must_hold="the positions advance with the speed of the train",
+    why="a wrong sampling rate or unit of position shifts the analysis section",
     needs="position, time and speed",
     run=_check_motion,
 )

@@ -12,8 +12,8 @@ STATES: dict[str, Literal["unverified", "contradicted"]] = {
 }
 """State of a record with a finding of each kind.
 
-A doubt neither confirms nor refutes a record, so that the record is unverified. Every check is needed: a check that may
-be left out could be avoided by leaving out its channels.
+A doubt neither confirms nor refutes a record, so that the record is unverified. Every check is needed.
+Otherwise a record could avoid a check by leaving out its channels.
 """
 
 

@@ -1,4 +1,4 @@
-"""Spectrum of a filtered force above the cut-off, against the filter it is stated to have gone through."""
+"""Roll-off check: above the cut-off, the spectrum of a filtered force must agree with the stated filter."""
 
 import numpy as np
 
@@ -14,9 +14,9 @@ MIN_ROLL_OFF_LINES = 10
 """Smallest number of spectral lines in the band; with fewer, one peak decides."""
 
 CONTRADICTION, DOUBT = 1.0, 0.5
-"""RMS of the implied unfiltered force in the band, over its RMS below the cut-off.
+"""Thresholds of a ratio: RMS of the implied unfiltered force in the band, divided by its RMS below the cut-off.
 
-The reference cases have a seventh. No contact force has as much in this band as everywhere below the cut-off."""
+The ratio of the reference cases is about 0.14. No contact force reaches a ratio of 1."""
 
 
 def _check_roll_off(case: Case, signals: RecordSignals) -> Finding | None:
@@ -30,9 +30,9 @@ def _check_roll_off(case: Case, signals: RecordSignals) -> Finding | None:
     if applied is None or abs(applied / cutoff - 1) > 1e-3:
         return None  # delivered unfiltered, or filtered again by the suite
     if STOP_BAND[1] * cutoff > HIGHEST_SHARE_OF_RATE * record.rate:
-        return Finding("unchecked", f"the stated filter: a rate of {record.rate:g} Hz is too low")
+        return Finding("unchecked", f"the roll-off check was not made: a rate of {record.rate:g} Hz is too low")
     if (STOP_BAND[1] - STOP_BAND[0]) * cutoff * (record.time[-1] - record.time[0]) < MIN_ROLL_OFF_LINES:
-        return Finding("unchecked", "the stated filter: the record is too short")
+        return Finding("unchecked", "the roll-off check was not made: the record is too short")
     frequency = np.asarray(np.fft.rfftfreq(record.time.size, 1 / record.rate), dtype=np.float64)
     below = (frequency > 0) & (frequency <= cutoff)
     above = (frequency > STOP_BAND[0] * cutoff) & (frequency <= STOP_BAND[1] * cutoff)
@@ -45,10 +45,10 @@ def _check_roll_off(case: Case, signals: RecordSignals) -> Finding | None:
         share = float(implied / max(np.sqrt(np.sum(amplitude[below] ** 2)), np.finfo(float).tiny))
         if share > DOUBT:
             text = (
-                f"the force of pantograph {number} is stated to be filtered at {applied:g} Hz with order "
-                f"{low_pass.order}; the unfiltered force would then have {share:.2g} times as much content in "
-                f"{STOP_BAND[0] * cutoff:g}-{STOP_BAND[1] * cutoff:g} Hz as below {cutoff:g} Hz: "
-                "it was not filtered, or with a lower order; deliver it unfiltered"
+                f"pantograph {number}: the stated filter of the force ({applied:g} Hz, order {low_pass.order}) is not "
+                f"plausible; before this filter, the force would have {share:.2g} times as much content in "
+                f"{STOP_BAND[0] * cutoff:g}-{STOP_BAND[1] * cutoff:g} Hz as below {cutoff:g} Hz; "
+                "deliver the unfiltered force"
             )
             findings.append(Finding("contradiction" if share > CONTRADICTION else "doubt", text))
     return worst_finding(findings)
@@ -56,8 +56,8 @@ def _check_roll_off(case: Case, signals: RecordSignals) -> Finding | None:
 
 ROLL_OFF = Check(
     name="roll-off",
-    must_hold="a filtered force falls off above the cut-off like the stated filter",
-    why="a weaker filter, or none, adds a few percent to the standard deviation",
+    must_hold="above the cut-off, a filtered force falls off like the stated filter",
+    why="a weaker filter, or none, increases the standard deviation by a few percent",
     needs="filtered contact force",
     run=_check_roll_off,
 )

@@ -1,4 +1,4 @@
-"""Positions of the pantographs against the uplift at the supports.
+"""Support passing check: positions of the pantographs compared with the uplift at the supports.
 
 The largest uplift of a support says little about the passage: reflections, lost contact and speeds near the wave speed
 move it by tens of metres. Two facts hold on every line; either confirms the positions.
@@ -64,9 +64,9 @@ def _check_support_passing(case: Case, signals: RecordSignals) -> Finding | None
     try:
         passages = _Passages(case, signals)
     except QuantityUnavailable as reason:
-        return Finding("unchecked", f"position against uplift: {reason}")
+        return Finding("unchecked", f"the support passing check was not made: {reason}")
     if passages.length > PASSING_TOLERANCE_M or cutoff > HIGHEST_SHARE_OF_RATE * record.rate:
-        return Finding("unchecked", f"position against uplift: a rate of {record.rate:g} Hz is too low")
+        return Finding("unchecked", f"the support passing check was not made: a rate of {record.rate:g} Hz is too low")
     near = np.abs(passages.shifts) <= PASSING_TOLERANCE_M
     unclear = []
     for number in signals.pantographs:
@@ -79,13 +79,13 @@ def _check_support_passing(case: Case, signals: RecordSignals) -> Finding | None
             shift = passages.shifts[best]
             return Finding(
                 "contradiction",
-                f"pantograph {number} bends the wire at the supports when it is {abs(shift):.3g} m "
-                f"{'past' if shift > 0 else 'before'} them: position and uplift are not synchronous",
+                f"the position of pantograph {number} contradicts the uplift: the wire bends at a support when the "
+                f"position is {abs(shift):.3g} m {'past' if shift > 0 else 'before'} it",
             )
         unclear.append(str(number))
     if unclear:
         text = f"the uplift at the supports shows no clear passage of pantograph {', '.join(unclear)}"
-        return Finding("unchecked", f"position against uplift: {text}")
+        return Finding("unchecked", f"the support passing check was not made: {text}")
     return None
 
 

@@ -1,4 +1,4 @@
-"""Baseline: earlier results, from which values may not drift, whatever the limits are."""
+"""Baseline: a value that drifts from earlier results fails, independent of its limits."""
 
 import math
 from collections.abc import Iterator
@@ -14,15 +14,14 @@ from pantocheck.conformance.results.results_format import CaseResult, Criterion,
 from pantocheck.conformance.results.results_reading import read_results
 
 SMALLEST_SCALE = 1.0
-"""Drift is relative to at least one unit (N, mm, %, Hz, m/s): any change of a value near zero would be 100 %."""
+"""Smallest reference of a relative drift, in the unit of the value: near zero, a percentage has no meaning."""
 
 SMALLEST_RATIO_SCALE = 0.01
-"""Smallest scale of quantities without a unit."""
-
+"""Smallest reference of a relative drift of a quantity without a unit."""
 
 LARGEST_VALUE = 1e12
 MOST_VALUES = 10_000
-"""Largest size and number of the values of a case; the results of a run stay far below both."""
+"""Largest absolute value, and largest number of values of a case; results of real runs are far below both."""
 
 
 class _Key(NamedTuple):
@@ -45,7 +44,7 @@ def read_baseline(path: Path) -> Results:
     for case in baseline.cases:
         values = [value for _, value in _numbers(case)]
         found = (
-            f"{len(values)} values, at most {MOST_VALUES} are compared"
+            f"{len(values)} values; at most {MOST_VALUES} can be compared"
             if len(values) > MOST_VALUES
             else next((f"a value of {value:g}" for value in values if not abs(value) <= LARGEST_VALUE), None)
         )
@@ -88,7 +87,7 @@ def _compare_case(case: CaseResult, earlier: CaseResult | None, drift_pct: float
     if not earlier.quantities:
         return _skip_comparison(case, f"baseline {name} has no values of this case: its verdict was {earlier.verdict}")
     values, earlier_values = dict(_numbers(case)), dict(_numbers(earlier))
-    source = f"baseline {name}, from which a value may drift by {drift_pct:g} %"
+    source = f"baseline {name}, allowed drift {drift_pct:g} %"
     graded = (_grade_drift(case, key, (old, values.get(key)), drift_pct, source) for key, old in earlier_values.items())
     drifted = [criterion for criterion in graded if criterion.verdict != "pass"]
     warnings = list(case.warnings)
@@ -109,7 +108,7 @@ def _compare_case(case: CaseResult, earlier: CaseResult | None, drift_pct: float
 
 
 def _skip_comparison(case: CaseResult, reason: str) -> CaseResult:
-    """Case with a skipped criterion in place of the comparison: a gate must not open on a baseline without the case."""
+    """Case with a skipped criterion in place of the comparison, so that it cannot pass without its baseline."""
     requirement = Requirement("baseline", LINE, None, None, None, "primary", "baseline")
     criteria = [*case.criteria, build_criterion(requirement, None, reason, "primary")]
     verdict = judge_case((criterion.verdict for criterion in criteria), case.record)

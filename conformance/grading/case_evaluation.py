@@ -47,9 +47,7 @@ class CaseEvaluation:
             if name not in QUANTITIES:
                 return f"the system delivered an unknown quantity {name!r}"
             if QUANTITIES[name].scope != "static":
-                return (
-                    f"the system delivered {name!r} as a quantity of the line at rest, but it follows from the record"
-                )
+                return f"the system delivered {name!r} in 'static', but this quantity is computed from the record"
         if case.is_static:
             return None
         if record is None:
@@ -108,8 +106,8 @@ class CaseEvaluation:
         settling = 2 / self.case.file.filter.cutoff_Hz * record.speed
         start, end = record.evaluated
         return [
-            f"the record of pantograph {number} has less than {settling:.1f} m of run-in or run-out around the "
-            "analysis section: filter transients reach into it"
+            f"the record of pantograph {number} begins or ends less than {settling:.1f} m outside the analysis "
+            "section: transients of the filter reach into the section"
             for number, position in enumerate(record.position, 1)
             if position[0] > start - settling or position[-1] < end + settling
         ]

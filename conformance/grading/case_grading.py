@@ -78,7 +78,7 @@ def grade_evaluation(evaluation: CaseEvaluation, lowest_trust: Trust) -> CaseRes
             *evaluation.edge_warnings(),
             *extended_band_warnings(values.evaluation, values.refined, delivered.run.dt_s),
         ],
-        notes=[f"not checked, {finding.text}" for finding in findings if finding.kind == "unchecked"],
+        notes=[finding.text for finding in findings if finding.kind == "unchecked"],
         criteria=criteria,
         record=record,
         quantities=key_by_owner(select_finite(values.evaluation.values)),

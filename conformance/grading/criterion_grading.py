@@ -86,7 +86,7 @@ def grade_limit(limit: Limit, values: GradedValues, lowest_trust: Trust, limit_u
     requirement = Requirement(name, owner, limit.item, limit.lower, limit.upper, limit.trust, source_text(limit.source))
     value = find_value(limit, values.evaluation.values)
     if value is None:
-        missing = values.evaluation.skipped.get(owner, {}).get(name, "the system delivers no such quantity")
+        missing = values.evaluation.skipped.get(owner, {}).get(name, "the system does not deliver this quantity")
         return build_criterion(requirement, None, missing, lowest_trust)
     refined = None if values.refined is None else find_value(limit, values.refined.values)
     errors = ValueErrors(

@@ -64,7 +64,7 @@ def assess_record(
     criteria, omitted = grading.grade_profile(profile, limits)
     records = [record for record in (subject, measured) if record is not None]
     digest = join_digests(subject.digest, measured.digest if measured else "", profile.model_dump_json())
-    reason = "a profile names no case: the consistency checks of a case cannot be made"
+    reason = "the consistency checks need a case, and a profile has none"
     record = RecordFacts(
         state="unverified",
         reason=reason,
@@ -108,16 +108,18 @@ def _check_pair(subject: AssessedRecord, measured: AssessedRecord | None, profil
     where = f"profile '{profile.name}'"
     if measured is None:
         if profile.compares:
-            raise InputError(where, "compares with a measured record, but none is given", "Add --measured RECORD2 .")
+            raise InputError(where, "compares with a measured record, but there is none", "Add --measured RECORD2.")
         return
     if not profile.compares:
-        raise InputError(where, "does not compare with a measured record", "Leave --measured out.")
+        raise InputError(where, "does not compare with a measured record", "Remove --measured.")
     where = f"measured record '{measured.name}'"
     speed, measured_speed = subject.header.speed_km_h, measured.header.speed_km_h
     if subject.pantographs != measured.pantographs:
         count, measured_count = len(subject.pantographs), len(measured.pantographs)
         raise InputError(
-            where, f"it has {measured_count} pantographs, {subject.name} has {count}", "Compare records of one train."
+            where,
+            f"it has {measured_count} pantographs, {subject.name} has {count}",
+            "Compare records of the same train.",
         )
     if not abs(measured_speed / speed - 1) <= profile.speed_tolerance_pct / 100:
         raise InputError(

@@ -11,8 +11,8 @@ SECTION_TOLERANCE_M = 0.01
 SPACING_TOLERANCE_M = 0.5
 """Tolerance of the distance between two pantographs [m].
 
-A wave that the first pantograph leaves at the second one has a length of 3.5 m at 20 Hz and 250 km/h; the tolerance is
-a seventh of it. The tolerance of the speed moves a pantograph 100 m behind by the same distance."""
+A train at 250 km/h travels 3.5 m in one period of 20 Hz; the tolerance is a seventh of it. The tolerance of the speed
+gives the same error at a distance of 100 m."""
 
 
 def find_record_mismatch(case: Case, record: Record) -> str | None:
@@ -41,8 +41,8 @@ def _find_other_spacing(case: Case, record: Record) -> str | None:
         worst = float(distance[np.abs(distance - expected).argmax()])
         if not abs(worst - expected) <= SPACING_TOLERANCE_M:
             return (
-                f"pantograph {number} of the record runs {worst:.5g} m behind pantograph {number - 1}, "
-                f"that of the case {expected:g} m"
+                f"pantograph {number} runs {worst:.5g} m behind pantograph {number - 1} in the record, "
+                f"{expected:g} m in the case"
             )
     return None
 
@@ -60,6 +60,6 @@ def find_other_case(case: Case, case_digest: str | None) -> str | None:
     if case_digest in {None, case.digest}:
         return None
     return (
-        f"the record was made for another version of the case: it states the inputs {case_digest}, "
-        f"the case has {case.digest}"
+        f"the record was made for another version of the case: its case_digest is {case_digest}, "
+        f"that of the case is {case.digest}"
     )

@@ -91,7 +91,7 @@ class RuleGrading:
         lower, upper = resolve_bounds(rule, self.subject.header.speed_km_h, self.subject.line.model_dump(), compared)
         is_static = QUANTITIES[rule.quantity].scope == "static"
         if is_static and rule.need == "if_known" and rule.quantity not in self.subject.values.values[LINE]:
-            raise BoundMissing("the record does not give it")
+            raise BoundMissing("the record has no such value")
         return Limit(
             quantity=rule.quantity,
             pantograph=owner or None,
@@ -115,8 +115,8 @@ class RuleGrading:
         if not rule.compares or compared is None or self.measured is None:
             return source
         unit = QUANTITIES[rule.quantity].unit
-        allowed = f"{rule.tolerance:g} {unit}" if rule.tolerance else f"{rule.tolerance_pct:g} %"
-        return f"{source}; {allowed} about the measured {compared:.4g} of {self.measured.name}"
+        tolerance = f"{rule.tolerance:g} {unit}" if rule.tolerance else f"{rule.tolerance_pct:g} %"
+        return f"{source}; tolerance {tolerance} around the measured value {compared:.4g} of {self.measured.name}"
 
 
 def _finite_value(record: AssessedRecord, owner: int, quantity: str) -> float | None:

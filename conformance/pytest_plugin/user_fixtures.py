@@ -186,7 +186,9 @@ def grade_arrays(
         record, _ = read_record(Path(record), None if graded_case.is_static else graded_case.analysis_section)
     if record is None:
         if time_s is None or position_m is None or force_N is None:
-            raise InputError("pantocheck_assess", "no record", "Give a record, or time_s, position_m and force_N.")
+            raise InputError(
+                "pantocheck_assess", "there is no record", "Give a record, or time_s, position_m and force_N."
+            )
         try:
             record = Record(
                 time=np.asarray(time_s, dtype=np.float64),
@@ -200,12 +202,12 @@ def grade_arrays(
                 support_uplift=None if support_uplift_m is None else np.atleast_2d(np.asarray(support_uplift_m)),
             )
         except RecordInvalid as error:
-            raise InputError(f"pantocheck_assess, {error.channel}", error.found, "See the docstring.") from None
+            raise InputError(f"pantocheck_assess, {error.channel}", error.found, "Correct this argument.") from None
     return GradedCase(grade_case(graded_case, Delivered(record), trust))
 
 
 def _select_case(name: str) -> Case:
     cases = [case for case in select_cases([name]) if case.id == name or name.endswith(".toml")]
     if len(cases) != 1:
-        raise InputError(f"case '{name}'", f"{len(cases)} cases", "Name one case by its id or its file.")
+        raise InputError(f"case '{name}'", f"{len(cases)} cases match", "Give the id or the file of one case.")
     return cases[0]

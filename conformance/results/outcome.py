@@ -88,7 +88,7 @@ def note_case_version(case_digest: str | None) -> tuple[str, ...]:
     """Note on a record that states its case, but not the digest of its inputs."""
     if case_digest is not None:
         return ()
-    return ("The record does not state the inputs of its case (case_digest): they may have changed since it was made.",)
+    return ("The sidecar has no case_digest: the case may have changed since the record was made.",)
 
 
 def missing_record_reason(outcome: Outcome) -> str:

@@ -68,7 +68,7 @@ def build_self_test_page(self_test: SelfTest) -> doc.Document:
 
 
 def _checks() -> doc.Table:
-    columns = ("Check", "Condition", "Needs", "Fault that it finds")
+    columns = ("Check", "Condition", "Needs", "Reason")
     rows = tuple((check.name, check.must_hold, check.needs, check.why) for check in RECORD_CHECKS)
     return doc.Table(tuple(map(doc.Column, columns)), rows)
 
@@ -80,7 +80,7 @@ def _mutants(rows: tuple[MutantResult, ...]) -> doc.Table:
 
 
 def _mild_mutants(rows: tuple[MutantResult, ...]) -> doc.Table:
-    columns = ("Mutant", "Fault", "Case", "Verdict", "Objecting check", "Quantities outside their limits")
+    columns = ("Mutant", "Fault", "Case", "Verdict", "Failed check", "Quantities outside their limits")
     cells = tuple((*_fault(row), ", ".join(row.checks) or "none", _names(row.outside)) for row in rows)
     return doc.Table(tuple(map(doc.Column, columns)), cells)
 

@@ -9,8 +9,8 @@ PrintedValues = Mapping[tuple[str, int], Mapping[str, float]]
 """Printed values of a publication by damping model and pantograph, then by name of quantity."""
 
 
-def sort_pantographs(values: Mapping[str, ValuesByOwner]) -> list[int]:
-    """Numbers of all pantographs that have values under some damping model, in running order."""
+def list_pantographs(values: Mapping[str, ValuesByOwner]) -> list[int]:
+    """Numbers of all pantographs with values, in running order."""
     return sorted({number for model_values in values.values() for number in model_values if number != LINE})
 
 
@@ -36,7 +36,7 @@ def draw_band_bars(
     origin = "computed on the assumed line and printed" if printed else "computed under each damping model"
     table = "computed and printed values" if printed else "the same run under several damping models"
     charts = []
-    for p in sort_pantographs(values):
+    for p in list_pantographs(values):
         series = [_draw_bars(f"computed, {model}", computed.get(p, {}), bands) for model, computed in values.items()]
         series += [
             _draw_bars(f"printed, {model}", printed[model, p], bands) for model in values if (model, p) in printed

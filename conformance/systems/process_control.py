@@ -1,4 +1,7 @@
-"""Processes on Linux: adoption and end of orphans, and an end with the parent. Elsewhere, nothing is done."""
+"""Control of child processes on Linux: end with the parent, adoption and end of orphans.
+
+On other platforms the functions have no effect.
+"""
 
 import contextlib
 import ctypes
@@ -14,10 +17,10 @@ _PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER, _PR_GET_CHILD_SUBREAPER = 1, 36, 37 
 _LIBRARY = ctypes.CDLL(None) if sys.platform == "linux" else None
 
 ROUNDS, PAUSE = 100, 0.02  # [s]
-"""Rounds of ending orphans, each of which may leave children of its own."""
+"""Number of rounds that end orphans, and pause between two rounds; an orphan that ends can leave further orphans."""
 
 
-def die_with_parent(number: int = signal.SIGKILL) -> None:
+def end_with_parent(number: int = signal.SIGKILL) -> None:
     """Let the kernel send a signal to this process when its parent ends, even if the parent is killed."""
     if _LIBRARY is not None:
         _LIBRARY.prctl(_PR_SET_PDEATHSIG, int(number), 0, 0, 0)
@@ -25,49 +28,49 @@ def die_with_parent(number: int = signal.SIGKILL) -> None:
 
 @contextmanager
 def adopt_orphans() -> Iterator[None]:
-    """Become the parent of the orphans among all descendants, and end them with the context.
+    """Adopt every descendant whose parent ends; end the adopted processes at the end of the context.
 
-    A program of a system starts a session. A descendant that clears its environment and starts a further session has
-    no mark any more, but when its parent ends, it becomes a child of this process in a session of its own.
+    A descendant of a program can clear its environment and start its own session. It then has no mark. When its parent
+    ends, it becomes a child of this process, which recognises it by its other session.
     """
     if _LIBRARY is None:
         yield
         return
     before = ctypes.c_int(0)
     _LIBRARY.prctl(_PR_GET_CHILD_SUBREAPER, ctypes.byref(before), 0, 0, 0)
-    known = set(_find_strangers())
+    known = set(_list_foreign_children())
     _LIBRARY.prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
     try:
         yield
     finally:
-        _end_strangers(known)
+        _end_foreign_children(known)
         _LIBRARY.prctl(_PR_SET_CHILD_SUBREAPER, before.value, 0, 0, 0)
 
 
 def interruption_exit_code(interruption: KeyboardInterrupt) -> int:
-    """Exit code after a signal: 130 for Ctrl-C, 143 for SIGTERM, 129 for SIGHUP; its handler adds the number."""
+    """Exit code after a signal: 130 for Ctrl-C, 143 for SIGTERM, 129 for SIGHUP."""
     return 128 + int(interruption.args[0] if interruption.args else signal.SIGINT)
 
 
-def _end_strangers(known: set[int]) -> None:
+def _end_foreign_children(known: set[int]) -> None:
     for _ in range(ROUNDS):
-        strangers = set(_find_strangers()) - known
-        if not strangers:
+        children = set(_list_foreign_children()) - known
+        if not children:
             return
-        for process in strangers:
+        for process in children:
             with contextlib.suppress(ProcessLookupError, PermissionError, ChildProcessError):
                 os.kill(process, signal.SIGKILL)
                 os.waitpid(process, os.WNOHANG)
         time.sleep(PAUSE)
 
 
-def _find_strangers() -> list[int]:
-    """Children of this process in other sessions; the processes of a pool share its session."""
-    own, session, strangers = os.getpid(), os.getsid(0), []
+def _list_foreign_children() -> list[int]:
+    """Children of this process in other sessions; the workers of a pool are in the same session."""
+    this_process, session, children = os.getpid(), os.getsid(0), []
     for path in Path("/proc").glob("[0-9]*/stat"):
         with contextlib.suppress(OSError, ValueError):
             # The name of the program, in brackets, may contain spaces.
             _, parent, _, sid = path.read_text(errors="replace").rpartition(")")[2].split()[:4]
-            if int(parent) == own and int(sid) != session:
-                strangers.append(int(path.parent.name))
-    return strangers
+            if int(parent) == this_process and int(sid) != session:
+                children.append(int(path.parent.name))
+    return children

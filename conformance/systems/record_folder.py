@@ -22,7 +22,7 @@ class RecordFolder:
     Parameters
     ----------
     name, version : str
-        System that all sidecars name; else the name of the folder.
+        System that all sidecars name; otherwise the name of the folder.
     sidecars : tuple of (str, Path)
         Case id and file of every sidecar or summary record.
     """
@@ -117,11 +117,13 @@ def open_record_folder(folder: Path) -> RecordFolder:
             continue
         if opened.case in paths:
             names = f"{path.name} and {paths[opened.case].name}"
-            raise InputError(where, f"{names} are both of case {opened.case}", "Keep one record of each case.")
+            raise InputError(where, f"{names} have the same case {opened.case}", "Keep one record of each case.")
         paths[opened.case] = path
         systems.add((opened.system.name, opened.system.version) if opened.system else (folder.resolve().name, ""))
     if not paths:
         schemas = " or ".join(f'"{schema}"' for schema in RECORD_SCHEMAS)
-        raise InputError(where, "no sidecar in it names a case", f'A sidecar has schema = {schemas} and case = "...".')
+        raise InputError(
+            where, "no sidecar in this folder names a case", f'A sidecar has schema = {schemas} and case = "...".'
+        )
     name, version = systems.pop() if len(systems) == 1 else (folder.resolve().name, "")
     return RecordFolder(name, version, tuple(paths.items()))

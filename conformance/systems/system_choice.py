@@ -44,5 +44,5 @@ def choose_system(text: str, timeout_s: float = TIMEOUT_S) -> System:
 
         return parse_command(rest, Path(), timeout_s)
     raise InputError(
-        f"system '{text}'", "there is no such system", "Choose builtin, record:DIR and command:PROGRAM ARGUMENTS ."
+        f"system '{text}'", "there is no such system", "Choose builtin, record:DIR or command:PROGRAM ARGUMENTS."
     )

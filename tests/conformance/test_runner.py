@@ -136,7 +136,11 @@ def test_skipped_errored_and_foreign_outcomes(cases: list[Case], wave: type[Wave
         (Delivered(wave().record(cases[1])), "error", "made at 300 km/h, the case runs at 250 km/h"),
         (Delivered(replace(wave().record(case), evaluated=(180.0, 300.0))), "error", "evaluates 180 m to 300 m"),
         (Delivered(wave().record(case), {"beauty": 1.0}), "error", "unknown quantity 'beauty'"),
-        (Delivered(wave().record(case), {"max_uplift_at_support_mm": 52.0}), "error", "it follows from the record"),
+        (
+            Delivered(wave().record(case), {"max_uplift_at_support_mm": 52.0}),
+            "error",
+            "this quantity is computed from the record",
+        ),
     ):
         (result,) = run_cases([case], Scripted({case.id: outcome})).cases
         assert result.verdict == verdict
@@ -168,8 +172,8 @@ def test_short_run_out_gives_a_warning(case_250: Case, wave: type[Wave]) -> None
         contact_height=None, support_uplift=record.support_uplift[:, :n],
     )  # fmt: skip
     (result,) = run_cases([case_250], Scripted({case_250.id: Delivered(cut)})).cases
-    assert any("run-out" in warning for warning in result.warnings)
-    assert not any("run-out" in warning for warning in run_cases([case_250], wave()).cases[0].warnings)
+    assert any("transients of the filter" in warning for warning in result.warnings)
+    assert not any("transients of the filter" in warning for warning in run_cases([case_250], wave()).cases[0].warnings)
 
 
 def test_value_closer_to_a_limit_than_its_discretisation_error_is_marked(case_250: Case, wave: type[Wave]) -> None:
@@ -219,7 +223,7 @@ def test_case_is_skipped_if_a_required_case_failed_or_was_not_run(cases: list[Ca
     second = replace(cases[1], file=cases[1].file.model_copy(update={"requires": (first.id,)}))
     results = run_cases([second, first], wave())
     assert [case.verdict for case in results.cases] == ["skip", "fail"]
-    assert results.cases[0].reason == f"requires {first.id}, which ended in fail"
+    assert results.cases[0].reason == f"requires {first.id}, whose verdict is fail"
     passing = run_cases([second, limited(cases[0], ("mean_force_N", 110.0, 120.0))], wave())
     assert passing.cases[0].criteria
     assert run_cases([second], wave()).cases[0].reason == f"requires {first.id}, which was not run"
@@ -253,7 +257,7 @@ def test_parallel_run_gives_the_same_results(cases: list[Case], recorded: Record
     ordered = [after, *cases]
     sequential, parallel = run_cases(ordered, recorded), run_cases(ordered, recorded, jobs=2)
     assert parallel.model_copy(update={"started": None}) == sequential.model_copy(update={"started": None})
-    assert sequential.cases[0].reason == f"requires {cases[1].id}, which ended in fail"
+    assert sequential.cases[0].reason == f"requires {cases[1].id}, whose verdict is fail"
     assert sequential.system.name == "w"
 
 

@@ -9,9 +9,10 @@ from pantocheck.conformance.reports.page_text import format_beside_limits, forma
 from pantocheck.conformance.reports.words import name_owner, quantity_label, read_words
 
 MARGIN_KEY = (
-    "Margin: distance to the nearer limit over half the distance between the limits; 1 in the middle, 0 on a limit, "
-    "negative outside. In the bars, the band lies between the limits; a disc is inside, a cross is outside, an open "
-    "ring does not count, an arrow lies beyond the drawing, the whisker is the "
+    "Margin: distance to the nearer limit, divided by half the distance between the limits. It is 1 in the middle, "
+    "0 on a limit and negative outside. Bars: the grey band shows the range between the limits. A disc is a value "
+    "inside, a cross a value outside, an open ring a value that does not count, an arrow a value beyond the drawing. "
+    "The whisker is the "
 )
 SHORT_NAMES = {"Discretisation error": "Discr.\nerror", "Uncertainty (95 %)": "Uncer-\ntainty"}
 """Headings of the errors on paper."""

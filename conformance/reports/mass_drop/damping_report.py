@@ -15,7 +15,7 @@ LINE_STATES = {
     "unverified": "The line of the fit is not verified.",
     "contradicted": "The line of the fit is NOT the line of the record.",
 }
-COMPARISON = "The line as it is has the damping of its present file."
+COMPARISON = "The line as it is: the line with the damping of its line file."
 
 
 def build_damping_document(results: dict[str, Any], block: str) -> doc.Document:
@@ -23,8 +23,8 @@ def build_damping_document(results: dict[str, Any], block: str) -> doc.Document:
     results = clean_tree(results)
     kinds = dict.fromkeys(_component(row) for row in results["observability"] if row["observable"])
     headline = (
-        f"Rayleigh damping fitted to {len(results['pairs'])} modes leaves {100 * results['residual']:.2g} % "
-        f"of their damping ratios. Observable: {', '.join(kinds) or 'nothing'}. "
+        f"Rayleigh damping is fitted to {len(results['pairs'])} modes; the residual is "
+        f"{100 * results['residual']:.2g} % of their damping ratios. Observable: {', '.join(kinds) or 'nothing'}. "
         f"{sum(row['determined'] for row in results['coefficients'])} of {len(results['coefficients'])} coefficients "
         f"are determined. {LINE_STATES[results['line']['state']]}"
     )

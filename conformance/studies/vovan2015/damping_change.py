@@ -21,7 +21,7 @@ from pantocheck.conformance.results.outcome import (
 )
 from pantocheck.conformance.results.results_format import Chart, Series, TextTable
 from pantocheck.conformance.results.traces import thin_series
-from pantocheck.conformance.studies.band_charts import PrintedValues, draw_band_bars, sort_pantographs
+from pantocheck.conformance.studies.band_charts import PrintedValues, draw_band_bars, list_pantographs
 from pantocheck.conformance.studies.vovan2015.paper_tables import build_findings_table, build_provenance_table
 from pantocheck.conformance.systems.system import System
 
@@ -115,7 +115,7 @@ def _evaluate(case: Case, record: Record | None) -> ValuesByOwner:
 
 
 def _comparison_table(values: Mapping[str, ValuesByOwner], printed: PrintedValues) -> TextTable:
-    pantographs = sort_pantographs(values)
+    pantographs = list_pantographs(values)
     rows = []
     for quantity in PRINTED_QUANTITIES:
         for model, computed in values.items():

@@ -66,7 +66,7 @@ def run_dropper_damping(case: Case, study: DropperDamping) -> Delivered:
     forces = tuple(use.uplift_force_N or 0.0 for use in case.file.pantograph)
     if not all(forces):
         raise InputError(
-            f"case '{case.id}', key pantograph", "no uplift_force_N", "This study needs the force of every pantograph."
+            f"case '{case.id}', key pantograph", "no uplift_force_N", "Give uplift_force_N of every pantograph."
         )
     mesh = discretise(line, discretisation.element_m)
     passage = build_passage(case, mesh, discretisation, forces)
@@ -86,8 +86,9 @@ def run_dropper_damping(case: Case, study: DropperDamping) -> Delivered:
             tables=(build_findings_table(case.limits, findings, {}), build_provenance_table(case)),
         ),
         notes=(
-            "The paper does not print which force it compensates. The graded law compensates only the elastic force: "
-            "it locks the dropper as the paper describes. The law of the reference simulator does not lock it.",
+            "The paper does not print its compensation law. The graded law compensates only the elastic force: a "
+            "large coefficient then locks the dropper, as in the paper. Under the law of the reference "
+            "simulator it does not.",
         ),
     )
 

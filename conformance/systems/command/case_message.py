@@ -7,7 +7,7 @@ from pantocheck.conformance.input_files.sourced_table import PROVENANCE
 
 
 def build_case_message(case: Case) -> object:
-    """Build the case of a `run` message, see `protocol_messages.GivenCase`.
+    """Build the case of a `run` message, see `protocol_messages.RequestedCase`.
 
     Notes and sources are left out, because they mention results.
     """

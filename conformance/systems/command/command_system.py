@@ -1,4 +1,4 @@
-"""Program as a system under test: a process and a working folder for each case."""
+"""Program as a system under test: each case has its own process and working folder."""
 
 import tempfile
 import time
@@ -44,21 +44,21 @@ class CommandSystem:
         Time limit of a case [s].
     name, version : str
         Name and version that the program states.
-    broken : str, optional
-        Reason why the program cannot run any case; None if it started.
+    start_failure : str, optional
+        Reason why the program does not start; None if it starts.
     """
 
     arguments: tuple[str, ...]
     timeout_s: float
     name: str
     version: str
-    broken: str | None = None
+    start_failure: str | None = None
     kind: Literal["command"] = "command"
 
     def run(self, case: Case) -> Outcome:
-        """Run a case in a new process; every failure there is the error of this case only."""
-        if self.broken is not None:
-            return Errored(self.broken)
+        """Run a case in a new process; a failure of the process is an error of this case only."""
+        if self.start_failure is not None:
+            return Errored(self.start_failure)
         with tempfile.TemporaryDirectory(prefix="pantocheck-", ignore_cleanup_errors=True) as name:
             folder = Path(name)
             try:
@@ -67,14 +67,14 @@ class CommandSystem:
                     begin = time.monotonic()
                     limit, content = self.timeout_s, build_case_message(case)
                     program.send(encode_message("run", id=RUN, folder=name, time_limit_s=limit, case=content))
-                    answer = _parse_answer(program.line(limit))
+                    answer = _parse_answer(program.read_line(limit))
                     wall = time.monotonic() - begin
                     program.send(encode_message("stop"))
                     warnings: tuple[str, ...] = ()
-                    if not program.ended():
-                        warnings = (f"{self.name} did not end after the message stop, and was ended",)
+                    if not program.wait_for_end():
+                        warnings = (f"{self.name} did not end after the message 'stop'; Pantocheck ended it",)
                     elif isinstance(answer, DeliveredAnswer):
-                        answer = _find_late_error(program.late_lines()) or answer
+                        answer = _find_late_error(program.read_late_lines()) or answer
                         program.refuse_late_failure()
                 match answer:
                     case SkippedAnswer():
@@ -92,14 +92,14 @@ class CommandSystem:
 def _parse_answer(line: bytes) -> DeliveredAnswer | SkippedAnswer | ErroredAnswer:
     answer = parse_message(line)
     if isinstance(answer, Started):
-        raise AnswerRefused("its answer to 'run' is 'started'")
+        raise AnswerRefused("it answered 'run' with 'started'; expected 'delivered', 'skipped' or 'errored'")
     if answer.id != RUN:
-        raise AnswerRefused(f"it answered run {answer.id} in place of run {RUN}")
+        raise AnswerRefused(f"its answer has the id {answer.id}; expected {RUN}")
     return answer
 
 
 def _find_late_error(lines: list[bytes]) -> ErroredAnswer | None:
-    """Error that a program reports after it has delivered; text that is no message is ignored."""
+    """Error that a program reports after its delivery; lines that are not messages are ignored."""
     for line in lines:
         with suppress(AnswerRefused):
             answer = parse_message(line)
@@ -109,18 +109,18 @@ def _find_late_error(lines: list[bytes]) -> ErroredAnswer | None:
 
 
 def _start_program(program: Program, limit: float) -> Started:
-    """Send the message `start`; answer of the program."""
+    """Send the message `start` and return the answer."""
     program.send(encode_message("start", protocol=PROTOCOL, suite_version=version("pantocheck")))
-    answer = parse_message(program.line(min(limit, START_LIMIT)))
+    answer = parse_message(program.read_line(min(limit, START_LIMIT)))
     if not isinstance(answer, Started):
-        raise AnswerRefused(f"its first answer is {answer.message!r}, not 'started'")
+        raise AnswerRefused(f"its first answer is {answer.message!r}; expected 'started'")
     if answer.protocol != PROTOCOL:
-        raise AnswerRefused(f"it uses {answer.protocol!r}, the suite {PROTOCOL!r}")
+        raise AnswerRefused(f"it uses the protocol {answer.protocol!r}; expected {PROTOCOL!r}")
     return answer
 
 
 def parse_command(text: str, base: Path, timeout: float) -> CommandSystem:
-    """Build the system of a command, and start the program once for its name.
+    """Build the system of a command; the program is started once for its name.
 
     Parameters
     ----------
@@ -150,7 +150,7 @@ def parse_command(text: str, base: Path, timeout: float) -> CommandSystem:
         ):
             identity = _start_program(program, timeout)
             program.send(encode_message("stop"))
-            program.ended()
+            program.wait_for_end()
     except (ProgramFailed, AnswerRefused) as error:
-        return CommandSystem(parts, timeout, name, "", broken=f"{name}: {error}")
+        return CommandSystem(parts, timeout, name, "", start_failure=f"{name}: {error}")
     return CommandSystem(parts, timeout, identity.name, identity.version)

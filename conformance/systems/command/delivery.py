@@ -1,4 +1,4 @@
-"""Files of a program: check that they are in its folder, unchanged, and of the requested case."""
+"""Files that a program delivers: they must be in its folder, unchanged, and of the requested case."""
 
 from pathlib import Path
 
@@ -45,9 +45,9 @@ def read_delivery(case: Case, answer: DeliveredAnswer, folder: Path, wall: float
     sidecar_path, table_path = (_check_file(file, folder) for file in (answer.record.sidecar, answer.record.table))
     record, sidecar = read_record(sidecar_path, None if case.is_static else case.analysis_section)
     if sidecar_path.parent / sidecar.file != table_path:
-        raise DeliveryRefused(f"the sidecar is of {sidecar.file!r}, the answer names {answer.record.table.file!r}")
+        raise DeliveryRefused(f"the sidecar names the table {sidecar.file!r}, the answer {answer.record.table.file!r}")
     if sidecar.case != case.id:
-        raise DeliveryRefused(f"the record is of case {sidecar.case!r} in place of {case.id!r}")
+        raise DeliveryRefused(f"the record is of case {sidecar.case!r}; expected {case.id!r}")
     run = sidecar.run
     if run.wall_s is None:
         run = run.model_copy(update={"wall_s": wall})
@@ -70,5 +70,5 @@ def _check_file(file: File, folder: Path) -> Path:
     except (OSError, ValueError) as error:
         raise DeliveryRefused(f"the file {file.file!r} cannot be read ({error})") from None
     if digest != file.sha256:
-        raise DeliveryRefused(f"the content of {file.file!r} does not agree with its sha256")
+        raise DeliveryRefused(f"the SHA-256 of the file {file.file!r} is not that of the answer")
     return path

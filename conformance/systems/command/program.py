@@ -1,4 +1,4 @@
-"""Process of a program: lines with a time limit over pipes, and a safe end of all its children."""
+"""Process of a program: exchange of lines over pipes with a time limit, and end of all its child processes."""
 
 import contextlib
 import os
@@ -13,22 +13,22 @@ from pathlib import Path
 from types import TracebackType
 from typing import IO
 
-from pantocheck.conformance.systems.process_control import adopt_orphans, die_with_parent
+from pantocheck.conformance.systems.process_control import adopt_orphans, end_with_parent
 
 LONGEST_LINE = 1_000_000
-"""Largest size of an answer [bytes]; numbers belong into record files."""
+"""Largest size of an answer [bytes]; numbers belong in record files."""
 MOST_OUTPUT = 10_000_000
 """Largest size of the whole standard output [bytes]."""
-LAST_WORDS = 4000
+ERROR_TAIL = 4000
 """Size of the end of standard error that a failure quotes [bytes]."""
-PATIENCE = 5.0
+END_LIMIT = 5.0
 """Time limit of a program to end by itself [s]."""
 MARK = "PANTOCHECK_PROGRAM"
 """Environment variable that marks the children of a program, also in other sessions."""
 
 
 class ProgramFailed(Exception):
-    """A program ended, exceeded its time or wrote too much: its case cannot be graded, but the other cases can."""
+    """A program ended early, exceeded its time limit or wrote too much: its case cannot be graded."""
 
 
 class Program:
@@ -61,7 +61,7 @@ class Program:
                 env={**os.environ, MARK: self._mark, "TMPDIR": str(folder)},
                 start_new_session=True,
                 # One call of the C library between fork and exec, which takes no lock of another thread.
-                preexec_fn=die_with_parent if os.name == "posix" else None,  # noqa: PLW1509
+                preexec_fn=end_with_parent if os.name == "posix" else None,  # noqa: PLW1509
                 creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),
             )
         except OSError as error:
@@ -96,8 +96,8 @@ class Program:
                 self._process.stdin.write(line + b"\n")
                 self._process.stdin.flush()
 
-    def line(self, limit: float) -> bytes:
-        """Next line of the standard output.
+    def read_line(self, limit: float) -> bytes:
+        """Read the next line of the standard output.
 
         Parameters
         ----------
@@ -112,15 +112,15 @@ class Program:
         try:
             line = self._lines.get(timeout=limit)
         except queue.Empty:
-            raise ProgramFailed(f"gave no answer within {limit:g} s{self._last_words()}") from None
+            raise ProgramFailed(f"gave no answer within {limit:g} s{self._quote_errors()}") from None
         if isinstance(line, ProgramFailed):
             raise line
         if line is None:
-            raise ProgramFailed(f"{self._how_it_ended()} before it answered{self._last_words()}")
+            raise ProgramFailed(f"{self._describe_end()} before it answered{self._quote_errors()}")
         return line
 
     def refuse_late_failure(self) -> None:
-        """Refuse a program that fails after its answer.
+        """Refuse the answer of a program that fails after it.
 
         Raises
         ------
@@ -128,27 +128,27 @@ class Program:
             It ended with an exit code that is not 0, or by a signal.
         """
         if self._process.returncode:
-            raise ProgramFailed(f"{self._how_it_ended()} after it had delivered{self._last_words()}")
+            raise ProgramFailed(f"{self._describe_end()} after its answer 'delivered'{self._quote_errors()}")
 
-    def late_lines(self) -> list[bytes]:
-        """Lines that followed the last answer, once the program has ended."""
+    def read_late_lines(self) -> list[bytes]:
+        """Read the lines after the last answer of a program that has ended."""
         lines = []
-        self._readers[0].join(PATIENCE)
+        self._readers[0].join(END_LIMIT)
         with contextlib.suppress(queue.Empty):
             while isinstance(line := self._lines.get_nowait(), bytes):
                 lines.append(line)
         return lines
 
-    def ended(self, patience: float | None = None) -> bool:
-        """Wait for the end of the program, by default for `PATIENCE` [s]; False if it still runs."""
+    def wait_for_end(self, limit: float | None = None) -> bool:
+        """Wait for the end of the program, by default `END_LIMIT` [s]; False if it still runs."""
         try:
-            self._process.wait(PATIENCE if patience is None else patience)
+            self._process.wait(END_LIMIT if limit is None else limit)
         except subprocess.TimeoutExpired:
             return False
         return True
 
-    def _how_it_ended(self) -> str:
-        if not self.ended(1.0):
+    def _describe_end(self) -> str:
+        if not self.wait_for_end(1.0):
             return "closed its output"
         code = self._process.returncode
         if code >= 0:
@@ -157,11 +157,11 @@ class Program:
             return f"was ended by {signal.Signals(-code).name}"
         return f"was ended by signal {-code}"
 
-    def _last_words(self) -> str:
+    def _quote_errors(self) -> str:
         self._readers[1].join(0.5)
         text = " ".join(self._errors.decode("utf-8", "replace").split())
         shown = "".join(c if c.isprintable() else "?" for c in text)
-        return f"; its last words: {shown[-300:]}" if shown else ""
+        return f"; end of its standard error: {shown[-300:]}" if shown else ""
 
     def _end(self) -> None:
         if os.name == "posix":
@@ -179,13 +179,13 @@ class Program:
             with contextlib.suppress(OSError, subprocess.SubprocessError):
                 subprocess.run(
                     ["taskkill", "/T", "/F", "/PID", str(self._process.pid)],
-                    capture_output=True, check=False, timeout=PATIENCE,
+                    capture_output=True, check=False, timeout=END_LIMIT,
                 )  # fmt: skip
             self._process.kill()
-        self.ended()
+        self.wait_for_end()
         self._adoption.__exit__(None, None, None)
         for reader in self._readers:
-            reader.join(PATIENCE)
+            reader.join(END_LIMIT)
         for pipe in (self._process.stdin, self._process.stdout, self._process.stderr):
             with contextlib.suppress(OSError, ValueError):
                 if pipe is not None:
@@ -203,7 +203,7 @@ def _find_marked(mark: str) -> list[int]:
 
 
 def _read_lines(stream: IO[bytes], lines: "queue.SimpleQueue[bytes | ProgramFailed | None]") -> None:
-    """Put every line into the queue, finally None, or a `ProgramFailed` after too much output or half a line."""
+    """Put every line into the queue; then None, or `ProgramFailed` after too much output or an incomplete line."""
     line, total = bytearray(), 0
     while chunk := os.read(stream.fileno(), 65536):
         total += len(chunk)
@@ -214,7 +214,7 @@ def _read_lines(stream: IO[bytes], lines: "queue.SimpleQueue[bytes | ProgramFail
         line += rest
         if len(line) > LONGEST_LINE or total > MOST_OUTPUT:
             size = f"a line of more than {LONGEST_LINE}" if len(line) > LONGEST_LINE else f"more than {MOST_OUTPUT}"
-            lines.put(ProgramFailed(f"wrote {size} bytes to its standard output: numbers belong into record files"))
+            lines.put(ProgramFailed(f"wrote {size} bytes to its standard output: numbers belong in record files"))
             return
     lines.put(ProgramFailed(f"ended in the middle of a line, after {bytes(line[-60:])!r}") if line else None)
 
@@ -222,4 +222,4 @@ def _read_lines(stream: IO[bytes], lines: "queue.SimpleQueue[bytes | ProgramFail
 def _keep_tail(stream: IO[bytes], tail: bytearray) -> None:
     while chunk := os.read(stream.fileno(), 65536):
         tail += chunk
-        del tail[:-LAST_WORDS]
+        del tail[:-ERROR_TAIL]

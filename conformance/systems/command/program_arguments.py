@@ -40,11 +40,11 @@ def split_arguments(text: str, base: Path) -> tuple[str, ...]:
     except ValueError as error:
         raise InputError(where, f"cannot be split into arguments ({error})", hint) from None
     if not parts or "\0" in text:
-        raise InputError(where, "names no program", hint)
+        raise InputError(where, "the command is empty", hint)
     has_folder = Path(parts[0]).name != parts[0]
     program = shutil.which((base / parts[0]).resolve() if has_folder and _is_file(base / parts[0]) else parts[0])
     if program is None:
-        raise InputError(where, f"there is no program {parts[0]!r} that can be run", hint)
+        raise InputError(where, f"there is no executable program {parts[0]!r}", hint)
     # Links are kept: a virtual environment depends on the link to its interpreter.
     return (
         os.path.abspath(program),

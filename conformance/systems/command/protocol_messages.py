@@ -17,7 +17,7 @@ Text = Annotated[str, Field(min_length=1, max_length=2000)]
 
 
 class AnswerRefused(ValueError):
-    """An answer of a program is no valid message, so it must not be graded."""
+    """An answer of a program is not a valid message, so it must not be graded."""
 
 
 class Start(InputTable):
@@ -28,8 +28,8 @@ class Start(InputTable):
     suite_version: Annotated[str, Field(description="version of Pantocheck")]
 
 
-class GivenPantograph(InputTable):
-    """Pantograph of a run, in running order, by one of chain, matrices and modes."""
+class RequestedPantograph(InputTable):
+    """Pantograph of a run, in running order. One of chain, matrices and modes describes it."""
 
     chain: ChainTable | None
     matrices: MatricesTable | None
@@ -46,7 +46,7 @@ class GivenPantograph(InputTable):
     end_m: Annotated[float, Field(description="position at the end of the run [m]")]
 
 
-class GivenCase(InputTable):
+class RequestedCase(InputTable):
     """Case without limits: all numbers, defaults included."""
 
     id: Annotated[str, Field(description="id of the case, to be repeated in the sidecar of the record")]
@@ -61,7 +61,7 @@ class GivenCase(InputTable):
         Discretisation, Field(description="discretisation of the reference simulator, for information")
     ]
     line: LineFile
-    pantographs: tuple[GivenPantograph, ...]
+    pantographs: tuple[RequestedPantograph, ...]
 
 
 class RunRequest(InputTable):
@@ -71,7 +71,7 @@ class RunRequest(InputTable):
     id: Annotated[int, Field(ge=1, description="number of the run, to be repeated in the answer")]
     folder: Annotated[str, Field(description="folder for record files: the working folder of the program")]
     time_limit_s: Annotated[float, Field(gt=0, description="time limit of the answer [s]")]
-    case: GivenCase
+    case: RequestedCase
 
 
 class Stop(InputTable):
@@ -161,7 +161,7 @@ def parse_message(line: bytes) -> Answer:
     Raises
     ------
     AnswerRefused
-        The line is no valid message.
+        The line is not a valid message.
     """
     try:
         return _ANSWER.validate_python(json.loads(line))
@@ -169,11 +169,11 @@ def parse_message(line: bytes) -> Answer:
         first = error.errors(include_url=False)[0]
         key = ".".join(str(part) for part in first["loc"])
         raise AnswerRefused(
-            f"its answer is no message of {PROTOCOL}: {key + ': ' if key else ''}{first['msg']}"
+            f"its answer is not a valid message of {PROTOCOL}: {key + ': ' if key else ''}{first['msg']}"
         ) from None
     except (ValueError, RecursionError):  # Not UTF-8, not JSON, or nested too deeply.
         shown = line[:80].decode("utf-8", "replace").strip()
-        raise AnswerRefused(f"its answer is not JSON: {shown!r} (a log belongs on standard error)") from None
+        raise AnswerRefused(f"its answer is not JSON: {shown!r} (write a log to the standard error)") from None
 
 
 def request_schema(generator: type[GenerateJsonSchema]) -> dict[str, Any]:

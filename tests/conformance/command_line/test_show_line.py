@@ -42,5 +42,5 @@ def test_cases_with_several_lines_are_not_drawn(tmp_path: Path) -> None:
     file = tmp_path / "line.svg"
     result = CliRunner().invoke(app, ["show", "en50318-2018/*/static", "--drawing", str(file)])
     assert result.exit_code == 2
-    assert "these cases have several lines" in result.output
+    assert "the cases have different lines" in result.output
     assert not file.exists()

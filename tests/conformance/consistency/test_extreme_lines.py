@@ -189,7 +189,9 @@ def test_shifted_position_of_either_pantograph_is_contradicted(
     case, record = records[name]
     found, reason = state(case, shift(record, number, 10.0))
     assert found == "contradicted"
-    assert reason.startswith(f"pantograph {number} bends the wire at the supports when it is ")
+    assert reason.startswith(
+        f"the position of pantograph {number} contradicts the uplift: the wire bends at a support when "
+    )
 
 
 def ramp(seconds: float) -> Callable[[DiscretisedLine, Passage], History]:

@@ -102,10 +102,7 @@ def test_spacing_of_the_record_is_that_of_the_case(twin: Case, record: Record, s
     result = grade(twin, other)
     assert result.verdict == verdict, result.reason
     if verdict == "error":
-        assert (
-            result.reason
-            == f"pantograph 2 of the record runs {spacing:g} m behind pantograph 1, that of the case 150 m"
-        )
+        assert result.reason == f"pantograph 2 runs {spacing:g} m behind pantograph 1 in the record, 150 m in the case"
 
 
 def test_pantographs_that_part_from_each_other_are_refused(twin: Case, record: Record) -> None:

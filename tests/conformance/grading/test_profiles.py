@@ -242,7 +242,7 @@ def test_line_test_compares_with_the_measured_record(train: Train, tmp_path: Pat
     assert results.verdict == "pass"
     assert (rows["mean_force_N"].lower, rows["mean_force_N"].upper) == pytest.approx((115.7, 120.7))
     assert (rows["std_force_N"].lower, rows["std_force_N"].upper) == pytest.approx((0.8 * 27.6, 1.2 * 27.6))
-    assert "about the measured 27.6 of 250" in rows["std_force_N"].source
+    assert "around the measured value 27.6 of 250" in rows["std_force_N"].source
     assert any("contact_height_range_mm is not graded" in text for text in results.cases[0].warnings)
     worse = load_assessed_record(train(mean=119.0, sigma=34.0), profile, LineTable())
     assert assess_record(worse, profile, "provisional", measured).verdict == "fail"
@@ -269,7 +269,7 @@ def test_bounds_in_the_wrong_order_are_rejected() -> None:
 def test_line_test_needs_two_comparable_records(train: Train) -> None:
     profile = load_profile("line-test")
     simulated = load_assessed_record(train(), profile, LineTable())
-    with pytest.raises(InputError, match="compares with a measured record, but none is given"):
+    with pytest.raises(InputError, match="compares with a measured record, but there is none"):
         assess_record(simulated, profile)
     faster = load_assessed_record(PASSING / "300.toml", profile, LineTable())
     with pytest.raises(InputError, match="its speed is 300 km/h, that of train is 250 km/h"):

@@ -60,4 +60,4 @@ def test_another_spacing_is_another_train(two_pantograph_case: Case, record: Rec
         two_pantograph_case, replace(record, position=record.position + np.array([[0.0], [shift]]))
     )
     assert found is not None
-    assert "that of the case 150 m" in found
+    assert "in the record, 150 m in the case" in found

@@ -117,7 +117,7 @@ def test_records_of_different_trains_are_not_compared(
     assessed: Callable[..., AssessedRecord], subject: tuple[float, ...], measured: tuple[float, ...]
 ) -> None:
     records = [assessed(*sigma, profile="line-test") for sigma in (subject, measured)]
-    with pytest.raises(InputError, match="Compare records of one train"):
+    with pytest.raises(InputError, match="Compare records of the same train"):
         assess_record(records[0], load_profile("line-test"), measured=records[1])
 
 

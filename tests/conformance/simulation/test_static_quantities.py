@@ -87,7 +87,7 @@ def test_failed_static_case_skips_cases_that_require_it() -> None:
     static = replace(static, file=static.file.model_copy(update={"discretisation": coarse}), limits=(wrong,))
     results = run_cases([static, running], ReferenceSimulator())
     assert [case.verdict for case in results.cases] == ["fail", "skip"]
-    assert results.cases[1].reason == f"requires {static.id}, which ended in fail"
+    assert results.cases[1].reason == f"requires {static.id}, whose verdict is fail"
 
 
 def test_apparent_mass_is_a_static_check(simple: tuple[Case, dict[str, Any]]) -> None:

@@ -157,7 +157,7 @@ def test_delivered_record_is_read(program: Callable[..., System], case_250: Case
     assert_allclose(outcome.record.force, wave().record(case_250).force, rtol=1e-11)  # twelve digits in the file
     assert outcome.static == {"wave_speed_m_s": 121.7}
     assert outcome.notes[0] == "as asked"
-    assert "does not state the inputs of its case" in outcome.notes[1]
+    assert "has no case_digest" in outcome.notes[1]
     assert outcome.warnings == ()
 
 
@@ -199,22 +199,22 @@ def test_answers_follow_their_schema() -> None:
         ("skip", "skip", "no such line"),
         ("error", "error", "diverged at 1.2 s"),
         ("abort", "error", "p: was ended by SIGABRT before it answered"),
-        ("garbage", "error", "p: its answer is not JSON: 'Reading licence ...' (a log belongs on standard error)"),
+        ("garbage", "error", "p: its answer is not JSON: 'Reading licence ...' (write a log to the standard error)"),
         ("binary", "error", "p: its answer is not JSON"),
         ("partial", "error", 'p: ended in the middle of a line, after b\'{"message": "deliv\''),
         ("long line", "error", "p: wrote a line of more than 1000000 bytes"),
-        ("flood", "error", "p: its answer to 'run' is 'started'"),
+        ("flood", "error", "p: it answered 'run' with 'started'"),
         ("nan", "error", "finite number"),
-        ("wrong id", "error", "p: it answered run 7 in place of run 1"),
+        ("wrong id", "error", "p: its answer has the id 7; expected 1"),
         ("closes", "error", "p: closed its output before it answered"),
         ("outside", "error", "p: the file '../stray.toml' lies outside the folder of the run"),
         ("link", "error", "p: the file 'record.csv' lies outside the folder of the run"),
         ("absent", "error", "p: there is no file 'record.csv' in the folder of the run"),
-        ("changed", "error", "p: the content of 'record.csv' does not agree with its sha256"),
-        ("late exit", "error", "p: ended with exit code 9 after it had delivered"),
-        ("late crash", "error", "p: was ended by SIGSEGV after it had delivered"),
+        ("changed", "error", "p: the SHA-256 of the file 'record.csv' is not that of the answer"),
+        ("late exit", "error", "p: ended with exit code 9 after its answer 'delivered'"),
+        ("late crash", "error", "p: was ended by SIGSEGV after its answer 'delivered'"),
         ("late error", "error", "the licence ended"),
-        ("other table", "error", "p: the sidecar is of 'record.csv', the answer names 'b.csv'"),
+        ("other table", "error", "p: the sidecar names the table 'record.csv', the answer 'b.csv'"),
     ],
 )
 def test_fault_of_the_program_is_the_verdict_of_its_case(
@@ -233,8 +233,8 @@ def test_crash_does_not_stop_other_cases_and_record_of_another_case_is_refused(
     program: Callable[..., System], cases: list[Case]
 ) -> None:
     first, second = run_cases(cases, program("crash")).cases
-    assert first.reason == "p: ended with exit code 1 before it answered; its last words: no licence left"
-    assert second.reason == "p: the record is of case 'en50318-2002/250' in place of 'en50318-2002/300'"
+    assert first.reason == "p: ended with exit code 1 before it answered; end of its standard error: no licence left"
+    assert second.reason == "p: the record is of case 'en50318-2002/250'; expected 'en50318-2002/300'"
 
 
 def test_record_that_names_no_case_is_refused(program: Callable[..., System], case_250: Case, tmp_path: Path) -> None:
@@ -279,7 +279,7 @@ def test_killed_process_ends_its_program(tmp_path: Path) -> None:
     code = (
         "import pathlib, sys; from pantocheck.conformance.systems.command.program import Program; "
         "program = Program([sys.executable, '-S', '-c', 'print(1, flush=True); import time; time.sleep(1002)'], "
-        "pathlib.Path(sys.argv[1])); print(program.line(20.0), flush=True); import time; time.sleep(60)"
+        "pathlib.Path(sys.argv[1])); print(program.read_line(20.0), flush=True); import time; time.sleep(60)"
     )
     with subprocess.Popen([sys.executable, "-c", code, str(tmp_path)], stdout=subprocess.PIPE) as process:
         assert process.stdout is not None
@@ -339,17 +339,17 @@ def test_signal_to_the_main_process_keeps_results_and_ends_programs(
 def test_program_that_does_not_stop_is_ended_with_a_warning(
     program: Callable[..., System], case_250: Case, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("pantocheck.conformance.systems.command.program.PATIENCE", 0.2)
+    monkeypatch.setattr("pantocheck.conformance.systems.command.program.END_LIMIT", 0.2)
     outcome = program("deaf").run(case_250)
     assert outcome.record is not None
-    assert outcome.warnings == ("p did not end after the message stop, and was ended",)
+    assert outcome.warnings == ("p did not end after the message 'stop'; Pantocheck ended it",)
 
 
 @pytest.mark.parametrize(
     ("how", "reason"),
     [
         ("slow start", "gave no answer within 1 s"),
-        ("old", "it uses 'pantocheck.command/0', the suite 'pantocheck.command/1'"),
+        ("old", "it uses the protocol 'pantocheck.command/0'; expected 'pantocheck.command/1'"),
     ],
 )
 def test_program_that_does_not_start_is_the_error_of_every_case(
@@ -363,11 +363,11 @@ def test_program_that_does_not_start_is_the_error_of_every_case(
 @pytest.mark.parametrize(
     ("text", "found"),
     [
-        ("", "names no program"),
+        ("", "the command is empty"),
         ("'", "cannot be split"),
-        ("no-such-program --x", "there is no program 'no-such-program'"),
-        ("./missing.sh", "there is no program './missing.sh'"),
-        ("sh\0", "names no program"),
+        ("no-such-program --x", "there is no executable program 'no-such-program'"),
+        ("./missing.sh", "there is no executable program './missing.sh'"),
+        ("sh\0", "the command is empty"),
     ],
 )
 def test_invalid_command_is_refused(text: str, found: str, tmp_path: Path) -> None:

@@ -48,13 +48,13 @@ def test_case_without_record_is_skipped(case_250: Case, wave: type[Wave], tmp_pa
 
 
 def test_invalid_folder_is_refused(case_250: Case, wave: type[Wave], tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="no sidecar in it names a case"):
+    with pytest.raises(InputError, match="no sidecar in this folder names a case"):
         open_record_folder(tmp_path)
     with pytest.raises(InputError, match="there is no such folder"):
         open_record_folder(tmp_path / "none")
     for name in ("a.csv", "b.csv"):
         write_record(tmp_path / name, wave().record(case_250), case_250.id)
-    with pytest.raises(InputError, match=r"b\.toml and a\.toml are both of case en50318-2002/250"):
+    with pytest.raises(InputError, match=r"b\.toml and a\.toml have the same case en50318-2002/250"):
         open_record_folder(tmp_path)
 
 
