@@ -84,8 +84,8 @@ TAMPERINGS = {
         lambda r: (r["cases"][0]["traces"].pop("2"), r["cases"][0]["quantities"]["2"].update(cov_20=0.2)),
         "pantograph 2: cov_20 0.2 stated",
     ),
-    "maximum slightly below what is drawn": (lambda r: set_extreme(r, max, 1 - 1e-4), "max_force_N"),
-    "minimum slightly above what is drawn": (lambda r: set_extreme(r, min, 1 + 2e-4), "min_force_N"),
+    "maximum slightly below what is drawn": (lambda r: set_extreme(r, max, 1 - 1e-4), "pantograph 2: max_force_N"),
+    "minimum slightly above what is drawn": (lambda r: set_extreme(r, min, 1 + 2e-4), "pantograph 2: min_force_N"),
     "pass without criteria": (
         lambda r: r["cases"][0].update(criteria=[], verdict="pass", reason="not needed"),
         "verdict 'pass' stated, 'info' follows from the criteria",

@@ -7,6 +7,7 @@ import pytest
 
 from helpers.computed_modes import computed_modes, grade_findings
 from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.identification.mode import Mode
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.studies.vovan2015.group_findings import compute_group_findings
@@ -32,6 +33,43 @@ def failed_criteria(
     assert set(rows) == CRITERIA
     assert all(row.margin is not None or row.verdict == "skip" for row in rows.values())
     return {key for key, row in rows.items() if row.verdict == "fail"}
+
+
+@pytest.mark.parametrize(
+    ("damping_pct", "decrease", "rise"),
+    [
+        ((1.0, 0.8, 0.7, 0.75, 0.72, 1.4), 12.5, 7.142857),  # 20 % and 12.5 %; 0.75 % over 0.70 %
+        ((1.0, 0.9, 0.6, 0.54, 0.57, 1.4), 10.0, -5.0),  # 10 % and 33 %; 0.57 % over 0.60 %
+        ((1.0, 1.2, 0.6, 0.57, 0.54, 0.1), -20.0, -5.0),  # the first step rises
+        ((1.0, 0.5, 0.6, 0.6, 0.9, 0.1), -20.0, 50.0),  # the second step rises
+    ],
+)
+def test_findings_of_groups_calculated_by_hand(damping_pct: tuple[float, ...], decrease: float, rise: float) -> None:
+    """Groups at 1 Hz to 5 Hz, and one at 6.1 Hz, above the range of the finding.
+
+    The smallest decrease from group to group counts, and the largest later damping over that of the third group. Each
+    group has three certain modes, an uncertain one and a lateral one with ten times its damping.
+    """
+    frequencies = (1.0, 2.0, 3.0, 4.0, 5.0, 6.1)
+    modes = []
+    for number, (frequency, damping) in enumerate(zip(frequencies, damping_pct, strict=True), 1):
+        for share in (0.9, 1.0, 1.1):
+            modes.append(build_mode(share * frequency, 0.01 * share * damping, number))
+        modes.append(build_mode(frequency, 0.1 * damping, number).model_copy(update={"certain": False}))
+        modes.append(build_mode(frequency, 0.1 * damping, number).model_copy(update={"lateral": True}))
+    findings = compute_group_findings(modes)
+    assert findings["modes_in_group"] == (4.0,) * 6
+    assert findings["mode_frequency_Hz"] == pytest.approx(frequencies)
+    assert findings["damping_ratio"] == pytest.approx([0.01 * damping for damping in damping_pct])
+    assert findings["largest_damping_ratio"] == pytest.approx(0.011 * max(damping_pct))
+    assert findings["damping_decrease_pct"] == pytest.approx(decrease)
+    assert findings["damping_rise_pct"] == pytest.approx(rise)
+
+
+def build_mode(frequency: float, damping: float, group: int) -> Mode:
+    return Mode(
+        frequency_Hz=frequency, damping_ratio=damping, damping_ratio_std=1e-5, group=group, sensor_shape=(), record="T"
+    )
 
 
 @pytest.mark.parametrize("model", ["printed", "updated", "updated-modal"])

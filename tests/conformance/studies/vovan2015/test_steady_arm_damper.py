@@ -57,6 +57,13 @@ def test_gains_calculated_by_hand() -> None:
     assert_allclose(findings["damping_gain_fading_pct"], 50)
 
 
+def test_gain_fades_from_the_second_to_the_last_band() -> None:
+    """Gains of 60 %, 50 %, 20 % and 10 % by hand: the first band has the largest gain but does not count."""
+    findings = damping_gains([0.002] * 4, [0.0032, 0.003, 0.0024, 0.0022])
+    assert_allclose(findings["damping_gain_pct"], [60, 50, 20, 10])
+    assert_allclose(findings["damping_gain_fading_pct"], 40)
+
+
 def test_list_of_gains_ends_before_a_band_without_modes() -> None:
     findings = damping_gains([0.002, np.nan, 0.003], [0.003, 0.006, 0.003])
     assert_allclose(findings["damping_gain_pct"], [50])
