@@ -107,7 +107,7 @@ def grade_assessment(uplift_space_mm: float) -> Callable[[Path], Results]:
 
     def grade(folder: Path) -> Results:
         profile = load_profile("acceptance-ac")
-        line = LineTable(uplift_space_mm=uplift_space_mm)
+        line = LineTable(wave_speed_m_s=120.0, uplift_space_mm=uplift_space_mm)
         return assess_record(load_assessed_record(folder / "record" / "a.toml", profile, line), profile)
 
     return grade

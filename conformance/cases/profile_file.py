@@ -70,10 +70,6 @@ class Rule(InputTable):
     tolerance_pct: Annotated[
         Tolerance | None, Field(description="largest difference in percent of the measured value")
     ] = None
-    need: Annotated[
-        Literal["required", "if_known"],
-        Field(description="verdict if the quantity or the bound is not known; required: skip; if_known: none"),
-    ] = "required"
     trust: Annotated[Trust, Field(description="trust in the rule")]
     source: Annotated[str | list[str], Field(description="source of the rule: keys of sources.toml, or free text")]
     note: Annotated[str | None, Field(description="remark for the reader", max_length=4000)] = None
@@ -109,7 +105,7 @@ class Profile(InputTable):
         Field(
             gt=0,
             le=50,
-            description="largest deviation from the nominal speed; faster and slower samples are left out [%]",
+            description="largest deviation from the nominal speed inside the analysis section [%]",
         ),
     ] = 5.0
     verification: Annotated[

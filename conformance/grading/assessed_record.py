@@ -10,7 +10,7 @@ from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.profile_file import Profile
 from pantocheck.conformance.input_files.bounded_file import file_digest
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value, evaluate_signals
+from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value, evaluate_signals, skip_record
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.records.measured.block_bootstrap import FEWEST_BLOCKS, bootstrap_uncertainties
 from pantocheck.conformance.records.measured.line_supports import list_line_supports
@@ -122,14 +122,20 @@ def load_assessed_record(path: Path, profile: Profile, line: LineTable) -> Asses
     digest = join_digests(file_digest(path.with_suffix(".toml")), file_digest(table), known_line.model_dump_json())
     block = _block_length(known_line, sidecar)
     uncertainty = {
-        number: bootstrap_uncertainties(pooled, block / prepared.speed, digest)
-        for number, pooled in prepared.pantographs.items()
+        number: bootstrap_uncertainties(signals, block / prepared.speed, digest)
+        for number, signals in prepared.pantographs.items()
     }
     uncertainty_note = (
         "Uncertainties are half-widths of 95 % intervals from the length of the record (moving-block bootstrap, "
         f"blocks of {block:g} m)."
         if any(uncertainty.values())
         else f"The record is shorter than {FEWEST_BLOCKS} spans: the uncertainty of its statistics is unknown."
+    )
+    missing = _missing_statement(samples, sidecar)
+    evaluation = (
+        evaluate_signals(prepared.pantographs, line_signals)
+        if missing is None
+        else skip_record(missing, prepared.pantographs)
     )
     return AssessedRecord(
         name=path.stem,
@@ -138,14 +144,24 @@ def load_assessed_record(path: Path, profile: Profile, line: LineTable) -> Asses
         digest=digest,
         record_digest=record_digest(path, table),
         force_digest=_force_digest(samples),
-        values=_add_line_quantities(
-            evaluate_signals(prepared.pantographs, line_signals), known_line, sidecar.speed_km_h
-        ),
+        values=_add_line_quantities(evaluation, known_line, sidecar.speed_km_h),
         uncertainty={number: values for number, values in uncertainty.items() if values},
         prepared=prepared,
         notes=(*prepared.notes, uncertainty_note),
         warnings=prepared.warnings,
     )
+
+
+def _missing_statement(samples: RecordSamples, sidecar: RecordSidecar) -> str | None:
+    """Reason why no quantity of a record is evaluated; None if section and speed are stated.
+
+    Without them, a record that was cut short or ran at another speed could not be told from a complete one.
+    """
+    if sidecar.evaluated_m is None:
+        return "the analysis section is not stated: add evaluated_m to the sidecar"
+    if samples.speed is None and (samples.time is None or samples.position is None):
+        return "the speed of the train is not recorded: add speed_m_s, or both time_s and position_1_m"
+    return None
 
 
 def _assess_summary(path: Path, summary: RecordSummary, profile: Profile, line: LineTable) -> AssessedRecord:
@@ -186,8 +202,11 @@ def _add_line_quantities(evaluation: Evaluation, line: LineTable, speed_km_h: fl
     wave_speed = line.wave_speed_m_s if line.wave_speed_m_s is not None else values.get("wave_speed_m_s")
     if isinstance(wave_speed, float) and wave_speed > 0:
         values |= {"wave_speed_m_s": wave_speed, "speed_over_wave_speed": speed_km_h / 3.6 / wave_speed}
+    skipped = dict(evaluation.skipped[LINE])
+    if "speed_over_wave_speed" not in values:
+        skipped["speed_over_wave_speed"] = "the wave speed of the line is not known: add wave_speed_m_s"
     ordered = {name: values[name] for name in QUANTITIES if name in values}
-    return Evaluation({**evaluation.values, LINE: ordered}, evaluation.skipped)
+    return Evaluation({**evaluation.values, LINE: ordered}, {**evaluation.skipped, LINE: skipped})
 
 
 def _force_digest(samples: RecordSamples) -> str:

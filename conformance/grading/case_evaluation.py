@@ -13,6 +13,7 @@ from pantocheck.conformance.grading.record_mismatch import find_other_case, find
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation
 from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.quantities.signals import edge_warnings
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.results.outcome import Delivered
@@ -99,18 +100,8 @@ class CaseEvaluation:
         return [grade_limit(limit, self.values, lowest_trust) for limit in self.case.limits]
 
     def edge_warnings(self) -> list[str]:
-        """Warnings on pantographs whose record is too short for the filter to settle outside the analysis section."""
-        record = self.delivered.record
-        if record is None:
-            return []
-        settling = 2 / self.case.file.filter.cutoff_Hz * record.speed
-        start, end = record.evaluated
-        return [
-            f"the record of pantograph {number} begins or ends less than {settling:.1f} m outside the analysis "
-            "section: transients of the filter reach into the section"
-            for number, position in enumerate(record.position, 1)
-            if position[0] > start - settling or position[-1] < end + settling
-        ]
+        """Warnings on filter transients inside the analysis section."""
+        return [] if self.signals is None else edge_warnings(self.signals.pantographs, self.signals.record.speed)
 
     def _signals(self, record: Record) -> RecordSignals:
         return RecordSignals(record, self.case.file.filter.low_pass, self.case.line.geometry.supports)

@@ -84,7 +84,7 @@ def grade_evaluation(evaluation: CaseEvaluation, lowest_trust: Trust) -> CaseRes
         quantities=key_by_owner(select_finite(values.evaluation.values)),
         skipped=key_by_owner(values.evaluation.skipped),
         spread=key_by_owner(values.spread),
-        traces={} if signals is None else build_pantograph_traces(signals, supports),
+        traces={} if signals is None else build_pantograph_traces(signals.pantographs, supports),
         uplift=[] if signals is None else build_uplift_traces(signals),
         charts=list(delivered.study.charts),
         tables=list(delivered.study.tables),

@@ -26,7 +26,7 @@ from pantocheck.conformance.results.results_format import (
     RunFacts,
     SystemIdentity,
 )
-from pantocheck.conformance.results.traces import build_measured_traces
+from pantocheck.conformance.results.traces import build_pantograph_traces
 
 
 def assess_record(
@@ -61,7 +61,7 @@ def assess_record(
     """
     _check_pair(subject, measured, profile)
     grading = RuleGrading(subject, measured, trust)
-    criteria, omitted = grading.grade_profile(profile, limits)
+    criteria = grading.grade_profile(profile, limits)
     records = [record for record in (subject, measured) if record is not None]
     digest = join_digests(subject.digest, measured.digest if measured else "", profile.model_dump_json())
     reason = "the consistency checks need a case, and a profile has none"
@@ -79,7 +79,7 @@ def assess_record(
         verdict=judge_case((criterion.verdict for criterion in criteria), record),
         reason=None,
         notes=[*_name_sources(records, "notes"), *([profile.note.strip()] if profile.note else [])],
-        warnings=[*_name_sources(records, "warnings"), *omitted, *find_unvalidated(subject.values)],
+        warnings=[*_name_sources(records, "warnings"), *find_unvalidated(subject.values)],
         inputs=[group for record in records for group in record.inputs],
         input_digest=f"sha256:{digest}",
         limits_digest=json_digest([rules_digest(profile), limits_digest(limits)]),
@@ -97,7 +97,9 @@ def assess_record(
         run=_run_facts(subject, profile),
         traces={}
         if subject.prepared is None
-        else build_measured_traces(subject.prepared, getattr(subject.header, "support_position_m", None) or ()),
+        else build_pantograph_traces(
+            subject.prepared.pantographs, getattr(subject.header, "support_position_m", None) or ()
+        ),
         uplift=[],
     )
     system = SystemIdentity(name=subject.system.name, version=subject.system.version, kind="record")

@@ -35,31 +35,18 @@ class RuleGrading:
     measured: AssessedRecord | None
     trust: Trust
 
-    def grade_profile(self, profile: Profile, limits: Sequence[Limit]) -> tuple[list[Criterion], list[str]]:
-        """Grade by the rules of a profile; a user's own limit replaces the rule of the same quantity.
+    def grade_profile(self, profile: Profile, limits: Sequence[Limit]) -> list[Criterion]:
+        """Criteria of the rules of a profile, and of the user's own limits, which replace rules of the same quantity.
 
-        Returns
-        -------
-        criteria : list of Criterion
-            Criteria of the rules and of the user's own limits.
-        omitted : list of str
-            Remarks on optional rules that could not be applied.
+        A rule whose quantity or bound is not known is skipped: a record never decides which rules apply to it.
         """
-        criteria: list[Criterion] = []
-        omitted: list[str] = []
         replaced = {limit.target for limit in limits}
-        for rule, owner in self._pair_owners(profile):
-            if (rule.quantity, owner, None) in replaced:
-                continue
-            try:
-                criteria.append(self._grade_rule(rule, owner))
-            except BoundMissing as reason:
-                if rule.need == "if_known":
-                    omitted.append(f"{rule.quantity} is not graded: {reason}")
-                else:
-                    criteria.append(self._skip_rule(rule, owner, str(reason)))
-        criteria += [grade_limit(limit, self._values, self.trust, self._limit_uncertainty(limit)) for limit in limits]
-        return criteria, omitted
+        rules = [
+            self._grade_rule(rule, owner)
+            for rule, owner in self._pair_owners(profile)
+            if (rule.quantity, owner, None) not in replaced
+        ]
+        return [*rules, *map(self._grade_limit, limits)]
 
     @property
     def _values(self) -> GradedValues:
@@ -82,16 +69,20 @@ class RuleGrading:
             yield from ((rule, owner) for owner in owners)
 
     def _grade_rule(self, rule: Rule, owner: int) -> Criterion:
-        limit = self._resolve_rule(rule, owner)
+        try:
+            return self._grade_limit(self._resolve_rule(rule, owner))
+        except BoundMissing as reason:
+            requirement = Requirement(rule.quantity, owner, None, None, None, rule.trust, source_text(rule.source))
+            value = _finite_value(self.subject, owner, rule.quantity)
+            return build_criterion(requirement, value, str(reason), self.trust)
+
+    def _grade_limit(self, limit: Limit) -> Criterion:
         return grade_limit(limit, self._values, self.trust, self._limit_uncertainty(limit))
 
     def _resolve_rule(self, rule: Rule, owner: int) -> Limit:
         """Limit that follows from a rule for this record."""
         compared = None if self.measured is None else _finite_value(self.measured, owner, rule.quantity)
         lower, upper = resolve_bounds(rule, self.subject.header.speed_km_h, self.subject.line.model_dump(), compared)
-        is_static = QUANTITIES[rule.quantity].scope == "static"
-        if is_static and rule.need == "if_known" and rule.quantity not in self.subject.values.values[LINE]:
-            raise BoundMissing("the record has no such value")
         return Limit(
             quantity=rule.quantity,
             pantograph=owner or None,
@@ -101,10 +92,6 @@ class RuleGrading:
             source=self._source(rule, compared),
             note=rule.note,
         )
-
-    def _skip_rule(self, rule: Rule, owner: int, reason: str) -> Criterion:
-        requirement = Requirement(rule.quantity, owner, None, None, None, rule.trust, source_text(rule.source))
-        return build_criterion(requirement, _finite_value(self.subject, owner, rule.quantity), reason, self.trust)
 
     def _limit_uncertainty(self, limit: Limit) -> float:
         uncertainty = {} if self.measured is None else self.measured.uncertainty.get(limit.owner, {})

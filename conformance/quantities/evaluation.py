@@ -1,6 +1,6 @@
 """Evaluation of signals: the quantities that can be computed, and the reasons why others are not available."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from pantocheck.conformance.quantities.force_quantities import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES
@@ -32,6 +32,13 @@ class Evaluation:
 
     values: dict[int, dict[str, Value]]
     skipped: dict[int, dict[str, str]]
+
+
+def skip_record(reason: str, pantographs: Iterable[int]) -> Evaluation:
+    """Evaluation of a record that supports no quantity, for one reason."""
+    owners = {LINE: LINE_QUANTITIES} | dict.fromkeys(pantographs, PANTOGRAPH_QUANTITIES)
+    skipped = {owner: {quantity.name: reason for quantity in quantities} for owner, quantities in owners.items()}
+    return Evaluation({owner: {} for owner in owners}, skipped)
 
 
 def evaluate_signals(pantographs: Mapping[int, ForceSignals], line: LineSignals) -> Evaluation:

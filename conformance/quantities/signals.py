@@ -1,5 +1,6 @@
 """Signals of a pantograph and of the line, from which quantities are computed."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Protocol
@@ -22,6 +23,9 @@ EXTENDED_CUTOFF_HZ = float(EXTENDED_BAND.high)
 
 SHORTEST_PERIODS = 4
 """Shortest analysis section, in periods of the cut-off frequency: fewer do not make a statistic."""
+
+SETTLING_PERIODS = 2.0
+"""Periods of the cut-off after which the filter transient at the end of a record has decayed."""
 
 SUPPORT_TOLERANCE_M = 0.5
 """Largest distance between the stated and the real position of a support [m].
@@ -186,6 +190,28 @@ class PantographSignals:
         if self.contact_height is None:
             raise ChannelMissing("the record has no contact height")
         return self.contact_height[self.inside]
+
+
+def edge_warnings(pantographs: Mapping[int, PantographSignals], speed: float) -> list[str]:
+    """Warnings on pantographs whose record is too short for the filter to settle outside the analysis section.
+
+    Parameters
+    ----------
+    pantographs : mapping of int to PantographSignals
+        Signals of the pantographs by number from 1.
+    speed : float
+        Speed of the train [m/s].
+    """
+    warnings = []
+    for number, signals in pantographs.items():
+        settling = SETTLING_PERIODS / signals.force.low_pass.cutoff_Hz * speed
+        start, end = signals.section
+        if signals.position[0] > start - settling or signals.position[-1] < end + settling:
+            warnings.append(
+                f"the record of pantograph {number} begins or ends less than {settling:.1f} m outside the analysis "
+                "section: transients of the filter reach into the section"
+            )
+    return warnings
 
 
 @dataclass(frozen=True)

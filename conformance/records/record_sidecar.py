@@ -37,7 +37,7 @@ class RecordSidecar(InputTable):
         Field(
             min_length=2,
             max_length=2,
-            description="start and end of the analysis section [m]; default: that of the case, else the whole record",
+            description="start and end of the analysis section [m]; default: that of the case; required by `assess`",
         ),
     ] = None
     filter_applied_Hz: Annotated[

@@ -1,6 +1,6 @@
 """Curves for the figures of a run: short, rounded series, so that pages stay small and their bytes reproducible."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,8 +16,6 @@ from pantocheck.conformance.quantities.signals import (
 )
 from pantocheck.conformance.quantities.statistics import force_histogram
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
-from pantocheck.conformance.records.measured.pooled_signals import PooledSignals
-from pantocheck.conformance.records.measured.record_preparation import PreparedRecord
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.results.results_format import Histogram, Spectrum, Traces, UpliftTrace
 
@@ -28,18 +26,20 @@ LONG_STEP = 10
 """Up to this ratio of samples to points, every k-th sample shows the force well enough."""
 
 
-def build_pantograph_traces(signals: RecordSignals, supports: Sequence[float]) -> dict[str, Traces]:
+def build_pantograph_traces(
+    pantographs: Mapping[int, PantographSignals], supports: Sequence[float]
+) -> dict[str, Traces]:
     """Force, spectrum and histogram of every pantograph that covers the analysis section.
 
     Parameters
     ----------
-    signals : RecordSignals
-        Signals of a run or a measurement.
+    pantographs : mapping of int to PantographSignals
+        Signals of the pantographs by number from 1.
     supports : sequence of float
         Positions of the supports of the line [m].
     """
     traces = {}
-    for number, pantograph in signals.pantographs.items():
+    for number, pantograph in pantographs.items():
         try:
             position = pantograph.position[pantograph.inside]
         except QuantityUnavailable:
@@ -47,16 +47,6 @@ def build_pantograph_traces(signals: RecordSignals, supports: Sequence[float]) -
         within = _select_supports(supports, pantograph.section)
         traces[str(number)] = _build_traces(pantograph, position, within, _spectrum(pantograph))
     return traces
-
-
-def build_measured_traces(prepared: PreparedRecord, supports: Sequence[float]) -> dict[str, Traces]:
-    """Force, spectrum and histogram of every pantograph of a measured record; see `build_pantograph_traces`."""
-    within = _select_supports(supports, prepared.section)
-    return {
-        str(number): _build_traces(pooled, pooled.position, within, _pooled_spectrum(pooled))
-        for number, pooled in prepared.pantographs.items()
-        if pooled.parts
-    }
 
 
 def build_uplift_traces(signals: RecordSignals) -> list[UpliftTrace]:
@@ -109,11 +99,6 @@ def _spectrum(signals: PantographSignals) -> tuple[RealArray, RealArray]:
     rate = signals.force.rate
     highest = min(EXTENDED_CUTOFF_HZ, HIGHEST_SHARE_OF_RATE * rate, signals.filter_applied_Hz or np.inf)
     return amplitude_spectrum(signals.delivered, rate, highest)
-
-
-def _pooled_spectrum(pooled: PooledSignals) -> tuple[RealArray, RealArray]:
-    """Spectrum of a record in one part; empty for several parts, whose spectral lines differ."""
-    return _spectrum(pooled.parts[0]) if len(pooled.parts) == 1 else (np.empty(0), np.empty(0))
 
 
 def _select_samples(force: RealArray) -> NDArray[np.intp]:

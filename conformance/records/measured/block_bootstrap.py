@@ -15,9 +15,8 @@ from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.bands import Band
 from pantocheck.conformance.quantities.force_quantities import PANTOGRAPH_QUANTITIES
 from pantocheck.conformance.quantities.sampling import Sampling
-from pantocheck.conformance.quantities.signals import ForceSignals
-from pantocheck.conformance.quantities.unavailable import NotResampled, QuantityUnavailable
-from pantocheck.conformance.records.measured.pooled_signals import PooledSignals
+from pantocheck.conformance.quantities.signals import ForceSignals, PantographSignals
+from pantocheck.conformance.quantities.unavailable import NotResampled, QuantityUnavailable, SectionNotCovered
 
 BOOTSTRAP_REPLICATES = 1000
 FEWEST_BLOCKS = 5
@@ -34,7 +33,7 @@ class BlockReplicates(Sampling):
     Parameters
     ----------
     starts : (replicates, blocks) ndarray
-        First sample of each block within the joined parts of the record.
+        First sample of each block within the analysis section.
     length : int
         Number of samples in a block.
     """
@@ -81,7 +80,7 @@ class BlockReplicates(Sampling):
         raise NotResampled(f"the RMS in {band.low:g}-{band.high:g} Hz has no bootstrap uncertainty")
 
 
-def bootstrap_uncertainties(signals: PooledSignals, block_s: float, digest: str) -> dict[str, float]:
+def bootstrap_uncertainties(signals: PantographSignals, block_s: float, digest: str) -> dict[str, float]:
     """Half-widths of the 95 % intervals of the statistics of a record.
 
     For the largest and smallest value, the uncertainty shows how much they depend on single events of the record.
@@ -89,7 +88,7 @@ def bootstrap_uncertainties(signals: PooledSignals, block_s: float, digest: str)
 
     Parameters
     ----------
-    signals : PooledSignals
+    signals : PantographSignals
         Signals of one pantograph.
     block_s : float
         Length of a block: one span [s].
@@ -99,12 +98,12 @@ def bootstrap_uncertainties(signals: PooledSignals, block_s: float, digest: str)
     Returns
     -------
     dict of str to float
-        Half-widths by quantity; empty if the record is too short.
+        Half-widths by quantity; empty if the analysis section is not covered or too short.
     """
-    parts = signals.parts
-    replicates = (
-        _draw_blocks([part.delivered.size for part in parts], block_s * parts[0].force.rate, digest) if parts else None
-    )
+    try:
+        replicates = _draw_blocks(signals.delivered.size, block_s * signals.force.rate, digest)
+    except SectionNotCovered:
+        return {}
     if replicates is None:
         return {}
     # The scatter among n blocks is taken about their own mean: smaller by (n - 1) / n than about the true one.
@@ -119,13 +118,10 @@ def bootstrap_uncertainties(signals: PooledSignals, block_s: float, digest: str)
     return uncertainties
 
 
-def _draw_blocks(sizes: list[int], block: float, digest: str) -> BlockReplicates | None:
+def _draw_blocks(size: int, block: float, digest: str) -> BlockReplicates | None:
     length = max(1, round(block))
-    blocks = round(sum(sizes) / length)
-    firsts = np.cumsum([0, *sizes[:-1]])
-    # A block lies within one part, because the samples of both sides of a gap do not belong to one span.
-    starts = [first + np.arange(size - length + 1) for first, size in zip(firsts, sizes, strict=True) if size >= length]
-    if blocks < FEWEST_BLOCKS or not starts:
+    blocks = round(size / length)
+    if blocks < FEWEST_BLOCKS:
         return None
     random = np.random.default_rng(int(digest[:16], 16))
-    return BlockReplicates(random.choice(np.concatenate(starts), size=(BOOTSTRAP_REPLICATES, blocks)), length)
+    return BlockReplicates(random.choice(size - length + 1, size=(BOOTSTRAP_REPLICATES, blocks)), length)

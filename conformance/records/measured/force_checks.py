@@ -8,7 +8,7 @@ from scipy.signal import medfilt, welch
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE
-from pantocheck.conformance.records.measured.pooled_signals import PooledSignals
+from pantocheck.conformance.quantities.signals import PantographSignals
 
 FILTERED_RATIO = 0.08
 """RMS at 30-50 Hz over RMS at 5-20 Hz below which a force counts as low-passed, whatever its sidecar states.
@@ -45,48 +45,41 @@ def find_outliers(force: RealArray) -> NDArray[np.intp]:
     return np.flatnonzero(inner > max(DEVIATIONS * deviation, SMALLEST_DISTANCE_N)) + NEIGHBOURS // 2
 
 
-def detect_filtered(pooled: PooledSignals, name: str) -> tuple[PooledSignals, list[str]]:
+def detect_filtered(signals: PantographSignals, name: str) -> tuple[PantographSignals, list[str]]:
     """Detect a filter of the measuring chain that the sidecar does not state.
 
     Parameters
     ----------
-    pooled : PooledSignals
-        Signals of one pantograph.
+    signals : PantographSignals
+        Signals of one pantograph, which cover the analysis section.
     name : str
         Name of the pantograph in messages.
 
     Returns
     -------
-    pooled : PooledSignals
+    signals : PantographSignals
         Signals with the filter that was applied.
     warnings : list of str
         A warning if an unstated filter was detected.
     """
-    if pooled.filter_applied_Hz is not None:
-        return pooled, []
-    channel = pooled.parts[0].force
-    if channel.rate * HIGHEST_SHARE_OF_RATE < 50:
-        return pooled, []
-    upper, inner = (_leakage_free_rms(pooled, low, high) for low, high in ((30, 50), (5, 20)))
+    channel = signals.force
+    if channel.filter_applied_Hz is not None or channel.rate * HIGHEST_SHARE_OF_RATE < 50:
+        return signals, []
+    upper, inner = (_leakage_free_rms(signals, low, high) for low, high in ((30, 50), (5, 20)))
     # Without content at 5-20 Hz there is no reference.
-    if inner <= 1e-3 * float(pooled.delivered.std()) or upper > FILTERED_RATIO * inner:
-        return pooled, []
+    if inner <= 1e-3 * float(signals.delivered.std()) or upper > FILTERED_RATIO * inner:
+        return signals, []
     cutoff = channel.low_pass.cutoff_Hz
     warning = (
         f"the force of {name} has no content at 30-50 Hz ({upper:.2g} N, {inner:.3g} N at 5-20 Hz): it is taken as "
         f"filtered at {cutoff:g} Hz by the measuring chain; values above that are skipped"
     )
-    parts = tuple(replace(part, force=replace(part.force, filter_applied_Hz=cutoff)) for part in pooled.parts)
-    return replace(pooled, parts=parts), [warning]
+    return replace(signals, force=replace(channel, filter_applied_Hz=cutoff)), [warning]
 
 
-def _leakage_free_rms(pooled: PooledSignals, low: float, high: float) -> float:
+def _leakage_free_rms(signals: PantographSignals, low: float, high: float) -> float:
     """RMS in a band [N] through a Hann window, so that the ends of a section do not appear as content."""
-    power, samples = 0.0, 0
-    for part in pooled.parts:
-        rate, force = part.force.rate, part.delivered
-        frequency, density = welch(force, rate, nperseg=min(force.size, round(2 * rate)))
-        inside = (frequency >= low) & (frequency <= high)
-        power += force.size * float(density[inside].sum() * frequency[1])
-        samples += force.size
-    return float(np.sqrt(power / samples))
+    rate, force = signals.force.rate, signals.delivered
+    frequency, density = welch(force, rate, nperseg=min(force.size, round(2 * rate)))
+    inside = (frequency >= low) & (frequency <= high)
+    return float(np.sqrt(density[inside].sum() * frequency[1]))

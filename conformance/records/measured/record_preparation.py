@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.filters import LowPass
-from pantocheck.conformance.quantities.signals import ForceChannel, LineSignals, PantographSignals
+from pantocheck.conformance.quantities.signals import ForceChannel, LineSignals, PantographSignals, edge_warnings
+from pantocheck.conformance.quantities.unavailable import SectionNotCovered
 from pantocheck.conformance.records.measured.force_checks import detect_filtered, find_outliers
-from pantocheck.conformance.records.measured.pooled_signals import PooledSignals
 from pantocheck.conformance.records.measured.sample_positions import PlacedSamples, missing_share, place_samples
 from pantocheck.conformance.records.measured.usable_sections import (
     SHORTEST_S,
@@ -22,15 +22,6 @@ from pantocheck.conformance.records.record import MAX_SAMPLES, RecordInvalid
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.samples import RecordSamples, analysis_section
 
-SETTLING_PERIODS = 2.0
-"""Periods of the cut-off after which the filter transient at the end of a section has decayed."""
-
-LEAST_COVERED = 0.5
-"""Smallest share of the analysis section that must be evaluated."""
-
-FULLY_COVERED = 0.97
-"""Coverage below this share is reported; the transients at the ends of a record take less."""
-
 
 @dataclass(frozen=True)
 class PreparedRecord:
@@ -38,7 +29,7 @@ class PreparedRecord:
 
     Parameters
     ----------
-    pantographs : dict of int to PooledSignals
+    pantographs : dict of int to PantographSignals
         Signals by number from 1.
     line : LineSignals
         Uplift at the supports.
@@ -47,16 +38,16 @@ class PreparedRecord:
     speed : float
         Mean speed of the steady part, or the nominal speed [m/s].
     section : tuple of float
-        Start and end of the analysis section, cuts included [m].
+        Start and end of the analysis section [m].
     seconds : float
-        Evaluated duration of the first pantograph [s].
+        Evaluated duration of the first pantograph [s]; 0 if it does not cover the analysis section.
     notes : tuple of str
         Remarks on the preparation.
     warnings : tuple of str
         Caveats for the reader of the report.
     """
 
-    pantographs: dict[int, PooledSignals]
+    pantographs: dict[int, PantographSignals]
     line: LineSignals
     rate: float
     speed: float
@@ -80,7 +71,7 @@ class _Settings:
 def prepare_record(
     samples: RecordSamples, sidecar: RecordSidecar, low_pass: LowPass, speed_tolerance_pct: float
 ) -> PreparedRecord:
-    """Cut a record into usable sections, evenly sampled in time.
+    """Select the usable part of a record, evenly sampled in time.
 
     Parameters
     ----------
@@ -91,12 +82,12 @@ def prepare_record(
     low_pass : LowPass
         Filter of the graded force.
     speed_tolerance_pct : float
-        Largest difference from the nominal speed in an evaluated section [%].
+        Largest difference from the nominal speed in the analysis section [%].
 
     Raises
     ------
     RecordInvalid
-        Time or position decreases, or no sample has both.
+        Time or position decreases, no sample has both, the pantographs share no track, or no part is usable.
     """
     placed = place_samples(samples, sidecar)
     samples, time, position = placed.samples, placed.time, placed.position
@@ -104,8 +95,9 @@ def prepare_record(
     if (time[-1] - time[0]) * rate > MAX_SAMPLES:
         raise RecordInvalid("time", f"{time[-1] - time[0]:.4g} s at {rate:.4g} Hz are more than {MAX_SAMPLES} samples")
     nominal = sidecar.speed_km_h / 3.6
-    speed = samples.speed if samples.speed is not None else local_speed(time, position[0])
-    steady = np.abs(speed / nominal - 1) <= speed_tolerance_pct / 100
+    speed = local_speed(time, position[0])
+    recorded = [speed] if samples.speed is None else [speed, samples.speed]
+    steady = np.all([np.abs(values / nominal - 1) <= speed_tolerance_pct / 100 for values in recorded], axis=0)
     warnings = [*placed.warnings]
     if not steady.all():
         warnings.append(
@@ -113,27 +105,31 @@ def prepare_record(
             f"from {sidecar.speed_km_h:g} km/h, first at {position[0][np.argmin(steady)]:.1f} m"
         )
     section = analysis_section(sidecar, position)
+    if not section[0] < section[1]:
+        raise RecordInvalid("position", "the pantographs share no track: there is no analysis section")
     settings = _Settings(rate, section, low_pass, sidecar.low_passed_Hz, steady)
     pantographs = {}
     for row in range(samples.force.shape[0]):
         pantographs[row + 1], remarks = _prepare_pantograph(placed, row, settings)
         warnings += remarks
     line, remarks = _prepare_line(samples, section, float(position[:, -1].min()))
-    first = pantographs[1]
+    mean_speed = float(recorded[-1][steady].mean())
+    seconds = _duration(pantographs[1])
+    length = f"Evaluated: {seconds:.4g} s, about {seconds * nominal / 1000:.3g} km of line."
     return PreparedRecord(
         pantographs=pantographs,
         line=line,
         rate=rate,
-        speed=float(speed[steady].mean()) if steady.any() else nominal,
+        speed=mean_speed,
         section=section,
-        seconds=first.seconds,
-        notes=(*_resampling_notes(placed, rate), *_length_note(first, nominal)),
-        warnings=(*warnings, *remarks),
+        seconds=seconds,
+        notes=(*_resampling_notes(placed, rate), *([length] if seconds else [])),
+        warnings=(*warnings, *edge_warnings(pantographs, mean_speed), *remarks),
     )
 
 
-def _prepare_pantograph(placed: PlacedSamples, row: int, settings: _Settings) -> tuple[PooledSignals, list[str]]:
-    """Signals of one pantograph over the usable sections of its record, and warnings."""
+def _prepare_pantograph(placed: PlacedSamples, row: int, settings: _Settings) -> tuple[PantographSignals, list[str]]:
+    """Signals of one pantograph over the usable part of its record, and warnings."""
     name, force, position = f"pantograph {row + 1}", placed.samples.force[row], placed.position[row]
     heights = placed.samples.contact_height
     present = np.isfinite(force)
@@ -143,44 +139,36 @@ def _prepare_pantograph(placed: PlacedSamples, row: int, settings: _Settings) ->
             f"{missing_share(~present)} of the force of {name} is missing, first at {position[~present][0]:.1f} m"
         )
     warnings += _outlier_warnings(force[present], position[present], name)
-    sections = find_usable_sections(placed.time, present & settings.steady)
-    parts = []
-    for indices in sections:
-        channels = UsableSection(position[indices], force[indices], None if heights is None else heights[row][indices])
-        parts += _cut_transients(resample_section(placed.time[indices], channels, settings.rate), settings)
-    if len(sections) > 1:
-        warnings.append(f"{name} is evaluated over {len(parts)} sections between gaps, each filtered on its own")
-    start, end = settings.section
-    extent = f"{start:.6g} m to {end:.6g} m"
+    parts = find_usable_sections(placed.time, present & settings.steady)
     if not parts:
-        reason = f"no section of {SHORTEST_S:g} s inside {extent} is without gaps and at the nominal speed"
-        return PooledSignals((), reason), warnings
-    covered = sum(part.section[1] - part.section[0] for part in parts) / (end - start)
-    if covered < LEAST_COVERED:
-        reason = (
-            f"only {100 * covered:.2g} % of {extent} can be evaluated: "
-            "set evaluated_m to a section that the record covers"
+        raise RecordInvalid("force", f"no {SHORTEST_S:g} s of {name} are without gaps and at the nominal speed")
+    indices = max(parts, key=lambda part: _overlap(position[part], settings.section))
+    if len(parts) > 1:
+        warnings.append(
+            f"the record of {name} has {len(parts)} usable parts between gaps; that from {position[indices[0]]:.1f} m "
+            f"to {position[indices[-1]]:.1f} m is evaluated"
         )
-        return PooledSignals((), reason), warnings
-    if covered < FULLY_COVERED:
-        warnings.append(f"{name} is evaluated over {100 * covered:.3g} % of the analysis section")
-    pooled, remarks = detect_filtered(PooledSignals(tuple(parts)), name)
-    return pooled, [*warnings, *remarks]
+    channels = UsableSection(position[indices], force[indices], None if heights is None else heights[row][indices])
+    part = resample_section(placed.time[indices], channels, settings.rate)
+    channel = ForceChannel(part.force, settings.rate, settings.low_pass, settings.filter_applied_Hz)
+    signals = PantographSignals(part.position, channel, settings.section, part.height)
+    if _duration(signals):
+        signals, remarks = detect_filtered(signals, name)
+        warnings += remarks
+    return signals, warnings
 
 
-def _cut_transients(usable: UsableSection, settings: _Settings) -> list[PantographSignals]:
-    """Signals of a usable section, evaluated away from the filter transients at its ends; empty if too short."""
-    settling = round(SETTLING_PERIODS / settings.low_pass.cutoff_Hz * settings.rate)
-    position = usable.position
-    if position.size <= 2 * settling + 2:
-        return []
-    start = max(settings.section[0], float(position[settling]))
-    end = min(settings.section[1], float(position[-1 - settling]))
-    inside = (position >= start - 1e-9) & (position < end - 1e-9)
-    if inside.sum() < SHORTEST_S * settings.rate:
-        return []
-    force = ForceChannel(usable.force, settings.rate, settings.low_pass, settings.filter_applied_Hz)
-    return [PantographSignals(position, force, (start, end), usable.height)]
+def _overlap(position: RealArray, section: tuple[float, float]) -> float:
+    """Length of the analysis section that a part of a record covers [m]; negative at a distance from it."""
+    return min(float(position[-1]), section[1]) - max(float(position[0]), section[0])
+
+
+def _duration(signals: PantographSignals) -> float:
+    """Evaluated duration [s]; 0 if the analysis section is not covered."""
+    try:
+        return signals.delivered.size / signals.force.rate
+    except SectionNotCovered:
+        return 0.0
 
 
 def _outlier_warnings(force: RealArray, position: RealArray, name: str) -> list[str]:
@@ -215,9 +203,3 @@ def _resampling_notes(placed: PlacedSamples, rate: float) -> list[str]:
     if np.abs(np.diff(placed.time) * rate - 1).max() > 0.02:
         return [f"The record was not evenly sampled; it was resampled to {rate:g} samples per second."]
     return []
-
-
-def _length_note(signals: PooledSignals, speed: float) -> list[str]:
-    if not signals.parts:
-        return []
-    return [f"Evaluated: {signals.seconds:.4g} s, about {signals.seconds * speed / 1000:.3g} km of line."]

@@ -1,4 +1,4 @@
-"""Usable sections of a measured record: without gaps, at the speed of the case, evenly sampled."""
+"""Usable parts of a measured record: without gaps, at the nominal speed, evenly sampled."""
 
 from dataclasses import dataclass
 
@@ -16,7 +16,7 @@ GAP_STEPS = 1.5
 """Distance of two samples, in median steps, from which there is a gap between them."""
 
 SHORTEST_S = 1.0
-"""Shortest usable section [s]: its lowest band, 0-5 Hz, then has a few spectral lines."""
+"""Shortest usable part [s]: its lowest band, 0-5 Hz, then has a few spectral lines."""
 
 SPEED_AVERAGED_S = 1.0
 """Averaging time of the speed [s], so that the jitter of a position sensor is not taken for a change of speed."""

@@ -31,7 +31,7 @@ def record(wave: Any, two_pantograph_case: Case) -> Record:
 
 
 def load(path: Path, record: Record) -> AssessedRecord:
-    return load_assessed_record(write_record(path, record), LINE_TEST, LineTable())
+    return load_assessed_record(write_record(path, record), LINE_TEST, LineTable(span_m=60.0))
 
 
 def test_independent_records_are_compared(record: Record, tmp_path: Path) -> None:

@@ -28,7 +28,7 @@ def signals(**changes: Any) -> RecordSignals:
 
 
 def test_thinned_spectrum_keeps_its_peak() -> None:
-    traces = build_pantograph_traces(signals(), [0.0, 50.0])["1"]
+    traces = build_pantograph_traces(signals().pantographs, [0.0, 50.0])["1"]
     spectrum = traces.spectrum
     assert len(spectrum.frequency_Hz) <= MAX_POINTS
     assert_allclose(max(spectrum.amplitude_N), 10.0, rtol=1e-5)
@@ -39,12 +39,12 @@ def test_thinned_spectrum_keeps_its_peak() -> None:
 
 
 def test_spectrum_ends_where_the_force_was_filtered() -> None:
-    traces = build_pantograph_traces(signals(filter_applied_Hz=20.0), [])["1"]
+    traces = build_pantograph_traces(signals(filter_applied_Hz=20.0).pantographs, [])["1"]
     assert max(traces.spectrum.frequency_Hz) <= 20
 
 
 def test_section_that_is_not_covered_has_no_traces() -> None:
-    assert build_pantograph_traces(signals(evaluated=(0.0, 9000.0)), []) == {}
+    assert build_pantograph_traces(signals(evaluated=(0.0, 9000.0)).pantographs, []) == {}
     assert build_uplift_traces(signals()) == []
 
 

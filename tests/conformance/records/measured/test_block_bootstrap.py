@@ -1,5 +1,7 @@
 """Block bootstrap: its intervals have the stated coverage, and a short record has none."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,17 +9,15 @@ from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.quantities.signals import ForceChannel, PantographSignals
 from pantocheck.conformance.records.measured.block_bootstrap import bootstrap_uncertainties
-from pantocheck.conformance.records.measured.pooled_signals import PooledSignals
 
 RATE, SPEED, SPAN = 100.0, 60.0, 60.0  # a span a second
 DIGEST = "9f" * 32
 
 
-def pooled(force: RealArray, filter_applied_Hz: float | None = None) -> PooledSignals:
+def force_signals(force: RealArray, filter_applied_Hz: float | None = None) -> PantographSignals:
     position = np.arange(force.size) * SPEED / RATE
     channel = ForceChannel(force, RATE, LowPass(), filter_applied_Hz)
-    part = PantographSignals(position, channel, (position[0], position[-1]))
-    return PooledSignals((part,), "")
+    return PantographSignals(position, channel, (position[0], position[-1]))
 
 
 def spans(random: np.random.Generator, count: int) -> RealArray:
@@ -38,7 +38,7 @@ def test_intervals_of_95_percent_cover_the_truth(count: int) -> None:
     random = np.random.default_rng(4)
     hits = np.zeros(2)
     for i in range(400):
-        signals = pooled(spans(random, count), filter_applied_Hz=20.0)
+        signals = force_signals(spans(random, count), filter_applied_Hz=20.0)
         found = bootstrap_uncertainties(signals, SPAN / SPEED, f"{i:064x}"[::-1])
         hits += [
             abs(signals.delivered.mean() - 120) < found["mean_force_N"],
@@ -51,7 +51,7 @@ def test_intervals_of_95_percent_cover_the_truth(count: int) -> None:
 def test_uncertainty_decreases_with_the_root_of_the_length() -> None:
     random = np.random.default_rng(5)
     short, long = (
-        bootstrap_uncertainties(pooled(spans(random, count), filter_applied_Hz=20.0), 1.0, DIGEST)
+        bootstrap_uncertainties(force_signals(spans(random, count), filter_applied_Hz=20.0), 1.0, DIGEST)
         for count in (40, 640)
     )
     for name in ("mean_force_N", "std_force_N", "statistical_min_N", "cov_20"):
@@ -59,7 +59,7 @@ def test_uncertainty_decreases_with_the_root_of_the_length() -> None:
 
 
 def test_same_record_has_the_same_uncertainty_and_another_digest_another() -> None:
-    signals = pooled(spans(np.random.default_rng(6), 50))
+    signals = force_signals(spans(np.random.default_rng(6), 50))
     first = bootstrap_uncertainties(signals, 1.0, DIGEST)
     assert first == bootstrap_uncertainties(signals, 1.0, DIGEST)
     assert first != bootstrap_uncertainties(signals, 1.0, "ab" * 32)
@@ -67,26 +67,8 @@ def test_same_record_has_the_same_uncertainty_and_another_digest_another() -> No
 
 
 def test_short_record_has_no_uncertainty() -> None:
-    assert bootstrap_uncertainties(pooled(spans(np.random.default_rng(7), 4)), 1.0, DIGEST) == {}
-    assert bootstrap_uncertainties(PooledSignals((), "gone"), 1.0, DIGEST) == {}
-
-
-def test_blocks_do_not_cross_a_gap() -> None:
-    """Two halves with means 100 and 140: every block has one of them, so the mean of 2 n blocks is binomial."""
-    halves = [np.full(10_000, level) for level in (100.0, 140.0)]
-    parts = tuple(pooled(half, filter_applied_Hz=20.0).parts[0] for half in halves)
-    found = bootstrap_uncertainties(PooledSignals(parts, ""), 1.0, DIGEST)
-    blocks = sum(part.delivered.size for part in parts) / RATE
-    assert found["mean_force_N"] == pytest.approx(1.96 * 20 / np.sqrt(blocks), rel=0.1)
-    # A block across the gap would bring other extremes than these two.
-    assert found["max_force_N"] == pytest.approx(0, abs=1e-9)
-
-
-def test_bands_of_several_sections_partition_the_variance() -> None:
-    """Two halves with means 100 and 140 N and 7 N rms at 10 Hz: 20 N belong to the lowest band, 7 N to the next."""
-    time = np.arange(10_000) / RATE
-    halves = [level + 7 * np.sqrt(2) * np.sin(2 * np.pi * 10 * time) for level in (100.0, 140.0)]
-    signals = PooledSignals(tuple(pooled(half, filter_applied_Hz=20.0).parts[0] for half in halves), "")
-    assert signals.band(0, 5) == pytest.approx(20, rel=1e-3)
-    assert signals.band(5, 20) == pytest.approx(7, rel=1e-3)
-    assert np.hypot(signals.band(0, 5), signals.band(5, 20)) == pytest.approx(signals.delivered.std(), rel=1e-3)
+    assert bootstrap_uncertainties(force_signals(spans(np.random.default_rng(7), 4)), 1.0, DIGEST) == {}
+    cut_short = replace(
+        force_signals(spans(np.random.default_rng(7), 40)), section=(0.0, 3000.0)
+    )  # 40 spans are 2400 m
+    assert bootstrap_uncertainties(cut_short, 1.0, DIGEST) == {}

@@ -1,6 +1,7 @@
 """Preparation of measured records: cuts, resampling and filter detection, against signals in closed form."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -60,24 +61,24 @@ def test_record_in_other_units_is_prepared_in_si(converted_record: Path, two_pan
     """The first pantograph crosses 150 m to 270 m, so that it covers the analysis section."""
     samples, described, _ = read_samples(converted_record)
     prepared = prepare_record(samples, described.model_copy(update={"evaluated_m": (160.0, 240.0)}), LowPass(), 5.0)
-    (part,) = prepared.pantographs[1].parts
-    assert part.section == pytest.approx((160.0, 240.0))
-    assert_allclose(part.force.delivered, two_pantograph_record.force[0], rtol=1e-12)
+    assert prepared.pantographs[1].section == (160.0, 240.0)
+    assert_allclose(prepared.pantographs[1].force.delivered, two_pantograph_record.force[0], rtol=1e-12)
 
 
-def test_pantographs_that_share_no_track_leave_nothing_to_evaluate() -> None:
+def test_pantographs_that_share_no_track_are_refused() -> None:
     """After 100 m the second pantograph has just reached the start of the first: the section has no length."""
     time = np.arange(129) / 64
     force = np.full((2, 129), 120.0)
-    prepared = ready(RecordSamples(force=force, time=time), speed_km_h=180.0, pantographs=2, spacing_m=[100.0])
-    assert prepared.section == (0.0, 0.0)
-    assert not prepared.pantographs[1].parts
+    with pytest.raises(RecordInvalid, match="the pantographs share no track"):
+        ready(RecordSamples(force=force, time=time), speed_km_h=180.0, pantographs=2, spacing_m=[100.0])
 
 
-def test_whole_record_is_evaluated_away_from_its_ends() -> None:
-    """Two periods of the cut-off, 0.1 s or 6.94 m, are cut at each end."""
-    part = ready(by_time()).pantographs[1].parts[0]
-    assert part.section == pytest.approx((6.94, SPEED * 30 - 6.94), abs=0.2)
+@pytest.mark.parametrize(("run_in", "warned"), [(6.8, True), (7.1, False)])
+def test_filter_transients_inside_the_section_are_reported(run_in: float, warned: bool) -> None:
+    """Two periods of the cut-off at 250 km/h are 0.1 s or 6.94 m."""
+    for section in ([run_in, 2000.0], [10.0, SPEED * 29.998 - run_in]):
+        warnings = ready(by_time(), evaluated_m=section).warnings
+        assert any("begins or ends less than 6.9 m outside" in text for text in warnings) == warned
 
 
 @pytest.mark.parametrize("step", [0.1, 0.25])
@@ -99,37 +100,43 @@ def test_speed_channel_makes_time_from_distance() -> None:
     speed = SPEED * (1 + 0.04 * position / 3000)
     time = 3000 / (0.04 * SPEED) * np.log1p(0.04 * position / 3000)
     force = MEAN + 10 * np.sin(2 * np.pi * 12 * time)
-    part = ready(RecordSamples(force=force[None], position=position[None], speed=speed)).pantographs[1].parts[0]
+    part = ready(RecordSamples(force=force[None], position=position[None], speed=speed)).pantographs[1]
     spectrum = np.abs(np.fft.rfft(part.delivered - part.delivered.mean()))
     assert np.fft.rfftfreq(part.delivered.size, 1 / part.force.rate)[spectrum.argmax()] == pytest.approx(12, abs=0.03)
 
 
-def test_gap_in_time_is_cut_and_both_sides_are_pooled() -> None:
+def skip_reason(found: PreparedRecord, pantograph: int = 1) -> str | None:
+    """Reason why the standard deviation of a pantograph is not available; None if it is."""
+    return evaluate_signals(found.pantographs, LineSignals(found.section)).skipped[pantograph].get("std_force_N")
+
+
+def test_section_with_a_gap_has_no_values() -> None:
+    """A second is missing at 694 m: the longer section holds the gap, the shorter one ends before it."""
     samples = by_time()
-    kept = (samples.time < 10) | (samples.time > 11)
-    found = ready(samples.select(kept))
-    assert len(found.pantographs[1].parts) == 2
-    assert_allclose(values(found)["std_force_N"], values(ready(samples))["std_force_N"], rtol=0.02)
-    assert found.seconds == pytest.approx(29 - 4 * 0.1, abs=0.02)
-    assert any("2 sections between gaps" in text for text in found.warnings)
+    holed = samples.select((samples.time < 10) | (samples.time > 11))
+    found = ready(holed, evaluated_m=[10.0, 2000.0])
+    assert "the analysis section is 10 m to 2000 m" in (skip_reason(found) or "")
+    assert found.seconds == 0
+    assert any("2 usable parts between gaps; that from 764.0 m to 2083.2 m" in text for text in found.warnings)
+    before = ready(holed, evaluated_m=[60.0, 660.0])
+    assert values(before)["mean_force_N"] == values(ready(samples, evaluated_m=[60.0, 660.0]))["mean_force_N"]
 
 
-def test_missing_values_are_a_gap_and_two_of_them_are_bridged() -> None:
+def test_gap_of_a_hundredth_of_a_second_is_bridged_and_a_longer_one_is_not() -> None:
     samples = by_time()
     force = samples.force.copy()
     force[0, 5000:5003] = np.nan  # 6 ms
-    bridged = ready(RecordSamples(force=force, time=samples.time, position=samples.position))
-    assert len(bridged.pantographs[1].parts) == 1
+    bridged = ready(RecordSamples(force=force, time=samples.time, position=samples.position), evaluated_m=[10, 2000])
+    assert skip_reason(bridged) is None
     assert any("of pantograph 1 is missing, first at 694.4 m" in text for text in bridged.warnings)
-    force[0, 5000:5400] = np.nan
-    cut = ready(RecordSamples(force=force, time=samples.time, position=samples.position))
-    assert len(cut.pantographs[1].parts) == 2
-    assert np.isfinite(values(cut)["std_force_N"])
+    force[0, 5000:5010] = np.nan  # 20 ms
+    cut = ready(RecordSamples(force=force, time=samples.time, position=samples.position), evaluated_m=[10, 2000])
+    assert skip_reason(cut) is not None
 
 
-@pytest.mark.parametrize(("missing", "sections"), [(1, 1), (4, 1), (6, 2), (12, 2), (24, 2)])
+@pytest.mark.parametrize(("missing", "covered"), [(1, True), (4, True), (6, False), (12, False), (24, False)])
 @pytest.mark.parametrize("lost", [False, True])
-def test_gap_of_the_rear_pantograph_is_bridged_up_to_ten_milliseconds(missing: int, sections: int, lost: bool) -> None:
+def test_gap_of_the_rear_pantograph_is_bridged_up_to_ten_milliseconds(missing: int, covered: bool, lost: bool) -> None:
     """At 500 Hz a gap of k samples lasts 2 k ms; 12 ms or more could hide a peak below 20 Hz.
 
     Where the force of the rear alone is missing, the front has no gap. Where the samples are lost, both have one.
@@ -143,24 +150,33 @@ def test_gap_of_the_rear_pantograph_is_bridged_up_to_ten_milliseconds(missing: i
     else:
         force[1, gap] = np.nan
         two = RecordSamples(force, samples.time, position=samples.position)
-    found = ready(two, pantographs=2, spacing_m=[200.0])
-    parts = [len(found.pantographs[number].parts) for number in (1, 2)]
-    assert parts == [sections if lost else 1, sections]
-    assert any("pantograph 2 is evaluated over 2 sections" in text for text in found.warnings) is (sections == 2)
+    found = ready(two, pantographs=2, spacing_m=[200.0], evaluated_m=[10.0, 1100.0])
+    reasons = [skip_reason(found, number) for number in (1, 2)]
+    assert [reason is None for reason in reasons] == [covered or not lost, covered]
+    assert any("the record of pantograph 2 has 2 usable parts" in text for text in found.warnings) is not covered
 
 
-def test_change_of_speed_is_cut() -> None:
-    """Half of the record runs 10 % too slow: it is cut, with a warning."""
+def test_section_with_a_change_of_speed_has_no_values() -> None:
+    """The second half of the record, from 2083 m, runs 10 % too slow."""
     time = np.arange(0, 60, 0.002)
     position = np.where(time < 30, SPEED * time, SPEED * 30 + 0.9 * SPEED * (time - 30))
     samples = RecordSamples(force=force_at(position)[None], time=time, position=position[None])
-    found = ready(samples)
-    assert found.seconds == pytest.approx(29.8, abs=0.3)
+    found = ready(samples, evaluated_m=[10.0, 3000.0])
+    assert skip_reason(found) is not None
     assert any("50 % of the record was cut" in text and "from 250 km/h" in text for text in found.warnings)
-    nothing = ready(samples, speed_km_h=300.0)
-    assert nothing.pantographs[1].parts == ()
-    skipped = evaluate_signals(nothing.pantographs, LineSignals(nothing.section)).skipped[1]
-    assert "at the nominal speed" in skipped["std_force_N"]
+    assert skip_reason(ready(samples, evaluated_m=[10.0, 2000.0])) is None
+    with pytest.raises(RecordInvalid, match="at the nominal speed"):
+        ready(samples, speed_km_h=300.0)
+
+
+def test_speed_channel_and_positions_must_both_be_steady() -> None:
+    """One of them shows a train that is 10 % slower from 1042 m on."""
+    samples = by_time()
+    slow = np.where(samples.time < 15, SPEED, 0.9 * SPEED)
+    position = np.concatenate([[0.0], np.cumsum(slow)[:-1] * 0.002])
+    steady = np.full(samples.time.size, SPEED)
+    for changed in ({"speed": slow}, {"speed": steady, "position": position[None]}):
+        assert skip_reason(ready(replace(samples, **changed), evaluated_m=[10.0, 1500.0])) is not None
 
 
 @pytest.mark.parametrize("stated", [True, False])
@@ -213,7 +229,7 @@ def test_rear_pantograph_is_placed_by_its_spacing() -> None:
         np.vstack([samples.force, force_at(samples.position - 200.0)]), samples.time, None, samples.position
     )
     found = ready(two, pantographs=2, spacing_m=[200.0])
-    assert found.pantographs[2].parts[0].position[0] == pytest.approx(-200.0)
+    assert found.pantographs[2].position[0] == pytest.approx(-200.0)
     assert found.section == pytest.approx((0.0, SPEED * 29.998 - 200), abs=0.1)
 
 
@@ -242,18 +258,18 @@ def test_odometer_that_moves_in_steps_is_smoothed() -> None:
     """A counter of 0.5 m steps, sampled every 0.14 m: the position grows evenly in between, the statistics stay."""
     samples = by_time()
     stepped = np.floor(samples.position * 2) / 2
-    found = ready(RecordSamples(samples.force, samples.time, position=stepped))
-    assert np.all(np.diff(found.pantographs[1].parts[0].position) > 0)
-    assert_allclose(values(found)["std_force_N"], values(ready(samples))["std_force_N"], rtol=1e-3)
+    section = {"evaluated_m": [10.0, 2000.0]}
+    found = ready(RecordSamples(samples.force, samples.time, position=stepped), **section)
+    assert np.all(np.diff(found.pantographs[1].position) > 0)
+    assert_allclose(values(found)["std_force_N"], values(ready(samples, **section))["std_force_N"], rtol=1e-3)
 
 
-def test_record_that_covers_too_little_has_no_values() -> None:
-    """A truncated record does not represent the line: 30 s are 2083 m."""
-    for asked, share in ((3000.0, "69"), (2083.0, None), (10_000.0, "only 21")):
-        found = ready(by_time(), evaluated_m=[10.0, asked])
-        texts = [*found.warnings, *evaluate_signals(found.pantographs, found.line).skipped[1].values()]
-        assert (len(found.pantographs[1].parts) == 1) == (asked < 5000)
-        assert any(f"{share} % of" in text or f"{share}" in text for text in texts) == (share is not None)
+@pytest.mark.parametrize(
+    ("section", "covered"), [((0.0, 2083.2), True), ((0.0, 2083.5), False), ((-0.3, 2000.0), False), ((0, 4000), False)]
+)
+def test_whole_section_must_be_covered(section: tuple[float, float], covered: bool) -> None:
+    """The record ends at 2083.2 m, a sample is 0.14 m. 99.9 % of a section are as little as half of it."""
+    assert (skip_reason(ready(by_time(), evaluated_m=section)) is None) == covered
 
 
 def test_support_with_missing_uplift_is_not_evaluated() -> None:
