@@ -19,7 +19,7 @@ if TYPE_CHECKING:
         TensionChange,
         Wire,
     )
-    from pantocheck.model.discretised_line import DiscretisedLine, discretise, never_slack
+    from pantocheck.model.discretised_line import DiscretisedLine, discretise, make_droppers_bilateral
     from pantocheck.model.dynamics.passage import History, Passage
     from pantocheck.model.dynamics.simulation import simulate_passage
     from pantocheck.model.failures import SimulationError
@@ -43,7 +43,7 @@ __all__ = [
     "Wire",
     "chain",
     "discretise",
-    "never_slack",
+    "make_droppers_bilateral",
     "simulate_passage",
 ]
 
@@ -55,7 +55,7 @@ _MODULES = {
     "SimulationError": "failures",
     "chain": "pantograph",
     "discretise": "discretised_line",
-    "never_slack": "discretised_line",
+    "make_droppers_bilateral": "discretised_line",
     "simulate_passage": "dynamics.simulation",
 }
 """Modules of the public names that are not defined in `catenary`."""

@@ -77,13 +77,13 @@ def with_damping(line: DiscretisedLine, damping: Mapping[Kind, Rayleigh]) -> Dis
     return replace(line, catenary=catenary, beams=beams, connectors=connectors)
 
 
-def never_slack(line: DiscretisedLine) -> DiscretisedLine:
-    """Let the droppers push as well as pull: unphysical, but it shows the influence of slackening."""
+def make_droppers_bilateral(line: DiscretisedLine) -> DiscretisedLine:
+    """Make the droppers bilateral, so that they push as well as pull: the difference is the effect of slackening."""
     connectors = line.connectors._replace(unilateral=np.zeros_like(line.connectors.unilateral))
     return replace(line, connectors=connectors)
 
 
-def with_viscous_part_kept(line: DiscretisedLine) -> DiscretisedLine:
+def keep_viscous_part(line: DiscretisedLine) -> DiscretisedLine:
     """Let the dashpots of slack droppers act as well: only the elastic force is unilateral.
 
     By default a slack dropper carries no force. In a code that keeps the damping matrix constant and compensates only

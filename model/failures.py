@@ -1,8 +1,8 @@
-"""Failures of the simulator, in the order in which a simulation can meet them."""
+"""Failures of the simulator, in the order of the steps of a simulation."""
 
 
 class SimulationError(Exception):
-    """The simulator cannot give a result that could be trusted.
+    """The simulator has no reliable result.
 
     The cause is in the data of the line or of the pantographs, so the message names the place and the reader can act.
     """

@@ -38,5 +38,6 @@ def _is_writable(folder: Path) -> bool:
 
 
 def _remove(folder: str, process: int) -> None:
+    """Remove the folder at the exit of the process that made it, not of its forks."""
     if os.getpid() == process:
         shutil.rmtree(folder, ignore_errors=True)

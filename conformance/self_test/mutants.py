@@ -17,7 +17,7 @@ from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.simulation.static_quantities import compute_static_quantities
 from pantocheck.conformance.systems.record_folder import open_record_folder
 from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
-from pantocheck.model import discretise, never_slack
+from pantocheck.model import discretise, make_droppers_bilateral
 
 RunMutant = Callable[[Case, Record], Outcome]
 """Outcome of a faulty system on a case, made from the record of the reference simulator."""
@@ -88,7 +88,7 @@ def _coarsen_mesh(element: float) -> RunMutant:
 
 def _run_bilateral_droppers(case: Case, record: Record) -> Outcome:
     discretisation = case.file.discretisation
-    line = never_slack(discretise(build_catenary(case.line), discretisation.element_m))
+    line = make_droppers_bilateral(discretise(build_catenary(case.line), discretisation.element_m))
     passage = run_passage(case, line, discretisation)
     return Delivered(passage.record, compute_static_quantities(case, line), passage.run)
 

@@ -13,7 +13,7 @@ from pantocheck.model.fem.beam import wave_speed
 from pantocheck.model.modal.modes import Modes, compute_modes
 from pantocheck.model.pantograph import apparent_mass
 from pantocheck.model.statics.elasticity import non_uniformity, static_uplift
-from pantocheck.model.statics.string_statics import in_vertical_plane, string_state
+from pantocheck.model.statics.string_statics import compute_string_state, remove_staggers
 from pantocheck.model.statics.wave_factors import amplification_coefficient, doppler_factor, reflection_coefficient
 
 SAMPLES_PER_SPAN = 24
@@ -106,9 +106,9 @@ def _presag(file: LineFile, line: DiscretisedLine) -> tuple[float, ...]:
 def _dropper_lengths(file: LineFile, line: DiscretisedLine) -> dict[str, Value]:
     """Lengths by string statics, with bending, and with bending and stagger, to show each effect."""
     droppers = _droppers(file, line.catenary)
-    lengths = {"dropper_length_m": string_state(line.catenary).dropper_length}
+    lengths = {"dropper_length_m": compute_string_state(line.catenary).dropper_length}
     if line.catenary.has_lateral_field:
-        straight = discretise(in_vertical_plane(line.catenary), _element(line))
+        straight = discretise(remove_staggers(line.catenary), _element(line))
         lengths["dropper_length_bending_m"] = straight.state.dropper_length
         lengths["dropper_length_stagger_m"] = line.state.dropper_length
     else:

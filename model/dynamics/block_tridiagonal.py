@@ -6,12 +6,13 @@ With diagonal blocks A_s and sub-diagonal blocks B_s, block elimination from the
     forward   g_s = f_s - L_s g_(s-1)
     back      x_s = D_s^-1 g_s - L_(s+1)' x_(s+1)
 
-The same elimination runs from the right. Both meet at the middle station m of the stretch that is solved:
+The same elimination runs from the right. Both meet at the middle station m of the part that is solved:
 
     0 -> 1 -> ... -> m <- ... <- S-2 <- S-1        (D_m^left + D_m^right - A_m) x_m = f_m - both contributions
 
-The two chains are independent, which keeps the processor twice as busy as one chain. With both sets of factors at hand
-they can meet at any station, so that any stretch of the line (`active_window`) is solved with the same factors.
+The two eliminations are independent, so that the processor computes them at the same time. Both sets of factors are
+stored for all stations: the eliminations can meet at any station, and any part of the line (`active_window`) is solved
+with the same factors.
 """
 
 from typing import NamedTuple
@@ -33,7 +34,7 @@ class Factor(NamedTuple):
     inverse : (2, B, S, 3) ndarray
         Entries ww, wr, rr of D_s^-1; zero for fixed unknowns.
     link : (2, B, S, 4) ndarray
-        Entries ww, wr, rw, rr of the factor L that passes the force of station s on to its inward neighbour.
+        Entries ww, wr, rw, rr of the factor L, which transfers the force at station s to its inward neighbour.
     meeting : (B, S, 3) ndarray
         Inverse of the diagonal block where both eliminations meet.
     """
@@ -44,7 +45,22 @@ class Factor(NamedTuple):
 
 
 def factorise_blocks(diagonal: Array, below: Array, free: NDArray[np.bool_]) -> Factor:
-    """Eliminate all rows from both ends; entry s of `below` couples station s to s - 1; both (B, S, 2, 2)."""
+    """Eliminate all rows from both ends.
+
+    Parameters
+    ----------
+    diagonal : (B, S, 2, 2) ndarray
+        Diagonal blocks A_s.
+    below : (B, S, 2, 2) ndarray
+        Sub-diagonal blocks; entry s couples station s to station s - 1.
+    free : (B, S, 2) ndarray of bool
+        Whether deflection and slope can move.
+
+    Returns
+    -------
+    Factor
+        Block factors.
+    """
     rows, stations = diagonal.shape[:2]
     inverse, link = np.zeros((2, rows, stations, 3)), np.zeros((2, rows, stations, 4))
     meeting = np.zeros((rows, stations, 3))
@@ -63,13 +79,13 @@ def _eliminate(diagonal: Array, coupling: Array, free: NDArray[np.bool_], invers
     _invert(diagonal[:1], free[:1], inverse[:1])
     for s in range(diagonal.shape[0] - 1):
         ww, wr, rr = inverse[s]
-        b, l = coupling[s], link[s]  # noqa: E741
+        B, L = coupling[s], link[s]
         for i in range(2):
-            l[2 * i] = b[i, 0] * ww + b[i, 1] * wr
-            l[2 * i + 1] = b[i, 0] * wr + b[i, 1] * rr
+            L[2 * i] = B[i, 0] * ww + B[i, 1] * wr
+            L[2 * i + 1] = B[i, 0] * wr + B[i, 1] * rr
         for i in range(2):
             for j in range(2):
-                diagonal[s + 1, i, j] -= l[2 * i] * b[j, 0] + l[2 * i + 1] * b[j, 1]
+                diagonal[s + 1, i, j] -= L[2 * i] * B[j, 0] + L[2 * i + 1] * B[j, 1]
         _invert(diagonal[s + 1 : s + 2], free[s + 1 : s + 2], inverse[s + 1 : s + 2])
 
 
@@ -86,9 +102,16 @@ def _invert(blocks: Array, free: NDArray[np.bool_], inverse: Array) -> None:
 
 @njit(cache=True)
 def solve_line(factor: Factor, first: int, last: int, w: Array, r: Array) -> None:
-    """Solve A x = f in place for the stations `first` to `last` of all rows; f is zero and x negligible outside.
+    """Solve A x = f in place for a range of stations of all rows; f is zero and x negligible outside.
 
-    `w`, `r`, (B, S): on entry forces and moments, on return accelerations of deflection and slope.
+    Parameters
+    ----------
+    factor : Factor
+        Block factors of A.
+    first, last : int
+        First and last station.
+    w, r : (B, S) ndarray
+        On entry forces and moments [N, N m], on return accelerations of deflection and slope [m/s2, 1/s2].
     """
     for b in range(w.shape[0]):
         solve_row(factor, b, first, w[b, first : last + 1], r[b, first : last + 1])
@@ -98,31 +121,41 @@ def solve_line(factor: Factor, first: int, last: int, w: Array, r: Array) -> Non
 def solve_row(factor: Factor, row: int, first: int, w: Array, r: Array) -> None:
     """Solve one row as in `solve_line`: eliminate from both ends to the middle, then substitute back.
 
-    Both chains are counted from the ends inwards. They stay in registers and do not wait for each other.
+    Parameters
+    ----------
+    factor : Factor
+        Block factors of A.
+    row : int
+        Index of the row.
+    first : int
+        First station.
+    w, r : (n,) ndarray
+        Forces and moments at n stations, replaced by accelerations as in `solve_line`.
     """
     n = w.size
     middle = n // 2
-    pairs, stretch = n - 1 - middle, slice(first, first + n)
-    # An even number of stations leaves one more on the left: it comes first on the way in and last on the way back.
+    pairs, stations = n - 1 - middle, slice(first, first + n)
+    # Both eliminations are counted from the ends inwards. An even number of stations leaves one more on the left, which
+    # is eliminated first and substituted last.
     extra = middle - pairs
-    left_inverse = factor.inverse[0, row, stretch][extra:middle]
-    left_link = factor.link[0, row, stretch][extra:middle]
-    right_inverse = factor.inverse[1, row, stretch][:middle:-1]
-    right_link = factor.link[1, row, stretch][:middle:-1]
+    left_inverse = factor.inverse[0, row, stations][extra:middle]
+    left_link = factor.link[0, row, stations][extra:middle]
+    right_inverse = factor.inverse[1, row, stations][:middle:-1]
+    right_link = factor.link[1, row, stations][:middle:-1]
     w_left, r_left, w_right, r_right = w[extra:middle], r[extra:middle], w[:middle:-1], r[:middle:-1]
-    # Force and moment that the two chains pass on.
+    # Force and moment that the two eliminations transfer to the next station.
     left_f, left_m, right_f, right_m = 0.0, 0.0, 0.0, 0.0
     if extra > 0:
-        left_f, left_m = _pass_on(factor.link[0, row, stretch], 0, w[0], r[0])
+        left_f, left_m = _transfer(factor.link[0, row, stations], 0, w[0], r[0])
     for s in range(pairs):
         f0, m0 = w_left[s] - left_f, r_left[s] - left_m
         f1, m1 = w_right[s] - right_f, r_right[s] - right_m
         w_left[s], r_left[s] = f0, m0
         w_right[s], r_right[s] = f1, m1
-        left_f, left_m = _pass_on(left_link, s, f0, m0)
-        right_f, right_m = _pass_on(right_link, s, f1, m1)
+        left_f, left_m = _transfer(left_link, s, f0, m0)
+        right_f, right_m = _transfer(right_link, s, f1, m1)
     middle_f, middle_m = w[middle] - left_f - right_f, r[middle] - left_m - right_m
-    left = right = _multiply(factor.meeting[row, stretch], middle, middle_f, middle_m)
+    left = right = _multiply(factor.meeting[row, stations], middle, middle_f, middle_m)
     w[middle], r[middle] = left
     for back in range(pairs):
         s = pairs - 1 - back
@@ -131,13 +164,13 @@ def solve_row(factor: Factor, row: int, first: int, w: Array, r: Array) -> None:
         w_left[s], r_left[s] = left
         w_right[s], r_right[s] = right
     if extra > 0:
-        inverse, link = factor.inverse[0, row, stretch], factor.link[0, row, stretch]
+        inverse, link = factor.inverse[0, row, stations], factor.link[0, row, stations]
         w[0], r[0] = _substitute(inverse, link, 0, (w[0], r[0]), left)
 
 
 @njit(cache=True)
-def _pass_on(link: Array, s: int, force: float, moment: float) -> ForceMoment:
-    """Share of force and moment at a station that its inward neighbour takes: L g."""
+def _transfer(link: Array, s: int, force: float, moment: float) -> ForceMoment:
+    """Force and moment L g that a station transfers to its inward neighbour."""
     return link[s, 0] * force + link[s, 1] * moment, link[s, 2] * force + link[s, 3] * moment
 
 

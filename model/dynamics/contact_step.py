@@ -93,8 +93,8 @@ def build_contact_arrays(line: DiscretisedLine, factor: Factor, time_step: float
     )
 
 
-def contact_workspace(train: Train) -> ContactWorkspace:
-    """Scratch arrays for the simulation of a train."""
+def allocate_contact_workspace(train: Train) -> ContactWorkspace:
+    """Allocate the scratch arrays for the simulation of a train."""
     pantographs, wires = train.contact.shape
     stiffness, overlap, compliance = (np.zeros((pantographs, wires)) for _ in range(3))
     element, shape = np.zeros(pantographs, dtype=np.int64), np.zeros((pantographs, wires, 4))
@@ -113,8 +113,8 @@ def predict_train(contact: ContactArrays, motion: Motion, train: Train, work: Co
             train.z[0, p, i] += dt * train.z[1, p, i] + dt * dt / 4 * train.z[2, p, i]
             train.z[1, p, i] += dt / 2 * train.z[2, p, i]
         contact_force = 0.0
-        for k in range(train.contact.shape[1]):
-            contact_force += train.contact[p, k]
+        for wire in range(train.contact.shape[1]):
+            contact_force += train.contact[p, wire]
         head, compliance = 0.0, 0.0
         for i in range(unknowns):
             acceleration = 0.0
@@ -128,36 +128,36 @@ def predict_train(contact: ContactArrays, motion: Motion, train: Train, work: Co
             head += train.head[p, i] * train.z[0, p, i]
         work.overlap[p] = head
         work.compliance[p] = compliance
-        for k in range(train.contact.shape[1]):
-            _predict_contact(contact, motion, train, work, p, k)
+        for wire in range(train.contact.shape[1]):
+            _predict_contact(contact, motion, train, work, p, wire)
 
 
 @njit(cache=True)
 def _predict_contact(
-    contact: ContactArrays, motion: Motion, train: Train, work: ContactWorkspace, p: int, k: int
+    contact: ContactArrays, motion: Motion, train: Train, work: ContactWorkspace, p: int, wire: int
 ) -> None:
-    """Complete overlap and compliance of pantograph p, so far those of its head, by those of contact wire k."""
+    """Complete overlap and compliance of pantograph p, so far those of its head, by those of a contact wire."""
     half_width = contact.columns.shape[4] // 2
-    row, n = contact.row[k], work.shape[p, k]
+    row, n = contact.row[wire], work.shape[p, wire]
     e, h, s = _find_element(contact.position, train.position[p])
     # Hermite functions, as in `beam.shape`.
     n[0], n[1] = (1 + 2 * s) * (1 - s) ** 2, h * s * (1 - s) ** 2
     n[2], n[3] = s * s * (3 - 2 * s), h * s * s * (s - 1)
-    wire, compliance = 0.0, work.compliance[p, k]
+    height, compliance = 0.0, work.compliance[p, wire]
     for i in range(2):
-        wire += n[2 * i] * (contact.rest[k, e + i, 0] + motion.w[0, row, e + i])
-        wire += n[2 * i + 1] * (contact.rest[k, e + i, 1] + motion.r[0, row, e + i])
-        motion.w[2, row, e + i] += n[2 * i] * train.contact[p, k]
-        motion.r[2, row, e + i] += n[2 * i + 1] * train.contact[p, k]
+        height += n[2 * i] * (contact.rest[wire, e + i, 0] + motion.w[0, row, e + i])
+        height += n[2 * i + 1] * (contact.rest[wire, e + i, 1] + motion.r[0, row, e + i])
+        motion.w[2, row, e + i] += n[2 * i] * train.contact[p, wire]
+        motion.r[2, row, e + i] += n[2 * i + 1] * train.contact[p, wire]
         for j in range(2):
             for slope in range(2):
-                column = contact.columns[k, e + j, slope]
+                column = contact.columns[wire, e + j, slope]
                 station = half_width + i - j
                 compliance += n[2 * j + slope] * (n[2 * i] * column[0, station] + n[2 * i + 1] * column[1, station])
     work.element[p] = e
-    work.stiffness[p, k] = 1 / (1 / train.contact_stiffness[p] + local_flexibility(contact.bubble[k, e], s))
-    work.overlap[p, k] -= wire
-    work.compliance[p, k] = compliance
+    work.stiffness[p, wire] = 1 / (1 / train.contact_stiffness[p] + local_flexibility(contact.bubble[wire, e], s))
+    work.overlap[p, wire] -= height
+    work.compliance[p, wire] = compliance
 
 
 @njit(cache=True)
@@ -170,22 +170,22 @@ def sweep_contacts(
     largest = 0.0
     for p in range(train.position.size):
         e = work.element[p]
-        for m in range(train.contact.shape[1]):
-            row, n, k = contact.row[m], work.shape[p, m], work.stiffness[p, m]
+        for wire in range(train.contact.shape[1]):
+            row, n, k = contact.row[wire], work.shape[p, wire], work.stiffness[p, wire]
             approach = 0.0
             for i in range(train.z.shape[2]):
                 approach += train.head[p, i] * train.z[2, p, i]
             approach -= n[0] * w[row, e] + n[1] * r[row, e] + n[2] * w[row, e + 1] + n[3] * r[row, e + 1]
             gain = k * dt * dt / 4
-            compliance = gain * work.compliance[p, m]
-            linear = k * work.overlap[p, m] + gain * approach
-            force = max((linear + compliance * train.contact[p, m]) / (1 + compliance), 0.0)
-            change = force - train.contact[p, m]
+            compliance = gain * work.compliance[p, wire]
+            linear = k * work.overlap[p, wire] + gain * approach
+            force = max((linear + compliance * train.contact[p, wire]) / (1 + compliance), 0.0)
+            change = force - train.contact[p, wire]
             if abs(change) > NEGLIGIBLE_FORCE:
-                train.contact[p, m] = force
+                train.contact[p, wire] = force
                 for i in range(2):
                     for j in range(2):
-                        column, value = contact.columns[m, e + i, j], n[2 * i + j] * change
+                        column, value = contact.columns[wire, e + i, j], n[2 * i + j] * change
                         add_column(w[row], r[row], column, e + i, value, window)
                 for i in range(train.z.shape[2]):
                     for j in range(train.z.shape[2]):

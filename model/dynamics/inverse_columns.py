@@ -64,7 +64,21 @@ def inverse_columns(factor: Factor, rows: Indices, stations: Indices, slopes: In
 
 @njit(cache=True)
 def add_column(w: Array, r: Array, column: Array, station: int, value: float, window: Window) -> None:
-    """Add `value` times a local column of the inverse to the accelerations of one row, within the active window."""
+    """Add the response to a force to the accelerations of one row, within the active window.
+
+    Parameters
+    ----------
+    w, r : (S,) ndarray
+        Accelerations of deflection and slope [m/s2, 1/s2].
+    column : (2, 2H) ndarray
+        Local column of the inverse.
+    station : int
+        Loaded station.
+    value : float
+        Force or moment [N, N m].
+    window : Window
+        Active window.
+    """
     half_width = column.shape[1] // 2
     first, last = max(window.first, station - half_width), min(window.last + 1, station + half_width)
     shift = half_width - station

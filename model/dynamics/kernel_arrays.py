@@ -13,14 +13,14 @@ from pantocheck.model.dynamics.connector_step import ConnectorArrays, build_conn
 from pantocheck.model.dynamics.contact_step import (
     ContactArrays,
     ContactWorkspace,
+    allocate_contact_workspace,
     build_contact_arrays,
-    contact_workspace,
 )
 from pantocheck.model.dynamics.effective_matrix import factorise
 from pantocheck.model.dynamics.inverse_columns import column_half_width
 from pantocheck.model.dynamics.modal_step import ModalArrays, build_modal_arrays
 from pantocheck.model.dynamics.train import Train
-from pantocheck.model.dynamics.wire_step import WireArrays, WireWorkspace, build_wire_arrays, wire_workspace
+from pantocheck.model.dynamics.wire_step import WireArrays, WireWorkspace, allocate_wire_workspace, build_wire_arrays
 from pantocheck.model.modal.modal_damping import build_modal_terms
 
 
@@ -72,7 +72,7 @@ class Workspace(NamedTuple):
     wires : WireWorkspace
         Forces of a piece of wire.
     tension : (N,) ndarray
-        Predicted tensions of the connectors, as if all could push [N].
+        Predicted tensions of the connectors, without the condition that a dropper cannot push [N].
     contact : ContactWorkspace
         Predictors of the contacts.
     modal_velocity : (J,) ndarray
@@ -88,7 +88,24 @@ class Workspace(NamedTuple):
 def build_kernel_arrays(
     line: DiscretisedLine, time_step: float, reach: float = math.inf, load: Load | None = None
 ) -> KernelArrays:
-    """Build the arrays of the time step [s] of a line; `reach` [m] as in `Passage`."""
+    """Build the arrays of the time step.
+
+    Parameters
+    ----------
+    line : DiscretisedLine
+        Discretised line.
+    time_step : float
+        Time step [s].
+    reach : float
+        Half-width of the active window as in `Passage` [m].
+    load : Load or None
+        Position of an external load.
+
+    Returns
+    -------
+    KernelArrays
+        Arrays of the line.
+    """
     factor = factorise(line.beams, time_step)
     terms = build_modal_terms(line)
     if terms.damping.size:
@@ -110,6 +127,6 @@ def build_kernel_arrays(
 
 
 def build_workspace(kernel: KernelArrays, train: Train) -> Workspace:
-    """Scratch arrays for one simulation."""
+    """Allocate the scratch arrays for one simulation."""
     tension, modal_velocity = np.zeros(kernel.connectors.station.size), np.zeros(kernel.modal.damping.size)
-    return Workspace(wire_workspace(), tension, contact_workspace(train), modal_velocity)
+    return Workspace(allocate_wire_workspace(), tension, allocate_contact_workspace(train), modal_velocity)

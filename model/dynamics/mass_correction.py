@@ -22,7 +22,7 @@ from pantocheck.model.fem.beams import Beams
 STABLE_SHARE = 1 / 40
 """Largest correction as a share of m h^2 / T, for which the corrected mass of an element is positive definite.
 
-When the ends of an element move apart by one each, they feel at least a tenth of its mass, and 4 T / h of stiffness.
+For ends displaced by +1 and -1, the quadratic form of the mass is at least m h / 10, that of the string 4 T / h.
 """
 
 

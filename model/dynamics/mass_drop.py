@@ -11,7 +11,7 @@ from pantocheck.model.discretised_line import discretise
 from pantocheck.model.dynamics.kernel_arrays import Load, build_kernel_arrays
 from pantocheck.model.dynamics.motion import motion_at_rest
 from pantocheck.model.dynamics.recording import allocate_recording, simulate_steps
-from pantocheck.model.dynamics.train import empty_train
+from pantocheck.model.dynamics.train import build_empty_train
 from pantocheck.model.fem.assembly import point_load
 from pantocheck.model.statics.static_solver import StaticSolver
 
@@ -106,7 +106,7 @@ def simulate_mass_drop(
     kernel = build_kernel_arrays(line, test.time_step, load=load)
     weight = -test.mass * GRAVITY
     hanging = StaticSolver(line).deflection(weight * point_load(line, load.row, test.position))
-    motion, train = motion_at_rest(hanging, kernel.modal.damping.size), empty_train(len(line.contact_rows))
+    motion, train = motion_at_rest(hanging, kernel.modal.damping.size), build_empty_train(len(line.contact_rows))
     before, after = (round(duration / test.time_step) for duration in (test.hanging, test.duration))
     time: Array = test.time_step * np.arange(1 - before, after + 1).astype(np.float64)
     recording = allocate_recording(line, test.sensors, time.size, pantographs=0)

@@ -94,9 +94,10 @@ def _participation(weight: Array, w: Array, r: Array) -> float:
     return total
 
 
-# Free to add up in any order, the sum compiles to vector instructions.
+# The order of the sum is free, so that it compiles to vector instructions.
 @njit(cache=True, fastmath={"reassoc"})
 def _product(a: Array, b: Array) -> float:
+    """Inner product of two arrays."""
     total = 0.0
     for s in range(a.size):
         total += a[s] * b[s]

@@ -51,9 +51,22 @@ def simulate_steps(
     recording: Recording,
     progress: Callable[[float], None] | None = None,
 ) -> None:
-    """Advance line and pantographs, in place, by as many steps as the recording has, and fill it.
+    """Advance line and pantographs, in place, by the steps of a recording, and fill it.
 
-    `load`, (T,), is the external load in each step [N]; `progress` is called with the completed share, 0 to 1.
+    Parameters
+    ----------
+    kernel : KernelArrays
+        Arrays of the line.
+    motion : Motion
+        State of the line.
+    train : Train
+        State of the pantographs.
+    load : (T,) ndarray
+        External load in each step, upwards [N].
+    recording : Recording
+        Recording of T steps.
+    progress : callable or None
+        Called from time to time with the completed share, 0 to 1.
 
     Raises
     ------
@@ -69,7 +82,7 @@ def simulate_steps(
             motion=recording.motion[block],
             slack=recording.slack[block],
         )
-        steps = _march(kernel, motion, train, work, load[block], part)
+        steps = _advance(kernel, motion, train, work, load[block], part)
         if steps < block.stop - first:
             raise DidNotConverge(
                 f"the contact, dropper and damping forces of the time step at"
@@ -80,7 +93,7 @@ def simulate_steps(
 
 
 @njit(cache=True)
-def _march(
+def _advance(
     kernel: KernelArrays, motion: Motion, train: Train, work: Workspace, load: Array, recording: Recording
 ) -> int:
     """Advance by one step per value of the load and record; return the number of completed steps."""
@@ -110,7 +123,7 @@ def _march(
 def allocate_recording(
     line: DiscretisedLine, watched: tuple[tuple[str, float], ...], steps: int, pantographs: int
 ) -> Recording:
-    """Allocate a recording of the vertical motion at the watched stations (wire, position [m])."""
+    """Allocate a recording of a number of steps; the watched stations as in `Passage`."""
     return Recording(
         row=np.array([line.mesh.row_of[wire, "z"] for wire, _ in watched], dtype=np.int64),
         station=np.array([line.mesh.station(position) for _, position in watched], dtype=np.int64),

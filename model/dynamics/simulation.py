@@ -59,6 +59,7 @@ def simulate_passage(
 
 
 def _check_passage(line: DiscretisedLine, passage: Passage) -> None:
+    """Require a pantograph, and positions of all pantographs on the line at all times."""
     if not passage.pantographs:
         raise ImpossiblePassage("the passage has no pantograph; at least one is needed")
     first, last = line.mesh.position[0], line.mesh.position[-1]
@@ -70,7 +71,7 @@ def _check_passage(line: DiscretisedLine, passage: Passage) -> None:
 
 
 def start_motion(line: DiscretisedLine, kernel: KernelArrays, passage: Passage) -> tuple[Motion, Train]:
-    """Line and pantographs at rest, each pantograph pressing with its static force."""
+    """Compute line and pantographs at rest, each pantograph pressing with its static force."""
     share = 1 / len(line.contact_rows)
     load = np.zeros(line.beams.free.size)
     for pantograph, x in zip(passage.pantographs, passage.start, strict=True):

@@ -49,16 +49,27 @@ class Train(NamedTuple):
     contact: Array
 
 
-def empty_train(contact_wires: int) -> Train:
-    """Train without a pantograph, for the free motion of a line."""
+def build_empty_train(contact_wires: int) -> Train:
+    """Build a train without a pantograph, for the free motion of a line."""
     return _allocate(0, 1, contact_wires)
 
 
 def build_train(passage: Passage, wire_height: Array, flexibility: Array) -> Train:
-    """Pantographs at rest, each pressing with its static force.
+    """Build the pantographs at rest, each pressing with its static force.
 
-    `wire_height` [m] is the height of each contact wire above each head under the static forces, and `flexibility`
-    [m/N] its residual flexibility there, (P, W) each.
+    Parameters
+    ----------
+    passage : Passage
+        Pantographs, positions, speed and time step.
+    wire_height : (P, W) ndarray
+        Height of each contact wire above each head under the static forces [m].
+    flexibility : (P, W) ndarray
+        Residual flexibility of each contact wire there [m/N].
+
+    Returns
+    -------
+    Train
+        Pantographs and their state.
     """
     wires = wire_height.shape[1]
     train = _allocate(len(passage.pantographs), max(p.head.size for p in passage.pantographs), wires)
@@ -78,6 +89,7 @@ def build_train(passage: Passage, wire_height: Array, flexibility: Array) -> Tra
 
 
 def _allocate(pantographs: int, unknowns: int, contact_wires: int) -> Train:
+    """Train with zeros in all arrays."""
     return Train(
         position=np.zeros(pantographs),
         speed=np.zeros(1),

@@ -121,7 +121,7 @@ def build_wire_arrays(beams: Beams) -> WireArrays:
     )
 
 
-def wire_workspace() -> WireWorkspace:
+def allocate_wire_workspace() -> WireWorkspace:
     """Scratch arrays for one simulation."""
     arrays = [np.zeros(PIECE + 1) for _ in range(6)]
     return WireWorkspace(arrays[0], arrays[1], ElementForces(*arrays[2:]))
@@ -195,8 +195,8 @@ def apply_wire_forces(wires: WireArrays, motion: Motion, work: WireWorkspace, wi
                 mass, length = wires.damped_mass[b, start:end], wires.length[start:end]
                 _add_antisymmetric_damping(mass, length, v, u, elements)
                 _add_symmetric_damping(mass, length, v, u, elements)
-            _gather(forces.shear[: n + 1], forces.drag[: n + 1], motion.w[2, b, start:end])
-            _gather(forces.bend[: n + 1], forces.tilt[: n + 1], motion.r[2, b, start:end])
+            _add_reactions(forces.shear[: n + 1], forces.drag[: n + 1], motion.w[2, b, start:end])
+            _add_reactions(forces.bend[: n + 1], forces.tilt[: n + 1], motion.r[2, b, start:end])
             for force in forces:
                 force[0] = force[n]
         motion.w[2, b, last] = forces.shear[0] - forces.drag[0]
@@ -255,8 +255,8 @@ def _add_symmetric_damping(mass: Array, length: Array, v: Array, u: Array, force
 
 
 @njit(cache=True)
-def _gather(antisymmetric: Array, symmetric: Array, force: Array) -> None:
-    """Reaction of the elements before and after each station."""
+def _add_reactions(antisymmetric: Array, symmetric: Array, force: Array) -> None:
+    """Store the reactions of the elements before and after each station."""
     a0, a1, s0, s1 = antisymmetric[:-1], antisymmetric[1:], symmetric[:-1], symmetric[1:]
     for s in range(force.size):
         force[s] = (a0[s] - a1[s]) - (s0[s] + s1[s])

@@ -65,6 +65,7 @@ def assemble_matrices(line: DiscretisedLine) -> GlobalMatrices:
     ]
 
     def assemble(wires: list[sp.csr_array], lumped: Array, connector: Array) -> sp.csc_array:
+        """Sum of wires, lumped parts and connectors for the free unknowns."""
         deflections = np.stack([lumped, np.zeros_like(lumped)], axis=-1).ravel()
         uncoupled = (sp.block_diag(wires, format="csr") + sp.diags_array(deflections))[order][:, order]
         coupled = uncoupled + directions @ sp.diags_array(connector) @ directions.T
@@ -96,9 +97,23 @@ def connector_directions(line: DiscretisedLine) -> sp.csr_array:
 
 
 def point_load(line: DiscretisedLine, row: int, position: float) -> Array:
-    """Shape functions of one row at a position [m]: share of every unknown, (unknowns,) [-, m].
+    """Shape functions of one row at a position.
 
     Their product with the unknowns is the deflection there; they are also the nodal forces of a unit force.
+
+    Parameters
+    ----------
+    line : DiscretisedLine
+        Discretised line.
+    row : int
+        Index of the row.
+    position : float
+        Position along the track [m].
+
+    Returns
+    -------
+    (unknowns,) ndarray
+        Value of the shape function of every unknown, in global order [-, m].
     """
     element, length, s = find_element(line.mesh.position, position)
     share = np.zeros(line.beams.free.size)
@@ -108,7 +123,24 @@ def point_load(line: DiscretisedLine, row: int, position: float) -> Array:
 
 
 def contact_stiffness(line: DiscretisedLine, row: int, position: float, penalty: float) -> float:
-    """Stiffness of penalty [N/m] and residual flexibility at a position [m] in series, for independent solvers."""
+    """Contact stiffness at a position, for independent solvers: penalty and residual flexibility in series.
+
+    Parameters
+    ----------
+    line : DiscretisedLine
+        Discretised line.
+    row : int
+        Row of the contact wire.
+    position : float
+        Position along the track [m].
+    penalty : float
+        Stiffness of the penalty contact [N/m].
+
+    Returns
+    -------
+    float
+        Stiffness [N/m].
+    """
     beams = line.beams
     element, length, s = find_element(line.mesh.position, position)
     tension, bending_stiffness = float(beams.tension[row, element]), float(beams.bending_stiffness[row, element])

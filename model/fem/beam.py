@@ -79,7 +79,26 @@ def shape(s: float, h: float) -> Array:
 def pinned_frequencies(
     n: int, length: float, tension: float, bending_stiffness: float, mass_per_length: float
 ) -> Array:
-    """Natural frequencies of a pinned tensioned beam, modes 1 to n in closed form [Hz]; parameters in SI units."""
+    """Natural frequencies of a pinned tensioned beam in closed form.
+
+    Parameters
+    ----------
+    n : int
+        Number of modes.
+    length : float
+        Length [m].
+    tension : float
+        Tension T [N].
+    bending_stiffness : float
+        Bending stiffness EI [N m2].
+    mass_per_length : float
+        Mass per length [kg/m].
+
+    Returns
+    -------
+    (n,) ndarray
+        Frequencies of the modes 1 to n [Hz].
+    """
     k = np.arange(1, n + 1) * np.pi / length
     return np.asarray(np.sqrt((tension * k**2 + bending_stiffness * k**4) / mass_per_length) / (2 * np.pi))
 

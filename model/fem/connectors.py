@@ -89,6 +89,7 @@ def _coefficients(mesh: Mesh, upper: str, lower: str, direction: tuple[float, fl
 
 
 def _droppers(catenary: Catenary, mesh: Mesh, state: InitialState) -> list[Bar]:
+    """Unilateral bars along the droppers."""
     damping_time = catenary.rayleigh(Kind.DROPPER).stiffness_coefficient
     bars = []
     for n, dropper in enumerate(catenary.droppers):
@@ -103,6 +104,7 @@ def _droppers(catenary: Catenary, mesh: Mesh, state: InitialState) -> list[Bar]:
 
 
 def _clamps(catenary: Catenary, mesh: Mesh, state: InitialState) -> list[Bar]:
+    """Rigid bars of the clamps, one per field."""
     directions = [(0.0, 1.0), (1.0, 0.0)] if catenary.has_lateral_field else [(0.0, 1.0)]
     return [
         Bar(

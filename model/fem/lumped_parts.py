@@ -41,6 +41,7 @@ def sum_lumped_parts(catenary: Catenary, mesh: Mesh) -> tuple[Array, Array, Arra
 
 
 def _lumped_parts(catenary: Catenary, mesh: Mesh) -> Iterator[LumpedPart]:
+    """Lumped parts of every field; steady arms have springs and dampers in the vertical field only."""
     for field in dict.fromkeys(mesh.row_field):
         for dropper in catenary.droppers:
             half = dropper.mass / 2

@@ -56,7 +56,22 @@ def find_element(stations: Array, position: float) -> tuple[int, float, float]:
 
 
 def build_mesh(catenary: Catenary, element_length: float, places: tuple[float, ...] = ()) -> Mesh:
-    """Place stations at connectors and requested places [m], and divide the stretches between them into elements."""
+    """Place stations at all connectors and divide the wires between them into elements.
+
+    Parameters
+    ----------
+    catenary : Catenary
+        Description of the line.
+    element_length : float
+        Largest length of an element [m].
+    places : tuple of float
+        Positions of additional stations [m].
+
+    Returns
+    -------
+    Mesh
+        Stations and rows.
+    """
     fields = ("z", "y") if catenary.has_lateral_field else ("z",)
     rows: list[list[Wire]] = []
     for wire in catenary.wires:

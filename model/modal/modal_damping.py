@@ -45,9 +45,9 @@ def build_modal_terms(line: DiscretisedLine) -> ModalTerms:
             if band.from_frequency <= frequency < band.to_frequency:
                 rayleigh = vector @ (matrices.damping @ vector)
                 damping.append(4 * np.pi * band.damping_ratio * frequency - rayleigh)
-                whole = np.zeros(line.beams.free.size)
-                whole[order] = matrices.mass @ vector
-                weight.append(whole.reshape(line.beams.free.shape))
+                momentum = np.zeros(line.beams.free.size)
+                momentum[order] = matrices.mass @ vector
+                weight.append(momentum.reshape(line.beams.free.shape))
     return ModalTerms(np.array(damping), np.array(weight).reshape(-1, *line.beams.free.shape))
 
 
@@ -62,6 +62,11 @@ def apply_modal_bands(ratios: Array, frequency: Array, bands: tuple[ModalBand, .
         Natural frequencies of the modes [Hz].
     bands : tuple of ModalBand
         Bands of the modal damping.
+
+    Returns
+    -------
+    (n,) ndarray
+        Damping ratios [-].
     """
     combined = ratios.copy()
     for band in bands:

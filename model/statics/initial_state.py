@@ -58,7 +58,23 @@ class InitialState:
 def compute_initial_state(
     catenary: Catenary, mesh: Mesh, beams: Beams, stiffness: Stiffness = wire_stiffness
 ) -> InitialState:
-    """Compute the equilibrium of the line under its weight, with its wires as beams (default) or strings.
+    """Compute the equilibrium of the line under its weight.
+
+    Parameters
+    ----------
+    catenary : Catenary
+        Description of the line.
+    mesh : Mesh
+        Stations and rows.
+    beams : Beams
+        Rows of beams.
+    stiffness : callable
+        Stiffness of the wires of one row, as beams (default) or as strings.
+
+    Returns
+    -------
+    InitialState
+        Line at rest.
 
     Raises
     ------
@@ -147,6 +163,7 @@ def _hang_upper_wires(
     free, shape = beams.free[rows].ravel(), np.zeros(len(rows) * stations * 2)
 
     def deflection_index(wire: str, position: float) -> int:
+        """Index of a deflection among the unknowns of the upper wires."""
         return 2 * (rows.index(mesh.row_of[wire, "z"]) * stations + mesh.station(position))
 
     for dropper, force in zip(catenary.droppers, tension, strict=True):

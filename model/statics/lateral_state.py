@@ -55,6 +55,7 @@ def compute_lateral_state(catenary: Catenary, mesh: Mesh, beams: Beams, dropper_
     wires = sp.block_diag([wire_stiffness(beams, row) for row in rows], format="csr")
 
     def deflection_index(wire: str, position: float) -> int:
+        """Index of a deflection among the unknowns of the lateral rows."""
         return 2 * (rows.index(mesh.row_of[wire, "y"]) * stations + mesh.station(position))
 
     bars: list[Dropper | Clamp] = [*catenary.droppers, *catenary.clamps]

@@ -16,7 +16,7 @@ from pantocheck.model.fem.mesh import build_mesh
 from pantocheck.model.statics.initial_state import InitialState, compute_initial_state
 
 
-def string_state(catenary: Catenary) -> InitialState:
+def compute_string_state(catenary: Catenary) -> InitialState:
     """Compute the line at rest with its wires as strings, in the vertical plane.
 
     Parameters
@@ -34,12 +34,12 @@ def string_state(catenary: Catenary) -> InitialState:
     NoInitialState
         The prescribed geometry has no equilibrium.
     """
-    vertical = in_vertical_plane(catenary)
+    vertical = remove_staggers(catenary)
     mesh = build_mesh(vertical, math.inf)
     return compute_initial_state(vertical, mesh, build_beams(vertical, mesh), _string_stiffness)
 
 
-def in_vertical_plane(catenary: Catenary) -> Catenary:
+def remove_staggers(catenary: Catenary) -> Catenary:
     """Remove the staggers of a line."""
     return replace(catenary, wires=tuple(replace(wire, stagger=None) for wire in catenary.wires))
 

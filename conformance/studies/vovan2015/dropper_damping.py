@@ -26,7 +26,7 @@ from pantocheck.conformance.simulation.case_run import build_passage, build_run_
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.studies.vovan2015.paper_tables import build_findings_table, build_provenance_table
 from pantocheck.model import Catenary, DiscretisedLine, Kind, Passage, Rayleigh, discretise, simulate_passage
-from pantocheck.model.discretised_line import with_damping, with_viscous_part_kept
+from pantocheck.model.discretised_line import keep_viscous_part, with_damping
 
 TRANSITION_SHARE = 0.1
 """Relative change of the force at the onset of the transition, and remaining share of the force at its end."""
@@ -34,7 +34,7 @@ SMALLEST_DRAWN_FORCE = 1.0
 """Smaller forces are drawn at this value on the logarithmic scale [N]."""
 LAWS: dict[str, tuple[Callable[[DiscretisedLine], DiscretisedLine], float]] = {
     "slack dropper carries no force": (lambda line: line, 1.0),
-    "only the elastic force is compensated": (with_viscous_part_kept, 0.0),
+    "only the elastic force is compensated": (keep_viscous_part, 0.0),
 }
 """Compensation laws by name: function that gives a line the law, and compensated share of the viscous force."""
 GRADED = "only the elastic force is compensated"

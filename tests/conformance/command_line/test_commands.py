@@ -16,7 +16,7 @@ from typer.testing import CliRunner, Result
 
 from helpers.case_fixtures import EditedCase
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import library_folder, select_cases
+from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.command_line import run_command, self_test_command
 from pantocheck.conformance.command_line.app import COMMANDS, app
 from pantocheck.conformance.command_line.guard import guard_command
@@ -159,15 +159,13 @@ def test_self_test_prints_no_control_characters_of_a_path(tmp_path: Path, monkey
 
 @pytest.mark.parametrize("command", [("show", "--at-rest"), ("show", "--drawing"), ("simulate", "--out")])
 def test_line_without_an_equilibrium_ends_with_one_message_and_exit_code_2(
-    command: tuple[str, str], tmp_path: Path
+    command: tuple[str, str], edited_case: EditedCase, tmp_path: Path
 ) -> None:
     """A pre-sag of 2 m in every span requires droppers in compression: there is no equilibrium."""
-    for name in ("line.toml", "250.toml", "pantograph.toml"):
-        text = (library_folder() / "en50318-2002" / name).read_text()
-        (tmp_path / name).write_text(re.sub(r"presag_m *= .*", f"presag_m = {[2.0] * 9}", text))
+    path = edited_case("line.toml", {"droppers.presag_m": [2.0] * 9})
     name, option = command
     file = () if option == "--at-rest" else (tmp_path / ("line.svg" if name == "show" else "out.csv"),)
-    result = pantocheck(name, tmp_path / "250.toml", option, *file)
+    result = pantocheck(name, path, option, *file)
     assert result.exit_code == 2
     assert "Check the data of the line" in result.output
 

@@ -12,7 +12,7 @@ from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_w
 from pantocheck.model.dynamics.motion import Motion
 from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.simulation import start_motion
-from pantocheck.model.dynamics.train import empty_train
+from pantocheck.model.dynamics.train import build_empty_train
 from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order
 
 
@@ -36,7 +36,7 @@ def test_free_vibration_converges_with_second_order() -> None:
         return shaped[..., 0].copy(), shaped[..., 1].copy()
 
     for time_step in (4e-3, 2e-3, 1e-3):
-        kernel, train = build_kernel_arrays(line, time_step), empty_train(1)
+        kernel, train = build_kernel_arrays(line, time_step), build_empty_train(1)
         initial = np.array([amplitude.sum(axis=1), np.zeros(place.size), -amplitude @ omega**2])
         motion = Motion(*spread(initial), line.connectors.preload.copy(), np.zeros(0), np.zeros(1))
         work = build_workspace(kernel, train)

@@ -12,7 +12,7 @@ from pantocheck.model.discretised_line import DiscretisedLine, discretise
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
 from pantocheck.model.dynamics.motion import Motion, motion_at_rest
 from pantocheck.model.dynamics.newmark import step
-from pantocheck.model.dynamics.train import empty_train
+from pantocheck.model.dynamics.train import build_empty_train
 from pantocheck.model.fem.assembly import (
     assemble_matrices,
     bandwidth_order,
@@ -39,7 +39,7 @@ def free_decay(line: DiscretisedLine, time_step: float, steps: int) -> tuple[Arr
     stiffness, preload = line.connectors.stiffness, line.connectors.preload
     motion = motion_at_rest(StaticSolver(line).deflection(-600.0 * load))
     _accelerate(line, time_step, motion, load)
-    kernel, train = build_kernel_arrays(line, time_step), empty_train(1)
+    kernel, train = build_kernel_arrays(line, time_step), build_empty_train(1)
     work = build_workspace(kernel, train)
     energy, tensions = [], np.zeros((steps, stiffness.size))
     for n in range(steps):

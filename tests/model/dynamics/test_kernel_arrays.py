@@ -11,7 +11,7 @@ from pantocheck.model import Kind, ModalBand, discretise
 from pantocheck.model.dynamics.active_window import max_wave_speed
 from pantocheck.model.dynamics.block_tridiagonal import solve_line
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, build_kernel_arrays, build_workspace
-from pantocheck.model.dynamics.train import empty_train
+from pantocheck.model.dynamics.train import build_empty_train
 
 
 def leaves(arrays: tuple[object, ...]) -> list[Array]:
@@ -53,7 +53,7 @@ def test_modal_damping_makes_the_whole_line_active() -> None:
 def test_workspace_fits_the_kernel_arrays() -> None:
     """One predicted tension per connector, one velocity per mode, no contact without a pantograph."""
     kernel: KernelArrays = build_kernel_arrays(discretise(simple_line(), 1.0), 1e-3)
-    work = build_workspace(kernel, empty_train(1))
+    work = build_workspace(kernel, build_empty_train(1))
     assert work.tension.size == kernel.connectors.station.size == 18
     assert work.modal_velocity.size == 0
     assert work.contact.shape.shape == (0, 1, 4)

@@ -10,7 +10,7 @@ from pantocheck.model.dynamics.motion import Motion
 from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.passage import Passage
 from pantocheck.model.dynamics.simulation import start_motion
-from pantocheck.model.dynamics.train import empty_train
+from pantocheck.model.dynamics.train import build_empty_train
 from pantocheck.model.fem import beam
 from pantocheck.model.pantograph import Pantograph
 
@@ -54,7 +54,7 @@ def test_pulse_follows_the_exact_dispersion_relation(bending_stiffness: float, d
     steps = round(40.0 / SPEED_OF_WAVES / dt)
     at_start, at_end = travelled(line, bending_stiffness, width, centre, np.array([0.0, steps * dt]))
     motion = Motion(at_start[:, :1].copy(), at_start[:, 1:].copy(), np.zeros(0), np.zeros(0), np.zeros(1))
-    train = empty_train(1)
+    train = build_empty_train(1)
     work = build_workspace(kernel, train)
     for _ in range(steps):
         assert step(kernel, motion, train, work)

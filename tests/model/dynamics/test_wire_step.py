@@ -40,7 +40,7 @@ def test_wire_forces_equal_matrix_products() -> None:
     q, v = (np.stack([w[i, 0], r[i, 0]], axis=-1).ravel() for i in range(2))
     alpha, beta = beams.mass_coefficient[0], beams.stiffness_coefficient[0]
     expected = -wire_stiffness(beams, 0) @ (q + beta * v) - alpha * (wire_mass(beams, 0) @ v)
-    wires, work = wire_step.build_wire_arrays(beams), wire_step.wire_workspace()
+    wires, work = wire_step.build_wire_arrays(beams), wire_step.allocate_wire_workspace()
     wire_step.apply_wire_forces(wires, motion, work, Window(0, stations - 1))
     forces = np.stack([w[2, 0], r[2, 0]], axis=-1).ravel()
     np.testing.assert_allclose(forces, expected, rtol=0, atol=1e-13 * np.abs(expected).max())

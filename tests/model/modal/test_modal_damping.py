@@ -9,7 +9,7 @@ from pantocheck.model import DiscretisedLine, Kind, ModalBand, Rayleigh, discret
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
 from pantocheck.model.dynamics.motion import Motion
 from pantocheck.model.dynamics.newmark import step
-from pantocheck.model.dynamics.train import empty_train
+from pantocheck.model.dynamics.train import build_empty_train
 from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, stepping_mass
 from pantocheck.model.modal.modal_damping import build_modal_terms
 from pantocheck.model.modal.modes import compute_modes, damping_ratios
@@ -64,7 +64,7 @@ def test_step_with_modal_damping_equals_the_full_matrix() -> None:
         "nb,nb->n", line.connectors.coefficient, w[0].T[line.connectors.station]
     )
     motion = Motion(w, r, tension, np.zeros(kernel.modal.damping.size), np.zeros(1))
-    train = empty_train(1)
+    train = build_empty_train(1)
     work = build_workspace(kernel, train)
     effective = mass + dt / 2 * damping + dt**2 / 4 * stiffness
     for _ in range(300):

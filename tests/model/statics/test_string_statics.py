@@ -8,7 +8,7 @@ import pytest
 from helpers.lines import simple_line
 from pantocheck.model import Catenary, Clamp, Dropper, Kind, MessengerSupport, TensionChange, Wire, discretise
 from pantocheck.model.catenary import GRAVITY
-from pantocheck.model.statics.string_statics import string_state
+from pantocheck.model.statics.string_statics import compute_string_state
 
 
 def test_string_state_of_a_messenger_with_one_dropper_is_the_closed_form() -> None:
@@ -22,7 +22,7 @@ def test_string_state_of_a_messenger_with_one_dropper_is_the_closed_form() -> No
         droppers=(Dropper(length / 2, "messenger", "contact", stiffness=1e5),),
         messenger_supports=tuple(MessengerSupport(x, "messenger", 1.2, 5e4) for x in (0.0, length)),
     )
-    state = string_state(line)
+    state = compute_string_state(line)
     tension = GRAVITY * 1.35 * length / 2
     assert state.dropper_tension == pytest.approx([tension], rel=1e-12)
     sag = (GRAVITY * 1.07 * length**2 / 8 + tension * length / 4) / upper
@@ -33,7 +33,7 @@ def test_beams_of_small_bending_stiffness_approach_strings() -> None:
     """With EI = 1e-3 N m2 every kink is rounded over an element: the difference halves with its length."""
     catenary = simple_line(3)
     limp = replace(catenary, wires=tuple(replace(wire, bending_stiffness=1e-3) for wire in catenary.wires))
-    strings = string_state(catenary).dropper_length
+    strings = compute_string_state(catenary).dropper_length
     error = [np.abs(discretise(limp, h).state.dropper_length - strings).max() for h in (0.2, 0.1, 0.05)]
     assert error[0] / error[1] == pytest.approx(2.0, rel=0.1)
     assert error[1] / error[2] == pytest.approx(2.0, rel=0.1)
@@ -56,7 +56,7 @@ def test_string_state_balances_a_stitched_messenger_at_its_clamps() -> None:
     )
     clamps = tuple(Clamp(place, "messenger", f"stitch {x:g}", 0.38) for x in supports for place in (x - half, x + half))
     line = replace(base, wires=(base.wires[0], messenger, *stitches), droppers=droppers, clamps=clamps)
-    state = string_state(line)
+    state = compute_string_state(line)
     hung = {d.position: n for d, n in zip(droppers, state.dropper_tension, strict=True)}
     carried = hung[55.0] + hung[65.0] + GRAVITY * 0.31 * 2 * half
     assert state.clamp_force[:2, 1].sum() == pytest.approx(carried, rel=1e-9)

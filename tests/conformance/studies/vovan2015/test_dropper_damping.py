@@ -12,7 +12,7 @@ from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.studies.vovan2015.dropper_damping import find_transition, run_dropper_damping
 from pantocheck.model import Kind, Passage, Rayleigh, chain, discretise, simulate_passage
-from pantocheck.model.discretised_line import DiscretisedLine, with_damping, with_viscous_part_kept
+from pantocheck.model.discretised_line import DiscretisedLine, keep_viscous_part, with_damping
 
 COEFFICIENTS = np.geomspace(1e-6, 1e-1, 51)
 
@@ -85,7 +85,7 @@ def test_both_laws_are_the_same_while_every_dropper_is_taut() -> None:
     """
     line = simple_line(damping={Kind.DROPPER: Rayleigh(stiffness_coefficient=1e-3)})
     mesh = discretise(line, 2.0)
-    kept = with_viscous_part_kept(mesh)
+    kept = keep_viscous_part(mesh)
     assert kept.connectors.damping.sum() == mesh.connectors.damping.sum()
     assert not kept.connectors.unilateral[mesh.connectors.station.size :].any()
     # `with_damping` builds new connectors without the law: it must come before the law.
