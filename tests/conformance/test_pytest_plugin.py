@@ -3,13 +3,17 @@
 import json
 import subprocess
 import sys
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
 from helpers.toml_edit import edit_toml, write_toml
 from helpers.wave_system import Wave
-from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.cases.library import load_case, select_cases
 from pantocheck.conformance.pytest_plugin import collection  # noqa: F401 - once here, or anew in every session below
 from pantocheck.conformance.records.record_writing import write_record
 
@@ -82,6 +86,32 @@ def test_every_criterion_is_an_item_with_a_one_line_reason(pytester: pytest.Pyte
     assert [case["id"] for case in results["cases"]] == ["en50318-2002/250", "en50318-2002/300"]
     assert sum(c["verdict"] == "fail" for case in results["cases"] for c in case["criteria"]) == failed
     assert sorted(path.name for path in (pytester.path / "report").iterdir()) == ["junit.xml", "results.json"]
+
+
+@pytest.mark.parametrize("row", [0, 1])
+def test_failure_of_one_pantograph_fails_its_items_alone(
+    pytester: pytest.Pytester, edited_case: Callable[[str, dict[str, Any]], Path], wave: type[Wave], row: int
+) -> None:
+    """A mean of 119 N lies between 110 N and 120 N, one of 131 N does not; the deviation of 28 N remains."""
+    use = {"model": "pantograph.toml", "uplift_force_N": 120.0, "trust": "secondary", "source": "own"}
+    bounds = {"mean_force_N": (110.0, 120.0), "std_force_N": (26.0, 31.0)}
+    limits = [
+        {"quantity": name, "pantograph": number, "lower": low, "upper": high, "trust": "secondary", "source": "own"}
+        for number in (1, 2)
+        for name, (low, high) in bounds.items()
+    ]
+    path = edited_case("250.toml", {"spacing_m": [150.0], "pantograph": [use, use], "limit": limits})
+    case = load_case(path)
+    record = wave().record(case)
+    raised = replace(record, force=record.force + 12.0 * (np.arange(2) == row)[:, None])
+    write_record(pytester.path / "records" / "train.csv", raised, case.id)
+    write_toml(
+        pytester.path / "conformance.toml", {"cases": [str(path)], "system": "record:records", "formats": ["json"]}
+    )
+    done = session(pytester, "-v", "conformance.toml")
+    verdicts = {f"{number}::mean_force_N": "FAILED" if number == row + 1 else "PASSED" for number in (1, 2)}
+    done.stdout.fnmatch_lines_random(outcomes_250(verdicts | {"1::std_force_N": "PASSED", "2::std_force_N": "PASSED"}))
+    assert (done.parseoutcomes()["failed"], done.parseoutcomes()["passed"]) == (1, 3)
 
 
 def test_ids_select_items_and_options_replace_those_of_the_plan(pytester: pytest.Pytester, plan: Path) -> None:
