@@ -6,6 +6,7 @@ from itertools import pairwise
 from typing import Any
 
 from pantocheck.conformance.grading.case_verdict import Participation, judge_case
+from pantocheck.conformance.grading.near_limit import ValueErrors, near_limit_remarks
 from pantocheck.conformance.grading.verdicts import judge, margin
 from pantocheck.conformance.input_files.trust import limit_counts
 from pantocheck.conformance.quantities.bands import BANDS
@@ -70,7 +71,7 @@ def _check_value(row: dict[str, Any], quantities: dict[str, Any]) -> Iterator[st
 
 
 def _check_grade(row: dict[str, Any], trust: Any) -> Iterator[str]:
-    """Verdict and margin must follow from value, limits and trust."""
+    """Verdict, margin and remarks on a close limit must follow from value, limits, errors and trust."""
     value, lower, upper = row["value"], row["lower"], row["upper"]
     if lower is None and upper is None:
         # Only a rule without a bound for this record, which is skipped, may lack a limit.
@@ -88,6 +89,11 @@ def _check_grade(row: dict[str, Any], trust: Any) -> Iterator[str]:
     expected = None if value is None else margin(value, lower, upper)
     if not _same(row["margin"], expected, EXACT):
         yield f"margin {_format(row['margin'])} stated, {_format(expected)} follows from value and limits"
+    errors = ValueErrors(row["discretisation_error"], row["spread"], row["uncertainty"], row["limit_uncertainty"])
+    remarks = near_limit_remarks(value, (lower, upper), row["unit"], errors)
+    if row["close"] != remarks:
+        stated = len(row["close"])
+        yield f"{stated} remarks on a close limit stated, {len(remarks)} follow from value, limits and errors"
 
 
 def _check_statistics(quantities: dict[str, Any]) -> Iterator[str]:

@@ -90,27 +90,40 @@ def _compare_case(case: CaseResult, earlier: CaseResult | None, drift_pct: float
     source = f"baseline {name}, allowed drift {drift_pct:g} %"
     graded = (_grade_drift(case, key, (old, values.get(key)), drift_pct, source) for key, old in earlier_values.items())
     drifted = [criterion for criterion in graded if criterion.verdict != "pass"]
-    warnings = list(case.warnings)
-    if case.input_digest != earlier.input_digest:
-        warnings.append(f"the inputs of the case have changed since baseline {name}: their digests differ")
     note = (
         f"Compared with baseline {name}: {len(earlier_values)} values, of which {len(drifted)} drifted by more than "
         f"{drift_pct:g} % or are missing."
     )
+    if changes := _list_changes(case, earlier):
+        drifted.append(_skipped_comparison(f"baseline {name} has other {' and '.join(changes)}; renew the baseline"))
     return case.model_copy(
         update={
             "criteria": [*case.criteria, *drifted],
             "notes": [*case.notes, note],
-            "warnings": warnings,
             "verdict": judge_case((criterion.verdict for criterion in (*case.criteria, *drifted)), case.record),
         }
     )
 
 
-def _skip_comparison(case: CaseResult, reason: str) -> CaseResult:
-    """Case with a skipped criterion in place of the comparison, so that it cannot pass without its baseline."""
+def _list_changes(case: CaseResult, earlier: CaseResult) -> list[str]:
+    """Parts of a case that differ from the baseline; for an assessment, the inputs are the graded record itself."""
+    parts = {
+        "inputs": case.profile is None and case.input_digest != earlier.input_digest,
+        "limits": case.limits_digest != earlier.limits_digest,
+        "texts or sources": case.library != earlier.library,
+    }
+    return [name for name, differs in parts.items() if differs]
+
+
+def _skipped_comparison(reason: str) -> Criterion:
+    """Skipped criterion, without which a case could pass by the baseline of another one."""
     requirement = Requirement("baseline", LINE, None, None, None, "primary", "baseline")
-    criteria = [*case.criteria, build_criterion(requirement, None, reason, "primary")]
+    return build_criterion(requirement, None, reason, "primary")
+
+
+def _skip_comparison(case: CaseResult, reason: str) -> CaseResult:
+    """Case with a skipped criterion in place of the comparison."""
+    criteria = [*case.criteria, _skipped_comparison(reason)]
     verdict = judge_case((criterion.verdict for criterion in criteria), case.record)
     return case.model_copy(update={"criteria": criteria, "verdict": verdict})
 

@@ -146,6 +146,7 @@ def build_criterion(
         spread=errors.spread,
         reason=reason,
         uncertainty=errors.uncertainty,
+        limit_uncertainty=errors.limit_uncertainty,
         close=near_limit_remarks(value, (lower, upper), unit, errors),
     )
 

@@ -70,7 +70,8 @@ class Criterion(ResultsPart):
 
     `discretisation_error` is the change when element length and time step are halved. `spread` is the largest change
     when the analysis section is shifted along the line. `uncertainty` is the half-width of the 95 % interval from the
-    length of the record. `close` has a remark on each of these errors that exceeds the distance from the nearer limit.
+    length of the record, `limit_uncertainty` that of a limit from a measured record. `close` has a remark on each of
+    these errors that exceeds the distance from the nearer limit.
     `baseline` is the value of earlier results, if the limits bound the drift from it.
     """
 
@@ -89,6 +90,7 @@ class Criterion(ResultsPart):
     spread: float | None = None
     reason: str | None
     uncertainty: float | None = None
+    limit_uncertainty: float = 0.0
     close: list[str] = []
     baseline: float | None = None
 

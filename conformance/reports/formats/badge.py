@@ -20,11 +20,12 @@ LETTER, MARGIN = 6.6, 8
 
 
 def summarise_verdict(results: dict[str, Any]) -> str:
-    """The verdict with the numbers of passed and of counted criteria."""
+    """Verdict with the numbers of passed and of counted criteria; a modified copy of a library case is named."""
     verdicts = Counter(row["verdict"] for case in results["cases"] for row in case["criteria"])
     counted = sum(count for verdict, count in verdicts.items() if verdict != "info")
     word = read_words()["verdict"][results["verdict"]]["word"].lower()
-    return f"{word} {verdicts['pass']}/{counted}" if counted else word
+    text = f"{word} {verdicts['pass']}/{counted}" if counted else word
+    return f"{text}, modified copy" if any(case["library"] == "modified" for case in results["cases"]) else text
 
 
 def render_badge(results: dict[str, Any]) -> str:

@@ -59,6 +59,16 @@ TAMPERINGS = {
     "margin": (lambda r: row(r).update(margin=row(r)["margin"] + 1e-6), "margin"),
     "margin gone": (lambda r: row(r).update(margin=None), "margin nothing stated"),
     "limit": (lambda r: row(r).update(upper=118.0), "verdict 'pass' stated, 'fail' follows"),
+    "remark on a limit that is not close": (
+        lambda r: row(r).update(close=["lies close to a limit"]),
+        "1 remarks on a close limit stated, 0 follow",
+    ),
+    "another remark on a close limit": (
+        lambda r: row(r).update(spread=1e3, close=["lies far from every limit"]),
+        "1 remarks on a close limit stated, 1 follow",
+    ),
+    "spread beyond the limit without a remark": (lambda r: row(r).update(spread=1e3), "follow from value, limits and"),
+    "uncertain limit without a remark": (lambda r: row(r).update(limit_uncertainty=1e3), "0 remarks on a close limit"),
     "limits crossed": (lambda r: row(r).update(lower=130.0), "above upper limit"),
     "limits gone": (lambda r: row(r).update(lower=None, upper=None), "no limit"),
     "skip of a known value": (lambda r: row(r).update(verdict="skip", value=None, margin=None), "nothing graded"),

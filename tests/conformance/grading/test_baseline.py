@@ -88,11 +88,45 @@ def test_missing_value_is_skipped(results: Results) -> None:
     assert find_discrepancies(compared.to_dict()) == []
 
 
-def test_other_cases_and_changed_inputs_give_warnings(results: Results) -> None:
-    first = results.cases[0]
-    other = results.model_copy(update={"cases": [first.model_copy(update={"input_digest": "sha256:0"})]})
+@pytest.mark.parametrize(
+    ("change", "difference"),
+    [
+        ({"input_digest": "sha256:0"}, "inputs"),
+        ({"limits_digest": "sha256:0"}, "limits"),
+        ({"limits_digest": None}, "limits"),
+        ({"library": "modified"}, "texts or sources"),
+        ({"input_digest": "sha256:0", "limits_digest": "sha256:0"}, "inputs and limits"),
+    ],
+)
+def test_baseline_of_another_case_is_no_pass(results: Results, change: dict[str, Any], difference: str) -> None:
+    """Every value is that of the baseline, and the user accepts published statistics: without the change, a pass."""
+    first, second = results.cases
+    other = results.model_copy(update={"cases": [first.model_copy(update=change), second]})
     compared = compare_with_baseline(results, other, 1.0, "b.json")
-    assert any("inputs of the case have changed" in text for text in compared.cases[0].warnings)
+    finding = compared.cases[0].criteria[-1]
+    assert (finding.quantity, finding.verdict) == ("baseline", "skip")
+    assert finding.reason == f"baseline b.json has other {difference}; renew the baseline"
+    assert [case.verdict for case in compared.cases] == ["skip", "unverified"]
+    assert compared.verdict == "skip"
+    assert find_discrepancies(compared.to_dict()) == []
+
+
+def test_limits_of_the_user_are_not_those_of_the_baseline(results: Results, tmp_path: Path) -> None:
+    base, limits = tmp_path / "b.json", tmp_path / "limits.toml"
+    base.write_bytes(results.to_json())
+    wide = {"quantity": "std_force_N", "pantograph": 1, "upper": 40.0, "trust": "primary", "source": "own"}
+    write_toml(limits, {"limit": [wide]})
+    command = ["run", "en50318-2002/250", "--system", PASSING, "--out", tmp_path / "out", "--formats", "json"]
+    command += ["--accept-unverified", results.system.name, "--baseline", base]
+    assert pantocheck(*command).exit_code == 0
+    result = pantocheck(*command, "--limits", limits)
+    assert result.exit_code == 1
+    assert "has other limits" in result.output
+
+
+def test_case_that_the_baseline_lacks_is_skipped(results: Results) -> None:
+    other = results.model_copy(update={"cases": results.cases[:1]})
+    compared = compare_with_baseline(results, other, 1.0, "b.json")
     assert compared.cases[0].verdict == "unverified"
     lacking = compared.cases[1]
     assert (lacking.verdict, lacking.criteria[-1].reason) == ("skip", "baseline b.json has no case en50318-2002/300")

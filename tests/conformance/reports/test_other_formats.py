@@ -91,6 +91,18 @@ def test_badge(results: dict[str, Any]) -> None:
     assert root.get("aria-label") == "EN 50318 style: fail 19/21"
 
 
+def test_modified_copy_is_named_in_every_format(passing: dict[str, Any]) -> None:
+    """A wider limit under the id of a library case must not look like the library case."""
+    passing["cases"][0]["library"] = "modified"
+    name = f"modified copy of {passing['cases'][0]['id']}"
+    badge = ElementTree.fromstring(render_badge(passing)).get("aria-label") or ""
+    assert re.fullmatch(r"EN 50318 style: pass \d+/\d+, modified copy", badge)
+    suite = next(ElementTree.fromstring(render_junit(passing)).iter("testsuite"))
+    assert suite.get("name") == name
+    assert {test.get("classname") for test in suite.iter("testcase")} == {name}
+    assert name in render_markdown(build_summary(passing))
+
+
 def test_write_pages_leaves_one_file_per_format(passing: dict[str, Any], tmp_path: Path) -> None:
     write_pages(passing, tmp_path, list(FILES))
     assert {path.name for path in tmp_path.iterdir()} == set(FILES.values()) - {"results.json"}
