@@ -86,7 +86,7 @@ def assessed(two_pantograph_case: Case, wave: Any, tmp_path: Path) -> Callable[.
     """Assessed record of two pantographs with given standard deviations."""
 
     def load(*sigma: float, profile: str = "acceptance-ac") -> AssessedRecord:
-        records = [wave(sigma=value).record(two_pantograph_case) for value in sigma]
+        records = [wave(sigma=value, rate=250.0).record(two_pantograph_case) for value in sigma]
         rows = np.array([record.force[i] for i, record in enumerate(records)])
         heights = np.array([r.contact_height[i] for i, r in enumerate(records) if r.contact_height is not None])
         record = replace(records[0], force=rows, contact_height=heights, position=records[0].position[: len(sigma)])
