@@ -11,6 +11,7 @@ from pantocheck.conformance.cases.profile_file import Profile
 from pantocheck.conformance.input_files.bounded_file import file_digest
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value, evaluate_signals, skip_record
+from pantocheck.conformance.quantities.filters import CUTOFF_TOLERANCE
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.records.measured.block_bootstrap import FEWEST_BLOCKS, bootstrap_uncertainties
 from pantocheck.conformance.records.measured.line_supports import list_line_supports
@@ -26,8 +27,14 @@ from pantocheck.conformance.results.results_format import InputGroup
 FEWEST_STATISTICS = 3
 """Smallest number of equal statistics that show a copy; rounded means of two records may be equal by chance."""
 
+SAME_STATISTIC = 1e-6
+"""Relative difference up to which two statistics are equal: those of independent records differ in earlier digits."""
+
 ASSUMED_SPAN_M = 60.0
 """Length of a bootstrap block if the record does not state the span length [m]."""
+
+PLAUSIBLE_SPANS_M = (20.0, 120.0)
+"""Shortest and longest distance of two supports that is taken for a span [m]."""
 
 
 @dataclass(frozen=True)
@@ -166,7 +173,7 @@ def _missing_statement(samples: RecordSamples, sidecar: RecordSidecar) -> str | 
 
 def _assess_summary(path: Path, summary: RecordSummary, profile: Profile, line: LineTable) -> AssessedRecord:
     cutoff = profile.filter.cutoff_Hz
-    if not abs(summary.filter_cutoff_Hz / cutoff - 1) <= 0.001:
+    if not abs(summary.filter_cutoff_Hz / cutoff - 1) <= CUTOFF_TOLERANCE:
         raise InputError(
             f"summary record '{path.name}', key filter_cutoff_Hz",
             f"the force was filtered at {summary.filter_cutoff_Hz:g} Hz, profile {profile.name} requires {cutoff:g} Hz",
@@ -192,7 +199,8 @@ def _block_length(line: LineTable, sidecar: RecordSidecar) -> float:
     if line.span_m is not None:
         return line.span_m
     distances = np.diff(np.unique(sidecar.support_position_m or ()))
-    plausible = distances[(distances >= 20) & (distances <= 120)]
+    shortest, longest = PLAUSIBLE_SPANS_M
+    plausible = distances[(distances >= shortest) & (distances <= longest)]
     return float(np.median(plausible)) if plausible.size else ASSUMED_SPAN_M
 
 
@@ -224,7 +232,9 @@ def find_equal_pantograph(subject: AssessedRecord, other: AssessedRecord) -> int
     for number in subject.pantographs:
         statistics, others = subject.values.values[number], other.values.values.get(number, {})
         pairs = [(value, others[name]) for name, value in statistics.items() if value != 0 and name in others]
-        if len(pairs) >= FEWEST_STATISTICS and all(np.allclose(value, same, 1e-6, 0) for value, same in pairs):
+        if len(pairs) >= FEWEST_STATISTICS and all(
+            np.allclose(value, same, SAME_STATISTIC, 0) for value, same in pairs
+        ):
             return number
     return None
 

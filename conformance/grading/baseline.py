@@ -20,8 +20,10 @@ SMALLEST_RATIO_SCALE = 0.01
 """Smallest reference of a relative drift of a quantity without a unit."""
 
 LARGEST_VALUE = 1e12
+"""Largest absolute value of a baseline; values of real runs are far below."""
+
 MOST_VALUES = 10_000
-"""Largest absolute value, and largest number of values of a case; results of real runs are far below both."""
+"""Largest number of values of a case of a baseline; real cases are far below."""
 
 
 class _Key(NamedTuple):

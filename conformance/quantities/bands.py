@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE
+from pantocheck.conformance.quantities.filters import CUTOFF_TOLERANCE, HIGHEST_SHARE_OF_RATE
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandNotObservable
 
 MIN_BAND_LINES = 4
@@ -64,7 +64,7 @@ def band_rms(force: RealArray, rate: float, low: float, high: float, filter_appl
             f"a band up to {high:g} Hz needs at least {high / HIGHEST_SHARE_OF_RATE:g} samples per second; "
             f"the record has {rate:g}"
         )
-    if filter_applied_Hz is not None and filter_applied_Hz < 0.999 * high:
+    if filter_applied_Hz is not None and filter_applied_Hz < (1 - CUTOFF_TOLERANCE) * high:
         raise AlreadyFiltered(
             f"the force was delivered filtered at {filter_applied_Hz:g} Hz; the band {low:g}-{high:g} Hz was removed"
         )

@@ -15,6 +15,9 @@ from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandN
 HIGHEST_SHARE_OF_RATE = 0.4
 """Highest observable frequency as a share of the sampling rate: above it, anti-alias filters act."""
 
+CUTOFF_TOLERANCE = 0.001
+"""Relative difference up to which two stated cut-offs are the same; they are printed with three digits or more."""
+
 
 @dataclass(frozen=True)
 class LowPass:
@@ -107,9 +110,9 @@ def needs_filter(low_pass: LowPass, filter_applied_Hz: float | None) -> bool:
     AlreadyFiltered
         The force was filtered below the cut-off.
     """
-    if filter_applied_Hz is None or filter_applied_Hz > 1.001 * low_pass.cutoff_Hz:
+    if filter_applied_Hz is None or filter_applied_Hz > (1 + CUTOFF_TOLERANCE) * low_pass.cutoff_Hz:
         return True
-    if filter_applied_Hz < 0.999 * low_pass.cutoff_Hz:
+    if filter_applied_Hz < (1 - CUTOFF_TOLERANCE) * low_pass.cutoff_Hz:
         raise AlreadyFiltered(
             f"the force was delivered filtered at {filter_applied_Hz:g} Hz; "
             f"its content up to {low_pass.cutoff_Hz:g} Hz is unknown"

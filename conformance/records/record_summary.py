@@ -10,6 +10,7 @@ from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value
 from pantocheck.conformance.quantities.force_quantities import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, statistical_extremes
+from pantocheck.conformance.records.record import LARGEST_NUMBER
 from pantocheck.conformance.records.sidecar_tables import (
     CaseDigest,
     LineTable,
@@ -21,7 +22,8 @@ from pantocheck.conformance.records.sidecar_tables import (
 
 SUMMARY_SCHEMA = "pantocheck.summary/1"
 
-SummaryValues = Annotated[dict[str, Annotated[float, Field(ge=-1e9, le=1e9)]], Field(max_length=100)]
+SummaryValue = Annotated[float, Field(ge=-LARGEST_NUMBER, le=LARGEST_NUMBER)]
+SummaryValues = Annotated[dict[str, SummaryValue], Field(max_length=100)]
 
 
 class RecordSummary(SourcedTable):

@@ -17,7 +17,10 @@ STATEMENT = "self-declared conformance report, in the style of EN 50318"
 RecordState = Literal["verified", "unverified", "contradicted"]
 """Result of the consistency checks of a record: confirmed, not all of them possible, or refuted."""
 
-FiniteNumber = Annotated[float, Field(ge=-1e15, le=1e15)]
+LARGEST_RESULT = 1e15
+"""Largest absolute value of a number in results.json."""
+
+FiniteNumber = Annotated[float, Field(ge=-LARGEST_RESULT, le=LARGEST_RESULT)]
 Number = FiniteNumber | list[FiniteNumber]
 Owner = Annotated[str, Field(pattern="^[0-9]{1,2}$", description="number of a pantograph, 0: the line")]
 

@@ -1,0 +1,70 @@
+"""The page on thresholds: every value is that of the code, and no threshold of the verdict is missing."""
+
+import ast
+import re
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+from pantocheck.conformance.authenticity import attachment, recomputation
+from pantocheck.conformance.consistency import force_dynamics, roll_off, support_passing
+from pantocheck.conformance.grading import (
+    assessed_record,
+    baseline,
+    case_evaluation,
+    extended_band,
+    record_mismatch,
+)
+from pantocheck.conformance.quantities import bands, filters, signals
+from pantocheck.conformance.records import record
+from pantocheck.conformance.records.measured import block_bootstrap, force_checks, usable_sections
+from pantocheck.conformance.results import results_format, results_reading, traces
+
+ROOT = Path(__file__).parents[2]
+ROWS = re.findall(
+    r"^\| `(\w+)` \| ([^|]+) \| ([^|]+) \| ([^|]+) \| `([\w/]+\.py)` \|$",
+    (ROOT / "docs" / "thresholds.md").read_text(encoding="utf-8"),
+    re.MULTILINE,
+)
+MODULES: list[ModuleType] = [
+    attachment, recomputation, force_dynamics, roll_off, support_passing, assessed_record, baseline, case_evaluation,
+    extended_band, record_mismatch, bands, filters, signals, record, block_bootstrap, force_checks, usable_sections,
+    results_format, results_reading, traces,
+]  # fmt: skip
+BY_FILE = {"/".join(module.__name__.split(".")[2:]) + ".py": module for module in MODULES}
+FOLDERS = ("quantities", "consistency", "grading", "records", "results", "authenticity")
+
+
+def defined_numbers() -> set[tuple[str, str]]:
+    """Names and files of the module-level numbers, and tuples of numbers, of the folders of the verdict."""
+    numbers = set()
+    for path in (path for folder in FOLDERS for path in (ROOT / "conformance" / folder).rglob("*.py")):
+        for statement in ast.parse(path.read_text(encoding="utf-8")).body:
+            if isinstance(statement, ast.Assign) and is_numeric(statement.value):
+                names = [node.id for node in ast.walk(statement.targets[0]) if isinstance(node, ast.Name)]
+                numbers |= {(name, str(path.relative_to(ROOT / "conformance"))) for name in names}
+    return numbers
+
+
+def is_numeric(value: ast.expr) -> bool:
+    """Whether an expression consists of numbers alone."""
+    leaves = [node for node in ast.walk(value) if isinstance(node, ast.Name | ast.Constant)]
+    return bool(leaves) and all(
+        isinstance(leaf, ast.Constant) and isinstance(leaf.value, int | float) for leaf in leaves
+    )
+
+
+@pytest.mark.parametrize(("name", "value", "file"), [(name, value, file) for name, value, _, _, file in ROWS])
+def test_documented_value_is_that_of_the_code(name: str, value: str, file: str) -> None:
+    """A digit group has no space after its comma, the numbers of a tuple have one."""
+    numbers = tuple(float(number.replace(",", "")) for number in value.split(", "))
+    code = getattr(BY_FILE[file], name)
+    assert (code if isinstance(code, tuple) else (code,)) == numbers
+
+
+def test_every_threshold_is_documented() -> None:
+    documented = {(name, file) for name, _, _, _, file in ROWS}
+    assert len(documented) == len(ROWS)
+    key_of_the_line = ("LINE", "quantities/evaluation.py")
+    assert defined_numbers() - {key_of_the_line} <= documented
