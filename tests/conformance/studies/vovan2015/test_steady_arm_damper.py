@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,9 +11,10 @@ from numpy.testing import assert_allclose
 from helpers.computed_modes import ELEMENT, grade_findings
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.identification.mode import Mode
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.studies.vovan2015.steady_arm_damper import damping_gains
+from pantocheck.conformance.studies.vovan2015.steady_arm_damper import damping_gains, run_steady_arm_damper
 from pantocheck.model import Catenary, Kind, Rayleigh, discretise
 from pantocheck.model.modal.modes import compute_modes_below, damping_ratios
 
@@ -62,6 +64,36 @@ def test_gain_fades_from_the_second_to_the_last_band() -> None:
     findings = damping_gains([0.002] * 4, [0.0032, 0.003, 0.0024, 0.0022])
     assert_allclose(findings["damping_gain_pct"], [60, 50, 20, 10])
     assert_allclose(findings["damping_gain_fading_pct"], 40)
+
+
+def test_every_band_has_the_modes_from_its_lower_edge_to_below_its_upper_edge(
+    case: Case, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One mode on the lower edge and two inside each band: the dampers raise them by 10 % times the number of the band.
+
+    Modes are rounded to six digits: 1e-5 of a gain of 10 %.
+    """
+    bands = case.file.study.bands_Hz
+
+    def build_drops(gain: float) -> SimpleNamespace:
+        modes = [
+            Mode(
+                frequency_Hz=low + share * (high - low),
+                damping_ratio=0.001 * number * (1 + share) * (1 + gain * number),
+                damping_ratio_std=1e-5,
+                sensor_shape=(),
+            )
+            for number, (low, high) in enumerate(bands, 1)
+            for share in (0.0, 0.5, 0.99)
+        ]
+        return SimpleNamespace(certain_modes=modes, drops=(None,), identification=SimpleNamespace(warnings=()))
+
+    results = iter([build_drops(0.0), build_drops(0.1)])
+    monkeypatch.setattr(
+        "pantocheck.conformance.studies.vovan2015.steady_arm_damper.identify_drops", lambda *_: next(results)
+    )
+    findings = run_steady_arm_damper(case, case.file.study).study.findings[LINE]
+    assert_allclose(findings["damping_gain_pct"], 10.0 * np.arange(1, len(bands) + 1), rtol=1e-4)
 
 
 def test_list_of_gains_ends_before_a_band_without_modes() -> None:
