@@ -65,7 +65,7 @@ def validate_json(data: Any, model: TypeAdapter[T], where: str, hint: str) -> T:
     try:
         return model.validate_python(data)
     except ValidationError as error:
-        first = error.errors(include_url=False, include_input=False)[0]
+        first = error.errors()[0]
         # Items of a list are numbered from 1, as in messages about TOML files.
         parts = (f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in first["loc"])
         key = "".join(parts).removeprefix(".")

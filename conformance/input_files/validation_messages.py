@@ -49,7 +49,7 @@ def build_input_error(error: ValidationError, model: type[BaseModel], where: str
         Name of the file in messages, e.g. `reference line 'my-line.toml'`.
     """
     # A key in a wrong unit gives two errors, an unknown and a missing key; the unknown key leads to the better hint.
-    detail = min(error.errors(include_url=False), key=lambda item: item["type"] != "extra_forbidden")
+    detail = min(error.errors(), key=lambda item: item["type"] != "extra_forbidden")
     table, field, key = _walk(model, detail["loc"])
     if detail["type"] == "inconsistent":
         context = detail["ctx"]

@@ -32,7 +32,8 @@ def read_csv_table(path: Path, names: tuple[str, ...], largest: int) -> list[Mea
         start = list(islice(_numbered(file, where), 3))
         if not start:
             raise InputError(where, "holds no data", "Export the record again.")
-        delimiter, decimal = _find_dialect([line for _, line in start])
+        dialect = _find_dialect([line for _, line in start])
+        delimiter, decimal = dialect
         head = [cell.strip().strip('"') for cell in start[0][1].split(delimiter)]
         named = not all(_is_number(cell, decimal) for cell in head)
         body = (line.replace(decimal, ".") for _, line in chain(start[named:], _numbered(file, where)))
@@ -42,13 +43,13 @@ def read_csv_table(path: Path, names: tuple[str, ...], largest: int) -> list[Mea
         except (InputError, UnicodeDecodeError):
             raise
         except ValueError:
-            raise _find_fault(path, where, named) from None
+            raise _find_fault(path, where, dialect, named) from None
     if values.size > largest:
         raise InputError(where, f"more than {largest} numbers", "Cut the record, or leave channels out.")
     if values.size == 0:
         raise InputError(where, "holds a head line but no samples", "Export the record again.")
     if values.shape[1] != len(head):
-        raise _find_fault(path, where, named)
+        raise _find_fault(path, where, dialect, named)
     return [MeasuredTable(path.name, values, tuple(TableColumn(name if named else None) for name in head))]
 
 
@@ -88,10 +89,10 @@ def _numbered(file: TextIO, where: str) -> Lines:
 
 
 def _find_dialect(lines: list[str]) -> tuple[str, str]:
-    """Delimiter and decimal mark of the first lines."""
+    """Delimiter and decimal mark of the first lines; beside a semicolon or a tab, a comma marks decimals."""
     for delimiter in (";", "\t"):
         if all(delimiter in line for line in lines):
-            return delimiter, "," if any("," in line for line in lines[1:]) else "."
+            return delimiter, ","
     return ",", "."
 
 
@@ -103,11 +104,11 @@ def _is_number(cell: str, decimal: str) -> bool:
     return True
 
 
-def _find_fault(path: Path, where: str, named: bool) -> InputError:
+def _find_fault(path: Path, where: str, dialect: tuple[str, str], named: bool) -> InputError:
     """First line of a damaged table whose width or numbers are wrong."""
     with _open_text(path, where) as file:
         lines = list(_numbered(file, where))
-    delimiter, decimal = _find_dialect([line for _, line in lines[:3]])
+    delimiter, decimal = dialect
     width = lines[0][1].count(delimiter) + 1
     for number, line in lines[named:]:
         cells = [cell.strip() for cell in line.split(delimiter)]

@@ -31,12 +31,9 @@ def read_hdf5_table(path: Path, names: tuple[str, ...], largest: int) -> list[Me
         where = f"record '{path.name}'"
         runs = sorted((name for name in file if name.startswith("run_")), key=_run_number)
         if not runs:
-            return [_read_root(file, path.name, largest)]
+            return [_read_root(file, path.name)]
         columns = _read_columns(file, bool(names), where)
-        return [
-            _read_run(file, name, k if len(runs) > 1 else 0, columns, path.name, largest)
-            for k, name in enumerate(runs, 1)
-        ]
+        return [_read_run(file, name, k if len(runs) > 1 else 0, columns, path.name) for k, name in enumerate(runs, 1)]
 
 
 @contextmanager
@@ -63,18 +60,16 @@ def open_hdf5(path: Path, largest: int) -> Iterator[h5py.File]:
         yield file
 
 
-def read_numbers(item: object, where: str, largest: int) -> RealArray:
-    """Read a data set of numbers; its size is checked first, because damaged bytes may claim any size.
+def read_numbers(item: object, where: str) -> RealArray:
+    """Read a data set of numbers of a file from `open_hdf5`, which has checked its size.
 
     Raises
     ------
     InputError
-        It is no data set of numbers, or too large.
+        It is no data set of numbers.
     """
     if not isinstance(item, h5py.Dataset) or item.dtype.kind not in "fiu" or item.shape is None:
         raise InputError(where, "holds no table of samples", "Store an array of numbers.")
-    if item.size > largest:
-        raise InputError(where, f"its shape is {item.shape}", f"At most {largest} numbers are read.")
     with np.errstate(invalid="ignore", over="ignore"):  # numbers that are not finite are reported with their place
         return np.asarray(item[()], dtype=np.float64)
 
@@ -129,14 +124,14 @@ def _run_number(name: str) -> tuple[int, str]:
     return (int(tail) if tail.isdecimal() else 0, tail)
 
 
-def _read_root(file: h5py.File, source: str, largest: int) -> MeasuredTable:
+def _read_root(file: h5py.File, source: str) -> MeasuredTable:
     """Table of the data sets at the root, one column per row."""
     where, columns, rows = f"record '{source}'", list[TableColumn](), list[RealArray]()
     if not len(file):
         raise InputError(where, "holds no data", "Store each run as run_<k>/acceleration, or one data set per channel.")
     for name, item in file.items():
         place = f"{where}, data set {str(name)[:80]!r}"
-        values = read_numbers(item, place, largest)
+        values = read_numbers(item, place)
         if values.ndim not in (1, 2) or (rows and values.shape[-1] != rows[0].size):
             first = f"; the first data set has {rows[0].size} samples" if rows else ""
             raise InputError(
@@ -166,11 +161,11 @@ def _read_columns(file: h5py.File, described: bool, where: str) -> tuple[TableCo
 
 
 def _read_run(
-    file: h5py.File, name: str, run: int, columns: tuple[TableColumn, ...] | None, source: str, largest: int
+    file: h5py.File, name: str, run: int, columns: tuple[TableColumn, ...] | None, source: str
 ) -> MeasuredTable:
     where = f"record '{source}', {name}"
     data = next((file[name][quantity] for quantity in MOTION_QUANTITIES if quantity in file[name]), None)
-    values = read_numbers(data, where, largest).T
+    values = read_numbers(data, where).T
     if values.ndim != 2:
         raise InputError(
             where, "holds no table of samples", f"Store {name}/acceleration as an array of shape (channels, samples)."

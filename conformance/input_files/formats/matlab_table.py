@@ -72,14 +72,12 @@ def _read_version_5(path: Path, where: str, largest: int) -> dict[str, RealArray
     """Numeric variables; the stated shapes are checked before reading, and so are the compressed data behind them."""
     with open_file(path, where, MAX_FILE_BYTES) as file, refuse_damage(where, "a MATLAB file", MatReadError):
         inflated = _inflates_over(file, 8 * largest + 2**20)  # `whosmat` inflates whole variables
-        file.seek(0)
         stated = [] if inflated else scipy.io.whosmat(file)
         shapes = {name: shape for name, shape, kind in stated if kind in NUMERIC_CLASSES}
         numbers = sum(math.prod(shape) for shape in shapes.values())
         if inflated or numbers > largest:
             raise InputError(where, f"more than {largest} numbers", "Cut the record, or leave channels out.")
-        file.seek(0)
-        content = scipy.io.loadmat(file, struct_as_record=True, variable_names=list(shapes))
+        content = scipy.io.loadmat(file, variable_names=list(shapes))
         return {
             name: np.asarray(value, dtype=np.float64)
             for name, value in content.items()
@@ -97,7 +95,7 @@ def _inflates_over(file: BinaryIO, limit: int) -> bool:
         end = file.tell() + size
         if kind == COMPRESSED:
             inflation, left = zlib.decompressobj(), size
-            while left > 0 and total <= limit and (data := file.read(min(left, 2**20))):
+            while total <= limit and (data := file.read(min(left, 2**20))):
                 left -= len(data)
                 while data and total <= limit:
                     total += len(inflation.decompress(data, 2**20))
@@ -112,7 +110,7 @@ def _read_version_7_3(path: Path, where: str, largest: int) -> dict[str, RealArr
     with open_hdf5(path, largest) as file:
         return {
             # MATLAB stores matrices by columns, so they are transposed here.
-            name: read_numbers(item, f"{where}, variable {name!r}", largest).T
+            name: read_numbers(item, f"{where}, variable {name!r}").T
             for name, item in file.items()
             # h5py gives a name that is not UTF-8 as bytes; no sidecar can mean it.
             if isinstance(name, str) and isinstance(item, h5py.Dataset) and item.dtype.kind in "fiu"

@@ -166,7 +166,7 @@ def parse_message(line: bytes) -> Answer:
     try:
         return _ANSWER.validate_python(json.loads(line))
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
+        first = error.errors()[0]
         key = ".".join(str(part) for part in first["loc"])
         raise AnswerRefused(
             f"its answer is not a valid message of {PROTOCOL}: {key + ': ' if key else ''}{first['msg']}"

@@ -1,0 +1,103 @@
+"""CSV tables: delimiter and decimal mark, comments and blank lines, bounds, and the place of every fault."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+from pantocheck.conformance.input_files.formats import csv_table
+from pantocheck.conformance.input_files.formats.csv_table import read_csv_table, write_csv_table
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.measured_table import MeasuredTable
+
+EXPECTED = [[0.0, 1.0], [0.5, -2.5], [1.0, 1e3]]
+
+
+def read(folder: Path, text: str, largest: int = 100) -> MeasuredTable:
+    (folder / "r.csv").write_text(text, encoding="utf-8")
+    (table,) = read_csv_table(folder / "r.csv", (), largest)
+    return table
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "a,b\n0,1\n0.5,-2.5\n1,1e3\n",
+        "a;b\n0;1\n0.5;-2.5\n1;1e3\n",
+        "a;b\n0;1\n0,5;-2,5\n1;1e3\n",
+        "a\tb\n0\t1\n0,5\t-2,5\n1\t1e3\n",
+        '"a" , "b"\n0,1\n0.5,-2.5\n1,1e3\n',
+        "# of the 3rd test\n#;x\n\na,b\n0,1\n\n0.5,-2.5\n  \n1,1e3\n\n",
+        "\ufeffa,b\r\n0,1\r\n0.5,-2.5\r\n1,1e3",
+    ],
+)
+def test_dialects_comments_and_blank_lines_give_one_table(text: str, tmp_path: Path) -> None:
+    table = read(tmp_path, text)
+    assert_array_equal(table.values, EXPECTED)
+    assert [column.name for column in table.columns] == ["a", "b"]
+
+
+def test_decimal_comma_may_begin_after_the_first_lines(tmp_path: Path) -> None:
+    """A record at rest begins with whole numbers."""
+    assert_array_equal(read(tmp_path, "a;b\n0;0\n0;0\n0;0\n0,5;1,5\n").values[-1], [0.5, 1.5])
+
+
+def test_table_without_a_head_line_has_no_names(tmp_path: Path) -> None:
+    table = read(tmp_path, "0,1\n0.5,-2.5\n1,1e3\n")
+    assert_array_equal(table.values, EXPECTED)
+    assert [column.name for column in table.columns] == [None, None]
+
+
+def test_line_of_numbers_with_one_name_is_a_head_line(tmp_path: Path) -> None:
+    assert [column.name for column in read(tmp_path, "1,b\n0,1\n").columns] == ["1", "b"]
+
+
+@pytest.mark.parametrize(
+    ("text", "where", "found"),
+    [
+        ("a;b\n0;0\n1;1\n2\n3;3\n", "line 4", "does not fit: 1 values, expected 2"),
+        ("a;b\n0;0\n1;1\n2\n", "line 4", "is cut short: 1 values, expected 2"),
+        ("a;b\n0;0\n1\n2;2\n", "line 2, column 1", "'0;0' is not a number"),
+        ("a,b\n0,0\n1,1,1\n", "line 3", "is cut short: 3 values, expected 2"),
+        ("a,b\n0,0\n1, x \n", "line 3, column 2", "'x' is not a number"),
+        (f"a,b\n0,0\n{'y' * 50},1\n", "line 3, column 1", f"'{'y' * 40}' is not a number"),
+        ("0,0\n1,x\n", "line 2, column 2", "'x' is not a number"),
+        ("# c\n\na,b\n0,0\n\nx,1\n", "line 6, column 1", "'x' is not a number"),
+        ("a,b\n0,0\n# end\n", "line 3", "is cut short: 1 values, expected 2"),
+        ("a,b\n", "", "holds a head line but no samples"),
+        ("# only\n# comments\n", "", "holds no data"),
+    ],
+)
+def test_fault_is_named_with_its_line_and_column(text: str, where: str, found: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError) as caught:
+        read(tmp_path, text)
+    assert caught.value.where == ", ".join(filter(None, ("record 'r.csv'", where)))
+    assert caught.value.found == found
+
+
+@pytest.mark.parametrize("text", ["a,b\n0,1\n2,3\n4,5\n", "0,1\n2,3\n4,5\n"])
+def test_table_may_have_as_many_numbers_as_allowed(text: str, tmp_path: Path) -> None:
+    assert read(tmp_path, text, 6).values.size == 6
+    with pytest.raises(InputError, match="more than 5 numbers"):
+        read(tmp_path, text, 5)
+
+
+def test_line_may_be_as_long_as_allowed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nine characters and the end of the line are ten."""
+    monkeypatch.setattr(csv_table, "LONGEST_ROW", 11)
+    assert read(tmp_path, "a,b\n0,1234567\n").values[0, 1] == 1234567
+    monkeypatch.setattr(csv_table, "LONGEST_ROW", 10)
+    with pytest.raises(InputError, match=r"record 'r\.csv', line 2: is too long\.\n  A line has at most 10 characters"):
+        read(tmp_path, "a,b\n0,1234567\n")
+
+
+@pytest.mark.parametrize("digits", [9, 12])
+def test_written_numbers_have_the_stated_digits(digits: int, tmp_path: Path) -> None:
+    """Rounding to d significant digits changes a number by at most 5 in the next digit."""
+    values = np.random.default_rng(1).uniform(1, 10, (50, 2))
+    write_csv_table(tmp_path / "r.csv", ["a", "b"], values, digits)
+    (table,) = read_csv_table(tmp_path / "r.csv", (), 100)
+    error = np.abs(table.values - values).max()
+    assert 0.5 * 10.0 ** (1 - digits) * 0.5 < error <= 0.5 * 10.0 ** (1 - digits) * (1 + 1e-3)
+    assert [column.name for column in table.columns] == ["a", "b"]
