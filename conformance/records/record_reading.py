@@ -90,6 +90,8 @@ def read_samples(path: Path) -> tuple[RecordSamples, RecordSidecar, Path]:
     sidecar = read_model(sidecar_path, RecordSidecar, "sidecar")
     table = sidecar_path.parent / sidecar.file
     check_file(table, f"record '{table.name}'", MAX_TABLE_BYTES)
+    if not table.resolve().is_relative_to(sidecar_path.parent.resolve()):
+        raise InputError(f"record '{table.name}'", "is a link to a file outside its folder", "Copy the table itself.")
     if sidecar.sha256 is not None and file_digest(table) != sidecar.sha256:
         raise InputError(
             f"record '{table.name}'", "its content contradicts the sha256 of the sidecar", "Copy or write it again."

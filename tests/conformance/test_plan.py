@@ -3,8 +3,13 @@
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
+from pantocheck.conformance.command_line.app import app
+from pantocheck.conformance.grading.case_verdict import Participation
+from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.trust import limit_counts
 from pantocheck.conformance.plan import Plan, prepare_plan, read_plan
 
 
@@ -22,6 +27,34 @@ def test_limits_of_a_plan_replace_those_of_its_cases(tmp_path: Path) -> None:
     limits.write_text('[[limit]]\nquantity = "mean_force_N"\nupper = 1.0\ntrust = "primary"\nsource = "own"\n')
     prepared = prepare_plan(Plan(cases=("en50318-2002/250",), limits=str(limits), out=str(tmp_path / "report")))
     assert {limit.upper for limit in prepared.cases[0].limits if limit.quantity == "mean_force_N"} == {1.0}
+
+
+@pytest.mark.parametrize("text", ["", "cases = ['en50318-2002/250']\n", "jobs = 2\n"])
+def test_plan_without_a_system_is_refused(tmp_path: Path, text: str) -> None:
+    """Graded by default, the reference simulator would pass in place of the system that the plan forgot."""
+    path = tmp_path / "conformance.toml"
+    path.write_text(text)
+    with pytest.raises(InputError, match=r"plan 'conformance\.toml', key system: missing"):
+        read_plan(path)
+    result = CliRunner().invoke(app, ["run", "--plan", str(path), "--out", str(tmp_path / "out")])
+    assert (result.exit_code, (tmp_path / "out").exists()) == (2, False)
+
+
+def test_required_case_without_limits_is_run_for_information_only(tmp_path: Path) -> None:
+    """By default a case joins because another one requires it; named in the plan, it takes part in the verdict."""
+    cases = {case.id: case for case in prepare_plan(Plan(out=str(tmp_path))).cases}
+    required = {name for case in cases.values() for name in case.file.requires}
+    information = prepare_plan(Plan(out=str(tmp_path))).participation.information
+    without_limits = {
+        name for name in required if not any(limit_counts(i.trust, "secondary") for i in cases[name].limits)
+    }
+    assert set(information) == without_limits
+    assert required <= set(cases)
+    participation = Participation(information)
+    verdicts: list[tuple[str, Verdict]] = [(name, "info" if name in without_limits else "pass") for name in cases]
+    assert participation.judge_run(verdicts, "any") == "pass"
+    named = Plan(cases=tuple(cases), out=str(tmp_path))
+    assert prepare_plan(named).participation.information == ()
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.input_files.bounded_file import MAX_FILE_BYTES, open_file
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.measured_table import MeasuredTable, TableColumn, refuse_damage
 
@@ -53,7 +54,12 @@ def open_hdf5(path: Path, largest: int) -> Iterator[h5py.File]:
         The file is damaged, a part of its data stands in another place or file, or its data are too large.
     """
     where = f"record '{path.name}'"
-    with refuse_damage(where, "HDF5"), h5py.File(path, "r") as file:
+    # The library reads from the open file, so that no other file can take its name after the check of its kind.
+    with (
+        open_file(path, where, MAX_FILE_BYTES) as content,
+        refuse_damage(where, "HDF5"),
+        h5py.File(content, "r") as file,
+    ):
         numbers = _check_items(file, where, largest)
         if numbers > largest:
             raise InputError(where, f"{numbers} numbers", f"At most {largest} numbers are read.")

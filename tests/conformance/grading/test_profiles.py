@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import jsonschema
 import numpy as np
@@ -22,9 +23,11 @@ from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.profile_file import BoundMissing, SpeedFormula, load_profile, resolve_bounds
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
+from pantocheck.conformance.grading.case_verdict import Participation
 from pantocheck.conformance.grading.profile_grading import assess_record
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.sidecar_tables import LineTable
+from pantocheck.conformance.reports.formats.junit import render_junit
 from pantocheck.conformance.results.results_format import Criterion, Results
 from pantocheck.conformance.schemas import build_schema
 
@@ -157,6 +160,33 @@ def test_good_line_is_accepted_with_its_uncertainty(train: Train) -> None:
     assert results.cases[0].uncertainty["1"]["cov_20"] == rows["cov_20"].uncertainty
     assert find_discrepancies(results.to_dict()) == []
     jsonschema.validate(results.to_dict(), build_schema("results"))
+
+
+@pytest.mark.parametrize(
+    ("verification", "verdict", "junit"), [("shown", "pass", "skipped"), ("demanded", "unverified", "failure")]
+)
+def test_profile_decides_whether_an_unverified_record_passes(
+    train: Train, tmp_path: Path, verification: str, verdict: str, junit: str
+) -> None:
+    """A profile names no case, so the state is unverified; it is shown by either profile."""
+    profile = tmp_path / "own.toml"
+    text = (library_folder() / "profiles" / "acceptance-ac.toml").read_text()
+    profile.write_text(text.replace("speed_tolerance_pct", f'verification = "{verification}"\nspeed_tolerance_pct', 1))
+    results = graded(train(), str(profile))
+    record = results.cases[0].record
+    assert record is not None
+    assert (results.verdict, record.state, record.demanded) == (verdict, "unverified", verification == "demanded")
+    assert {row.verdict for row in results.cases[0].criteria} == {"pass"}
+    assert find_discrepancies(results.to_dict()) == []
+    test = ElementTree.fromstring(render_junit(results.to_dict())).find(".//testcase[@name='record']")
+    assert test is not None
+    assert test[0].tag == junit
+    accepted = graded(train(), str(profile), participation=Participation(accepted_unverified=("train",)))
+    assert accepted.verdict == "pass"
+    if verification == "demanded":
+        assert graded(train(sigma=40.0), str(profile)).verdict == "fail"
+        result = pantocheck("assess", train(), "--profile", profile, "--out", tmp_path / "out", "--formats", "json")
+        assert (result.exit_code, result.output.split()[0]) == (1, "UNVERIFIED")
 
 
 @pytest.mark.parametrize(

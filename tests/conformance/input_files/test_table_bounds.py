@@ -6,13 +6,17 @@ import struct
 import tracemalloc
 import zlib
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
 import pytest
 import scipy.io
 
+from pantocheck.conformance.input_files.bounded_file import BoundedFile, open_file
+from pantocheck.conformance.input_files.formats import hdf5_table
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.table_formats import read_tables
 
@@ -64,6 +68,24 @@ def test_hdf5_data_in_another_place_are_refused(
         link(file if place == "/" else file.create_group(place), tmp_path)
     with pytest.raises(InputError, match=r"record 'a\.h5'.*, 'force_N': (is a link to|stores its numbers in) another"):
         read_tables(tmp_path / "a.h5", (), LARGEST)
+
+
+def test_hdf5_is_read_from_the_file_that_was_checked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Another file takes the name of the checked file before the library reads."""
+    path, other = tmp_path / "a.h5", tmp_path / "b.h5"
+    for target, value in ((path, 1.0), (other, 2.0)):
+        with h5py.File(target, "w") as file:
+            file["force_N"] = np.full(10, value)
+
+    @contextmanager
+    def open_and_replace(*arguments: Any) -> Iterator[BoundedFile]:
+        with open_file(*arguments) as file:
+            other.replace(path)
+            yield file
+
+    monkeypatch.setattr(hdf5_table, "open_file", open_and_replace)
+    (table,) = hdf5_table.read_hdf5_table(path, (), LARGEST)
+    assert np.all(table.values == 1.0)
 
 
 @pytest.mark.parametrize(

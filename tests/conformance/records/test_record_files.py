@@ -1,5 +1,6 @@
 """Records on disk: a written record reads back, other units become SI, and damage is refused with its place."""
 
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,13 +13,17 @@ from numpy.testing import assert_allclose
 from helpers.toml_edit import edit_toml
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import library_folder
+from pantocheck.conformance.cases.library import library_folder, select_cases
+from pantocheck.conformance.cases.profile_file import load_profile
+from pantocheck.conformance.grading.assessed_record import load_assessed_record
 from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_reading import read_record, read_samples
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.records.samples import complete_samples
+from pantocheck.conformance.records.sidecar_tables import LineTable
+from pantocheck.conformance.systems.record_folder import open_record_folder
 
 Writer = Callable[[str], Path]
 CHANNELS = ("time", "position", "force", "contact_height", "support_position", "support_uplift")
@@ -310,3 +315,30 @@ def test_randomly_changed_tables_are_read_or_refused(written: Writer) -> None:
             except InputError:
                 continue
             assert np.isfinite(record.force).all()
+
+
+@pytest.mark.parametrize("name", ["a.csv", "a.h5"])
+@pytest.mark.parametrize("place", ["absolute", "relative"])
+def test_table_behind_a_link_out_of_its_folder_is_refused(written: Writer, name: str, place: str) -> None:
+    """A record folder of another author must not make the suite read other files of the user."""
+    table = written(name)
+    inside = table.parent / "records"
+    inside.mkdir()
+    table.with_suffix(".toml").rename(inside / "a.toml")
+    (inside / name).symlink_to(table if place == "absolute" else os.path.relpath(table, inside))
+    with pytest.raises(InputError, match="is a link to a file outside its folder"):
+        read_record(inside / "a.toml")
+    with pytest.raises(InputError, match="is a link to a file outside its folder"):
+        open_record_folder(inside).run(select_cases(["en50318-2002/250"])[0])
+    with pytest.raises(InputError, match="is a link to a file outside its folder"):
+        load_assessed_record(inside / "a.toml", load_profile("acceptance-ac"), LineTable())
+
+
+def test_link_inside_the_folder_and_link_to_the_folder_are_followed(written: Writer, tmp_path: Path) -> None:
+    table = written("a.csv")
+    table.rename(tmp_path / "b.csv")
+    table.symlink_to("b.csv")
+    linked = tmp_path / "linked"
+    linked.symlink_to(tmp_path, target_is_directory=True)
+    for path in (table, linked / "a.csv"):
+        assert read_record(path)[0].rate == pytest.approx(read_record(table)[0].rate)
