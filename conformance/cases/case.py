@@ -25,7 +25,7 @@ class InputProvenance:
     group : str
         Dotted name of a table, or of one of its keys.
     trust : Trust
-        Trust that the file states.
+        Stated trust.
     source : tuple of str
         Source keys.
     """
@@ -64,7 +64,7 @@ class Case:
 
     @property
     def pantograph_files(self) -> tuple[PantographFile, ...]:
-        """Pantographs of the run, or the pantograph of a static case."""
+        """All pantographs of the case: those of the run, and that of a static case."""
         return self.pantographs if self.static_pantograph is None else (*self.pantographs, self.static_pantograph)
 
     @property
@@ -74,7 +74,7 @@ class Case:
 
     @property
     def is_static(self) -> bool:
-        """Whether the case checks the line at rest, without a train."""
+        """Whether the case is a check of the line at rest, without a train."""
         return self.file.speed_km_h is None
 
     @property
@@ -90,7 +90,7 @@ class Case:
 
     @property
     def shifted_sections(self) -> tuple[tuple[float, float], ...]:
-        """Analysis section shifted span by span along the compared spans, its own position included [m]."""
+        """Positions of the analysis section when it is shifted span by span along the compared spans [m, m]."""
         if self.file.compared_spans is None or self.file.evaluated_spans is None:
             return ()
         (first, last), spans = self.file.compared_spans, self.file.evaluated_spans
@@ -99,7 +99,7 @@ class Case:
 
     @property
     def recorded_section(self) -> tuple[float, float]:
-        """Start and end of the section that a record must cover: the compared spans or the analysis section [m]."""
+        """Start and end of the section that a record must cover: compared spans, or else the analysis section [m]."""
         if self.file.compared_spans is None:
             return self.analysis_section
         return self.line.geometry.section(*self.file.compared_spans)
@@ -117,28 +117,28 @@ class Case:
 
     @property
     def end(self) -> float:
-        """Position of the last pantograph at the end of the run [m]; by default at most a span beyond the section."""
+        """Position of the last pantograph at the end of the run [m]; default: at most one span beyond the section."""
         geometry, (_, section_end) = self.line.geometry, self.recorded_section
         if self.file.run_out_m is not None:
             return section_end + self.file.run_out_m
         last_start, last_end = geometry.span((self.file.compared_spans or self.file.evaluated_spans or (1,))[-1])
-        # The first pantograph stays on the line, half a span away from its end.
+        # The first pantograph stops half a span before the end of the line.
         furthest = geometry.mid_span(geometry.spans) - self.offsets[-1]
         return max(section_end, min(section_end + last_end - last_start, furthest))
 
     @property
     def start_positions(self) -> tuple[float, ...]:
-        """Position of every pantograph at the start of the run, from the front [m]."""
+        """Positions of the pantographs at the start of the run, in running order [m]."""
         return tuple(self.start + self.offsets[-1] - offset for offset in self.offsets)
 
     @property
     def end_positions(self) -> tuple[float, ...]:
-        """Position of every pantograph at the end of the run, from the front [m]."""
+        """Positions of the pantographs at the end of the run, in running order [m]."""
         return tuple(self.end + self.offsets[-1] - offset for offset in self.offsets)
 
     @cached_property
     def digest(self) -> str:
-        """SHA-256 of all inputs of a system: without provenance, title and limits."""
+        """SHA-256 of the inputs that a system computes with; provenance, title and limits are left out."""
         pantograph, unused = self.static_pantograph, self._keys_outside_digest
         inputs = {
             "line": _numbers(self.line),
@@ -152,7 +152,7 @@ class Case:
 
     @property
     def _keys_outside_digest(self) -> set[str]:
-        """Keys of the case file that no system uses, or that repeat the content of the line."""
+        """Keys of the case file that are not used by a system, or that repeat the content of the line."""
         unused = {key for key in ("mass_drop", "study") if getattr(self.file, key) is None}
         if isinstance(self.file.study, DampingSensitivity):
             unused.add("study")  # The study runs the case unchanged.
@@ -160,7 +160,7 @@ class Case:
 
     @property
     def sourced_tables(self) -> dict[str, SourcedTable]:
-        """Every table with a source, by dotted name: of the case, its line and its pantographs."""
+        """All tables with a source, of the case, its line and its pantographs, by dotted name."""
         tables: dict[str, object] = {"case": self.file} | _tables("line", self.line)
         for i, (use, model) in enumerate(zip(self.file.pantograph, self.pantographs, strict=True), 1):
             tables |= {f"pantograph {i}": use} | _tables(f"pantograph {i}", model)
@@ -172,7 +172,7 @@ class Case:
 
     @property
     def inputs(self) -> tuple[InputProvenance, ...]:
-        """Source of every group of inputs, followed by those of its keys that are less certain."""
+        """Source of each group of inputs; the provisional keys of a group follow it."""
         inputs = []
         for name, table in self.sourced_tables.items():
             source = (table.source,) if isinstance(table.source, str) else tuple(table.source)
@@ -182,22 +182,22 @@ class Case:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes of the files for the reader: on the whole file, then group by group."""
+        """Notes for the reader: first those of whole files, then those of their tables."""
         notes = [self.line.note, *(pantograph.note for pantograph in self.pantograph_files)]
         notes += [f"{name}: {table.note}" for name, table in self.sourced_tables.items() if table.note]
         return tuple(dict.fromkeys(note.strip() for note in notes if note))
 
     def with_limits(self, limits: tuple[Limit, ...]) -> "Case":
-        """Same case with further limits; a limit replaces the one with the same target."""
+        """Same case with further limits; each replaces a limit with the same target."""
         merged = {limit.target: limit for limit in (*self.limits, *limits)}
         return replace(self, limits=tuple(merged.values()))
 
     def without_study(self) -> "Case":
-        """Same case without its study: a plain run, as a system receives it."""
+        """Same case without its study, as a single run of a system."""
         return replace(self, file=self.file.model_copy(update={"study": None}), dampings={})
 
     def with_damping(self, name: str, damping: Damping) -> "Case":
-        """Same case without limits and study, with a damping laid over that of its line; its id ends in the name."""
+        """Same case without limits and study, with another damping; the name of the damping ends its id."""
         file = self.file.model_copy(update={"id": f"{self.id}/{name}", "study": None, "limit": (), "requires": ()})
         line = self.line.model_copy(update={"damping": overlay_damping(self.line.damping, damping)})
         return replace(self, file=file, line=line, limits=(), dampings={})
@@ -208,18 +208,18 @@ def _tables(prefix: str, file: InputTable) -> dict[str, object]:
 
 
 def _numbers(table: InputTable, exclude: set[str] | None = None) -> object:
-    """Content of a table without provenance and names, so that a corrected source leaves the digest unchanged."""
+    """Content of a table without provenance and names, so that a corrected source does not change the digest."""
     return drop_keys(table.model_dump(mode="json", exclude=exclude), PROVENANCE | {"title", "id", "model"})
 
 
 def json_digest(tree: object) -> str:
-    """SHA-256 of plain lists, dictionaries, text and numbers; the order of keys has no influence."""
+    """SHA-256 of nested lists, dictionaries, text and numbers, independent of the order of keys."""
     text = json.dumps(tree, sort_keys=True, separators=(",", ":"), allow_nan=False)
     return "sha256:" + hashlib.sha256(text.encode()).hexdigest()
 
 
 def drop_keys(tree: object, keys: frozenset[str]) -> object:
-    """Nested tables and lists without certain keys, at every level."""
+    """Copy of nested tables and lists without certain keys, at all levels."""
     if isinstance(tree, dict):
         return {key: drop_keys(value, keys) for key, value in tree.items() if key not in keys}
     if isinstance(tree, list):

@@ -20,7 +20,7 @@ class PantographUse(SourcedTable):
     model: Annotated[FileName, Field(description="pantograph file, relative to the case file")]
     uplift_force_N: Annotated[
         float | None,
-        Field(gt=0, le=2000, description="constant uplift force; start value if it is tuned to a mean force [N]"),
+        Field(gt=0, le=2000, description="constant uplift force, or start value of its tuning to the mean force [N]"),
     ] = None
     target_mean_force_N: Annotated[
         float | None, Field(gt=0, le=2000, description="mean contact force to which the uplift force is tuned [N]")
@@ -31,8 +31,8 @@ class PantographUse(SourcedTable):
         if self.uplift_force_N is None and self.target_mean_force_N is None:
             raise validation_problem(
                 "uplift_force_N",
-                "the pantograph has no uplift force",
-                "Give uplift_force_N, or target_mean_force_N to tune it.",
+                "missing",
+                "Give uplift_force_N, or target_mean_force_N for an uplift force tuned to a mean force.",
             )
         return self
 
@@ -41,7 +41,7 @@ class Filter(InputTable):
     """Filter of the graded contact force."""
 
     kind: Annotated[Literal["butterworth"], Field(description="filter type")] = "butterworth"
-    order: Annotated[int, Field(ge=1, le=12, description="total order of the forward and the backward pass")] = 6
+    order: Annotated[int, Field(ge=1, le=12, description="total order, over both passes of a zero-phase filter")] = 6
     cutoff_Hz: Annotated[float, Field(gt=0, le=1000, description="frequency of -3 dB of the whole filter [Hz]")] = 20.0
     phase: Annotated[
         Literal["zero", "causal"], Field(description="zero: forward and backward pass; causal: forward only")
@@ -53,7 +53,7 @@ class Filter(InputTable):
             raise validation_problem(
                 "order",
                 f"{self.order} is odd",
-                "A zero-phase filter splits its order between two passes: give an even order.",
+                'Give an even order: a zero-phase filter divides it between two passes. Or set phase = "causal".',
             )
         return self
 
@@ -64,21 +64,21 @@ class Filter(InputTable):
 
 
 class Discretisation(InputTable):
-    """Mesh and time step of the reference simulator; its refined run halves both."""
+    """Mesh and time step of the reference simulator; its refined run uses half of both."""
 
-    element_m: Annotated[float, Field(ge=0.02, le=5, description="longest element [m]")] = 0.5
+    element_m: Annotated[float, Field(ge=0.02, le=5, description="largest element length [m]")] = 0.5
     time_step_s: Annotated[float, Field(ge=1e-5, le=0.01, description="time step [s]")] = 0.001
     reach_m: Annotated[
         float | None,
         Field(
             ge=20,
-            description="half-width of the active window around a pantograph [m]; default: all stations from which a "
-            "wave can return before the end of the run",
+            description="half-width of the active window around a pantograph [m]; default: wide enough for every wave "
+            "that returns to a pantograph before the end of the run",
         ),
     ] = None
 
     def halve(self) -> "Discretisation":
-        """Half the element length and half the time step."""
+        """Discretisation with half the element length and half the time step."""
         return self.model_copy(update={"element_m": self.element_m / 2, "time_step_s": self.time_step_s / 2})
 
 
@@ -105,13 +105,14 @@ class CaseFile(SourcedTable):
     line: Annotated[FileName, Field(description="line file, relative to the case file")]
     damping: Annotated[
         FileName | Damping | None,
-        Field(description="damping laid over that of the line: a file, relative to the case file, or a table"),
+        Field(description="damping that replaces that of the line: a file, relative to the case file, or a table"),
     ] = None
     on_request: Annotated[
-        bool, Field(description="whether only a run that names the case includes it (slow, or expected to fail)")
+        bool, Field(description="true: the case runs only if it is named, because it is slow or expected to fail")
     ] = False
     requires: Annotated[
-        tuple[str, ...], Field(strict=False, max_length=100, description="ids of cases that must pass first")
+        tuple[str, ...],
+        Field(strict=False, max_length=100, description="ids of the cases that must pass before this case counts"),
     ] = ()
     speed_km_h: Annotated[float | None, Field(ge=1, le=600, description="speed of the train [km/h]")] = None
     evaluated_spans: Annotated[
@@ -120,15 +121,15 @@ class CaseFile(SourcedTable):
             strict=False,
             min_length=1,
             max_length=1000,
-            description="spans of the analysis section, numbered from 1: the first and the last, or all",
+            description="spans of the analysis section, numbered from 1: first and last span, or all spans",
         ),
     ] = None
     compared_spans: Annotated[
         tuple[int, int] | None,
         Field(
             strict=False,
-            description="first and last span of a longer section along which the analysis section is shifted, span by "
-            "span, to show how much the results depend on its position",
+            description="first and last span of a longer section; the analysis section is shifted along it span by "
+            "span, to determine the spread of the results",
         ),
     ] = None
     start_m: Annotated[
@@ -137,10 +138,10 @@ class CaseFile(SourcedTable):
     ] = None
     run_out_m: Annotated[
         float | None,
-        Field(ge=0, description="run-out of the last pantograph beyond the section [m]; default: at most a span"),
+        Field(ge=0, description="run-out of the last pantograph beyond the section [m]; default: at most one span"),
     ] = None
     spacing_m: Annotated[
-        PositiveList | None, Field(description="distances between the pantographs, from the front [m]")
+        PositiveList | None, Field(description="distances between successive pantographs, in running order [m]")
     ] = None
     pantograph: Annotated[tuple[PantographUse, ...], Field(strict=False, max_length=20)] = ()
     mass_drop: Annotated[MassDrop | None, Field(description="mass drops instead of a train")] = None
@@ -160,7 +161,7 @@ class CaseFile(SourcedTable):
                 )
         elif self.apparent_mass is not None:
             raise validation_problem(
-                "apparent_mass", "in a case with a speed", "Move it to a static case (without a speed)."
+                "apparent_mass", "stands in a case with speed_km_h", "Move it to a static case, without speed_km_h."
             )
         elif not self.pantograph:
             raise validation_problem("pantograph", "missing", "A run needs at least one [[pantograph]] table.")
@@ -172,7 +173,7 @@ class CaseFile(SourcedTable):
             raise validation_problem(
                 "spacing_m",
                 f"{len(self.spacing_m or ())} distances for {len(self.pantograph)} pantographs",
-                "Give the distance of every pantograph to the next, from the front.",
+                "Give the distances between successive pantographs, in running order.",
             )
         spans = self.evaluated_spans or (1,)
         ranged = len(spans) == 2 and spans[0] < spans[1]
@@ -187,23 +188,27 @@ class CaseFile(SourcedTable):
         ):
             raise validation_problem(
                 "compared_spans",
-                f"{list(self.compared_spans)} does not contain the evaluated spans {list(spans)}",
-                "Give the first and the last span of a longer section.",
+                f"spans {list(self.compared_spans)} do not include evaluated_spans = {list(spans)}",
+                "Give the first and the last span of a section that includes evaluated_spans.",
             )
         self._check_limits()
         return self
 
     def _check_study(self) -> None:
         if self.mass_drop is not None and self.speed_km_h is not None:
-            raise validation_problem("mass_drop", "a train and a mass drop in one case", "Write two cases.")
+            raise validation_problem(
+                "mass_drop",
+                "stands in a case with speed_km_h",
+                "Write one case for the train and one for the mass drop.",
+            )
         if self.study is None:
             return
         drops = self.study.kind in {"release-velocity", "steady-arm-damper"}
         if drops and self.mass_drop is None:
-            raise validation_problem("mass_drop", "missing", f"A study of kind {self.study.kind} compares mass drops.")
+            raise validation_problem("mass_drop", "missing", f"A study of the kind {self.study.kind} needs mass drops.")
         if not drops and self.speed_km_h is None:
             raise validation_problem(
-                "speed_km_h", "missing", f"A study of kind {self.study.kind} compares runs of a train."
+                "speed_km_h", "missing", f"A study of the kind {self.study.kind} needs the speed of a train."
             )
 
     def _check_limits(self) -> None:
@@ -213,12 +218,12 @@ class CaseFile(SourcedTable):
                 raise validation_problem(
                     f"limit[{i}].pantograph",
                     f"there is no pantograph {limit.owner}",
-                    f"The case has {len(self.pantograph)}, numbered from 1 at the front.",
+                    f"The case has {len(self.pantograph)}, numbered from 1 in running order.",
                 )
             if limit.target in seen:
                 raise validation_problem(
                     f"limit[{i}].quantity",
-                    f"a second limit for {limit.quantity}",
-                    "Give lower and upper of a quantity in one [[limit]] table.",
+                    f"{limit.quantity} already has a limit",
+                    "Give the lower and the upper bound of a quantity in one [[limit]] table.",
                 )
             seen.add(limit.target)

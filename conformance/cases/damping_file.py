@@ -1,6 +1,6 @@
-"""Damping of a line: per kind of component, and per mode.
+"""Damping of a line, by kind of component and by frequency band.
 
-The keys name the multiplied matrix, because papers use alpha and beta for either matrix.
+The keys name the matrix of each Rayleigh coefficient, because publications use alpha and beta for either matrix.
 """
 
 from itertools import pairwise
@@ -22,7 +22,7 @@ class ComponentDamping(InputTable):
 
 
 class ModalDamping(InputTable):
-    """Damping ratio of all modes of the undamped line in a frequency band; it replaces Rayleigh damping there."""
+    """Damping ratio of all undamped modes of the line in a frequency band, in place of their Rayleigh damping."""
 
     from_Hz: Annotated[float, Field(ge=0, le=1000, description="lower edge of the band [Hz]")]
     to_Hz: Annotated[float, Field(gt=0, le=1000, description="upper edge of the band [Hz]")]
@@ -32,13 +32,15 @@ class ModalDamping(InputTable):
     def _ordered(self) -> "ModalDamping":
         if self.from_Hz >= self.to_Hz:
             raise validation_problem(
-                "from_Hz", f"{self.from_Hz:g} Hz is not below to_Hz = {self.to_Hz:g} Hz", "Exchange them."
+                "from_Hz",
+                f"{self.from_Hz:g} Hz is not below to_Hz = {self.to_Hz:g} Hz",
+                "Give the lower edge of the band as from_Hz, the upper edge as to_Hz.",
             )
         return self
 
 
 class Damping(SourcedTable):
-    """Damping of the line at rest; a kind of component that is left out is undamped."""
+    """Damping of the line; a kind of component without a table is undamped."""
 
     contact_wire: ComponentDamping = ComponentDamping()
     messenger_wire: ComponentDamping = ComponentDamping()
@@ -57,7 +59,7 @@ class Damping(SourcedTable):
                 raise validation_problem(
                     "modal",
                     f"the bands {before.from_Hz:g}-{before.to_Hz:g} Hz, {after.from_Hz:g}-{after.to_Hz:g} Hz overlap",
-                    "A mode can only have one damping ratio.",
+                    "Change their edges: a mode has one damping ratio only.",
                 )
         return self
 
@@ -69,13 +71,13 @@ class DampingFile(InputTable):
 
 
 def overlay_damping(damping: Damping, over: Damping) -> Damping:
-    """Damping of a line with another laid over it: the kinds and modal bands of `over` replace those of the line."""
+    """Damping of a line with another one laid over it: the tables of `over` replace the same tables of the line."""
     replaced = over.model_fields_set - PROVENANCE
     changes: dict[str, object] = {key: getattr(over, key) for key in replaced | PROVENANCE}
-    if damping.model_fields_set - PROVENANCE - replaced - {"modal"}:  # Some kinds of the line remain.
+    if damping.model_fields_set - PROVENANCE - replaced - {"modal"}:  # some kinds of component of the line remain
         changes["trust"] = max(damping.trust, over.trust, key=LEVELS.index)
         changes["source"] = list(dict.fromkeys((*_listed(over.source), *_listed(damping.source))))
-    # A modal band is only valid with the Rayleigh damping with which it was fitted.
+    # A modal band is valid only together with the Rayleigh damping of the same fit.
     return damping.model_copy(update={"modal": (), **changes})
 
 

@@ -21,39 +21,41 @@ DampingModels = Annotated[
 
 
 class Sensor(InputTable):
-    """Sensor clamped to a wire; it measures vertical motion."""
+    """Sensor on a wire, for vertical motion."""
 
     wire: WireName
     x_m: Place
 
 
 class DropTest(InputTable):
-    """Drop of a mass."""
+    """Release of one mass that hangs on a wire."""
 
     mass_kg: Annotated[Positive, Field(le=200, description="mass on the wire before the release [kg]")]
     wire: WireName
     x_m: Place
     release_s: Annotated[
-        NonNegative, Field(le=5, description="duration of the linear decay of the weight; 0: at once [s]")
+        NonNegative, Field(le=5, description="time in which the weight decreases linearly to zero [s]; 0: at once")
     ] = 0.0
 
 
 class MassDrop(SourcedTable):
-    """Drops on a line with one set of sensors, and the frequency range of the identification."""
+    """Mass drops on a line with one set of sensors, and the frequency range of their identification."""
 
     drop: Annotated[tuple[DropTest, ...], Field(strict=False, min_length=1, max_length=20)]
     sensor: Annotated[tuple[Sensor, ...], Field(strict=False, min_length=1, max_length=100)]
-    record_s: Annotated[Positive, Field(le=900, description="length of the record after the release [s]")]
-    hanging_s: Annotated[Positive, Field(ge=1, le=60, description="recorded rest before the release [s]")] = 5.0
+    record_s: Annotated[Positive, Field(le=900, description="duration of the record after the release [s]")]
+    hanging_s: Annotated[
+        Positive, Field(ge=1, le=60, description="duration of the record before the release, with hanging mass [s]")
+    ] = 5.0
     rate_Hz: Annotated[Positive, Field(ge=10, le=5000, description="sampling rate of the record [Hz]")] = 100.0
-    quantity: Annotated[
-        Literal["acceleration", "velocity", "displacement"], Field(description="quantity that the sensors measure")
-    ] = "acceleration"
+    quantity: Annotated[Literal["acceleration", "velocity", "displacement"], Field(description="measured quantity")] = (
+        "acceleration"
+    )
     noise_rms: Annotated[
         NonNegative,
-        Field(le=10, description="rms of the white noise of every sensor, in SI; always the same for the same drop"),
+        Field(le=10, description="RMS of the white noise of each sensor [SI unit of quantity]; equal for equal drops"),
     ] = 0.0
-    highest_Hz: Annotated[Positive, Field(le=200, description="highest frequency of identified modes [Hz]")] = 10.0
+    highest_Hz: Annotated[Positive, Field(le=200, description="highest frequency of the identified modes [Hz]")] = 10.0
     compared: Annotated[DampingModels, Field(default_factory=dict)]
 
     @model_validator(mode="after")
@@ -61,7 +63,7 @@ class MassDrop(SourcedTable):
         if self.highest_Hz > 0.4 * self.rate_Hz:
             raise validation_problem(
                 "highest_Hz",
-                f"{self.highest_Hz:g} Hz cannot be observed at {self.rate_Hz:g} samples per second",
-                f"Give at most {0.4 * self.rate_Hz:g} Hz, or a rate_Hz of {2.5 * self.highest_Hz:g}.",
+                f"{self.highest_Hz:g} Hz is not observable with rate_Hz = {self.rate_Hz:g}",
+                f"Give at most {0.4 * self.rate_Hz:g} Hz, or rate_Hz = {2.5 * self.highest_Hz:g}.",
             )
         return self

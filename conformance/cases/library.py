@@ -1,4 +1,4 @@
-"""Library of reference cases, and reading of case files by id, glob or path."""
+"""Library of reference cases, and reading of case files by id, pattern or path."""
 
 import re
 from collections.abc import Sequence
@@ -27,8 +27,8 @@ def library_folder() -> Path:
 
 @cache
 def list_library(folder: Path) -> dict[str, Path]:
-    """Files of all cases below a folder, by id; the id of a case is its path."""
-    # Lines, pantographs and the bibliography are in the same folders, but only a case has an id.
+    """Files of all cases below a folder, by id; the id of a case is its path in the folder."""
+    # Lines, pantographs and the bibliography are in the same folders; only a case file has an id.
     return {
         path.relative_to(folder).with_suffix("").as_posix(): path
         for path in sorted(folder.rglob("*.toml"))
@@ -37,22 +37,22 @@ def list_library(folder: Path) -> dict[str, Path]:
 
 
 def select_cases(patterns: Sequence[str]) -> list[Case]:
-    """Read the cases for ids, globs and paths of case files, in this order, each after the cases that it requires.
+    """Read cases by id, pattern or path, in this order, each after the cases that it requires.
 
     Parameters
     ----------
     patterns : sequence of str
-        Ids, globs and paths.
+        Ids, patterns with `*` and `?`, and paths of case files.
 
     Returns
     -------
     list of Case
-        Every case once.
+        Selected cases, without repetition.
 
     Raises
     ------
     InputError
-        A pattern matches no case (the message names the nearest ids), or a file is invalid.
+        A pattern matches no case, or a file is invalid.
     """
     known = list_library(library_folder())
     chosen: dict[str, Case] = {}
@@ -71,17 +71,18 @@ def _match_pattern(pattern: str, known: dict[str, Path]) -> list[Path]:
     if not matches:
         raise InputError(
             f"case '{pattern}'",
-            "there is no such case",
-            suggest_names(pattern, list(known)) + " `pantocheck cases` lists all.",
+            "there is no case with this id",
+            suggest_names(pattern, list(known)) + " `pantocheck cases` lists all cases.",
         )
     return matches
 
 
 def _add(case: Case, known: dict[str, Path], chosen: dict[str, Case], above: tuple[str, ...]) -> None:
-    """Add a case and all cases that it requires; `above` are the cases that require it."""
+    """Add a case after all cases that it requires; `above` holds the ids of the cases that require it."""
     where = f"case '{case.id}', key requires"
     if case.id in above:
-        raise InputError(where, f"requires itself ({' > '.join((*above, case.id))})", "Remove one of these keys.")
+        circle = " > ".join((*above, case.id))
+        raise InputError(where, f"the case requires itself ({circle})", "Remove one of these requirements.")
     for required in case.file.requires:
         if required not in known:
             raise InputError(where, f"there is no case {required!r}", suggest_names(required, list(known)))
@@ -91,7 +92,7 @@ def _add(case: Case, known: dict[str, Path], chosen: dict[str, Case], above: tup
 
 
 def load_case(path: Path) -> Case:
-    """Read a case file with its line and pantographs, and check their consistency.
+    """Read a case file with its line and pantographs, and check that they agree.
 
     Parameters
     ----------
@@ -137,14 +138,14 @@ def _read_pantograph(case_path: Path, name: str, key: str) -> PantographFile:
 
 
 def _locate(case_path: Path, name: str, key: str) -> Path:
-    """File that a case names, relative to the case or else to the library."""
+    """Path of a file named in a case: relative to the case file, or else to the library."""
     for folder in (case_path.parent, library_folder()):
         if (folder / name).is_file():
             return folder / name
     raise InputError(
         f"case '{case_path.name}', key {key}",
         f"there is no file {name!r}",
-        f"Name a file relative to {case_path.parent}, or of the library, e.g. en50318-2002/line.toml .",
+        f"Name a file relative to {case_path.parent} or to the library, e.g. en50318-2002/line.toml .",
     )
 
 
@@ -159,16 +160,16 @@ def _check_geometry(case: Case, where: str) -> None:
     if case.start >= case.recorded_section[0]:
         raise InputError(
             f"{where}start_m",
-            f"the last pantograph starts at {case.start:g} m, not before the evaluated "
-            f"spans, which begin at {case.recorded_section[0]:g} m",
-            "Start earlier, or evaluate later spans.",
+            f"the last pantograph starts at {case.start:g} m, but the evaluated spans begin at "
+            f"{case.recorded_section[0]:g} m",
+            "Reduce start_m, or evaluate later spans.",
         )
     front = case.end_positions[0]
     if front >= geometry.length:
         raise InputError(
             f"{where}run_out_m",
-            f"the first pantograph would run to {front:g} m on a line of {geometry.length:g} m",
-            "Add spans, evaluate earlier ones, or shorten run_out_m.",
+            f"the first pantograph would run to {front:g} m, but the line is {geometry.length:g} m long",
+            "Reduce run_out_m, evaluate earlier spans, or add spans to the line.",
         )
 
 
@@ -184,14 +185,14 @@ def _check_drops(case: Case, where: str) -> None:
                 raise InputError(
                     f"{where}{name}[{i}].x_m",
                     f"{x:g} m is not on the line",
-                    f"Give a position between the anchors at 0 and {length:g} m.",
+                    f"Give a position between 0 and {length:g} m, the ends of the line.",
                 )
     step, every = case.file.discretisation.time_step_s, 1 / drops.rate_Hz
     if abs(every / step - round(every / step)) > 1e-6:
         raise InputError(
             f"{where}rate_Hz",
-            f"a sample every {every:g} s is not a whole number of time steps of {step:g} s",
-            f"Give a rate that divides {1 / step:g} Hz, e.g. {1 / step / max(1, round(every / step)):g} .",
+            f"the sampling interval of {every:g} s is not a multiple of the time step of {step:g} s",
+            f"Give {1 / step:g} Hz divided by a whole number, e.g. {1 / step / max(1, round(every / step)):g} .",
         )
 
 
@@ -201,12 +202,24 @@ def read_limits(path: Path) -> tuple[LimitOverride, ...]:
 
 
 def overlay_limits(cases: Sequence[Case], limits: Sequence[LimitOverride]) -> list[Case]:
-    """Lay the limits of a user over cases.
+    """Add the limits of a user to cases; a limit replaces that of the case with the same target.
+
+    Parameters
+    ----------
+    cases : sequence of Case
+        Cases of the run.
+    limits : sequence of LimitOverride
+        Limits of the user.
+
+    Returns
+    -------
+    list of Case
+        Cases with these limits.
 
     Raises
     ------
     InputError
-        A limit matches none of the cases, or none of the cases has its pantograph.
+        A limit matches none of the cases, or none of the matching cases has its pantograph.
     """
     added: dict[str, list[Limit]] = {case.id: [] for case in cases}
     for i, limit in enumerate(limits, 1):
@@ -216,7 +229,7 @@ def overlay_limits(cases: Sequence[Case], limits: Sequence[LimitOverride]) -> li
             raise InputError(f"{where}.case", f"no case of this run matches {limit.case!r}", names)
         with_owner = [case for case in matching if limit.owner <= len(case.pantographs)]
         if not with_owner:
-            hint = "Pantographs are numbered from 1 at the front."
+            hint = "Pantographs are numbered from 1 in running order."
             raise InputError(f"{where}.pantograph", f"there is no pantograph {limit.owner}", hint)
         for case in with_owner:
             added[case.id].append(limit)
@@ -225,11 +238,11 @@ def overlay_limits(cases: Sequence[Case], limits: Sequence[LimitOverride]) -> li
 
 @cache
 def read_bibliography() -> dict[str, str]:
-    """Publications by source key."""
+    """Bibliographic references of the library, by source key."""
     return {str(key): str(text) for key, text in read_toml(library_folder() / "sources.toml", "bibliography").items()}
 
 
 def source_text(source: str | Sequence[str]) -> str:
-    """Text of sources: the publication of every key, free text unchanged."""
+    """Text of sources: the bibliographic reference for a source key, free text unchanged."""
     keys = (source,) if isinstance(source, str) else source
     return "; ".join(read_bibliography().get(key, key) for key in keys)

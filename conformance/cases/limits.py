@@ -33,18 +33,17 @@ class Limit(InputTable):
     pantograph: Annotated[
         int | None,
         Field(
-            ge=1, le=20, description="number in running order; default: the first, or none for a quantity of the line"
+            ge=1,
+            le=20,
+            description="number of the pantograph in running order; default: 1, or none for a quantity of the line",
         ),
     ] = None
     item: Annotated[
-        int | None, Field(ge=1, description="item of a quantity with several values (dropper, mode), from 1")
+        int | None,
+        Field(ge=1, description="number of the value in a quantity with several values (droppers, modes), from 1"),
     ] = None
-    lower: Annotated[
-        FiniteBound | None, Field(description="smallest value that passes, in the unit of the quantity")
-    ] = None
-    upper: Annotated[
-        FiniteBound | None, Field(description="largest value that passes, in the unit of the quantity")
-    ] = None
+    lower: Annotated[FiniteBound | None, Field(description="lower bound, in the unit of the quantity")] = None
+    upper: Annotated[FiniteBound | None, Field(description="upper bound, in the unit of the quantity")] = None
     trust: Annotated[Trust, Field(description="trust in the limit")]
     source: Annotated[str | list[str], Field(description="source of the limit: keys of sources.toml, or free text")]
     note: Annotated[str | None, Field(description="remark for the reader", max_length=4000)] = None
@@ -52,12 +51,14 @@ class Limit(InputTable):
     @model_validator(mode="after")
     def _consistent(self) -> "Limit":
         if self.lower is None and self.upper is None:
-            raise validation_problem("", "a limit without a lower and an upper bound", "Give lower, upper or both.")
+            raise validation_problem("", f"the limit of {self.quantity} has no bound", "Give lower, upper or both.")
         if self.lower is not None and self.upper is not None and self.lower > self.upper:
-            raise validation_problem("lower", f"{self.lower:g} is above upper = {self.upper:g}", "Exchange them.")
+            raise validation_problem(
+                "lower", f"{self.lower:g} is above upper = {self.upper:g}", "Give the smaller number as lower."
+            )
         if QUANTITIES[self.quantity].scope != "pantograph" and self.pantograph is not None:
             raise validation_problem(
-                "pantograph", f"{self.quantity} belongs to the line, not to a pantograph", "Leave pantograph out."
+                "pantograph", f"{self.quantity} is not a quantity of a pantograph", "Leave the key pantograph out."
             )
         return self
 
@@ -75,9 +76,9 @@ class Limit(InputTable):
 
 
 class LimitOverride(Limit):
-    """Limit of a user for some cases."""
+    """Limit of a user for selected cases."""
 
-    case: Annotated[str, Field(description="id or glob of the cases", max_length=200)] = "*"
+    case: Annotated[str, Field(description="id of the case, or pattern with * and ?", max_length=200)] = "*"
 
 
 class LimitsFile(InputTable):

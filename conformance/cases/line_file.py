@@ -1,4 +1,4 @@
-"""Line files: geometry, wires, connectors and damping of a catenary with equal spans."""
+"""Line files: geometry, wires, connectors and damping of a line with equal spans."""
 
 from itertools import pairwise
 from typing import Annotated, Literal
@@ -20,7 +20,7 @@ Tension = Annotated[float, Field(gt=0, le=200e3, description="axial tension of o
 MassPerLength = Annotated[float, Field(gt=0, le=20, description="mass per length of one wire [kg/m]")]
 BendingStiffness = Annotated[float, Field(ge=0, le=1e5, description="bending stiffness EI of one wire [N m2]")]
 Area = Annotated[float | None, Field(gt=0, le=1000, description="cross-section [mm2]")]
-Stagger = Annotated[float, Field(ge=-1, le=1, description="lateral offset at supports, alternating in sign [m]")]
+Stagger = Annotated[float, Field(ge=-1, le=1, description="lateral offset at the supports, with alternating sign [m]")]
 ClampMass = Annotated[float, Field(ge=0, le=20, description="mass of a clamp [kg]")]
 
 
@@ -30,7 +30,8 @@ class Geometry(SourcedTable):
     span_m: Annotated[float, Field(ge=10, le=120, description="length of every span [m]")]
     spans: Annotated[int, Field(ge=1, le=1000, description="number of spans")]
     encumbrance_m: Annotated[
-        float, Field(gt=0, le=5, description="height of the messenger wire above the contact wire at a support [m]")
+        float,
+        Field(gt=0, le=5, description="vertical distance between messenger wire and contact wire at a support [m]"),
     ]
     stagger_contact_wire_m: Stagger = 0.0
     stagger_messenger_m: Stagger = 0.0
@@ -42,17 +43,17 @@ class Geometry(SourcedTable):
 
     @property
     def span_limits(self) -> tuple[float, ...]:
-        """Positions of the first anchor, of every support and of the last anchor [m]; the line begins at 0."""
+        """Positions of both ends of the line and of the supports between them, in increasing order [m], from 0."""
         return tuple(self.span_m * i for i in range(self.spans + 1))
 
     @property
     def supports(self) -> tuple[float, ...]:
-        """Positions of the supports between the two anchors [m]."""
+        """Positions of the supports between the ends of the line [m]."""
         return self.span_limits[1:-1]
 
     @property
     def length(self) -> float:
-        """Length of the line from anchor to anchor [m]."""
+        """Length of the line from end to end [m]."""
         return self.span_limits[-1]
 
     @property
@@ -61,27 +62,29 @@ class Geometry(SourcedTable):
         return self.spans // 2 + 1
 
     def span(self, number: int) -> tuple[float, float]:
-        """Start and end of a span with a number from 1 [m]."""
+        """Start and end of a span, numbered from 1 [m]."""
         return self.section(number, number)
 
     def mid_span(self, number: int) -> float:
-        """Middle of a span with a number from 1 [m]."""
+        """Middle of a span, numbered from 1 [m]."""
         return sum(self.span(number)) / 2
 
     def section(self, first: int, last: int) -> tuple[float, float]:
-        """Start of the first and end of the last span of a section, numbered from 1 [m]."""
+        """Start of the first span and end of the last span of a section, numbered from 1 [m]."""
         return self.span_limits[first - 1], self.span_limits[last]
 
     def shorten(self, spans: int) -> "Geometry":
-        """Same line reduced to its first spans."""
+        """Same geometry with the first spans only."""
         return self.model_copy(update={"spans": min(self.spans, spans)})
 
 
 class WireTable(SourcedTable):
-    """Contact wire or messenger wire; the values hold for each of two parallel wires."""
+    """Contact wire or messenger wire; the values are those of one wire, also of two parallel wires."""
 
     number: Annotated[Literal[1, 2], Field(description="number of parallel wires")] = 1
-    spacing_m: Annotated[float | None, Field(gt=0, le=1, description="lateral distance of parallel wires [m]")] = None
+    spacing_m: Annotated[float | None, Field(gt=0, le=1, description="lateral distance between parallel wires [m]")] = (
+        None
+    )
     tension_N: Tension
     mass_kg_m: MassPerLength
     bending_stiffness_N_m2: BendingStiffness = 0.0
@@ -89,9 +92,9 @@ class WireTable(SourcedTable):
 
 
 class StitchWireTable(SourcedTable):
-    """Wire clamped to the messenger on both sides of a support; it carries the nearest droppers."""
+    """Stitch wire, clamped to the messenger wire on both sides of a support; it carries the nearest droppers."""
 
-    length_m: Annotated[Positive, Field(description="distance of its clamps, symmetric to the support [m]")]
+    length_m: Annotated[Positive, Field(description="distance between its clamps, symmetric to the support [m]")]
     tension_N: Tension
     mass_kg_m: MassPerLength
     bending_stiffness_N_m2: BendingStiffness = 0.0
@@ -99,19 +102,19 @@ class StitchWireTable(SourcedTable):
 
 
 class DropperTable(SourcedTable):
-    """Droppers of every span: bars that carry tension only."""
+    """Droppers of every span: bars that carry tension, but no compression."""
 
-    x_m: Annotated[PositiveList, Field(description="positions along the span, increasing [m]")]
+    x_m: Annotated[PositiveList, Field(description="positions from the start of the span, increasing [m]")]
     presag_m: Annotated[
         NumberList | None,
-        Field(description="sag of the contact wire at each dropper [m]; default: none"),
+        Field(description="planned pre-sag of the contact wire at each dropper [m]; default: 0"),
     ] = None
     length_m: Annotated[
         PositiveList | None, Field(description="published length of each dropper, for comparison [m]")
     ] = None
     stiffness_N_m: Annotated[float | None, Field(gt=0, description="stiffness of a taut dropper [N/m]")] = None
     axial_stiffness_EA_N: Annotated[
-        float | None, Field(gt=0, description="axial stiffness EA, from which the stiffness is EA / length [N]")
+        float | None, Field(gt=0, description="axial stiffness EA of a dropper, for a stiffness of EA / length [N]")
     ] = None
     mass_kg: Annotated[float | None, Field(ge=0, le=20, description="mass of a dropper [kg]")] = None
     mass_kg_m: Annotated[float | None, Field(ge=0, le=20, description="mass per length of a dropper [kg/m]")] = None
@@ -125,7 +128,7 @@ class DropperTable(SourcedTable):
             if x <= before:
                 raise validation_problem(
                     f"x_m[{i}]",
-                    f"{x:g} m does not follow {before:g} m",
+                    f"{x:g} m is not greater than the preceding {before:g} m",
                     "List the droppers in the direction of travel.",
                 )
         for key in ("presag_m", "length_m"):
@@ -137,12 +140,12 @@ class DropperTable(SourcedTable):
         if (self.stiffness_N_m is None) == (self.axial_stiffness_EA_N is None):
             raise validation_problem(
                 "stiffness_N_m",
-                "the stiffness of a dropper must be given once",
+                "the stiffness of the droppers is missing or given twice",
                 "Give either stiffness_N_m or axial_stiffness_EA_N.",
             )
         if self.mass_kg is not None and self.mass_kg_m is not None:
             raise validation_problem(
-                "mass_kg", "the mass of a dropper is given twice", "Give either mass_kg or mass_kg_m."
+                "mass_kg", "the mass of the droppers is given twice", "Give either mass_kg or mass_kg_m."
             )
         return self
 
@@ -152,13 +155,13 @@ class SteadyArmTable(SourcedTable):
 
     vertical_stiffness_N_m: Annotated[
         float | None,
-        Field(ge=0, le=1e7, description="vertical stiffness at the wire [N/m]; default: force / length"),
+        Field(ge=0, le=1e7, description="vertical stiffness at the wire [N/m]; default: force of the arm / length"),
     ] = None
     static_share: Annotated[
         Literal["level", "none"],
         Field(
-            description="weight of the wire carried by the arm; level: so that the wire is level at the support; "
-            "none: nothing"
+            description="weight of the contact wire on the arm at rest; level: as much as keeps the wire level at the "
+            "support; none: no weight"
         ),
     ]
     length_m: Annotated[float | None, Field(gt=0, le=5, description="length of the arm [m]")] = None
@@ -168,7 +171,7 @@ class SteadyArmTable(SourcedTable):
         NonNegative, Field(le=1e6, description="vertical damper between wire and ground [N s/m]")
     ] = 0.0
     acts: Annotated[
-        Literal["pull", "push"], Field(description="direction of the force of the arm on the staggered wire")
+        Literal["pull", "push"], Field(description="kind of lateral force of the arm on the contact wire")
     ] = "pull"
 
     @model_validator(mode="after")
@@ -176,21 +179,21 @@ class SteadyArmTable(SourcedTable):
         if self.vertical_stiffness_N_m is None and self.length_m is None:
             raise validation_problem(
                 "vertical_stiffness_N_m",
-                "neither a stiffness nor a length is given",
-                "Give vertical_stiffness_N_m, or length_m to derive it.",
+                "the steady arm has neither a stiffness nor a length",
+                "Give vertical_stiffness_N_m, or length_m for a stiffness of force / length.",
             )
         return self
 
 
 class MessengerSupportTable(SourcedTable):
-    """Spring and damper under the messenger wire at a support."""
+    """Support of the messenger wire: a vertical spring and damper."""
 
     stiffness_N_m: Annotated[Positive, Field(le=1e10, description="vertical stiffness [N/m]")]
     damping_N_s_m: Annotated[NonNegative, Field(description="vertical damper [N s/m]")] = 0.0
 
 
 class LineFile(InputTable):
-    """Content of a line file: a catenary."""
+    """Content of a line file."""
 
     title: Annotated[str, Field(description="title in reports", max_length=200)]
     geometry: Geometry
@@ -210,19 +213,19 @@ class LineFile(InputTable):
             if x >= span:
                 raise validation_problem(
                     f"droppers.x_m[{i}]",
-                    f"the dropper at {x:g} m lies outside its span of {span:g} m",
-                    f"Positions lie between 0 and {span:g} m, from the start of the span.",
+                    f"{x:g} m is not inside the span of {span:g} m",
+                    f"Give positions between 0 and {span:g} m, from the start of the span.",
                 )
         if self.stitch_wire is not None and self.stitch_wire.length_m >= span:
             raise validation_problem(
                 "stitch_wire.length_m",
-                f"{self.stitch_wire.length_m:g} m in a span of {span:g} m",
-                "Two neighbouring stitch wires would overlap.",
+                f"{self.stitch_wire.length_m:g} m is not shorter than the span of {span:g} m",
+                "Give a length below that of a span; neighbouring stitch wires must not overlap.",
             )
         if self.messenger_wire.number > self.contact_wire.number:
             raise validation_problem(
                 "messenger_wire.number",
-                "two messenger wires above one contact wire",
-                "One or two messenger wires carry two contact wires; one carries one.",
+                "two messenger wires carry one contact wire",
+                "Set messenger_wire.number = 1 or contact_wire.number = 2.",
             )
         return self

@@ -17,30 +17,30 @@ from pantocheck.conformance.input_files.sourced_table import (
 
 
 class ContactTable(SourcedTable):
-    """Contact between the head and the contact wire: a one-sided penalty spring."""
+    """Contact between head and contact wire: a spring that acts in compression only."""
 
     stiffness_N_m: Annotated[Positive, Field(le=1e8, description="stiffness of the contact [N/m]")]
 
 
 class ChainTable(SourcedTable):
-    """Lumped masses from the base upwards; spring and damper i connect mass i to mass i - 1, the first to the base."""
+    """Lumped masses, base to head; spring and damper i connect masses i - 1 and i, the first ones mass 1 and base."""
 
     names: Annotated[
         tuple[str, ...] | None,
-        Field(strict=False, description="names of the masses, e.g. frame and head"),
+        Field(strict=False, description="names of the masses, base to head, e.g. frame and head"),
     ] = None
     masses_kg: Annotated[PositiveList, Field(max_length=20, description="lumped masses, base to head [kg]")]
     stiffness_N_m: Annotated[NonNegativeList, Field(max_length=20, description="springs, base to head [N/m]")]
     damping_N_s_m: Annotated[NonNegativeList, Field(max_length=20, description="dampers, base to head [N s/m]")]
 
     uplift_force_on: Annotated[
-        int | str, Field(description="mass that carries the uplift force: its number from the base, or its name")
+        int | str, Field(description="mass on which the uplift force acts: number from the base, from 1, or name")
     ] = 1
     base_spring_unstretched: Annotated[
         Literal["working_height", "wire_height"],
         Field(
-            description="height at which the base spring is free of force: the static working height (the static "
-            "contact force then equals the uplift force) or the nominal height of the wire"
+            description="height at which the base spring is without force; working_height: static working height, so "
+            "that the static contact force equals the uplift force; wire_height: nominal height of the contact wire"
         ),
     ] = "working_height"
 
@@ -50,17 +50,17 @@ class ChainTable(SourcedTable):
         on, names = self.uplift_force_on, self.names or ()
         if isinstance(on, str) and on not in names:
             raise validation_problem(
-                "uplift_force_on", f"no mass has the name {on!r}", f"The names are: {', '.join(names) or 'none'}."
+                "uplift_force_on", f"there is no mass {on!r}", f"Known names are {', '.join(names) or 'not given'}."
             )
         if isinstance(on, int) and not 1 <= on <= len(self.masses_kg):
             raise validation_problem(
-                "uplift_force_on", f"there is no mass {on}", f"Masses are numbered 1 to {len(self.masses_kg)}."
+                "uplift_force_on", f"there is no mass {on}", f"Give a number from 1 to {len(self.masses_kg)}."
             )
         return self
 
     @property
     def uplift_mass(self) -> int:
-        """Index of the mass that carries the uplift force, 0 at the base."""
+        """Index of the mass on which the uplift force acts, from 0 at the base."""
         if isinstance(self.uplift_force_on, str):
             return (self.names or ()).index(self.uplift_force_on)
         return self.uplift_force_on - 1
@@ -70,45 +70,46 @@ Matrix = Annotated[tuple[NumberList, ...], Field(strict=False, min_length=1, max
 
 
 class MatricesTable(SourcedTable):
-    """Matrices of a linear pantograph with fixed base; its uplift force equals its static contact force."""
+    """Matrices of a linear pantograph with fixed base; the uplift force equals the static contact force."""
 
     mass_kg: Annotated[Matrix, Field(description="mass matrix, row by row [kg]")]
     damping_N_s_m: Annotated[Matrix, Field(description="damping matrix, row by row [N s/m]")]
     stiffness_N_m: Annotated[Matrix, Field(description="stiffness matrix, row by row [N/m]")]
     head: Annotated[
         NumberList,
-        Field(max_length=50, description="share of each unknown in the displacement of the head, e.g. [0, 0, 1]"),
+        Field(max_length=50, description="displacement of the head per unit of each degree of freedom, e.g. [0, 0, 1]"),
     ]
 
     @model_validator(mode="after")
     def _possible(self) -> "MatricesTable":
         n = len(self.head)
         if not any(self.head):
-            raise validation_problem("head", "all zeros", "Give the unknown of the head, or a sum of unknowns.")
+            raise validation_problem("head", "all values are 0", "Give at least one value that is not 0.")
         for key in ("mass_kg", "damping_N_s_m", "stiffness_N_m"):
             rows = getattr(self, key)
             if len(rows) != n or any(len(row) != n for row in rows):
                 raise validation_problem(
-                    key, f"not {n} rows of {n} values", "Matrices are square, with one row per value of head."
+                    key, f"not {n} rows of {n} values", "Give a square matrix with one row per value of head."
                 )
             matrix = np.array(rows)
             if not np.allclose(matrix, matrix.T, rtol=1e-9, atol=1e-9 * float(np.abs(matrix).max())):
-                raise validation_problem(key, "not symmetric", "Check the order of the values.")
+                raise validation_problem(key, "not symmetric", "Give a symmetric matrix, row by row.")
             lowest, largest = np.linalg.eigvalsh(matrix)[[0, -1]]
             if lowest < -1e-9 * abs(largest) or (key == "mass_kg" and lowest <= 1e-12 * largest):
                 raise validation_problem(
                     key,
-                    f"its lowest eigenvalue is {lowest:.3g}",
-                    "Eigenvalues of mass are positive, those of damping and stiffness not negative.",
+                    f"the lowest eigenvalue is {lowest:.3g}",
+                    "Eigenvalues of the mass matrix are positive, those of damping and stiffness not negative.",
                 )
         return self
 
 
 class ModesTable(SourcedTable):
-    """Mass-normalised modes of a linear pantograph, base fixed, head free; uplift force as for matrices."""
+    """Mass-normalised modes of a linear pantograph with fixed base and free head; uplift force as for matrices."""
 
     frequency_Hz: Annotated[
-        NonNegativeList, Field(max_length=200, description="natural frequencies; 0 for a rigid-body motion [Hz]")
+        NonNegativeList,
+        Field(max_length=200, description="natural frequency of each mode, 0 for a rigid-body mode [Hz]"),
     ]
     damping_ratio: Annotated[NonNegativeList, Field(max_length=200, description="damping ratio of each mode [-]")]
     head_shape: Annotated[
@@ -119,28 +120,28 @@ class ModesTable(SourcedTable):
     def _same_length(self) -> "ModesTable":
         _check_lengths(self, ("damping_ratio", "head_shape"), len(self.frequency_Hz), "mode", "modes")
         if not any(self.head_shape):
-            raise validation_problem("head_shape", "all zeros", "The head must move in at least one mode.")
+            raise validation_problem("head_shape", "all values are 0", "Give at least one value that is not 0.")
         return self
 
 
 class PantographFile(InputTable):
-    """Content of a pantograph file: one of chain, matrices and modes, and the contact."""
+    """Content of a pantograph file: contact, and one of the tables chain, matrices and modes."""
 
     title: Annotated[str, Field(description="title in reports", max_length=200)]
     chain: ChainTable | None = None
     matrices: MatricesTable | None = None
     modes: ModesTable | None = None
     contact: ContactTable
-    note: Annotated[str | None, Field(description="reason for a choice", max_length=4000)] = None
+    note: Annotated[str | None, Field(description="remark for the reader", max_length=4000)] = None
 
     @model_validator(mode="after")
     def _has_one_model(self) -> "PantographFile":
         models = [name for name in ("chain", "matrices", "modes") if getattr(self, name) is not None]
         hint = "Give one of the tables chain, matrices and modes."
         if not models:
-            raise validation_problem("chain", "there is no model of the pantograph", hint)
+            raise validation_problem("chain", "missing", hint)
         if len(models) > 1:
-            raise validation_problem(models[-1], f"the pantograph is given by {' and '.join(models)}", hint)
+            raise validation_problem(models[-1], f"the pantograph has {len(models)} models: {', '.join(models)}", hint)
         return self
 
 

@@ -1,4 +1,4 @@
-"""Profiles: rules for the assessment of a record without a case, e.g. for the acceptance of a line."""
+"""Profiles: rules for the assessment of a record without a case, for example for the acceptance of a line."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -16,8 +16,6 @@ from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.registry import QUANTITIES
 
-PROFILE_SCHEMA = "pantocheck.profile/1"
-
 
 class SpeedFormula(InputTable):
     """Bound as a function of the speed v [km/h]: per_speed_squared v^2 + constant."""
@@ -25,8 +23,10 @@ class SpeedFormula(InputTable):
     per_speed_squared: Annotated[
         float, Field(ge=-1e6, le=1e6, description="factor of v^2, in the unit of the quantity per (km/h)^2")
     ]
-    constant: Annotated[float, Field(ge=-1e9, le=1e9, description="bound at rest, in the unit of the quantity")]
-    above_km_h: Annotated[float | None, Field(ge=0, description="the formula is valid above this speed")] = None
+    constant: Annotated[float, Field(ge=-1e9, le=1e9, description="bound at speed 0, in the unit of the quantity")]
+    above_km_h: Annotated[
+        float | None, Field(ge=0, description="speed above which the formula is valid [km/h]; default: every speed")
+    ] = None
 
     def at(self, speed_km_h: float) -> float:
         """Bound at a speed [km/h]."""
@@ -34,14 +34,14 @@ class SpeedFormula(InputTable):
 
 
 class NamedBound(InputTable):
-    """Bound that the record gives: a key of its `line` table, times a factor."""
+    """Bound from the record: the value of a key of its `line` table, times a factor."""
 
-    given: Annotated[Literal["uplift_space_mm"], Field(description="key of the record's line table")]
-    factor: Annotated[float, Field(gt=0, le=100, description="factor of this value")] = 1.0
+    given: Annotated[Literal["uplift_space_mm"], Field(description="key of the table [line] of the record")]
+    factor: Annotated[float, Field(gt=0, le=100, description="factor on the value of this key [-]")] = 1.0
 
 
 def _kind_of_bound(bound: object) -> str:
-    """Kind of a bound, so that only this kind is validated and reported."""
+    """Kind of a bound, which pydantic validates and reports alone."""
     if isinstance(bound, SpeedFormula | NamedBound):
         return type(bound).__name__
     if isinstance(bound, dict):
@@ -59,16 +59,16 @@ Tolerance = Annotated[float, Field(gt=0, le=1e9)]
 
 
 class Rule(InputTable):
-    """Bounds of one quantity, for every pantograph: stated, or around the value of a measured record."""
+    """Bounds of one quantity for every pantograph: stated bounds, or a tolerance on the measured value."""
 
     quantity: QuantityName
-    lower: Annotated[RuleBound | None, Field(description="smallest value that passes, or a formula")] = None
-    upper: Annotated[RuleBound | None, Field(description="largest value that passes, or a formula")] = None
+    lower: Annotated[RuleBound | None, Field(description="lower bound: number, formula or key of the record")] = None
+    upper: Annotated[RuleBound | None, Field(description="upper bound: number, formula or key of the record")] = None
     tolerance: Annotated[
         Tolerance | None, Field(description="largest difference from the measured value, in the unit of the quantity")
     ] = None
     tolerance_pct: Annotated[
-        Tolerance | None, Field(description="largest difference in percent of the measured value")
+        Tolerance | None, Field(description="largest difference from the measured value, relative to it [%]")
     ] = None
     trust: Annotated[Trust, Field(description="trust in the rule")]
     source: Annotated[str | list[str], Field(description="source of the rule: keys of sources.toml, or free text")]
@@ -77,19 +77,21 @@ class Rule(InputTable):
     @model_validator(mode="after")
     def _consistent(self) -> "Rule":
         if QUANTITIES[self.quantity].scope == "mass_drop":
-            raise validation_problem("quantity", f"{self.quantity} is no quantity of a run", "Choose another quantity.")
+            raise validation_problem(
+                "quantity", f"{self.quantity} is not a quantity of a run", "Give a quantity of a contact-force record."
+            )
         stated = self.lower is not None or self.upper is not None
         if stated + (self.tolerance is not None) + (self.tolerance_pct is not None) != 1:
             raise validation_problem(
                 "",
-                f"{self.quantity} needs exactly one kind of bound",
-                "Give lower/upper, tolerance or tolerance_pct.",
+                f"the rule for {self.quantity} has no bound, or several kinds of bounds",
+                "Give one kind: lower and upper, tolerance or tolerance_pct.",
             )
         return self
 
     @property
     def compares(self) -> bool:
-        """Whether the bounds come from a measured record."""
+        """Whether the bounds are a tolerance on the value of a measured record."""
         return self.tolerance is not None or self.tolerance_pct is not None
 
 
@@ -110,19 +112,22 @@ class Profile(InputTable):
     ] = 5.0
     verification: Annotated[
         Literal["shown", "demanded"],
-        Field(description="demanded: an unverified record does not pass; shown: the report states its state only"),
+        Field(
+            description="use of the state of the record (verified or unverified); demanded: an unverified record does "
+            "not pass; shown: the report shows the state"
+        ),
     ] = "shown"
     filter: Filter = Filter()
     rule: Annotated[tuple[Rule, ...], Field(strict=False, min_length=1, max_length=1000)]
 
     @property
     def compares(self) -> bool:
-        """Whether the profile needs a measured record for comparison."""
+        """Whether a rule of the profile needs a measured record for comparison."""
         return any(rule.compares for rule in self.rule)
 
 
 class BoundMissing(ValueError):
-    """A rule has no bound for this record, and a guessed bound would be a limit without a source."""
+    """Bound missing for a record; an assumed bound would be a limit without a source."""
 
 
 def resolve_bounds(
@@ -149,27 +154,29 @@ def resolve_bounds(
     Raises
     ------
     BoundMissing
-        The speed is out of range of the formula, a value is missing, or the lower bound is above the upper bound.
+        The formula is not valid at the speed, a value is missing, or the lower bound is above the upper bound.
     """
     if rule.compares:
         if measured is None:
-            raise BoundMissing("the measured record has no such quantity")
-        reach = rule.tolerance or abs(measured) * (rule.tolerance_pct or 0.0) / 100
-        return measured - reach, measured + reach
+            raise BoundMissing("the measured record does not have this quantity")
+        tolerance = rule.tolerance or abs(measured) * (rule.tolerance_pct or 0.0) / 100
+        return measured - tolerance, measured + tolerance
     lower, upper = (_resolve_bound(bound, speed_km_h, line_values) for bound in (rule.lower, rule.upper))
     if lower is not None and upper is not None and lower > upper:
-        raise BoundMissing(f"its lower bound of {lower:g} lies above its upper bound of {upper:g}")
+        raise BoundMissing(f"the lower bound of the rule, {lower:g}, is above its upper bound, {upper:g}")
     return lower, upper
 
 
 def _resolve_bound(bound: RuleBound | None, speed_km_h: float, line_values: Mapping[str, float | None]) -> float | None:
     if isinstance(bound, SpeedFormula):
         if bound.above_km_h is not None and speed_km_h <= bound.above_km_h:
-            raise BoundMissing(f"the rule holds above {bound.above_km_h:g} km/h, the record is of {speed_km_h:g} km/h")
+            raise BoundMissing(
+                f"the speed of the record is {speed_km_h:g} km/h; the rule is valid above {bound.above_km_h:g} km/h"
+            )
         return bound.at(speed_km_h)
     if isinstance(bound, NamedBound):
         if (value := line_values.get(bound.given)) is None:
-            raise BoundMissing(f"the record does not give {bound.given}")
+            raise BoundMissing(f"the record does not state {bound.given} in its table [line]")
         return bound.factor * value
     return bound
 
@@ -180,16 +187,16 @@ def list_profiles() -> dict[str, Path]:
 
 
 def load_profile(name: str) -> Profile:
-    """Read a profile of the library by its name, or of a file (name ending in .toml).
+    """Read a profile of the library by name, or a profile file by its path, which ends in .toml.
 
     Raises
     ------
     InputError
-        There is no such profile, or it is invalid.
+        The library has no profile of this name, or the file is invalid.
     """
     if name.endswith(".toml"):
         return read_model(Path(name), Profile, "profile")
     known = list_profiles()
     if name not in known:
-        raise InputError(f"profile '{name}'", "there is no such profile", suggest_names(name, list(known)))
+        raise InputError(f"profile '{name}'", "there is no profile with this name", suggest_names(name, list(known)))
     return read_model(known[name], Profile, "profile")

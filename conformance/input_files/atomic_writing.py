@@ -28,7 +28,14 @@ def write_atomically(path: Path, content: bytes) -> None:
 
 
 def produce_atomically(path: Path, produce: Callable[[Path], object]) -> None:
-    """Let `produce` write a temporary file beside `path`, then move it into place; a failure leaves no file.
+    """Write a temporary file beside `path`, then move it into place; a failure leaves no file.
+
+    Parameters
+    ----------
+    path : Path
+        File to write; a missing folder is created.
+    produce : callable
+        Function that writes the content to the path of the temporary file.
 
     Raises
     ------
@@ -49,7 +56,7 @@ def produce_atomically(path: Path, produce: Callable[[Path], object]) -> None:
 
 
 def check_writable(folder: Path) -> None:
-    """Create a folder and a test file in it, before computing results that could not be saved.
+    """Create a folder and a test file in it, so that a long computation does not end without a place for its results.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Bounded reading: a file is regular, its size is known before its content enters the memory, and no more is read."""
+"""Bounded reading: only regular files are read, and never more bytes than the size that was checked on opening."""
 
 import hashlib
 import io
@@ -15,7 +15,7 @@ MAX_FILE_BYTES = 2_000_000_000
 """Largest file that is read [bytes]: a table of samples."""
 
 NO_LINK = getattr(os, "O_NOFOLLOW", 0)
-"""Flag of `open_file` that refuses a symbolic link."""
+"""Flag for `open_file` that refuses a symbolic link."""
 
 _CHUNK = 2**20  # [bytes]
 
@@ -24,7 +24,7 @@ _FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0
 
 
 class _RawFile(io.FileIO):
-    """Regular file whose size was checked: a read behind this size is refused, because the file grows."""
+    """Regular file of known size; reading beyond this size is an error, because the file has grown."""
 
     def __init__(self, descriptor: int, where: str, size: int) -> None:
         super().__init__(descriptor)
@@ -33,7 +33,7 @@ class _RawFile(io.FileIO):
     def readinto(self, buffer: Any) -> int:
         count = super().readinto(buffer) or 0
         if count and self.tell() > self._size:
-            raise InputError(self._where, "grows while it is read", "Read it after the writing program has ended.")
+            raise InputError(self._where, "grew while it was read", "Wait until the program that writes it has ended.")
         return count
 
     # The methods of FileIO bypass `readinto`.
@@ -45,7 +45,7 @@ class _RawFile(io.FileIO):
 
 
 class BoundedFile(io.BufferedReader):
-    """Buffered regular file; a library that asks for more bytes than the file has takes no memory for them."""
+    """Buffered regular file; a request for more bytes than the file has takes no memory for them."""
 
     def __init__(self, descriptor: int, where: str, size: int) -> None:
         super().__init__(_RawFile(descriptor, where, size), _CHUNK)
@@ -57,7 +57,7 @@ class BoundedFile(io.BufferedReader):
 
 @contextmanager
 def open_file(path: Path, where: str, largest: int, flags: int = 0) -> Iterator[BoundedFile]:
-    """Open a regular file for reading; kind and size are those of the open file, not of its name.
+    """Open a regular file for reading; kind and size are checked on the open file, whose name may meanwhile change.
 
     Parameters
     ----------
@@ -66,9 +66,14 @@ def open_file(path: Path, where: str, largest: int, flags: int = 0) -> Iterator[
     where : str
         Name of the file in messages, e.g. `results 'results.json'`.
     largest : int
-        Limit of its size [bytes].
+        Largest accepted size [bytes].
     flags : int
         Further flags of `os.open`, such as `NO_LINK`.
+
+    Yields
+    ------
+    BoundedFile
+        Open file; it is closed at the end of the block.
 
     Raises
     ------
@@ -81,9 +86,9 @@ def open_file(path: Path, where: str, largest: int, flags: int = 0) -> Iterator[
         try:
             status = os.fstat(descriptor)
             if not stat.S_ISREG(status.st_mode):
-                raise InputError(where, f"cannot be read from {path} (not a regular file)", "Name a file.")
+                raise InputError(where, f"cannot be read from {path} (not a regular file)", "Give a regular file.")
             if status.st_size > largest:
-                raise InputError(where, f"has {status.st_size} bytes", f"The largest accepted size is {largest} bytes.")
+                raise InputError(where, f"has {status.st_size} bytes", f"At most {largest} bytes are accepted.")
             file = BoundedFile(descriptor, where, status.st_size)
         except BaseException:
             os.close(descriptor)
@@ -93,7 +98,7 @@ def open_file(path: Path, where: str, largest: int, flags: int = 0) -> Iterator[
 
 
 def check_file(path: Path, where: str, largest: int) -> None:
-    """Refuse a file that a library opens by its path; parameters and errors as in `open_file`."""
+    """Check a file before a library opens it by its path; parameters and errors as in `open_file`."""
     with open_file(path, where, largest):
         pass
 
@@ -111,14 +116,14 @@ def read_text(path: Path, where: str, largest: int) -> str:
 
 
 def file_digest(path: Path, flags: int = 0) -> str:
-    """SHA-256 of a file, in hexadecimal; parameters and errors as in `open_file`."""
+    """SHA-256 of a file in hexadecimal; parameters and errors as in `open_file`."""
     with open_file(path, f"file '{path.name}'", MAX_FILE_BYTES, flags) as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 @contextmanager
 def convert_read_errors(path: Path, where: str) -> Iterator[None]:
-    """Convert errors of the file system, and bytes that are not UTF-8 text, into `InputError`."""
+    """Convert errors of the file system, and of text that is not UTF-8, into `InputError`; see `open_file`."""
     try:
         yield
     except OSError as error:

@@ -1,7 +1,7 @@
-"""Input errors, and the life of an input: each step and the exception that a file of a user may raise in it.
+"""Input errors. The table lists the steps in which input is used, and the exception of each step.
 
 ================================  ==================================  ==============================================
-step                              exception                           where it ends
+step                              exception                           result
 ================================  ==================================  ==============================================
 open, parse and validate a file   `InputError`                        message of the command line, exit code 2
 build a record from samples       `RecordInvalid`                     `InputError` of the table (`record_reading`)
@@ -18,7 +18,7 @@ In a run of several cases, the first and the last end as the verdict `error` of 
 
 
 class InputError(ValueError):
-    """Input that cannot be used: without it, a wrong file becomes a wrong number in a certificate.
+    """Input that cannot be used. It is refused, because wrong input would give a wrong number in a certificate.
 
     Parameters
     ----------

@@ -22,12 +22,17 @@ def read_json(path: Path, kind: str, largest: int) -> Any:
     kind : str
         Name of its kind in messages, e.g. `results`.
     largest : int
-        Limit of its size [bytes].
+        Largest accepted size [bytes].
+
+    Returns
+    -------
+    Any
+        Parsed content.
 
     Raises
     ------
     InputError
-        It cannot be read, is too large or is not JSON.
+        The file cannot be read, is too large or is not JSON.
     """
     where = f"{kind} '{path.name}'"
     return parse_json(read_bytes(path, where, largest), where, largest)
@@ -36,11 +41,15 @@ def read_json(path: Path, kind: str, largest: int) -> Any:
 def parse_json(content: bytes, where: str, largest: int) -> Any:
     """Parse JSON from bytes that may come from another file; parameters and errors as in `read_json`."""
     if len(content) > largest:
-        raise InputError(where, f"has {len(content)} bytes", f"The largest accepted size is {largest} bytes.")
+        raise InputError(where, f"has {len(content)} bytes", f"At most {largest} bytes are accepted.")
     try:
         return json.loads(content)
     except (ValueError, RecursionError) as error:
-        raise InputError(where, f"not JSON ({_clean(str(error))})", "Let the suite write it again.") from None
+        raise InputError(
+            where,
+            f"is not valid JSON ({_clean(str(error))})",
+            "Write the file again with the same command of the suite.",
+        ) from None
 
 
 def validate_json(data: Any, model: TypeAdapter[T], where: str, hint: str) -> T:
@@ -55,7 +64,12 @@ def validate_json(data: Any, model: TypeAdapter[T], where: str, hint: str) -> T:
     where : str
         Name of the file in messages.
     hint : str
-        Source of a valid file.
+        Next step of the user, such as the command that writes a valid file.
+
+    Returns
+    -------
+    T
+        Validated model.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Measured table: columns of numbers as a file holds them, with the description of each column that the file gives."""
+"""Measured table: columns of numbers in the units of their file, with the descriptions that the file contains."""
 
 import struct
 import zlib
@@ -20,7 +20,7 @@ LIBRARY_ERRORS: tuple[type[Exception], ...] = (
 )
 """Exceptions that the libraries of the file formats raise for damaged files."""
 
-SAMPLED_TOGETHER = "The channels of a record must be sampled together."
+SAMPLED_TOGETHER = "All channels of a record need the same sampling times."
 
 TIME_NAMES = ("time", "time_s", "t", "t_s", "zeit", "temps")
 """Names of a time column, in lower case."""
@@ -76,7 +76,7 @@ class MeasuredTable:
     run : int
         Number of the run from 1; 0 in a file of one run.
     attributes : dict[str, Any]
-        Facts about the run by the names of the HDF5 attributes, such as `drop_mass_kg`.
+        Data of the run under the names of the HDF5 attributes, such as `drop_mass_kg`.
     """
 
     source: str
@@ -93,17 +93,17 @@ class MeasuredTable:
         return f"record '{self.source}'"
 
     def separate_time(self) -> "MeasuredTable":
-        """Table whose first column, if its name is that of a time [s], is the time column.
+        """Same table with its first column as time column [s], if the name of this column is a name of time.
 
         Raises
         ------
         InputError
-            No other column is left.
+            The table has no other column.
         """
         if (self.columns[0].name or "").lower() not in TIME_NAMES:
             return self
         if len(self.columns) == 1:
-            raise InputError(self.where, "has no column beside the time", "A record has at least one channel.")
+            raise InputError(self.where, "holds the time column only", "Store at least one channel beside the time.")
         return replace(self, values=self.values[:, 1:], columns=self.columns[1:], time=self.values[:, 0])
 
 
@@ -126,34 +126,34 @@ def refuse_damage(where: str, kind: str, *others: type[Exception]) -> Iterator[N
         raise
     except (*LIBRARY_ERRORS, *others) as error:
         message = " ".join(str(error).split())[:120]
-        raise InputError(where, f"is damaged or not {kind} ({message})", "Export the record again.") from None
+        raise InputError(where, f"is damaged, or is not {kind} ({message})", "Export the record again.") from None
 
 
 def parse_direction(text: str, where: str) -> tuple[Axis, float]:
-    """Axis and sign of a direction such as `+z` or `-x`.
+    """Axis and sign of a direction such as `+z` or `-x`; `where` is the place of the text in messages.
 
     Raises
     ------
     InputError
-        It is none of +x, -x, +y, -y, +z, -z.
+        The text is none of +x, -x, +y, -y, +z, -z.
     """
     name = text.strip().lower()
     for axis in get_args(Axis):
         if name.lstrip("+-") == axis:
             return axis, -1.0 if name.startswith("-") else 1.0
-    raise InputError(where, f"direction {text[:40]!r} is not known", "Write +x, -x, +y, -y, +z or -z; z is upward.")
+    raise InputError(where, f"has the unknown direction {text[:40]!r}", "Write +x, -x, +y, -y, +z or -z; z is upward.")
 
 
 def stack_channels(channels: list[RealArray], where: str, largest: int) -> RealArray:
-    """Samples of channels as columns, (n, c).
+    """Samples of channels as columns, (n, c); `where` is the name of the file in messages.
 
     Raises
     ------
     InputError
-        The channels differ in length, or hold more than `largest` numbers together.
+        The channels differ in length, or hold more than `largest` values together.
     """
     if len({channel.size for channel in channels}) > 1:
-        raise InputError(where, "its channels differ in length", SAMPLED_TOGETHER)
+        raise InputError(where, "has channels of different length", SAMPLED_TOGETHER)
     if sum(channel.size for channel in channels) > largest:
-        raise InputError(where, f"more than {largest} numbers", "Cut the record, or leave channels out.")
+        raise InputError(where, f"holds more than {largest} numbers", "Shorten the record, or leave channels out.")
     return np.column_stack(channels)

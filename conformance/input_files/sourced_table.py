@@ -1,4 +1,4 @@
-"""Base tables of input files: unknown keys are refused, numbers are finite, and sourced tables name their source."""
+"""Base tables of input files: unknown keys are refused, numbers are finite, and a sourced table states its source."""
 
 from typing import Annotated
 
@@ -26,7 +26,7 @@ class InputTable(BaseModel):
 
 
 class SourcedTable(InputTable):
-    """Table whose numbers have one source and one trust; exceptions are listed in `provisional`."""
+    """Table whose numbers share one source and one trust; `provisional` lists the exceptions."""
 
     trust: Annotated[Trust, Field(description="trust in the numbers of this table")]
     source: Annotated[
@@ -35,7 +35,7 @@ class SourcedTable(InputTable):
     ]
     provisional: Annotated[
         tuple[str, ...],
-        Field(strict=False, description="keys of this table that could not be traced to any printed source"),
+        Field(strict=False, description="keys of this table whose numbers have no printed source"),
     ] = ()
     note: Annotated[str | None, Field(description="reason for a number or a choice", max_length=4000)] = None
 
@@ -50,15 +50,20 @@ class SourcedTable(InputTable):
 
 
 def validation_problem(key: str, found: str, hint: str) -> PydanticCustomError:
-    """Build the error of an inconsistency between keys, for a validator to raise.
+    """Build the error that a validator raises for keys that contradict each other.
 
     Parameters
     ----------
     key : str
-        Dotted key at fault, relative to the table that is validated.
+        Dotted name of the wrong key, relative to the validated table.
     found : str
         Content found there.
     hint : str
         Content expected there.
+
+    Returns
+    -------
+    PydanticCustomError
+        Error with these three parts as context.
     """
     return PydanticCustomError("inconsistent", "{found}. {hint}", {"key": key, "found": found, "hint": hint})

@@ -1,11 +1,11 @@
-"""Suggestions for a name that does not exist."""
+"""Suggestions for an unknown name."""
 
 from collections.abc import Sequence
 from difflib import get_close_matches
 
 
 def suggest_names(name: str, known: Sequence[str]) -> str:
-    """Sentence with the known names closest to an unknown one, or with all known names."""
+    """Sentence with the known names that resemble an unknown name, or with the first known names."""
     # Users often write the last part of an id only.
     tails = {item.rsplit("/", 1)[-1]: item for item in known}
     lowered = {item.lower(): item for item in known}

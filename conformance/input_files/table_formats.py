@@ -9,12 +9,9 @@ from pantocheck.conformance.input_files.bounded_file import MAX_FILE_BYTES, open
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.measured_table import MeasuredTable
 
-MAX_TABLE_BYTES = MAX_FILE_BYTES
-"""Largest table that is read [bytes]."""
-
 Reader = Callable[[Path, tuple[str, ...], int], list[MeasuredTable]]
-"""Reader of a format. Its arguments are the path, the channels that a sidecar names (none without a sidecar) and the
-largest count of numbers; it raises `InputError` for a file that cannot be used."""
+"""Reader of a format. Its arguments are the path, the names of the channels in the sidecar (empty without a sidecar)
+and the largest accepted number of values. It raises `InputError` for a file that cannot be used."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +33,10 @@ class TableFormat:
     extra: str = ""
 
     def read(self, path: Path, names: tuple[str, ...], largest: int) -> list[MeasuredTable]:
-        """Read a file of this format; the library of the format is imported here, because imports take time."""
+        """Read a file of this format; arguments and errors as in `Reader`.
+
+        The library of the format is imported only here, because imports take time.
+        """
         try:
             module = import_module(f"pantocheck.conformance.input_files.formats.{self.module}")
             reader: Reader = getattr(module, f"read_{self.module}")
@@ -63,13 +63,13 @@ TABLE_FORMATS = (
 
 
 def list_suffixes(formats: tuple[TableFormat, ...]) -> str:
-    """Usual suffixes of formats for a message: `.csv, .uff or .h5`."""
+    """Usual suffixes of formats as text for a message: `.csv, .uff or .h5`."""
     first = [table_format.suffixes[0] for table_format in formats]
     return " or ".join(part for part in (", ".join(first[:-1]), first[-1]) if part)
 
 
-def find_table_format(path: Path, formats: tuple[TableFormat, ...] = TABLE_FORMATS) -> TableFormat:
-    """Format of a file by its suffix.
+def find_table_format(path: Path, formats: tuple[TableFormat, ...]) -> TableFormat:
+    """Find the format of a file by its suffix, among the accepted formats.
 
     Raises
     ------
@@ -78,11 +78,13 @@ def find_table_format(path: Path, formats: tuple[TableFormat, ...] = TABLE_FORMA
     """
     where, suffix = f"record '{path.name}'", path.suffix.lower()
     if suffix == ".toml":
-        raise InputError(where, "is a sidecar", f"Name the record beside it: {list_suffixes(formats)}.")
+        raise InputError(
+            where, "is a sidecar, not a table", f"Give the table in the same folder ({list_suffixes(formats)})."
+        )
     for table_format in formats:
         if suffix in table_format.suffixes:
             return table_format
-    raise InputError(where, f"format '{suffix}' is not known", f"Known formats are {list_suffixes(formats)}.")
+    raise InputError(where, f"has the unknown suffix '{suffix}'", f"Known formats are {list_suffixes(formats)}.")
 
 
 def read_tables(
@@ -95,11 +97,16 @@ def read_tables(
     path : Path
         The file.
     names : tuple of str
-        Channels that its sidecar names, in the order of their columns; empty if it has none.
+        Names of the channels in its sidecar, in the order of the columns; empty without a sidecar.
     largest : int
-        Largest count of numbers.
+        Largest accepted number of values.
     formats : tuple of TableFormat
-        Formats to choose from.
+        Accepted formats.
+
+    Returns
+    -------
+    list of MeasuredTable
+        One table per run.
 
     Raises
     ------
@@ -108,7 +115,7 @@ def read_tables(
     """
     table_format = find_table_format(path, formats)
     where = f"record '{path.name}'"
-    with open_file(path, where, MAX_TABLE_BYTES) as file:
+    with open_file(path, where, MAX_FILE_BYTES) as file:
         if not file.read(1):
             raise InputError(where, "is empty", "Export the record again.")
     return table_format.read(path, names, largest)

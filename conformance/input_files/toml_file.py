@@ -35,10 +35,15 @@ def read_model(path: Path, model: type[T], kind: str) -> T:
     kind : str
         Name of its kind in messages, e.g. `reference line`.
 
+    Returns
+    -------
+    T
+        Validated content.
+
     Raises
     ------
     InputError
-        It cannot be read, is not TOML or does not fit the model.
+        The file cannot be read, is not TOML or does not fit the model.
     """
     where = f"{kind} '{path.name}'"
     tree = read_toml(path, kind)
@@ -55,7 +60,7 @@ def read_toml(path: Path, kind: str) -> dict[str, Any]:
     if (long := _LONG_KEY.search(text)) is not None:
         line = text.count("\n", 0, long.start()) + 1
         raise InputError(
-            f"{where}, line {line}", "is a key of too many parts", f"A key has at most {MOST_PARTS} parts between dots."
+            f"{where}, line {line}", "has a key with too many dots", f"A key may have at most {MOST_PARTS} parts."
         )
     try:
         return tomllib.loads(text)
@@ -64,5 +69,5 @@ def read_toml(path: Path, kind: str) -> dict[str, Any]:
     except (ValueError, RecursionError):
         # The grammar allows numbers of thousands of digits and tables nested thousands of levels deep.
         raise InputError(
-            where, "holds a number or a nesting that is too long to read", "Shorten the number, or nest less deeply."
+            where, "holds a number that is too long, or tables nested too deeply", "Shorten the number or the nesting."
         ) from None

@@ -1,14 +1,14 @@
-"""Trust in a number: its source decides whether it may carry a verdict."""
+"""Trust in a number: the kind of its source decides whether the number may decide a verdict."""
 
 from typing import Literal, get_args
 
 Trust = Literal["primary", "secondary", "provisional"]
 """`primary`: read in the document that defines it; `secondary`: printed in another public source;
-`provisional`: not traced to any printed source, so informative unless the user lowers the required trust."""
+`provisional`: not traced to a printed source; it counts only if the user lowers the required trust."""
 
 LEVELS: tuple[Trust, ...] = get_args(Trust)
 
 
 def limit_counts(trust: Trust, lowest: Trust) -> bool:
-    """Whether a limit of this trust carries a verdict when `lowest` is the lowest level that counts."""
+    """Whether a limit of this trust decides a verdict, if `lowest` is the lowest trust that counts."""
     return LEVELS.index(trust) <= LEVELS.index(lowest)

@@ -1,4 +1,4 @@
-"""Units: one table for the units at the end of keys and the units of measured channels."""
+"""Units at the end of keys, and units of measured channels, in one table."""
 
 import math
 from dataclasses import dataclass
@@ -18,9 +18,9 @@ class UnitFamily:
     Parameters
     ----------
     rule : str
-        Sentence that names the unit of the schema.
+        Sentence that states the unit of the schema, for messages.
     factors : dict[str, float]
-        Factor to SI units by symbol.
+        Factor to the SI unit by symbol.
     """
 
     rule: str
@@ -69,7 +69,7 @@ MOTION_UNITS: dict[MotionQuantity, dict[str, float]] = {
     "velocity": _SPEED.factors,
     "displacement": _LENGTH.factors,
 }
-"""Units of sensors of motion, each with its factor to SI units."""
+"""Units of motion sensors, with their factors to the SI unit."""
 
 SI_UNITS: dict[MotionQuantity, str] = {"acceleration": "m/s2", "velocity": "m/s", "displacement": "m"}
 
@@ -85,32 +85,32 @@ _FAMILY_BY_SUFFIX = sorted(
     ((key_suffix(symbol), family) for family in UNIT_FAMILIES for symbol in family.factors),
     key=lambda item: -len(item[0]),
 )
-"""Longest suffix first: `stiffness_N_m` is a stiffness, not a length."""
+"""Unit families by suffix, the longest suffix first: `stiffness_N_m` is a stiffness, not a length."""
 
 
 def find_key_units(suffix: str) -> dict[str, float]:
-    """Suffixes of all units of the same quantity, each with its factor to the unit of `suffix`."""
+    """Suffixes of all units of one quantity, with their factors to the unit of `suffix`."""
     family = next(family for known, family in _FAMILY_BY_SUFFIX if known == suffix)
     factors = {key_suffix(symbol): factor for symbol, factor in family.factors.items()}
     return {known: factor / factors[suffix] for known, factor in factors.items()}
 
 
 def suggest_key(key: str, value: object, known: list[str]) -> str | None:
-    """Hint for a key in a unit that the schema does not use.
+    """Hint for an unknown key that is a key of the schema in another unit.
 
     Parameters
     ----------
     key : str
         Unknown key.
     value : object
-        Its value, which the hint repeats in the unit of the schema.
+        Its value; the hint repeats it in the unit of the schema.
     known : list of str
         Keys of the schema.
 
     Returns
     -------
     str or None
-        Sentence with the key of the schema; None if the unit is not the mistake.
+        Sentence with the key of the schema; None if no key of the schema differs in its unit only.
     """
     for other in known:
         for suffix, family in _FAMILY_BY_SUFFIX:
@@ -127,7 +127,7 @@ def suggest_key(key: str, value: object, known: list[str]) -> str | None:
 
 
 def _scaled(value: object, factor: float) -> str:
-    """Value of a key in another unit, as TOML."""
+    """Value times a factor, as TOML."""
     if isinstance(value, list):
         return f"[{', '.join(_scaled(item, factor) for item in value[:20])}{', ...' if len(value) > 20 else ''}]"
     if isinstance(value, bool) or not isinstance(value, int | float):
@@ -137,12 +137,12 @@ def _scaled(value: object, factor: float) -> str:
 
 
 def convert_unit(text: str, where: str) -> tuple[MotionQuantity, float]:
-    """Quantity that a unit of motion measures, and its factor to SI units.
+    """Quantity of a unit of motion, and the factor to its SI unit; `where` is the place of the unit in messages.
 
     Raises
     ------
     InputError
-        The unit is not known. A guess would scale every amplitude.
+        The unit is not known; a guessed unit would scale every amplitude.
     """
     name = text.strip()
     name = SPELLINGS.get(name.lower(), name)
@@ -150,4 +150,4 @@ def convert_unit(text: str, where: str) -> tuple[MotionQuantity, float]:
         if name in factors:
             return quantity, factors[name]
     known = ", ".join(unit for factors in MOTION_UNITS.values() for unit in factors)
-    raise InputError(where, f"unit {text[:40]!r} is not known", f"Known units are {known}.")
+    raise InputError(where, f"has the unknown unit {text[:40]!r}", f"Known units are {known}.")

@@ -1,4 +1,4 @@
-"""Messages for validation errors: file, key, value found and next step."""
+"""Messages for validation errors: file, key, value that was found, and next step."""
 
 import math
 import typing
@@ -20,7 +20,7 @@ _BOUNDS = {
 }
 
 LONGEST_KEY = 80
-"""Characters of a key that a message shows; keys of the schemas are shorter."""
+"""Largest number of characters of a key in a message; all keys of the schemas are shorter."""
 
 _KINDS = {
     "float_type": "a number",
@@ -37,7 +37,7 @@ _KINDS = {
 
 
 def build_input_error(error: ValidationError, model: type[BaseModel], where: str) -> InputError:
-    """Build an `InputError` from the most informative problem of a file.
+    """Build an `InputError` from the most useful one of the validation errors of a file.
 
     Parameters
     ----------
@@ -47,8 +47,13 @@ def build_input_error(error: ValidationError, model: type[BaseModel], where: str
         Model that was validated.
     where : str
         Name of the file in messages, e.g. `reference line 'my-line.toml'`.
+
+    Returns
+    -------
+    InputError
+        Error with file, key, value and hint.
     """
-    # A key in a wrong unit gives two errors, an unknown and a missing key; the unknown key leads to the better hint.
+    # A key in a wrong unit gives two errors, an unknown and a missing key; the unknown key gives the better hint.
     detail = min(error.errors(), key=lambda item: item["type"] != "extra_forbidden")
     table, field, key = _walk(model, detail["loc"])
     if detail["type"] == "inconsistent":
@@ -60,7 +65,7 @@ def build_input_error(error: ValidationError, model: type[BaseModel], where: str
 
 
 def _explain(detail: ErrorDetails, table: type[BaseModel], field: FieldInfo | None) -> tuple[str, str]:
-    """Content that was found, and the hint, for one error of pydantic."""
+    """Content that was found, and hint, for one error of pydantic."""
     kind, value = detail["type"], detail["input"]
     name = str(detail["loc"][-1]) if detail["loc"] else ""
     known = list(table.model_fields)

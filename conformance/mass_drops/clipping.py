@@ -1,4 +1,4 @@
-"""Clipping: flat tops that a saturated amplifier leaves in a signal."""
+"""Clipping: flat tops of a signal from a saturated amplifier."""
 
 import numpy as np
 
@@ -8,16 +8,16 @@ SAME_EXTREMES = 4  # consecutive samples with exactly the extreme value that mak
 
 
 def find_clipping(signal: RealArray) -> list[tuple[int, int]]:
-    """Flat tops [start, end) of a saturated amplifier: those far from the median of the signal.
+    """Find the flat tops of a saturated amplifier, as intervals [start, end) of samples.
 
-    The noise floor of a converter also repeats its smallest value, but it lies near the median.
+    A converter repeats its extreme values also in a signal of noise alone; those lie near the median and do not count.
     """
     middle, reach = np.median(signal), 0.2 * np.ptp(signal)
     return [top for top in _find_flat_tops(signal) if abs(signal[top[0]] - middle) > reach]
 
 
 def _find_flat_tops(signal: RealArray) -> list[tuple[int, int]]:
-    """Intervals [start, end) in which a signal stays at its maximum or minimum."""
+    """Intervals [start, end) of samples with exactly the maximum or minimum of the signal."""
     tops = []
     for extreme in {float(signal.max()), float(signal.min())}:
         edges = np.flatnonzero(np.diff(np.concatenate([[False], signal == extreme, [False]]).astype(np.int8)))

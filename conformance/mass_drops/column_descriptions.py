@@ -1,4 +1,4 @@
-"""Descriptions of the columns of a mass-drop record: from the sidecar if there is one, else from the file."""
+"""Descriptions of the columns of a mass-drop record, from its sidecar, or from the file if it has no sidecar."""
 
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.measured_table import MeasuredTable, TableColumn
@@ -7,19 +7,19 @@ from pantocheck.conformance.mass_drops.drop_sidecar import DropChannelTable, Dro
 
 
 def describe_columns(table: MeasuredTable, sidecar: DropSidecar | None) -> list[tuple[int, TableColumn]]:
-    """Number (from 1) and description of every column that is a channel of the record.
+    """Number (from 1) and description of each column that is a channel of the record.
 
     Raises
     ------
     InputError
-        The file describes no channels and has no sidecar, or file and sidecar contradict each other.
+        The file has neither descriptions of its channels nor a sidecar, or file and sidecar contradict each other.
     """
     if sidecar is None:
         if any(column.direction is None for column in table.columns):
             raise InputError(
                 table.where,
-                "does not describe its columns and has no sidecar",
-                "Put NAME.toml beside it, with [record] sampling_rate_hz and one [[channel]] per column.",
+                "has neither descriptions of its columns nor a sidecar",
+                "Write a TOML file with the same stem, with [record] sampling_rate_hz and one [[channel]] per column.",
             )
         return list(enumerate(table.columns, 1))
     _check_numbers(table, sidecar)
@@ -29,36 +29,36 @@ def describe_columns(table: MeasuredTable, sidecar: DropSidecar | None) -> list[
 
 
 def _check_numbers(table: MeasuredTable, sidecar: DropSidecar) -> None:
-    """Refuse a sidecar that repeats or miscounts columns, or describes a column that the table lacks."""
+    """Refuse a sidecar that describes a column twice, or not at all, or a column that is not in the table."""
     declared, width = sidecar.record.n_channels, len(table.columns)
     columns = [channel.column for channel in sidecar.channel]
     fault = None
     if declared is not None and declared != len(columns):
-        fault = f"n_channels = {declared}, but {len(columns)} channels are described"
+        fault = f"states n_channels = {declared}, but describes {len(columns)} channels"
     elif repeated := [column for column in columns if columns.count(column) > 1]:
-        fault = f"column {repeated[0]} is described twice"
+        fault = f"describes column {repeated[0]} twice"
     if fault is not None:
-        raise InputError(f"sidecar of {table.where}", fault, "Describe every column once.")
+        raise InputError(f"sidecar of {table.where}", fault, "Write one [[channel]] per column.")
     missing = [channel.name for channel in sidecar.channel if channel.column > width]
     if missing:
         raise InputError(
             table.where,
-            f"{width} columns, the sidecar describes columns up to {max(columns)} (missing: {', '.join(missing[:6])})",
-            "A channel is missing from the export, or the sidecar belongs to another file.",
+            f"has {width} columns, but the sidecar describes column {max(columns)} ({', '.join(missing[:6])} missing)",
+            "Export all channels, or give the sidecar of this file.",
         )
 
 
 def _check_agreement(channel: DropChannelTable, column: TableColumn, where: str) -> None:
-    """Refuse a name or unit in the file that differs from the sidecar."""
+    """Refuse a file whose name or unit of a column differs from the sidecar."""
     if column.name and column.name.strip() != channel.name.strip():
         raise InputError(
-            where,
-            f"column {channel.column} is headed '{column.name[:60]}', the sidecar calls it '{channel.name}'",
-            "Correct the sidecar: a confused channel gives wrong mode shapes.",
+            f"{where}, column {channel.column}",
+            f"is named '{column.name[:60]}', but the sidecar names it '{channel.name}'",
+            "Correct name or column number in the sidecar; exchanged channels give wrong mode shapes.",
         )
     if column.unit and convert_unit(column.unit, where) != convert_unit(channel.unit, f"sidecar of {where}"):
         raise InputError(
             f"{where}, channel '{channel.name}'",
-            f"the file says {column.unit}, the sidecar says {channel.unit}",
-            "Correct the one that is wrong.",
+            f"has the unit {column.unit} in the file, but {channel.unit} in the sidecar",
+            "Correct the wrong unit.",
         )

@@ -1,4 +1,4 @@
-"""Mass-drop record from a measured table and its sidecar: every contradiction is refused before signals become SI."""
+"""Mass-drop record from a measured table and its sidecar: contradictions are refused, signals are converted to SI."""
 
 import numpy as np
 
@@ -25,17 +25,22 @@ def assemble_drop_record(table: MeasuredTable, sidecar: DropSidecar | None) -> D
     table : MeasuredTable
         One run.
     sidecar : DropSidecar or None
-        Sidecar of the file. It may complete the file and must not contradict it.
+        Sidecar of the file; it adds data that the file lacks.
+
+    Returns
+    -------
+    DropRecord
+        Record with its warnings.
 
     Raises
     ------
     InputError
-        A contradiction, gap or unknown unit that would become a wrong number.
+        File and sidecar contradict each other, a value is missing, or a unit or direction is not known.
     """
     n = table.values.shape[0]
     if n < LEAST_SAMPLES:
         raise InputError(
-            table.where, f"only {n} samples", "Export the whole record, from rest to the end of the decay."
+            table.where, f"holds only {n} samples", "Export the whole record, from rest to the end of the decay."
         )
     described = describe_columns(table, sidecar)
     rate = find_sampling_rate(table, sidecar)
@@ -67,40 +72,42 @@ def assemble_drop_record(table: MeasuredTable, sidecar: DropSidecar | None) -> D
 
 
 def _check_finite(values: RealArray, rate: float, where: str) -> None:
-    """Refuse missing values, which no identification can bridge."""
+    """Refuse missing values, because an identification needs every sample."""
     bad = np.flatnonzero(~np.isfinite(values))
     if bad.size:
         raise InputError(
             where,
-            f"{bad.size} samples are not numbers, the first at {bad[0] / rate:g} s",
-            "Export the record again, or leave this channel out of the sidecar.",
+            f"has {bad.size} values that are not finite, the first at {bad[0] / rate:g} s",
+            "Export the record again, or leave this channel out.",
         )
 
 
 def _check_signal(signal: RealArray, quantity: MotionQuantity, rate: float, where: str) -> list[str]:
-    """Refuse a signal that never changes; warn of clipping and of implausible accelerations."""
+    """Refuse a constant signal; warn of clipping and of implausible accelerations."""
     if np.ptp(signal) == 0:
-        raise InputError(where, "never changes", "The sensor was dead: leave this channel out of the sidecar.")
+        raise InputError(where, "is constant", "Leave this channel out; its sensor did not work.")
     warnings = []
     tops = find_clipping(signal)
     if tops:
         warnings.append(
-            f"{where}: clipped, {len(tops)} times between {tops[0][0] / rate:.2f} s and {tops[-1][1] / rate:.2f} s"
+            f"{where}: clipped {len(tops)} times between {tops[0][0] / rate:.2f} s and {tops[-1][1] / rate:.2f} s"
         )
     if quantity == "acceleration" and float(np.abs(signal - np.median(signal)).max()) > LARGEST_ACCELERATION:
-        warnings.append(f"{where}: peak of {np.abs(signal).max():.3g} m/s2; check its unit")
+        warnings.append(f"{where}: implausible peak of {np.abs(signal).max():.3g} m/s2; check the unit")
     return warnings
 
 
 def _find_quantity(quantities: set[MotionQuantity], sidecar: DropSidecar | None, where: str) -> MotionQuantity:
-    """Quantity that all channels measure, in agreement with the sidecar."""
+    """Common quantity of all channels, which must be that of the sidecar."""
     if len(quantities) > 1:
-        raise InputError(where, f"mixes {' and '.join(sorted(quantities))}", "Give one file per kind of sensor.")
+        raise InputError(
+            where, f"holds channels of {' and '.join(sorted(quantities))}", "Write one file per measured quantity."
+        )
     (quantity,) = quantities
     if sidecar is not None and sidecar.record.quantity not in (None, quantity):
         raise InputError(
-            f"sidecar of {where}",
-            f"quantity = '{sidecar.record.quantity}', but the units are those of {quantity}",
-            "Correct the quantity or the units.",
+            f"sidecar of {where}, key record.quantity",
+            f"found '{sidecar.record.quantity}', but the units are those of {quantity}",
+            "Correct the quantity, or the units of the channels.",
         )
     return quantity

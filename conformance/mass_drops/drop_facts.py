@@ -1,4 +1,4 @@
-"""Facts about a mass drop and its line, from the attributes of the file and the sidecar."""
+"""Mass drop and line of a record, from the attributes of the file and its sidecar."""
 
 from typing import Any
 
@@ -8,16 +8,30 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.drop_record import DropDescription, DropLine
 
 Attributes = dict[str, Any]
-"""Facts by the names of `MeasuredTable.attributes`."""
+"""Attributes of a record, as in `MeasuredTable.attributes`."""
 
 
 def build_drop(attributes: Attributes, where: str, duration: float) -> DropDescription:
-    """Mass drop of a record of a duration [s].
+    """Build the description of the mass drop of a record.
+
+    Parameters
+    ----------
+    attributes : dict[str, Any]
+        Attributes of the record.
+    where : str
+        Name of the record in messages.
+    duration : float
+        Duration of the record [s].
+
+    Returns
+    -------
+    DropDescription
+        Mass drop.
 
     Raises
     ------
     InputError
-        An attribute is not a number, or the trigger lies behind the end of the record.
+        An attribute is not a number, or the planned release is after the end of the record.
     """
     drop = DropDescription(
         _read_number(attributes, "drop_mass_kg", where),
@@ -28,14 +42,14 @@ def build_drop(attributes: Attributes, where: str, duration: float) -> DropDescr
     if drop.trigger_nominal is not None and drop.trigger_nominal >= duration:
         raise InputError(
             where,
-            f"the trigger is at {drop.trigger_nominal:g} s, the record ends at {duration:g} s",
-            "The record is cut short, or the trigger time belongs to another one.",
+            f"the planned release at {drop.trigger_nominal:g} s is after the end of the record at {duration:g} s",
+            "Export the whole record, or correct trigger_nominal_s.",
         )
     return drop
 
 
 def build_line(attributes: Attributes, where: str) -> DropLine:
-    """Line of a record.
+    """Build the description of the line of a record; `where` is the name of the record in messages.
 
     Raises
     ------
@@ -60,5 +74,5 @@ def _convert_number(value: Any, name: str, where: str) -> float:
         return float(value)
     except (TypeError, ValueError):
         raise InputError(
-            f"{where}, attribute {name}", f"{str(value)[:40]!r} is not a number", "Correct it in the file or a sidecar."
+            f"{where}, attribute {name}", f"{str(value)[:40]!r} is not a number", "Write a number in file or sidecar."
         ) from None

@@ -9,16 +9,21 @@ from pantocheck.conformance.mass_drops.drop_record import DropRecord
 from pantocheck.conformance.mass_drops.drop_sidecar import read_drop_sidecar
 
 LARGEST_DROP = 30_000_000
-"""Largest count of numbers in a record: 20 channels at 1 kHz for 25 minutes. Reading them takes about 1 GB."""
+"""Largest number of values in a record: 20 channels at 1 kHz for 25 minutes. Reading them takes about 1 GB."""
 
 
 def read_drop_records(path: Path) -> tuple[DropRecord, ...]:
-    """Read all runs in a file of records.
+    """Read all runs of a file.
 
     Parameters
     ----------
     path : Path
         File in one of the formats of `TABLE_FORMATS`; its sidecar has the same stem and the suffix .toml.
+
+    Returns
+    -------
+    tuple of DropRecord
+        One record per run.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Record of one mass drop in SI units, every channel along a positive axis."""
+"""Record of one mass drop in SI units; all signals are positive in the direction of an axis."""
 
 from dataclasses import dataclass
 
@@ -11,7 +11,7 @@ from pantocheck.conformance.input_files.units import MotionQuantity
 
 @dataclass(frozen=True)
 class DropChannel:
-    """One measured direction of one sensor.
+    """Channel: one direction of one sensor.
 
     Parameters
     ----------
@@ -36,14 +36,14 @@ class DropChannel:
 
 @dataclass(frozen=True)
 class DropDescription:
-    """Mass drop.
+    """Mass, wire, position and planned release of one drop.
 
     Parameters
     ----------
     mass : float or None
-        Mass that was dropped [kg]; None if not known.
+        Dropped mass [kg]; None if not known.
     wire : str
-        Wire that carried the mass; empty if not known.
+        Wire with the mass; empty if not known.
     position : float or None
         Position along the line from its first support [m]; None if not known.
     trigger_nominal : float or None
@@ -58,7 +58,7 @@ class DropDescription:
 
 @dataclass(frozen=True)
 class DropLine:
-    """Facts about the line that tell whether two records belong to the same line.
+    """Properties by which two records are recognised as records of the same line.
 
     Parameters
     ----------
@@ -90,13 +90,13 @@ class DropRecord:
     channels : tuple of DropChannel
         Descriptions of the c columns.
     quantity : MotionQuantity
-        Quantity that the sensors measure.
+        Measured quantity.
     drop : DropDescription
         Mass drop.
     line : DropLine
         Line.
     warnings : tuple of str
-        Doubts about the record.
+        Caveats on the record.
     file : str
         Path of the file, which distinguishes files of the same name; empty if the record was not read.
     """
@@ -117,7 +117,7 @@ class DropRecord:
 
     @property
     def time(self) -> RealArray:
-        """Time of every sample from the first one [s], (n,)."""
+        """Time of each sample from the first one, (n,) [s]."""
         return np.arange(self.signals.shape[0]) / self.rate
 
     @property
@@ -126,5 +126,5 @@ class DropRecord:
         return float(self.signals.shape[0] / self.rate)
 
     def along(self, axis: Axis) -> tuple[int, ...]:
-        """Numbers of the columns that measure along an axis."""
+        """Indices of the columns whose channels measure along an axis."""
         return tuple(c for c, channel in enumerate(self.channels) if channel.axis == axis)

@@ -1,4 +1,4 @@
-"""Sidecar of a mass-drop record: the TOML file that describes its columns and the test."""
+"""Sidecar of a mass-drop record: TOML file with the descriptions of its columns, its mass drop and its line."""
 
 from pathlib import Path
 from typing import Annotated, Any
@@ -13,13 +13,13 @@ PositiveNumber = Annotated[float, Field(gt=0)]
 
 
 class _OpenTable(BaseModel):
-    """Table in which a measuring team may keep keys of its own."""
+    """Table in which further keys are permitted and ignored."""
 
     model_config = ConfigDict(extra="ignore", frozen=True, strict=True, allow_inf_nan=False)
 
 
 class DropTestTable(_OpenTable):
-    """Test and line."""
+    """Name of the test, and its line."""
 
     name: Annotated[str, Field(max_length=200, description="name of the test")] = ""
     spans_m: Annotated[
@@ -30,20 +30,22 @@ class DropTestTable(_OpenTable):
 
 
 class DropTable(_OpenTable):
-    """Mass that was dropped."""
+    """Dropped mass."""
 
-    mass_kg: Annotated[float | None, Field(gt=0, le=1000, description="mass that was dropped [kg]")] = None
-    wire: Annotated[str, Field(max_length=20, description="wire that carried the mass: CW or MW")] = ""
-    position_m: Annotated[float | None, Field(description="position of the mass from the first support [m]")] = None
+    mass_kg: Annotated[float | None, Field(gt=0, le=1000, description="dropped mass [kg]")] = None
+    wire: Annotated[
+        str, Field(max_length=20, description="wire with the mass: CW (contact wire) or MW (messenger wire)")
+    ] = ""
+    position_m: Annotated[float | None, Field(description="distance of the mass from the first support [m]")] = None
 
 
 class DropRecordTable(_OpenTable):
-    """Recording."""
+    """Sampling of the record."""
 
-    sampling_rate_hz: Annotated[float, Field(gt=0, le=1e6, description="samples per second [Hz]")]
+    sampling_rate_hz: Annotated[float, Field(gt=0, le=1e6, description="sampling rate [Hz]")]
     trigger_nominal_s: Annotated[float | None, Field(ge=0, description="planned time of the release [s]")] = None
-    n_channels: Annotated[int | None, Field(ge=1, description="number of columns")] = None
-    quantity: Annotated[MotionQuantity | None, Field(description="quantity that the sensors measure")] = None
+    n_channels: Annotated[int | None, Field(ge=1, description="number of channels")] = None
+    quantity: Annotated[MotionQuantity | None, Field(description="measured quantity")] = None
 
 
 class DropChannelTable(_OpenTable):
@@ -52,14 +54,16 @@ class DropChannelTable(_OpenTable):
     column: Annotated[int, Field(ge=1, le=10000, description="number of the column from 1, without the time column")]
     name: Annotated[str, Field(max_length=100, description="name of the channel")]
     sensor: Annotated[int, Field(ge=0, description="number of the sensor")]
-    wire: Annotated[str, Field(max_length=20, description="wire that carries the sensor: CW or MW")] = ""
-    position_m: Annotated[float | None, Field(description="position of the sensor from the first support [m]")] = None
+    wire: Annotated[
+        str, Field(max_length=20, description="wire with the sensor: CW (contact wire) or MW (messenger wire)")
+    ] = ""
+    position_m: Annotated[float | None, Field(description="distance of the sensor from the first support [m]")] = None
     direction: Annotated[str, Field(max_length=10, description="direction of measurement: +x, -x, +y, -y, +z or -z")]
-    unit: Annotated[str, Field(max_length=40, description="unit, such as m/s2 or g")]
+    unit: Annotated[str, Field(max_length=40, description="unit of the samples, such as m/s2 or g")]
 
     @property
     def description(self) -> TableColumn:
-        """Description of the column in the terms of a measured table."""
+        """Description of the column as in a `MeasuredTable`."""
         return TableColumn(
             self.name,
             unit=self.unit,
@@ -76,7 +80,9 @@ class DropSidecar(_OpenTable):
     test: DropTestTable = DropTestTable()
     drop: DropTable = DropTable()
     record: DropRecordTable
-    channel: Annotated[tuple[DropChannelTable, ...], Field(strict=False, min_length=1, description="one per column")]
+    channel: Annotated[
+        tuple[DropChannelTable, ...], Field(strict=False, min_length=1, description="channels, one per column")
+    ]
 
     @property
     def channel_names(self) -> tuple[str, ...]:
@@ -85,7 +91,7 @@ class DropSidecar(_OpenTable):
 
     @property
     def attributes(self) -> dict[str, Any]:
-        """Facts about the run that the sidecar holds, by the names of `MeasuredTable.attributes`."""
+        """Stated data of the test, by the names of `MeasuredTable.attributes`."""
         attributes = {
             "test": self.test.name,
             "drop_mass_kg": self.drop.mass_kg,
@@ -100,12 +106,12 @@ class DropSidecar(_OpenTable):
 
 
 def read_drop_sidecar(record: Path) -> DropSidecar | None:
-    """Read the sidecar beside a record, with the same stem; None if there is none.
+    """Read the sidecar of a record, a TOML file with the same stem; None if there is no such file.
 
     Raises
     ------
     InputError
-        It cannot be read or does not fit the model.
+        The sidecar cannot be read or does not fit the model.
     """
     path = record.with_suffix(".toml")
     return read_model(path, DropSidecar, "sidecar") if path.is_file() else None

@@ -1,4 +1,4 @@
-"""Writing of mass-drop records as CSV with a sidecar, and as HDF5; reading them back gives the same record."""
+"""Writing of mass-drop records as CSV with a sidecar, and as HDF5; reading these files gives the same record."""
 
 from pathlib import Path
 from typing import Any
@@ -14,11 +14,11 @@ from pantocheck.conformance.input_files.units import SI_UNITS
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
 
 UNWRITABLE = ",;\t\"'"
-"""Characters that the head line of a CSV file cannot hold, because it is read without quoting."""
+"""Characters that are not possible in the head line of a CSV file, because it is read without quoting."""
 
 
 def write_drop_csv(record: DropRecord, path: Path) -> None:
-    """Write a record as CSV (decimal point, commas) and its sidecar beside it.
+    """Write a record as CSV (decimal points, commas), with a sidecar beside it.
 
     Parameters
     ----------
@@ -30,14 +30,14 @@ def write_drop_csv(record: DropRecord, path: Path) -> None:
     Raises
     ------
     InputError
-        It cannot be written, or the head line cannot hold the name of a channel.
+        A file cannot be written, or the name of a channel is not possible in a head line.
     """
     for channel in record.channels:
         if set(channel.name) & set(UNWRITABLE) or channel.name.strip().splitlines() != [channel.name]:
             raise InputError(
                 f"{path.name}, channel {channel.name!r}",
-                "has a name that a head line cannot hold",
-                "Leave out commas, semicolons, tabs, quotes and line breaks, or write HDF5.",
+                "this name is not possible in the head line of a CSV file",
+                "Rename the channel without comma, semicolon, tab, quote and line break, or write HDF5.",
             )
     names = ["time_s", *(channel.name for channel in record.channels)]
     values = np.column_stack([record.time, record.signals])
@@ -46,18 +46,27 @@ def write_drop_csv(record: DropRecord, path: Path) -> None:
 
 
 def write_drop_hdf5(records: tuple[DropRecord, ...], path: Path) -> None:
-    """Write the runs of one test as HDF5; `path` and errors as in `write_drop_csv`.
+    """Write the runs of one test as HDF5.
+
+    Parameters
+    ----------
+    records : tuple of DropRecord
+        Runs of the test.
+    path : Path
+        The file.
 
     Raises
     ------
     InputError
-        The runs differ in channels, rate or drop, or the file cannot be written.
+        The runs differ in channels, rate, quantity or drop, or the file cannot be written.
     """
     first = records[0]
     for other in records[1:]:
         same = (other.channels, other.rate, other.drop) == (first.channels, first.rate, first.drop)
         if not same or other.quantity != first.quantity:
-            raise InputError(str(path), "the runs are of different tests", "Write one file per test.")
+            raise InputError(
+                str(path), "the runs differ in channels, rate, quantity or drop", "Write one file per test."
+            )
     attributes = {
         "test": first.name,
         "quantity": first.quantity,
@@ -78,7 +87,7 @@ def write_drop_hdf5(records: tuple[DropRecord, ...], path: Path) -> None:
 
 
 def write_drop_sidecar(record: DropRecord, path: Path) -> None:
-    """Write the sidecar of a record that is written to `path`; errors as in `write_drop_csv`."""
+    """Write the sidecar of the record at `path`; errors as in `write_drop_csv`."""
     tables: dict[str, dict[str, Any]] = {
         "test": {
             "name": record.name,
@@ -100,7 +109,7 @@ def write_drop_sidecar(record: DropRecord, path: Path) -> None:
 
 
 def _list_channels(record: DropRecord) -> list[dict[str, Any]]:
-    """Description of each channel by the names of the files."""
+    """Description of each channel, by the keys of the files."""
     return [
         {
             "name": channel.name,
@@ -115,5 +124,5 @@ def _list_channels(record: DropRecord) -> list[dict[str, Any]]:
 
 
 def _select_known(table: dict[str, Any]) -> dict[str, Any]:
-    """Table without the facts that are None, which neither TOML nor HDF5 can hold."""
+    """Table without the values None, which TOML and HDF5 do not have."""
     return {key: value for key, value in table.items() if value is not None}

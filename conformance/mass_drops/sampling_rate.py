@@ -1,4 +1,4 @@
-"""Sampling rate of a mass-drop record: sidecar, file and time column must agree."""
+"""Sampling rate of a mass-drop record, which must be the same in sidecar, file and time column."""
 
 import numpy as np
 
@@ -12,12 +12,12 @@ RATE_TOLERANCE = 1e-3  # relative
 
 
 def find_sampling_rate(table: MeasuredTable, sidecar: DropSidecar | None) -> float:
-    """Sampling rate [Hz].
+    """Find the sampling rate [Hz] of a table with or without a sidecar.
 
     Raises
     ------
     InputError
-        No source states a rate, the rate is not positive, or two sources disagree.
+        The rate is not stated, not possible, or differs between sidecar, file and time column.
     """
     sources = {
         "the sidecar": sidecar.record.sampling_rate_hz if sidecar else None,
@@ -26,37 +26,37 @@ def find_sampling_rate(table: MeasuredTable, sidecar: DropSidecar | None) -> flo
     }
     rates = [(source, rate) for source, rate in sources.items() if rate is not None]
     if not rates:
-        raise InputError(table.where, "states no sampling rate", "Give sampling_rate_hz in a sidecar.")
+        raise InputError(table.where, "states no sampling rate", "Give record.sampling_rate_hz in a sidecar.")
     first, rate = rates[0]
     for source, other in rates:
         if not LOWEST_RATE <= other <= HIGHEST_RATE:
-            found = f"{source} says {other:g} samples per second"
-            raise InputError(table.where, found, f"The rate lies between {LOWEST_RATE:g} and {HIGHEST_RATE:g} Hz.")
+            found = f"{source} states a sampling rate of {other:g} Hz"
+            raise InputError(table.where, found, f"Give a rate from {LOWEST_RATE:g} to {HIGHEST_RATE:g} Hz.")
     for source, other in rates[1:]:
         if abs(other / rate - 1) > RATE_TOLERANCE:
             raise InputError(
                 table.where,
-                f"{first} says {rate:g} samples per second, {source} says {other:g}",
-                "Every frequency is proportional to the rate: correct the one that is wrong.",
+                f"{first} states a sampling rate of {rate:g} Hz, but {source} {other:g} Hz",
+                "Correct the wrong rate; all frequencies are proportional to it.",
             )
     return rate
 
 
 def _rate_from_time(time: RealArray, where: str) -> float:
-    """Rate of a time column that must be evenly spaced."""
+    """Sampling rate of a time column, whose values must be evenly spaced [Hz]."""
     if not np.isfinite(time).all():
         first = int(np.argmin(np.isfinite(time)))
-        raise InputError(where, f"time of sample {first + 1} is not a number", "Export the record again.")
+        raise InputError(where, f"the time of sample {first + 1} is not finite", "Export the record again.")
     steps = np.diff(time)
     step = (time[-1] - time[0]) / (time.size - 1)
     if step <= 0:
-        raise InputError(where, "the time column does not increase", "Export the record again, in order of time.")
-    # Printed times are rounded by less than half a step; a missing sample is a whole step.
+        raise InputError(where, "the time column does not increase", "Export the samples in the order of time.")
+    # Printed times are rounded by less than half a step; a missing sample adds a whole step.
     worst = int(np.argmax(np.abs(steps - step)))
     if abs(steps[worst] - step) > 0.5 * step:
         raise InputError(
             where,
-            f"the time column steps by {steps[worst]:g} s after {time[worst]:g} s, elsewhere by {step:g} s",
-            "The record must be sampled evenly and without gaps.",
+            f"the time increases by {steps[worst]:g} s after {time[worst]:g} s, but by {step:g} s on average",
+            "Export an evenly sampled record without gaps.",
         )
     return float(1 / step)

@@ -1,4 +1,4 @@
-"""Writing of mass-drop records as universal file, one data set 58 per channel, with a sidecar."""
+"""Writing of mass-drop records as universal files, one data set 58 per channel, with a sidecar."""
 
 import warnings
 from pathlib import Path
@@ -14,9 +14,10 @@ from pantocheck.conformance.mass_drops.drop_writing import write_drop_sidecar
 
 
 def write_drop_uff(record: DropRecord, path: Path, form: Literal["ascii", "binary"] = "binary") -> None:
-    """Write a record as universal file and its sidecar beside it.
+    """Write a record as universal file, with a sidecar beside it.
 
-    The format has no field for wire, position, mass and trigger; its identification lines and the sidecar hold them.
+    The format has no fields for wire, position, mass and planned release; they stand in its identification lines and in
+    the sidecar.
 
     Parameters
     ----------
@@ -25,12 +26,12 @@ def write_drop_uff(record: DropRecord, path: Path, form: Literal["ascii", "binar
     path : Path
         The file.
     form : {"ascii", "binary"}
-        ASCII numbers have twelve digits.
+        Form of the numbers; ASCII numbers have twelve digits.
 
     Raises
     ------
     InputError
-        It cannot be written.
+        A file cannot be written.
     """
     sets = [_build_data_set(record, c, form) for c in range(len(record.channels))]
 
@@ -47,7 +48,7 @@ def write_drop_uff(record: DropRecord, path: Path, form: Literal["ascii", "binar
 
 
 def _build_data_set(record: DropRecord, c: int, form: Literal["ascii", "binary"]) -> dict[str, Any]:
-    """Data set 58 of a channel; fields the format has for other kinds of data are set to 0 or NONE."""
+    """Data set 58 of a channel; fields for other kinds of data are 0 or NONE."""
     channel = record.channels[c]
     data_set = pyuff.prepare_58(
         binary=int(form == "binary"),
@@ -89,7 +90,7 @@ def _format_drop(drop: DropDescription) -> str:
 
 
 def _format_channel(channel: DropChannel) -> str:
-    """Identification line of a channel; empty if the line would change its name, which the sidecar then holds."""
+    """Identification line of a channel; empty if the name is not possible there: the sidecar then holds it alone."""
     if channel.position is None or not channel.wire or " " in channel.name or not channel.name.isascii():
         return ""
     return f"{channel.name} {channel.wire} at {channel.position:g} m dir +{channel.axis}"

@@ -9,7 +9,7 @@ from pantocheck.conformance.quantities.filters import CUTOFF_TOLERANCE, HIGHEST_
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandNotObservable
 
 MIN_BAND_LINES = 4
-"""Smallest number of spectral lines in a band: with fewer, the RMS depends on the ends of the analysis section."""
+"""Smallest number of spectral lines in a band; with fewer lines, leakage at the section ends distorts the RMS."""
 
 
 class Band(NamedTuple):
@@ -27,7 +27,7 @@ BAND_QUANTITIES = tuple(band.quantity for band in BANDS)
 """Names of the quantities that state the RMS of each band."""
 
 EXTENDED_BAND = BANDS[-1]
-"""Band above the 20 Hz of EN 50318."""
+"""Band above the limit of 20 Hz in EN 50318."""
 
 
 def band_rms(force: RealArray, rate: float, low: float, high: float, filter_applied_Hz: float | None = None) -> float:
@@ -61,18 +61,19 @@ def band_rms(force: RealArray, rate: float, low: float, high: float, filter_appl
     """
     if high > HIGHEST_SHARE_OF_RATE * rate:
         raise BandNotObservable(
-            f"a band up to {high:g} Hz needs at least {high / HIGHEST_SHARE_OF_RATE:g} samples per second; "
-            f"the record has {rate:g}"
+            f"the record has {rate:g} samples per second; "
+            f"a band up to {high:g} Hz needs at least {high / HIGHEST_SHARE_OF_RATE:g}"
         )
     if filter_applied_Hz is not None and filter_applied_Hz < (1 - CUTOFF_TOLERANCE) * high:
         raise AlreadyFiltered(
-            f"the force was delivered filtered at {filter_applied_Hz:g} Hz; the band {low:g}-{high:g} Hz was removed"
+            f"the force was low-pass filtered at {filter_applied_Hz:g} Hz before delivery, "
+            f"which removed the band {low:g}-{high:g} Hz"
         )
     duration = force.size / rate
     if (high - low) * duration < MIN_BAND_LINES:
         raise BandNotObservable(
-            f"a band of {high - low:g} Hz needs at least {MIN_BAND_LINES / (high - low):g} s; "
-            f"the analysis section lasts {duration:.3g} s"
+            f"the analysis section lasts {duration:.3g} s; "
+            f"a band of {high - low:g} Hz needs at least {MIN_BAND_LINES / (high - low):g} s"
         )
     frequency, power = _power(force, rate)
     return float(np.sqrt(power[(frequency > low) & (frequency <= high)].sum()))

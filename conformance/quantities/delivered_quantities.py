@@ -1,6 +1,6 @@
 """Quantities of the line at rest, of identified modes and of studies after Vo Van, Balmes and Lorang (2015).
 
-A static check, an identification or a study delivers them; none is computed from a record.
+A static check, an identification or a study delivers these quantities; none of them is computed from a record.
 """
 
 from pantocheck.conformance.quantities.bands import BANDS
@@ -10,7 +10,7 @@ _NEVER_NEGATIVE = {"elasticity_mm_N", "wave_speed_m_s"}
 
 
 def _define(scope: Scope, needs: str, *rows: tuple[str, str, str, str]) -> list[Quantity]:
-    """Quantities of one scope that need the same data, from rows of name, label, unit and definition."""
+    """Define quantities with the same scope and needs, from rows of name, label, unit and definition."""
     return [
         Quantity(
             name=name,
@@ -122,4 +122,4 @@ DELIVERED_QUANTITIES: tuple[Quantity, ...] = (
     ),
 )
 # fmt: on
-"""Quantities that no record gives, in the order of reports."""
+"""Quantities that are not computed from a record, in the order of reports."""

@@ -1,4 +1,4 @@
-"""Evaluation of signals: the quantities that can be computed, and the reasons why others are not available."""
+"""Evaluation of signals: available quantities, and the reasons why other quantities are not available."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ ValuesByOwner = Mapping[int, Mapping[str, Value]]
 """Values by pantograph (0: the line) and by name of the quantity."""
 
 LINE = 0
-"""Key of the line itself, in place of the number of a pantograph."""
+"""Key of the line, in place of the number of a pantograph."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ def skip_record(reason: str, pantographs: Iterable[int]) -> Evaluation:
 
 
 def evaluate_signals(pantographs: Mapping[int, ForceSignals], line: LineSignals) -> Evaluation:
-    """Evaluate every quantity of a record; a quantity that the signals do not support is skipped with its reason.
+    """Evaluate all quantities of a record; an unavailable quantity is skipped with the reason.
 
     Parameters
     ----------
@@ -50,6 +50,11 @@ def evaluate_signals(pantographs: Mapping[int, ForceSignals], line: LineSignals)
         Signals of the pantographs by number from 1.
     line : LineSignals
         Uplift at the supports.
+
+    Returns
+    -------
+    Evaluation
+        Values and skipped quantities.
     """
     values: dict[int, dict[str, Value]] = {LINE: {}}
     skipped: dict[int, dict[str, str]] = {LINE: {}}

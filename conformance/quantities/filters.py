@@ -13,7 +13,7 @@ from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandNotObservable
 
 HIGHEST_SHARE_OF_RATE = 0.4
-"""Highest observable frequency as a share of the sampling rate: above it, anti-alias filters act."""
+"""Highest observable frequency over sampling rate [-]; anti-alias filters attenuate higher frequencies."""
 
 CUTOFF_TOLERANCE = 0.001
 """Relative difference up to which two stated cut-offs are the same; they are printed with three digits or more."""
@@ -48,7 +48,8 @@ class LowPass:
     def __post_init__(self) -> None:
         if self.order < 1 or (self.phase == "zero" and self.order % 2):
             raise ValueError(
-                f"order {self.order} does not exist with phase {self.phase}: zero phase needs an even order"
+                f"filter order {self.order} is not possible with phase '{self.phase}': "
+                "it must be positive, and even for zero phase"
             )
 
     def sections(self, rate: float) -> RealArray:
@@ -61,8 +62,8 @@ class LowPass:
         """
         if self.cutoff_Hz > HIGHEST_SHARE_OF_RATE * rate:
             raise BandNotObservable(
-                f"a filter at {self.cutoff_Hz:g} Hz needs at least {self.cutoff_Hz / HIGHEST_SHARE_OF_RATE:g} samples "
-                f"per second; the record has {rate:g}"
+                f"the record has {rate:g} samples per second; "
+                f"a filter at {self.cutoff_Hz:g} Hz needs at least {self.cutoff_Hz / HIGHEST_SHARE_OF_RATE:g}"
             )
         if self.phase == "causal":
             return np.asarray(butter(self.order, self.cutoff_Hz, fs=rate, output="sos"))
@@ -79,6 +80,11 @@ class LowPass:
             Samples of the whole record, so that the transients lie outside the analysis section.
         rate : float
             Sampling rate [Hz].
+
+        Returns
+        -------
+        (n,) ndarray
+            Filtered samples.
         """
         sections = self.sections(rate)
         if self.phase == "causal":
@@ -94,9 +100,9 @@ class LowPass:
 
 
 def needs_filter(low_pass: LowPass, filter_applied_Hz: float | None) -> bool:
-    """Whether a delivered force must still go through a filter.
+    """Whether a delivered force must still be filtered.
 
-    A second pass at the same cut-off would take another 3 dB there.
+    A second filter with the same cut-off would attenuate the force by another 3 dB at the cut-off.
 
     Parameters
     ----------
@@ -105,16 +111,21 @@ def needs_filter(low_pass: LowPass, filter_applied_Hz: float | None) -> bool:
     filter_applied_Hz : float or None
         Cut-off of the low-pass filter applied before delivery [Hz]; None: unfiltered.
 
+    Returns
+    -------
+    bool
+        False if the force was filtered with the same cut-off before delivery.
+
     Raises
     ------
     AlreadyFiltered
-        The force was filtered below the cut-off.
+        The force was filtered with a lower cut-off.
     """
     if filter_applied_Hz is None or filter_applied_Hz > (1 + CUTOFF_TOLERANCE) * low_pass.cutoff_Hz:
         return True
     if filter_applied_Hz < (1 - CUTOFF_TOLERANCE) * low_pass.cutoff_Hz:
         raise AlreadyFiltered(
-            f"the force was delivered filtered at {filter_applied_Hz:g} Hz; "
-            f"its content up to {low_pass.cutoff_Hz:g} Hz is unknown"
+            f"the force was low-pass filtered at {filter_applied_Hz:g} Hz before delivery; "
+            f"its content up to {low_pass.cutoff_Hz:g} Hz is not known"
         )
     return False

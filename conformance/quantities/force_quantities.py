@@ -1,6 +1,6 @@
 """Quantities of a record: statistics of the contact force, the contact height and the uplift at the supports.
 
-To add a statistic, add its definition here; value, uncertainty, label and tables follow from it.
+Each definition here gives the value, the uncertainty, the label and the tables of its quantity.
 """
 
 from functools import partial

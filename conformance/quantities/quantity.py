@@ -9,17 +9,17 @@ from pantocheck.conformance.quantities.sampling import Sampling
 from pantocheck.conformance.quantities.signals import ForceSignals, LineSignals
 
 QuantityTable = Literal["bands", "damping models"]
-"""Tables that show a fixed set of quantities: frequency bands of the certificate, and the damping sensitivity study."""
+"""Tables with a fixed set of quantities: frequency bands in the certificate, and the study of damping sensitivity."""
 
 Scope = Literal["pantograph", "line", "static", "mass_drop", "study"]
-"""One value per pantograph; one value of a run; the line at rest; identified modes; a comparison of several runs."""
+"""Object of a value: a pantograph, the line in a run, the line at rest, identified modes, or a set of runs."""
 
 
 Signals = TypeVar("Signals")
 
 
 def _accept(_: object) -> None:
-    """Accept a quantity that no record gives."""
+    """Accept a quantity that is delivered as a number."""
 
 
 @dataclass(frozen=True)
@@ -31,8 +31,8 @@ class Need(Generic[Signals]):
     text : str
         Name of the part.
     check : callable
-        Function of the signals that raises `QuantityUnavailable` if they lack the part; by default it never does,
-        because the quantity is delivered as a number.
+        Function of the signals that raises `QuantityUnavailable` if they lack the part. The default never raises, for
+        a quantity that is delivered as a number.
     """
 
     text: str
@@ -64,7 +64,7 @@ class Quantity:
     tables : tuple of str
         Fixed tables that show the quantity.
     force_level : str
-        Short name of a level of the force, whose limits are drawn beside the force; empty: not such a level.
+        Short name of the quantity as a level of the force, beside whose curve its limits are drawn; empty: no level.
     """
 
     name: str

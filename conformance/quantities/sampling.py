@@ -1,4 +1,4 @@
-"""Sampling: elementary statistics of a series, for a whole record or for each replicate of a bootstrap."""
+"""Sampling: elementary statistics of a series, over the whole record or for each replicate of a bootstrap."""
 
 import numpy as np
 from numpy.typing import NDArray

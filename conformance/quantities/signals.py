@@ -22,7 +22,7 @@ EXTENDED_CUTOFF_HZ = float(EXTENDED_BAND.high)
 """Upper edge of the extended band [Hz]."""
 
 SHORTEST_PERIODS = 4
-"""Shortest analysis section, in periods of the cut-off frequency: fewer do not make a statistic."""
+"""Shortest analysis section, in periods of the cut-off frequency; a shorter one has no meaningful statistics."""
 
 SETTLING_PERIODS = 2.0
 """Periods of the cut-off after which the filter transient at the end of a record has decayed."""
@@ -30,17 +30,17 @@ SETTLING_PERIODS = 2.0
 SUPPORT_TOLERANCE_M = 0.5
 """Largest distance between the stated and the real position of a support [m].
 
-Positions are rounded, and surveyed to some decimetres. Spans are ten times as long, so no support is taken for
-another one. A support this far outside the analysis section belongs to it, and so to the sections on both sides."""
+Positions are rounded, and surveyed with an accuracy of some decimetres. A span is at least ten times as long, so that
+supports are not confused. A support at this distance outside the analysis section still belongs to the section."""
 
 RUN_OUT_M = 5.0
-"""Distance that every pantograph runs on after a support, so that the record holds the largest uplift there [m].
+"""Distance that every pantograph runs beyond a support, so that the record contains the largest uplift there [m].
 
-The uplift is largest within some decimetres of the pantograph, in simulation and measurement."""
+In simulation and measurement, the uplift is largest when a pantograph is within some decimetres of the support."""
 
 
 class ForceSignals(Protocol):
-    """Signals of one pantograph over the analysis section; each property raises `QuantityUnavailable` if missing."""
+    """Signals of one pantograph over the analysis section; a missing signal raises `QuantityUnavailable`."""
 
     @property
     def filter_applied_Hz(self) -> float | None:
@@ -68,9 +68,9 @@ class ForceSignals(Protocol):
 
 @dataclass(frozen=True)
 class ForceChannel:
-    """Contact force of one pantograph over the whole record, with its filtered forms.
+    """Contact force of one pantograph over the whole record, as delivered and filtered.
 
-    The whole record is filtered, so that the filter transients at its ends stay outside the analysis section.
+    The whole record is filtered, so that the filter transients at its ends lie outside the analysis section.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ class PantographSignals:
     force : ForceChannel
         Contact force of the whole record.
     section : tuple of float
-        Start and end of the analysis section [m]; the end itself is outside.
+        Start (included) and end (excluded) of the analysis section [m].
     contact_height : (n,) ndarray or None
         Height of the contact point [m], or None.
     """
@@ -136,15 +136,15 @@ class PantographSignals:
         Raises
         ------
         SectionNotCovered
-            The record starts after the start, or stops before the end of the section.
+            The record begins after the start or ends before the end of the section.
         """
         start, end = self.section
         # One sample of tolerance: a section that ends with the record ends between two samples.
         step = float(np.max(np.diff(self.position)))
         if self.position[0] > start + step or self.position[-1] < end - step:
             raise SectionNotCovered(
-                f"the record covers {self.position[0]:.6g} m to {self.position[-1]:.6g} m; "
-                f"the analysis section is {start:g} m to {end:g} m"
+                f"the record covers {self.position[0]:.6g} m to {self.position[-1]:.6g} m, "
+                f"but the analysis section extends from {start:g} m to {end:g} m"
             )
         first, last = np.searchsorted(self.position, [start - 1e-9, end - 1e-9])
         return slice(int(first), int(last))
@@ -174,8 +174,8 @@ class PantographSignals:
         duration, shortest = self.delivered.size / self.force.rate, SHORTEST_PERIODS / cutoff_Hz
         if duration < shortest:
             raise BandNotObservable(
-                f"statistics up to {cutoff_Hz:g} Hz need at least {shortest:g} s; "
-                f"the analysis section lasts {duration:.3g} s"
+                f"the analysis section lasts {duration:.3g} s; "
+                f"statistics up to {cutoff_Hz:g} Hz need at least {shortest:g} s"
             )
 
     @property
@@ -229,7 +229,7 @@ class LineSignals:
     line_supports : tuple of float or None
         Positions of all supports of the line [m]; None if they are not known.
     end : float
-        Position that the last pantograph reaches [m].
+        Last position of the last pantograph [m].
     """
 
     section: tuple[float, float]
@@ -240,12 +240,12 @@ class LineSignals:
 
     @property
     def supports(self) -> RealArray:
-        """Positions of the k supports of the analysis section, both ends included (k,) [m]; see `uplift`."""
+        """Positions of the k supports of the analysis section, both ends included, (k,) [m]; errors as in `uplift`."""
         return self._at_supports[0]
 
     @property
     def uplift(self) -> RealArray:
-        """Uplift at the k supports of the analysis section, both ends included (k, n) [m].
+        """Uplift at the k supports of the analysis section, both ends included, (k, n) [m].
 
         Raises
         ------
@@ -260,13 +260,14 @@ class LineSignals:
         Raises
         ------
         SupportsMissing
-            A support has none, the supports of the line are not known, or the record ends before the uplift of the
-            last one is complete: the largest uplift may not have been recorded.
+            A support has no uplift, the supports of the line are not known, or the record ends too early behind the
+            last support: the largest uplift may be missing in the record.
         """
         measured = self.supports
         if self.line_supports is None:
             raise SupportsMissing(
-                "the supports of the analysis section are not known: state span_m, the length of the longest span"
+                "the record does not state span_m, the length of the longest span, "
+                "so that the supports of the analysis section are not known"
             )
         line = np.asarray(self.line_supports, dtype=np.float64)
         expected = line[supports_inside(line, self.section)]
@@ -280,20 +281,20 @@ class LineSignals:
             )
         if not self.end >= measured.max() + RUN_OUT_M:
             raise SupportsMissing(
-                f"the record ends at {self.end:.6g} m: the uplift of the support at {measured.max():g} m is complete "
-                f"{RUN_OUT_M:g} m behind it"
+                f"the record ends at {self.end:.6g} m; for the largest uplift of the support at {measured.max():g} m "
+                f"it must extend to {measured.max() + RUN_OUT_M:g} m"
             )
 
     @cached_property
     def _at_supports(self) -> tuple[RealArray, RealArray]:
         if self.support_position is None or self.support_uplift is None:
             raise ChannelMissing("the record has no uplift at supports")
-        # A passing pantograph moves every support: a channel that is exactly constant is a dead sensor, not an uplift.
+        # A passing pantograph lifts the wire at every support; an exactly constant channel is that of a dead sensor.
         moves = np.ptp(self.support_uplift, axis=1) > 0
         inside = supports_inside(self.support_position, self.section) & moves
         if not inside.any():
             start, end = self.section
-            raise ChannelMissing(f"the record has no support between {start:g} m and {end:g} m")
+            raise ChannelMissing(f"the record has no uplift at a support between {start:g} m and {end:g} m")
         return self.support_position[inside], self.support_uplift[inside]
 
 

@@ -13,7 +13,7 @@ Estimate = TypeVar("Estimate", float, RealArray)
 
 
 def coefficient_of_variation(mean: Estimate, deviation: Estimate) -> Estimate:
-    """Standard deviation over mean force [-] (EN 50317 practice; Vo Van et al. 2015, Table 1).
+    """Standard deviation over mean force [-], both in [N] (EN 50317 practice; Vo Van et al. 2015, Table 1).
 
     Raises
     ------
@@ -21,7 +21,7 @@ def coefficient_of_variation(mean: Estimate, deviation: Estimate) -> Estimate:
         The mean is not positive.
     """
     if np.min(mean) <= 0:
-        raise NoMeanForce(f"the mean force is {np.min(mean):.4g} N: a coefficient of variation is not defined")
+        raise NoMeanForce(f"the mean force is {np.min(mean):.4g} N; a coefficient of variation needs a positive mean")
     return deviation / mean
 
 
@@ -47,23 +47,23 @@ def contact_loss(
     Returns
     -------
     ndarray
-        One share per sample of the population [%].
+        Share of the samples [%], or one share per bootstrap replicate.
 
     Raises
     ------
     AlreadyFiltered
-        The force was filtered: a filter turns a loss of contact into a low force.
+        The force was filtered; a filter smooths a contact loss to a low force.
     """
     if filter_applied_Hz is not None:
         raise AlreadyFiltered(
-            f"the force was delivered filtered at {filter_applied_Hz:g} Hz; "
-            "contact losses can only be counted in the unfiltered force"
+            f"the force was low-pass filtered at {filter_applied_Hz:g} Hz before delivery; "
+            "contact losses can only be counted in an unfiltered force"
         )
     return sampling.percentage(force <= 0)
 
 
 def force_histogram(force: RealArray, bins: int = 30) -> tuple[RealArray, RealArray]:
-    """Histogram of a force; class widths are 1, 2 or 5 times a power of ten.
+    """Histogram of a force; the class width is 1, 2 or 5 times a power of ten.
 
     Parameters
     ----------

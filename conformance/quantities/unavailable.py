@@ -1,33 +1,33 @@
-"""Reasons why a quantity is not available. Each reason is shown as `skip` in a report."""
+"""Reasons why a quantity is not available. Its criterion has the verdict `skip`, and the report shows the reason."""
 
 
 class QuantityUnavailable(ValueError):
-    """The record does not support a quantity; the message states the reason to the reader of the report."""
+    """The record lacks data for a quantity; the message is the reason in the report."""
 
 
 class BandNotObservable(QuantityUnavailable):
-    """The rate is too low, or the analysis section too short, for a frequency band: its RMS would be meaningless."""
+    """Sampling rate too low, or analysis section too short, for a frequency band: its RMS would have no meaning."""
 
 
 class AlreadyFiltered(QuantityUnavailable):
-    """The force was filtered before delivery: content above the cut-off was removed and cannot be graded as zero."""
+    """Force filtered before delivery: content above the cut-off was removed and must not be graded as zero."""
 
 
 class SectionNotCovered(QuantityUnavailable):
-    """Partial coverage of the analysis section would yield the statistics of a different section."""
+    """Analysis section covered only in part: the statistics would be those of another section."""
 
 
 class ChannelMissing(QuantityUnavailable):
-    """The record has no channel for the quantity."""
+    """Channel missing in the record, without which the quantity cannot be computed."""
 
 
 class SupportsMissing(ChannelMissing):
-    """The uplift of a support of the analysis section is missing, and may be the largest one."""
+    """Uplift missing at a support of the analysis section; it may be the largest uplift."""
 
 
 class NoMeanForce(QuantityUnavailable):
-    """The mean force is not positive: a ratio to it would give the worst record the lowest variation."""
+    """Mean force not positive: a ratio to it would be negative, and so lower than that of every good record."""
 
 
 class NotResampled(QuantityUnavailable):
-    """The quantity has no bootstrap replicates, and therefore no uncertainty from the length of the record."""
+    """Quantity without bootstrap replicates, and therefore without uncertainty from the length of the record."""

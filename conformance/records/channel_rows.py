@@ -1,4 +1,4 @@
-"""Rows of each channel of a contact-force record, in SI units, from a measured table."""
+"""Channels of a contact-force record from a measured table: rows of samples in SI units."""
 
 from pathlib import Path
 
@@ -24,6 +24,18 @@ ChannelRows = dict[str, dict[int, RealArray]]
 def read_channel_rows(path: Path, sidecar: RecordSidecar) -> ChannelRows:
     """Read the table of a record.
 
+    Parameters
+    ----------
+    path : Path
+        The table.
+    sidecar : RecordSidecar
+        Sidecar of the record.
+
+    Returns
+    -------
+    dict of str to dict of int to ndarray
+        Rows of each channel by number from 1.
+
     Raises
     ------
     InputError
@@ -38,7 +50,10 @@ def read_channel_rows(path: Path, sidecar: RecordSidecar) -> ChannelRows:
         meaning = _find_meaning(column, sidecar, where)
         channel = rows.setdefault(meaning.channel.name, {})
         if meaning.number in channel:
-            raise InputError(where, "two columns have the same name", "Each channel stands in one column.")
+            hint = "Store each channel once."
+            raise InputError(
+                f"{where}, column {str(column.name)[:80]!r}", "repeats the channel of another column", hint
+            )
         with np.errstate(invalid="ignore", over="ignore"):  # numbers too large are reported by `_check_size`
             channel[meaning.number] = meaning.factor * values
     for missing, present in (
@@ -46,9 +61,7 @@ def read_channel_rows(path: Path, sidecar: RecordSidecar) -> ChannelRows:
         ("time_s or position_m", rows.keys() & {"time", "position"}),
     ):
         if not present:
-            raise InputError(
-                where, f"there is no channel {missing}", "A record needs force_N, and time_s or position_m."
-            )
+            raise InputError(where, f"has no channel {missing}", "Store force_N, and time_s or position_m.")
     for name in rows:
         _check_count(name, rows[name], sidecar, where)
         _check_size(name, rows[name], where)
@@ -56,9 +69,9 @@ def read_channel_rows(path: Path, sidecar: RecordSidecar) -> ChannelRows:
 
 
 def _find_meaning(column: TableColumn, sidecar: RecordSidecar, where: str) -> RecordColumn:
-    """Channel and number of a column, which the sidecar must allow."""
+    """Channel and number of a column, checked against the numbers of pantographs and supports in the sidecar."""
     if column.name is None:
-        raise InputError(where, "has no head line", "Write the names of the columns into the first line.")
+        raise InputError(where, "has no head line", "Write the names of the columns in the first line.")
     place = f"{where}, column {column.name[:80]!r}"
     meaning = find_column(column.name, column.row)
     if meaning is None:
@@ -67,30 +80,31 @@ def _find_meaning(column: TableColumn, sidecar: RecordSidecar, where: str) -> Re
         raise InputError(place, "unknown column", hint)
     allowed = sidecar.rows(meaning.channel.per)
     if meaning.number > allowed:
-        raise InputError(place, f"the sidecar has no {meaning.channel.per} {meaning.number}", f"It has {allowed}.")
+        hint = f"It has {allowed}: correct the sidecar, or remove the column."
+        raise InputError(place, f"the sidecar has no {meaning.channel.per} {meaning.number}", hint)
     return meaning
 
 
 def _check_count(name: str, rows: dict[int, RealArray], sidecar: RecordSidecar, where: str) -> None:
-    """Refuse a channel that lacks a pantograph; uplift may be measured at some of the supports."""
+    """Refuse a channel without a row for each pantograph; uplift may be measured at some of the supports only."""
     expected = sidecar.rows(CHANNELS[name].per)
     first_alone = name == "position" and list(rows) == [1] and sidecar.spacing_m is not None
     if name != "uplift" and len(rows) != expected and not first_alone:
         raise InputError(
             where,
-            f"{len(rows)} rows of {CHANNELS[name].key}, expected {expected}",
-            "Give one per pantograph, or position_1_m and spacing_m in the sidecar.",
+            f"has {len(rows)} rows of {CHANNELS[name].key}, expected {expected}",
+            "Store one row per pantograph; for positions, position_1_m and spacing_m in the sidecar are also enough.",
         )
 
 
 def _check_size(name: str, rows: dict[int, RealArray], where: str) -> None:
-    """Refuse numbers that are impossibly large or infinite; NaN marks a missing value."""
+    """Refuse infinite and impossibly large values; NaN marks a missing value."""
     for number, values in rows.items():
         impossible = np.abs(values) > LARGEST_NUMBER
         if impossible.any():
             sample = int(np.argmax(impossible))
             raise InputError(
                 f"{where}, {CHANNELS[name].column(number)}",
-                f"{values[sample]:.3g} at sample {sample + 1} is impossible",
-                "Write nan where a value is missing.",
+                f"sample {sample + 1} has the impossible value {values[sample]:.3g}",
+                "Correct the value, or write nan for a missing value.",
             )

@@ -1,4 +1,4 @@
-"""Record: signals of a run or a measurement on one time axis, in SI units."""
+"""Record: signals of a passage, simulated or measured, on a uniform time axis in SI units."""
 
 from dataclasses import dataclass, field, fields
 
@@ -8,24 +8,24 @@ from numpy.typing import ArrayLike
 from pantocheck.conformance.array_types import RealArray
 
 MAX_SAMPLES = 20_000_000
-"""Largest count of numbers in one array; more is a mistake in units or rate and would exhaust the memory."""
+"""Largest number of values in one array; more follow from a mistake in unit or rate, and would exhaust the memory."""
 
 LARGEST_NUMBER = 1e9
-"""Largest force, position or time in SI units; its square is still accurate enough for statistics."""
+"""Largest force, position or time in SI units; the squares of larger values lose digits in the statistics."""
 
 SPEED_TOLERANCE = 0.005
-"""Relative tolerance of the speed of a run: a tenth of the width of a resonance."""
+"""Relative tolerance of the speed of a run [-]: a tenth of the width of a resonance over speed."""
 
 
 class RecordInvalid(ValueError):
-    """Impossible array of a record, whose statistics would have no meaning.
+    """Invalid channel of a record; statistics of such a record would have no meaning.
 
     Parameters
     ----------
     channel : str
-        Name of the array at fault.
+        Name of the channel.
     found : str
-        Fault.
+        Fault of the channel.
     """
 
     def __init__(self, channel: str, found: str) -> None:
@@ -53,7 +53,7 @@ class Record:
     filter_applied_Hz : float or None
         Cut-off of the low-pass filter already applied to the force [Hz]; None if unfiltered.
     contact_height : (p, n) ndarray or None
-        Height of the contact point above its static height or above rail [m].
+        Height of the contact point above its height at rest, or above the rail [m].
     support_position : (s,) ndarray or None
         Positions of the supports [m].
     support_uplift : (s, n) ndarray or None
@@ -62,7 +62,7 @@ class Record:
     Raises
     ------
     RecordInvalid
-        Shapes disagree, a value is not finite, or time is not uniform.
+        Shapes disagree, a value is not finite or not possible, or the time axis is not uniform.
     """
 
     time: RealArray
@@ -83,31 +83,33 @@ class Record:
         object.__setattr__(self, "rate", _rate(self.time))
         self._check_shapes()
         if not (np.isfinite(self.speed) and self.speed > 0):
-            raise RecordInvalid("speed", f"{self.speed:g} m/s is not a positive speed")
+            raise RecordInvalid("speed", f"found {self.speed:g} m/s, expected a positive speed")
         start, end = self.evaluated
         if not (np.isfinite([start, end]).all() and start < end):
             raise RecordInvalid("evaluated", f"the analysis section from {start:g} m to {end:g} m is empty")
         if self.filter_applied_Hz is not None and not (
             np.isfinite(self.filter_applied_Hz) and self.filter_applied_Hz > 0
         ):
-            raise RecordInvalid("filter_applied_Hz", f"{self.filter_applied_Hz:g} Hz is not a cut-off frequency")
+            found = f"found {self.filter_applied_Hz:g} Hz, expected a positive cut-off frequency"
+            raise RecordInvalid("filter_applied_Hz", found)
 
     def _check_shapes(self) -> None:
         n = self.time.size
         if self.force.ndim != 2 or self.force.shape[1] != n:
-            raise RecordInvalid("force", f"its shape is {self.force.shape}, expected (pantographs, {n})")
+            raise RecordInvalid("force", f"has the shape {self.force.shape}, expected (pantographs, {n})")
         for name in ("position", "contact_height"):
             value = getattr(self, name)
             if value is not None and value.shape != self.force.shape:
-                raise RecordInvalid(name, f"its shape is {value.shape}, expected {self.force.shape} as the force has")
+                raise RecordInvalid(name, f"has the shape {value.shape}, expected {self.force.shape} as for the force")
         if (self.support_position is None) != (self.support_uplift is None):
-            raise RecordInvalid("support_uplift", "uplift and positions of the supports must be given together")
+            raise RecordInvalid("support_uplift", "either the uplift or the positions of the supports are missing")
         if self.support_position is not None and self.support_uplift is not None:
             expected = (self.support_position.size, n)
             if self.support_position.ndim != 1 or self.support_uplift.shape != expected:
-                raise RecordInvalid("support_uplift", f"its shape is {self.support_uplift.shape}, expected {expected}")
+                found = f"has the shape {self.support_uplift.shape}, expected {expected}"
+                raise RecordInvalid("support_uplift", found)
         if np.any(np.diff(self.position, axis=1) <= 0):
-            raise RecordInvalid("position", "a pantograph does not move forwards at every sample")
+            raise RecordInvalid("position", "does not increase from each sample to the next for every pantograph")
 
     @property
     def pantographs(self) -> int:
@@ -121,7 +123,7 @@ _ARRAYS = frozenset({"time", "position", "force", "contact_height", "support_pos
 def _check_array(name: str, value: ArrayLike) -> RealArray:
     array = np.array(value, dtype=np.float64)
     if array.size > MAX_SAMPLES:
-        raise RecordInvalid(name, f"{array.size} numbers, more than {MAX_SAMPLES}")
+        raise RecordInvalid(name, f"has {array.size} values, accepted are {MAX_SAMPLES}")
     bad = np.flatnonzero(~np.isfinite(array))
     if bad.size:
         raise RecordInvalid(
@@ -130,7 +132,8 @@ def _check_array(name: str, value: ArrayLike) -> RealArray:
     impossible = np.flatnonzero(np.abs(array) > LARGEST_NUMBER)
     if impossible.size:
         raise RecordInvalid(
-            name, f"{array.flat[impossible[0]]:.3g} at sample {impossible[0] % array.shape[-1] + 1} is impossible"
+            name,
+            f"sample {impossible[0] % array.shape[-1] + 1} has the impossible value {array.flat[impossible[0]]:.3g}",
         )
     array.setflags(write=False)
     return array
@@ -138,7 +141,7 @@ def _check_array(name: str, value: ArrayLike) -> RealArray:
 
 def _rate(time: RealArray) -> float:
     if time.ndim != 1 or time.size < 2:
-        raise RecordInvalid("time", "fewer than two samples")
+        raise RecordInvalid("time", "has fewer than two samples")
     step = (time[-1] - time[0]) / (time.size - 1)
     # Printed times are rounded by up to a hundredth of a step; more is a gap or a changing rate.
     if not step > 0 or not np.abs(time - np.linspace(time[0], time[-1], time.size)).max() <= 0.01 * step:

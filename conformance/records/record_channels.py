@@ -1,4 +1,4 @@
-"""Channels of a contact-force record, and the names of their columns with any unit of the channel."""
+"""Channels of a contact-force record, and the names of their columns in any unit."""
 
 import re
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from pantocheck.conformance.input_files.units import find_key_units
 
 @dataclass(frozen=True)
 class RecordChannel:
-    """Kind of channel.
+    """Channel: one quantity of a record, with one or more rows of samples.
 
     Parameters
     ----------
@@ -18,7 +18,7 @@ class RecordChannel:
     unit : str
         SI unit as at the end of a key, such as `m_s`.
     per : {"record", "pantograph", "support"}
-        Each pantograph or support has one row of the channel; `record` stands for one row in all.
+        Owner of a row: the record (one row only), each pantograph, or each support.
     """
 
     name: str
@@ -31,7 +31,7 @@ class RecordChannel:
         return f"{self.name}_{self.unit}"
 
     def column(self, number: int) -> str:
-        """Name of a CSV column: the force of pantograph 2 is `force_2_N`."""
+        """Name of a CSV column, such as `force_2_N` for the force of pantograph 2."""
         return self.key if self.per == "record" else f"{self.name}_{number}_{self.unit}"
 
 
@@ -50,12 +50,12 @@ CHANNELS: dict[str, RecordChannel] = {
 
 @dataclass(frozen=True)
 class RecordColumn:
-    """Meaning of a column.
+    """Channel, number and unit of a column.
 
     Parameters
     ----------
     channel : RecordChannel
-        Channel.
+        Channel of the column.
     number : int
         Number of the pantograph or support, from 1; 1 for a channel of the record.
     factor : float
@@ -68,7 +68,7 @@ class RecordColumn:
 
 
 def find_column(name: str, row: int) -> RecordColumn | None:
-    """Meaning of a column `force_1_N`, or of a row of the data set `force_N`; None if there is no such channel."""
+    """Find the channel of a column `force_1_N`, or of a row of the data set `force_N`; None if there is no such one."""
     for stem, number, unit in _list_readings(name):
         channel = CHANNELS.get(stem)
         if channel is None or (number is not None and channel.per == "record"):

@@ -1,4 +1,4 @@
-"""Reading of records: samples with a sidecar, which are checked before they become a `Record`, and summaries."""
+"""Reading of records: tables of samples with a sidecar, and summaries."""
 
 import hashlib
 from pathlib import Path
@@ -6,9 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.input_files.bounded_file import check_file, file_digest
+from pantocheck.conformance.input_files.bounded_file import MAX_FILE_BYTES, check_file, file_digest
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.table_formats import MAX_TABLE_BYTES
 from pantocheck.conformance.input_files.toml_file import read_model, read_toml
 from pantocheck.conformance.records.channel_rows import ChannelRows, read_channel_rows
 from pantocheck.conformance.records.record import Record, RecordInvalid
@@ -24,12 +23,12 @@ RECORD_SCHEMAS: dict[str, type[RecordSidecar] | type[RecordSummary]] = {
 
 
 def open_record(path: Path) -> RecordSidecar | RecordSummary:
-    """Read the TOML file of a record of either kind; the path may also be that of the table.
+    """Read the TOML file of a record: a sidecar or a summary. The path may also be that of the table.
 
     Raises
     ------
     InputError
-        It cannot be read, does not fit its model, or is of neither kind.
+        The file cannot be read, does not fit its model, or is neither a sidecar nor a summary.
     """
     path = path.with_suffix(".toml")
     schema = read_toml(path, "record").get("schema")
@@ -52,7 +51,12 @@ def read_record(path: Path, evaluated: tuple[float, float] | None = None) -> tup
     path : Path
         Sidecar, or table with the sidecar beside it.
     evaluated : tuple of float or None
-        Analysis section of the case [m], used where the sidecar names none.
+        Analysis section of the case [m], used if the sidecar states none.
+
+    Returns
+    -------
+    tuple of (Record, RecordSidecar)
+        Record and its sidecar.
 
     Raises
     ------
@@ -69,7 +73,7 @@ def read_record(path: Path, evaluated: tuple[float, float] | None = None) -> tup
 
 
 def read_samples(path: Path) -> tuple[RecordSamples, RecordSidecar, Path]:
-    """Read the samples of a record without correction: values may be missing and times uneven.
+    """Read the samples of a record; values may be missing, and times may be unevenly spaced.
 
     Parameters
     ----------
@@ -94,26 +98,28 @@ def read_samples(path: Path) -> tuple[RecordSamples, RecordSidecar, Path]:
         raise InputError(f"record '{table.name}'", "is a link to a file outside its folder", "Copy the table itself.")
     if sidecar.sha256 is not None and file_digest(table) != sidecar.sha256:
         raise InputError(
-            f"record '{table.name}'", "its content contradicts the sha256 of the sidecar", "Copy or write it again."
+            f"record '{table.name}'",
+            "the content does not agree with sha256 in the sidecar",
+            "Copy table and sidecar again, or write them again.",
         )
     return _build_samples(read_channel_rows(table, sidecar), sidecar), sidecar, table
 
 
 def record_digest(sidecar_path: Path, table: Path | None = None) -> str:
-    """SHA-256 of a record: of its sidecar and its table, or of a summary record alone."""
+    """SHA-256 of the sidecar and the table of a record, or of a summary alone."""
     paths = [sidecar_path.with_suffix(".toml"), *([] if table is None else [table])]
     return "sha256:" + hashlib.sha256("\n".join(map(file_digest, paths)).encode()).hexdigest()
 
 
 def build_record_error(table: Path, error: RecordInvalid) -> InputError:
-    """Input error of a table whose samples make no valid record."""
+    """Input error for a table whose samples are not a valid record."""
     return InputError(
-        f"record '{table.name}', channel {error.channel}", error.found, "See docs/records.md for the format."
+        f"record '{table.name}', channel {error.channel}", error.found, "docs/records.md describes the format."
     )
 
 
 def _build_samples(rows: ChannelRows, sidecar: RecordSidecar) -> RecordSamples:
-    """Stack the rows of each channel; only supports with a row of uplift are listed."""
+    """Stack the rows of each channel; supports without a row of uplift are left out."""
     channels: dict[str, RealArray] = {
         name: numbered[1] if CHANNELS[name].per == "record" else np.vstack([numbered[i] for i in sorted(numbered)])
         for name, numbered in rows.items()

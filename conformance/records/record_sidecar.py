@@ -28,7 +28,7 @@ class RecordSidecar(InputTable):
     case_digest: CaseDigest | None = None
     file: Annotated[str, Field(min_length=1, max_length=500, description="name of the table beside the sidecar")]
     sha256: Annotated[
-        str | None, Field(pattern="^[0-9a-f]{64}$", description="SHA-256 of the table, which reveals a damaged copy")
+        str | None, Field(pattern="^[0-9a-f]{64}$", description="SHA-256 of the table, to detect a damaged copy")
     ] = None
     speed_km_h: Speed
     pantographs: Annotated[int, Field(ge=1, le=20, description="number of pantographs")]
@@ -42,21 +42,21 @@ class RecordSidecar(InputTable):
     ] = None
     filter_applied_Hz: Annotated[
         float | Literal["none"],
-        Field(description='cut-off of the low-pass filter already applied to the force [Hz], or "none"'),
+        Field(description='cut-off of the low-pass filter applied to the force before delivery [Hz], or "none"'),
     ]
     start_m: Annotated[
         float | None,
-        Field(description="position of the first pantograph at the first sample, unless in the table [m]"),
+        Field(description="position of the first pantograph at the first sample, if not in the table [m]"),
     ] = None
     spacing_m: Annotated[
         PositiveList | None,
         Field(
             max_length=19,
-            description="distances between pantographs from the front, unless in the table [m]",
+            description="distances between successive pantographs in running order, if not in the table [m]",
         ),
     ] = None
     support_position_m: Annotated[
-        NumberList | None, Field(description="positions of the supports whose uplift is in the table, in its order [m]")
+        NumberList | None, Field(description="positions of the supports with an uplift, in the order of the table [m]")
     ] = None
     line: LineTable = LineTable()
     system: SystemTable | None = None
@@ -67,33 +67,33 @@ class RecordSidecar(InputTable):
         if self.low_passed_Hz is not None and self.low_passed_Hz <= 0:
             raise validation_problem(
                 "filter_applied_Hz",
-                f"{self.low_passed_Hz:g} Hz is not a cut-off",
+                f"found {self.low_passed_Hz:g} Hz, expected a positive cut-off",
                 'Write filter_applied_Hz = "none" for an unfiltered force.',
             )
         check_section(self.evaluated_m)
         if "/" in self.file or "\\" in self.file or self.file in {".", ".."} or "\0" in self.file:
             raise validation_problem(
-                "file", f"{self.file!r} is a path", "Put the table beside its sidecar and give its file name."
+                "file", f"found the path {self.file!r}", "Put the table beside its sidecar, and give its name only."
             )
         if self.spacing_m is not None and len(self.spacing_m) != self.pantographs - 1:
             raise validation_problem(
                 "spacing_m",
                 f"{len(self.spacing_m)} distances for {self.pantographs} pantographs",
-                "Give the distance between each pantograph and the next, from the front.",
+                "Give the distances between successive pantographs, in running order.",
             )
         return self
 
     @property
     def behind(self) -> tuple[float, ...]:
-        """Distance of each pantograph behind the first [m]; 0 if the sidecar has no spacing."""
+        """Distance of each pantograph behind the first one [m]; 0 if the sidecar states no spacing."""
         spacing = self.spacing_m or (0.0,) * (self.pantographs - 1)
         return tuple(float(sum(spacing[:i])) for i in range(self.pantographs))
 
     @property
     def low_passed_Hz(self) -> float | None:
-        """Cut-off of the low-pass filter already applied to the force [Hz]; None if unfiltered."""
+        """Cut-off of the low-pass filter applied before delivery [Hz]; None: unfiltered."""
         return None if isinstance(self.filter_applied_Hz, str) else self.filter_applied_Hz
 
     def rows(self, per: str) -> int:
-        """Number of rows of a channel that has one per `pantograph`, `support` or `record`."""
+        """Number of rows of a channel with one row per `pantograph`, `support` or `record`."""
         return {"record": 1, "pantograph": self.pantographs, "support": len(self.support_position_m or ())}[per]

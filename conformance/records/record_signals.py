@@ -59,7 +59,7 @@ class RecordSignals:
         return evaluate_signals(self.pantographs, self.line)
 
     def evaluate_section(self, section: tuple[float, float]) -> Evaluation:
-        """Quantities over another analysis section [m, m]; the force is not filtered again."""
+        """Evaluate the quantities over another analysis section [m, m]; the force is not filtered again."""
         pantographs = {number: replace(signals, section=section) for number, signals in self.pantographs.items()}
         return evaluate_signals(pantographs, replace(self.line, section=section))
 

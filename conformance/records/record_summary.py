@@ -1,4 +1,4 @@
-"""Summary records: published or measured statistics of a run whose samples are not available."""
+"""Summaries: published or measured statistics of a passage without samples."""
 
 from typing import Annotated, Literal
 
@@ -27,7 +27,7 @@ SummaryValues = Annotated[dict[str, SummaryValue], Field(max_length=100)]
 
 
 class RecordSummary(SourcedTable):
-    """Quantities of a run by name, per pantograph and of the line."""
+    """Quantities of a passage by name, for each pantograph and for the line."""
 
     schema_: Annotated[
         Literal["pantocheck.summary/1"],
@@ -46,9 +46,7 @@ class RecordSummary(SourcedTable):
         tuple[SummaryValues, ...],
         Field(strict=False, min_length=1, max_length=20, description="quantities by name, one table per pantograph"),
     ]
-    quantities: Annotated[
-        SummaryValues, Field(default_factory=dict, description="quantities of the line by name, such as the uplift")
-    ]
+    quantities: Annotated[SummaryValues, Field(default_factory=dict, description="quantities of the line by name")]
     line: LineTable = LineTable()
     system: SystemTable | None = None
     run: RunTable = RunTable()
@@ -64,7 +62,7 @@ class RecordSummary(SourcedTable):
 
     @property
     def evaluation(self) -> Evaluation:
-        """Quantities as if computed from a record; missing ones are skipped."""
+        """Quantities in the form of an evaluated record; quantities that are not stated are skipped."""
         values: dict[int, dict[str, Value]] = {
             LINE: {name: self.quantities[name] for name in QUANTITIES if name in self.quantities}
         }
@@ -76,23 +74,23 @@ class RecordSummary(SourcedTable):
 
     @property
     def contradictions(self) -> tuple[str, ...]:
-        """Statistics that contradict others of the same table, because printed tables can be inconsistent."""
+        """Statistics that contradict mean and standard deviation of the same table; printed tables have such errors."""
         contradictions = []
         for i, values in enumerate(self.pantograph, 1):
             for name, expected, rounding in _derive_statistics(values):
                 if name in values and not abs(values[name] - expected) <= rounding:
                     contradictions.append(
-                        f"{name} of pantograph {i} is given as {values[name]:g}; {expected:.4g} follows from the mean "
-                        "and the standard deviation"
+                        f"{name} of pantograph {i} is {values[name]:g}, but mean and standard deviation "
+                        f"give {expected:.4g}"
                     )
         return tuple(contradictions)
 
 
-_NOT_GIVEN = "the summary record does not give it"
+_NOT_GIVEN = "the summary does not state this quantity"
 
 
 def _derive_statistics(values: dict[str, float]) -> list[tuple[str, float, float]]:
-    """Name, value and rounding of the statistics that follow from mean and standard deviation."""
+    """Name, value and rounding error of each statistic that follows from mean and standard deviation."""
     mean, std = values.get("mean_force_N"), values.get("std_force_N")
     if mean is None or std is None:
         return []
@@ -106,14 +104,16 @@ def _check_table(values: dict[str, float], table: str, known: list[str]) -> None
     for name, value in values.items():
         if name not in known:
             raise validation_problem(
-                f"{table}.{name[:80]}", "there is no such quantity here", suggest_names(name[:80], known)
+                f"{table}.{name[:80]}", "not a quantity of this table", suggest_names(name[:80], known)
             )
         if value < 0 and QUANTITIES[name].never_negative:
             raise validation_problem(
                 f"{table}.{name}", f"{value:g} is negative", QUANTITIES[name].definition.capitalize() + "."
             )
         if value > 100 and name.endswith("_pct"):
-            raise validation_problem(f"{table}.{name}", f"{value:g} % is more than 100 %", "Give 0 to 100 %.")
+            raise validation_problem(f"{table}.{name}", f"{value:g} % is above 100 %", "Give a value from 0 to 100 %.")
     low, high = values.get("min_force_N"), values.get("max_force_N")
     if low is not None and high is not None and low > high:
-        raise validation_problem(f"{table}.min_force_N", f"{low:g} is above max_force_N = {high:g}", "Exchange them.")
+        raise validation_problem(
+            f"{table}.min_force_N", f"{low:g} is above max_force_N = {high:g}", "Correct the wrong value."
+        )

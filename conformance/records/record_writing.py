@@ -1,4 +1,4 @@
-"""Writing of contact-force records: first the table, then the sidecar, so that no sidecar names a missing table."""
+"""Writing of contact-force records: the table first, then the sidecar, so that every sidecar has its table."""
 
 from collections.abc import Mapping
 from functools import partial
@@ -29,7 +29,7 @@ def write_record(
     run: dict[str, float | None] | None = None,
     further: Mapping[str, object] | None = None,
 ) -> Path:
-    """Write a record as CSV or HDF5, by its suffix, and its sidecar beside it.
+    """Write a record as CSV or HDF5, by the suffix of the path, with a sidecar beside it.
 
     Parameters
     ----------
@@ -42,9 +42,9 @@ def write_record(
     system : dict[str, str] or None
         `name` and `version` of the simulator or measuring system.
     run : dict[str, float or None] or None
-        Keys of the run table of the sidecar; None is left out.
+        Table `run` of the sidecar; keys with None are left out.
     further : mapping of str to object, or None
-        Further keys of the sidecar, such as `case_digest` and `line`; None is left out.
+        Further keys of the sidecar, such as `case_digest` and `line`; keys with None are left out.
 
     Returns
     -------
@@ -54,7 +54,7 @@ def write_record(
     Raises
     ------
     InputError
-        The suffix is another one, a file cannot be written, or the sidecar would overwrite another file.
+        The suffix is not that of a record, a file cannot be written, or the sidecar would overwrite another file.
     """
     check_record_path(path)
     produce_atomically(path, partial(_write_table, record, find_table_format(path, RECORD_FORMATS)))
@@ -80,25 +80,25 @@ def write_record(
 
 
 def check_record_path(path: Path) -> None:
-    """Refuse a path that a record cannot have, before anything is computed.
+    """Check the path of a record before a long computation.
 
     Raises
     ------
     InputError
-        The suffix belongs to no format of records, or the sidecar would overwrite another file.
+        The suffix is not that of a record, or the sidecar would overwrite another file.
     """
     find_table_format(path, RECORD_FORMATS)
     target = path.with_suffix(".toml")
     if target.exists() and read_toml(target, "sidecar").get("schema") != RECORD_SCHEMA:
         raise InputError(
             f"record '{path}'",
-            f"its sidecar would overwrite {target.name}, which is not a sidecar",
+            f"the sidecar would overwrite {target.name}, which is not a sidecar of a record",
             "Give the record another name.",
         )
 
 
 def _write_table(record: Record, table_format: TableFormat, path: Path) -> None:
-    """Write the channels of a record to a file of any name."""
+    """Write the channels of a record in a format, whatever the suffix of the path."""
     channels = {
         "time": record.time,
         "position": record.position,

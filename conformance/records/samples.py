@@ -1,4 +1,4 @@
-"""Samples of a table in SI units, before correction; NaN marks a missing value."""
+"""Samples of a table in SI units, before time and position are completed; NaN marks a missing value."""
 
 from dataclasses import dataclass, replace
 
@@ -12,7 +12,7 @@ from pantocheck.conformance.records.record_sidecar import RecordSidecar
 
 @dataclass(frozen=True)
 class RecordSamples:
-    """Channels of p pantographs and s supports, n samples; None stands for a channel that the table lacks.
+    """Channels of p pantographs and s supports, n samples; None stands for a missing channel.
 
     Parameters
     ----------
@@ -23,7 +23,7 @@ class RecordSamples:
     speed : (n,) ndarray or None
         Speed of the train [m/s].
     position : ndarray or None
-        Positions along the track [m], (p, n), or (1, n) of the first pantograph.
+        Contact points along the track [m], (p, n), or (1, n) of the first pantograph only.
     contact_height : (p, n) ndarray or None
         Height of the contact point [m].
     uplift : (s, n) ndarray or None
@@ -50,21 +50,35 @@ _SAMPLED = ("force", "time", "speed", "position", "contact_height", "uplift")
 
 
 def complete_samples(samples: RecordSamples, sidecar: RecordSidecar) -> tuple[RealArray, RealArray]:
-    """Time [s], (n,), and positions [m], (p, n), of all pantographs; a missing channel follows from the speed.
+    """Complete time and positions of a record; a missing one is computed from the speed.
+
+    Parameters
+    ----------
+    samples : RecordSamples
+        Samples of a record.
+    sidecar : RecordSidecar
+        Sidecar of the record.
+
+    Returns
+    -------
+    time : (n,) ndarray
+        Time [s].
+    position : (p, n) ndarray
+        Contact points of all pantographs along the track [m].
 
     Raises
     ------
     RecordInvalid
-        There is neither time nor position, positions cannot be computed, or a speed is not positive.
+        Time and position are both missing, positions cannot be computed, or a speed is not positive.
     """
     behind = np.array(sidecar.behind)[:, None]
     speed = np.full(samples.force.shape[1], sidecar.speed_km_h / 3.6) if samples.speed is None else samples.speed
     time, position = samples.time, samples.position
     if time is None:
         if position is None:
-            raise RecordInvalid("time", "there is neither a time nor a position")
+            raise RecordInvalid("time", "time and position are both missing")
         if not np.all(speed > 0):
-            raise RecordInvalid("speed", f"not positive at sample {int(np.argmin(speed > 0)) + 1}")
+            raise RecordInvalid("speed", f"the value of sample {int(np.argmin(speed > 0)) + 1} is not positive")
         time = _integral(1 / speed, position[0])
     if position is None:
         _check_placement(sidecar)
@@ -75,12 +89,12 @@ def complete_samples(samples: RecordSamples, sidecar: RecordSidecar) -> tuple[Re
 
 
 def _check_placement(sidecar: RecordSidecar) -> None:
-    """Refuse a record without positions that does not state where its pantographs are."""
+    """Refuse a record without positions whose sidecar does not state the positions of its pantographs either."""
     if sidecar.pantographs > 1 and sidecar.spacing_m is None:
-        raise RecordInvalid("position", f"{sidecar.pantographs} pantographs have neither a position nor spacing_m")
+        raise RecordInvalid("position", "missing, and the sidecar does not state spacing_m")
     placed = (sidecar.case, sidecar.evaluated_m, sidecar.support_position_m)
     if sidecar.start_m is None and any(key is not None for key in placed):
-        raise RecordInvalid("position", "the first pantograph has neither a position nor start_m")
+        raise RecordInvalid("position", "missing, and the sidecar does not state start_m")
 
 
 def _integral(rate: RealArray, over: RealArray) -> RealArray:
@@ -89,7 +103,7 @@ def _integral(rate: RealArray, over: RealArray) -> RealArray:
 
 
 def analysis_section(sidecar: RecordSidecar, position: RealArray) -> tuple[float, float]:
-    """Section of the sidecar, or the track that all pantographs cross [m, m]; positions (p, n) [m]."""
+    """Analysis section of the sidecar, or the track passed by all pantographs [m, m]; positions are (p, n) [m]."""
     if sidecar.evaluated_m is not None:
         return sidecar.evaluated_m[0], sidecar.evaluated_m[1]
     return float(position[:, 0].max()), float(position[:, -1].min())
@@ -107,12 +121,17 @@ def build_record(
     sidecar : RecordSidecar
         Sidecar of the record.
     evaluated : tuple of float or None
-        Analysis section of the case [m], used where the sidecar states none.
+        Analysis section of the case [m], used if the sidecar states none.
+
+    Returns
+    -------
+    Record
+        Complete record.
 
     Raises
     ------
     RecordInvalid
-        Values are missing, time is not uniform, or the speed channel contradicts the speed.
+        Values are missing, the time axis is not uniform, or the speed channel contradicts the stated speed.
     """
     for name in _SAMPLED:
         value = getattr(samples, name)
@@ -138,13 +157,14 @@ def build_record(
 def _check_speed_channel(
     samples: RecordSamples, speed_km_h: float, position: RealArray, section: tuple[float, float]
 ) -> None:
-    """Refuse a speed channel that contradicts the speed inside the section; run-in and run-out may differ."""
+    """Refuse a speed channel that contradicts the stated speed inside the section; run-in and run-out may differ."""
     if samples.speed is None:
         return
     inside = ((position >= section[0]) & (position <= section[1])).any(axis=0)
     speed = 3.6 * (samples.speed[inside] if inside.any() else samples.speed)
-    # The mean of the absolute deviation leaves the noise of a sensor, but no stretch at another speed.
+    # The mean absolute deviation tolerates the noise of a sensor, but no part of the section at another speed.
     if not np.abs(speed / speed_km_h - 1).mean() <= SPEED_TOLERANCE:
         raise RecordInvalid(
-            "speed", f"{speed.min():.4g} to {speed.max():.4g} km/h, but the sidecar states {speed_km_h:.4g} km/h"
+            "speed",
+            f"ranges from {speed.min():.4g} to {speed.max():.4g} km/h, but the sidecar states {speed_km_h:.4g} km/h",
         )

@@ -1,4 +1,4 @@
-"""Tables that sidecars and summary records share: origin, computation and line."""
+"""Common tables of sidecars and summaries: system, run and line."""
 
 from typing import Annotated
 
@@ -12,44 +12,42 @@ CaseDigest = Annotated[
     str,
     Field(
         pattern="^sha256:[0-9a-f]{64}$",
-        description="digest of the inputs of the case that was run, as its results state it (input_digest)",
+        description="digest of the inputs of this case, equal to input_digest in the results of the case",
     ),
 ]
 
 
 class SystemTable(InputTable):
-    """Origin of a record: a simulator or a measuring system."""
+    """Simulator or measuring system of a record."""
 
     name: Annotated[str, Field(max_length=200, description="name of the simulator or measuring system")]
     version: Annotated[str, Field(max_length=200, description="version of the simulator or measuring system")] = ""
 
 
 class RunTable(InputTable):
-    """Computation of a simulated record; every key is optional."""
+    """Data of a simulation; all keys are optional."""
 
     simulated_s: Annotated[float | None, Field(gt=0, description="simulated time [s]")] = None
     wall_s: Annotated[float | None, Field(ge=0, description="computing time [s]")] = None
     dt_s: Annotated[float | None, Field(gt=0, description="time step [s]")] = None
-    element_m: Annotated[float | None, Field(gt=0, description="length of an element [m]")] = None
+    element_m: Annotated[float | None, Field(gt=0, description="element length [m]")] = None
 
 
 class LineTable(InputTable):
-    """Data of the line that the rules of a profile need; every key is optional."""
+    """Data of the line for the rules of a profile; all keys are optional."""
 
-    span_m: Annotated[
-        float | None, Field(ge=5, le=200, description="length of a span, the period of the contact force [m]")
-    ] = None
+    span_m: Annotated[float | None, Field(ge=5, le=200, description="length of the longest span [m]")] = None
     wave_speed_m_s: Annotated[
         float | None, Field(gt=0, le=1000, description="speed of transverse waves on the contact wire [m/s]")
     ] = None
     uplift_space_mm: Annotated[
-        NonNegative | None, Field(le=2000, description="free space for uplift at the supports [mm]")
+        NonNegative | None, Field(le=2000, description="space for the uplift of the contact wire at the supports [mm]")
     ] = None
 
 
 def check_section(section: tuple[float, ...] | None) -> None:
-    """Refuse an analysis section [m] that ends before it begins; for validators."""
+    """Refuse an analysis section [m] whose end is not behind its start; for validators."""
     if section is not None and section[0] >= section[1]:
         raise validation_problem(
-            "evaluated_m", "the analysis section ends before it begins", "Give its start, then its end."
+            "evaluated_m", "the end is not greater than the start", "Give the start, then the end of the section."
         )

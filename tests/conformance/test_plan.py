@@ -60,7 +60,7 @@ def test_required_case_without_limits_is_run_for_information_only(tmp_path: Path
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"cases": ("no-such-case",)}, "there is no such case"),
+        ({"cases": ("no-such-case",)}, "there is no case with this id"),
         ({"formats": ("htm",)}, "there is no such format"),
         ({"baseline": "no-such-file.json"}, "no-such-file.json"),
         ({"out": "/dev/null/report"}, "/dev/null"),

@@ -222,7 +222,7 @@ def test_check_fails_on_uncounted_limits_and_unverified_records(pytester: pytest
 
 def test_invalid_plan_is_reported_with_a_hint(pytester: pytest.Pytester, plan: Path) -> None:
     for text, message in (
-        ('cases = ["en50318-2002/25"]', "*there is no such case*"),
+        ('cases = ["en50318-2002/25"]', "*there is no case with this id*"),
         ("case = 1", "*key case: unknown key*"),
         ("cases = [", "*is not valid TOML*"),
         ('formats = ["htm"]', "*format 'htm': there is no such format*"),

@@ -159,8 +159,8 @@ def test_truncated_record_never_passes(case_250: Case, wave: type[Wave]) -> None
     assert not result.quantities  # the uplift, too, needs the record behind the last support
     assert not result.criteria
     assert result.reason == (
-        "the record of pantograph 1 is cut short: the record covers 60 m to 309.931 m; "
-        "the analysis section is 240 m to 360 m"
+        "the record of pantograph 1 is cut short: the record covers 60 m to 309.931 m, "
+        "but the analysis section extends from 240 m to 360 m"
     )
 
 

@@ -187,7 +187,7 @@ def failing_case() -> dict[str, Any]:
     provisional["reason"] = "a provisional limit does not count; it would be fail"
     skipped = criterion(q, 1, "std_force_N", "N", 10, 20) | {"quantity": "rms_20_50_N", "verdict": "skip"}
     skipped |= dict.fromkeys(("value", "margin", "discretisation_error"))
-    skipped["reason"] = "the record is already filtered at 20 Hz; its content in 20-50 Hz is unknown"
+    skipped["reason"] = "the force was low-pass filtered at 20 Hz before delivery, which removed the band 20-50 Hz"
     return {
         "id": "en50318-2002/300",
         "title": "EN 50318:2002 reference model, 300 km/h",

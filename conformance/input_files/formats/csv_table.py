@@ -1,4 +1,4 @@
-"""CSV tables: numbers under one head line, in either decimal dialect (`1.5,2` or `1,5;2`)."""
+"""CSV tables: numbers below one head line, with decimal points (`1.5,2`) or decimal commas (`1,5;2`)."""
 
 import warnings
 from collections.abc import Iterator
@@ -31,7 +31,7 @@ def read_csv_table(path: Path, names: tuple[str, ...], largest: int) -> list[Mea
     with _open_text(path, where) as file, warnings.catch_warnings():
         start = list(islice(_numbered(file, where), 3))
         if not start:
-            raise InputError(where, "holds no data", "Export the record again.")
+            raise InputError(where, "holds no line of data", "Export the record again.")
         dialect = _find_dialect([line for _, line in start])
         delimiter, decimal = dialect
         head = [cell.strip().strip('"') for cell in start[0][1].split(delimiter)]
@@ -45,7 +45,7 @@ def read_csv_table(path: Path, names: tuple[str, ...], largest: int) -> list[Mea
         except ValueError:
             raise _find_fault(path, where, dialect, named) from None
     if values.size > largest:
-        raise InputError(where, f"more than {largest} numbers", "Cut the record, or leave channels out.")
+        raise InputError(where, f"holds more than {largest} numbers", "Shorten the record, or leave channels out.")
     if values.size == 0:
         raise InputError(where, "holds a head line but no samples", "Export the record again.")
     if values.shape[1] != len(head):
@@ -113,11 +113,10 @@ def _find_fault(path: Path, where: str, dialect: tuple[str, str], named: bool) -
     for number, line in lines[named:]:
         cells = [cell.strip() for cell in line.split(delimiter)]
         if len(cells) != width:
-            ending = "is cut short" if number == lines[-1][0] else "does not fit"
             return InputError(
                 f"{where}, line {number}",
-                f"{ending}: {len(cells)} values, expected {width}",
-                "Every line has one value per column; the file may be truncated.",
+                f"has {len(cells)} values, expected {width}",
+                "Write one value per column in every line; the export may have stopped within a line.",
             )
         for column, cell in enumerate(cells, 1):
             if not _is_number(cell, decimal):
@@ -126,4 +125,4 @@ def _find_fault(path: Path, where: str, dialect: tuple[str, str], named: bool) -
                     f"{cell[:40]!r} is not a number",
                     "Write 1.5 with commas between columns, or 1,5 with semicolons; nan marks a missing value.",
                 )
-    return InputError(where, "cannot be read as numbers", "Export the record again.")
+    return InputError(where, "is not a table of numbers", "Export the record again.")

@@ -1,4 +1,4 @@
-"""HDF5 tables: runs `run_<k>/<quantity>` with a group `channels` and attributes, or data sets at the root."""
+"""HDF5 tables: runs `run_<k>/<quantity>` with a group `channels` and attributes, or data sets in the root group."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -16,9 +16,9 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.measured_table import MeasuredTable, TableColumn, refuse_damage
 
 MOST_ITEMS = 10_000
-"""Largest count of data sets in a group, and of channels."""
+"""Largest number of data sets in a group, and of channels."""
 
-OWN_DATA = "Store the data sets themselves in the file."
+SELF_CONTAINED = "Store all data sets in this file itself, without links to other places."
 
 MOTION_QUANTITIES = ("acceleration", "velocity", "displacement")
 
@@ -26,7 +26,7 @@ MOTION_QUANTITIES = ("acceleration", "velocity", "displacement")
 def read_hdf5_table(path: Path, names: tuple[str, ...], largest: int) -> list[MeasuredTable]:
     """Read all runs of an HDF5 file in the order of their numbers; arguments and errors as in `table_formats.Reader`.
 
-    A file without groups `run_<k>` is one run whose data sets, of one or more rows, stand at its root.
+    A file without groups `run_<k>` holds one run, with data sets of one or more rows in the root group.
     """
     with open_hdf5(path, largest) as file:
         where = f"record '{path.name}'"
@@ -39,19 +39,24 @@ def read_hdf5_table(path: Path, names: tuple[str, ...], largest: int) -> list[Me
 
 @contextmanager
 def open_hdf5(path: Path, largest: int) -> Iterator[h5py.File]:
-    """Open an HDF5 file for reading; failures of the library inside the block become `InputError`.
+    """Open an HDF5 file for reading, and convert errors of the library inside the block into `InputError`.
 
     Parameters
     ----------
     path : Path
         The file.
     largest : int
-        Largest count of numbers in its data sets.
+        Largest accepted number of values in its data sets.
+
+    Yields
+    ------
+    h5py.File
+        Open file.
 
     Raises
     ------
     InputError
-        The file is damaged, a part of its data stands in another place or file, or its data are too large.
+        The file is damaged, refers to data in another place or file, or its data sets are too large.
     """
     where = f"record '{path.name}'"
     # The library reads from the open file, so that no other file can take its name after the check of its kind.
@@ -62,7 +67,7 @@ def open_hdf5(path: Path, largest: int) -> Iterator[h5py.File]:
     ):
         numbers = _check_items(file, where, largest)
         if numbers > largest:
-            raise InputError(where, f"{numbers} numbers", f"At most {largest} numbers are read.")
+            raise InputError(where, f"holds {numbers} numbers", f"At most {largest} numbers are accepted.")
         yield file
 
 
@@ -72,7 +77,7 @@ def read_numbers(item: object, where: str) -> RealArray:
     Raises
     ------
     InputError
-        It is no data set of numbers.
+        The item is not a data set of numbers; `where` is its place in the message.
     """
     if not isinstance(item, h5py.Dataset) or item.dtype.kind not in "fiu" or item.shape is None:
         raise InputError(where, "holds no table of samples", "Store an array of numbers.")
@@ -102,23 +107,24 @@ def write_hdf5_table(path: Path, attributes: Mapping[str, Any], datasets: Mappin
 
 
 def _check_items(group: h5py.Group, where: str, largest: int) -> int:
-    """Count of numbers in the data sets of a group and of its runs, which must all stand in this file.
+    """Number of values in the data sets of a group and of its runs; data in another file are refused.
 
-    The SHA-256 of the file would not cover data of another file, and a chunk is read as a whole.
+    The SHA-256 of the file would not cover data in another file. Large chunks are refused, because HDF5 reads a whole
+    chunk at once.
     """
     if len(group) > MOST_ITEMS:
-        raise InputError(where, f"{len(group)} data sets", f"At most {MOST_ITEMS} are read.")
+        raise InputError(where, f"holds {len(group)} data sets", f"At most {MOST_ITEMS} are accepted.")
     numbers = 0
     for name in group:
         place = f"{where}, {str(name)[:80]!r}"
         if not isinstance(group.get(name, getlink=True), h5py.HardLink):
-            raise InputError(place, "is a link to another place", OWN_DATA)
+            raise InputError(place, "is a link to another place", SELF_CONTAINED)
         item = group[name]
         if isinstance(item, h5py.Dataset):
             if item.external or item.is_virtual:
-                raise InputError(place, "stores its numbers in another place", OWN_DATA)
+                raise InputError(place, "takes its numbers from another place", SELF_CONTAINED)
             if math.prod(item.chunks or ()) > max(largest, MOST_ITEMS):
-                raise InputError(place, f"its chunks have the shape {item.chunks}", "Store smaller chunks.")
+                raise InputError(place, f"has chunks of the shape {item.chunks}", "Store smaller chunks.")
             numbers += item.size or 0
         elif isinstance(item, h5py.Group) and (name == "channels" or str(name).startswith("run_")):
             numbers += _check_items(item, place, largest)
@@ -131,18 +137,18 @@ def _run_number(name: str) -> tuple[int, str]:
 
 
 def _read_root(file: h5py.File, source: str) -> MeasuredTable:
-    """Table of the data sets at the root, one column per row."""
+    """Table of the data sets in the root group, one column per row of a data set."""
     where, columns, rows = f"record '{source}'", list[TableColumn](), list[RealArray]()
     if not len(file):
-        raise InputError(where, "holds no data", "Store each run as run_<k>/acceleration, or one data set per channel.")
+        hint = "Store each run as run_<k>/acceleration, or one data set per channel."
+        raise InputError(where, "holds no data set", hint)
     for name, item in file.items():
         place = f"{where}, data set {str(name)[:80]!r}"
         values = read_numbers(item, place)
         if values.ndim not in (1, 2) or (rows and values.shape[-1] != rows[0].size):
             first = f"; the first data set has {rows[0].size} samples" if rows else ""
-            raise InputError(
-                place, f"its shape is {values.shape}{first}", "Store arrays of shape (samples) or (rows, samples)."
-            )
+            hint = "Store arrays of the shape (samples) or (rows, samples), with equal numbers of samples."
+            raise InputError(place, f"has the shape {values.shape}{first}", hint)
         for row, samples in enumerate(np.atleast_2d(values), 1):
             columns.append(TableColumn(str(name), row))
             rows.append(samples)
@@ -150,7 +156,7 @@ def _read_root(file: h5py.File, source: str) -> MeasuredTable:
 
 
 def _read_columns(file: h5py.File, described: bool, where: str) -> tuple[TableColumn, ...] | None:
-    """Columns from the group `channels`; with a sidecar only name and unit, which must agree with it."""
+    """Columns from the group `channels`; only name and unit if a sidecar describes the channels."""
     if "channels" not in file:
         return None
     group = file["channels"]
@@ -159,7 +165,9 @@ def _read_columns(file: h5py.File, described: bool, where: str) -> tuple[TableCo
         return tuple(TableColumn(name, unit=unit) for name, unit in zip(names, units, strict=True))
     facts = (group["sensor"][()], _texts(group["wire"]), group["position_m"][()], _texts(group["direction"]))
     if not names:
-        raise InputError(where, "describes no channel", "Fill the group 'channels', or write a sidecar.")
+        raise InputError(
+            f"{where}, group 'channels'", "describes no channel", "Describe every channel there, or write a sidecar."
+        )
     return tuple(
         TableColumn(name, 1, unit, int(sensor), wire, float(position) if np.isfinite(position) else None, direction)
         for name, unit, sensor, wire, position, direction in zip(names, units, *facts, strict=True)
@@ -174,13 +182,13 @@ def _read_run(
     values = read_numbers(data, where).T
     if values.ndim != 2:
         raise InputError(
-            where, "holds no table of samples", f"Store {name}/acceleration as an array of shape (channels, samples)."
+            where, "holds no table of samples", f"Store {name}/acceleration, of the shape (channels, samples)."
         )
     if columns is not None and len(columns) != values.shape[1]:
         raise InputError(
             where,
-            f"{values.shape[1]} channels, but {len(columns)} are described",
-            "A channel is missing: export the record again.",
+            f"holds {values.shape[1]} channels, but the group 'channels' describes {len(columns)}",
+            "Export the record again: a channel or its description is missing.",
         )
     attributes = {key: _plain(value) for key, value in file.attrs.items()}
     rate = attributes.get("sampling_rate_hz")

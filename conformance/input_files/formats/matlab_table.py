@@ -1,4 +1,4 @@
-"""MATLAB tables, version 5 (scipy) and 7.3 (HDF5): a matrix of samples or one vector per channel, with a sidecar."""
+"""MATLAB tables of version 5 (scipy) and 7.3 (HDF5), with a sidecar: a matrix of samples, or a vector per channel."""
 
 import math
 import struct
@@ -38,22 +38,22 @@ def read_matlab_table(path: Path, names: tuple[str, ...], largest: int) -> list[
         values = _find_largest_matrix(data, where)
         columns = (TableColumn(),) * values.shape[1]
     if time is not None and time.size != values.shape[0]:
-        raise InputError(where, f"{time.size} times for {values.shape[0]} samples", "Export the record again.")
+        raise InputError(where, f"holds {time.size} times for {values.shape[0]} samples", "Store one time per sample.")
     return [MeasuredTable(path.name, values, columns, time=time, rate=rate)]
 
 
 def _find_arrays(arrays: dict[str, RealArray], names: tuple[str, ...]) -> list[RealArray]:
-    """Arrays of these names, in the order of the names; upper and lower case are the same."""
+    """Arrays with these names, in the order of the names; letter case is ignored."""
     return [array for wanted in names for name, array in arrays.items() if name.lower() == wanted]
 
 
 def _find_largest_matrix(data: dict[str, RealArray], where: str) -> RealArray:
-    """Matrix of the samples, (n, c)."""
+    """Matrix of the samples, (n, c): the largest one of the file."""
     tables = {name: array for name, array in data.items() if array.ndim == 2 and max(array.shape) > 1}
     if not tables:
         raise InputError(
             where,
-            f"holds no table of samples ({', '.join(sorted(data)[:8]) or 'nothing'})",
+            f"holds no table of samples, only {', '.join(sorted(data)[:8]) or 'time or rate'}",
             "Store one matrix (samples by channels), or one vector per channel named as in the sidecar.",
         )
     most = max(table.size for table in tables.values())
@@ -61,7 +61,7 @@ def _find_largest_matrix(data: dict[str, RealArray], where: str) -> RealArray:
     if len(largest) > 1:
         raise InputError(
             f"{where}, {', '.join(largest[:8])}",
-            "holds several tables of one size",
+            "have the same size, so that the table of samples is not known",
             "Name each vector as in the sidecar, or store one matrix (samples by channels).",
         )
     table = tables[largest[0]]
@@ -69,14 +69,14 @@ def _find_largest_matrix(data: dict[str, RealArray], where: str) -> RealArray:
 
 
 def _read_version_5(path: Path, where: str, largest: int) -> dict[str, RealArray]:
-    """Numeric variables; the stated shapes are checked before reading, and so are the compressed data behind them."""
+    """Numeric variables; the stated shapes and the size of the decompressed data are checked before reading."""
     with open_file(path, where, MAX_FILE_BYTES) as file, refuse_damage(where, "a MATLAB file", MatReadError):
         inflated = _inflates_over(file, 8 * largest + 2**20)  # `whosmat` inflates whole variables
         stated = [] if inflated else scipy.io.whosmat(file)
         shapes = {name: shape for name, shape, kind in stated if kind in NUMERIC_CLASSES}
         numbers = sum(math.prod(shape) for shape in shapes.values())
         if inflated or numbers > largest:
-            raise InputError(where, f"more than {largest} numbers", "Cut the record, or leave channels out.")
+            raise InputError(where, f"holds more than {largest} numbers", "Shorten the record, or leave channels out.")
         content = scipy.io.loadmat(file, variable_names=list(shapes))
         return {
             name: np.asarray(value, dtype=np.float64)
@@ -86,7 +86,7 @@ def _read_version_5(path: Path, where: str, largest: int) -> dict[str, RealArray
 
 
 def _inflates_over(file: BinaryIO, limit: int) -> bool:
-    """Whether the compressed variables of a file of version 5 hold more than `limit` [bytes] together."""
+    """Whether the compressed variables of a version-5 file hold more than `limit` [bytes] together."""
     file.seek(126)
     order = "<" if file.read(2) == b"IM" else ">"
     total = 0
@@ -112,6 +112,6 @@ def _read_version_7_3(path: Path, where: str, largest: int) -> dict[str, RealArr
             # MATLAB stores matrices by columns, so they are transposed here.
             name: read_numbers(item, f"{where}, variable {name!r}").T
             for name, item in file.items()
-            # h5py gives a name that is not UTF-8 as bytes; no sidecar can mean it.
+            # h5py returns a name that is not UTF-8 as bytes; a sidecar cannot contain such a name.
             if isinstance(name, str) and isinstance(item, h5py.Dataset) and item.dtype.kind in "fiu"
         }

@@ -30,7 +30,9 @@ def read_mdf_table(path: Path, names: tuple[str, ...], largest: int) -> list[Mea
 
     where = f"record '{path.name}'"
     if not names:
-        raise InputError(where, "has no sidecar", "Name its channels in a TOML file of the same name beside it.")
+        raise InputError(
+            where, "has no sidecar", f"Describe its channels in {path.with_suffix('.toml').name} in the same folder."
+        )
     with (
         open_file(path, where, MAX_FILE_BYTES) as content,
         refuse_damage(where, "MDF", MdfException),
@@ -41,18 +43,18 @@ def read_mdf_table(path: Path, names: tuple[str, ...], largest: int) -> list[Mea
         if missing:
             raise InputError(
                 where,
-                f"channel '{missing[0]}' of the sidecar is missing",
-                f"The file holds: {', '.join(sorted(file.channels_db)[:12])}",
+                f"has no channel '{missing[0]}', which the sidecar names",
+                f"The file holds the channels {', '.join(sorted(file.channels_db)[:12])}.",
             )
         places = [file.channels_db[name][0] for name in names]
         stated = sum(file.groups[group].channel_group.cycles_nr for group, _ in places)
         if stated > largest:
-            raise InputError(where, f"states {stated} samples", f"At most {largest} are read.")
+            raise InputError(where, f"states {stated} samples", f"At most {largest} samples are accepted.")
         signals = [file.get(name) for name in names]
     values = stack_channels([np.asarray(signal.samples, dtype=np.float64) for signal in signals], where, largest)
     time = np.asarray(signals[0].timestamps, dtype=np.float64)
     if any(not np.allclose(signal.timestamps, time, rtol=0, atol=SAME_TIME) for signal in signals[1:]):
-        raise InputError(where, "its channels differ in sampling interval", SAMPLED_TOGETHER)
+        raise InputError(where, "has channels with different sampling times", SAMPLED_TOGETHER)
     columns = tuple(TableColumn(signal.name, unit=str(signal.unit) or None) for signal in signals)
     return [MeasuredTable(path.name, values, columns, time=time)]
 

@@ -17,14 +17,15 @@ from pantocheck.conformance.input_files.measured_table import (
 
 def read_tdms_table(path: Path, names: tuple[str, ...], largest: int) -> list[MeasuredTable]:
     """Read the run of a TDMS file, channels in the order of the file; arguments and errors as in `Reader`."""
-    del names  # the order of the file decides; names are compared with the sidecar later
+    del names  # `mass_drops` compares the names of the columns with the sidecar
     from nptdms import TdmsFile
 
     where = f"record '{path.name}'"
     with open_file(path, where, MAX_FILE_BYTES) as file, refuse_damage(where, "TDMS"):
         stated = sum(len(channel) for group in TdmsFile.read_metadata(file).groups() for channel in group.channels())
         if stated > min(largest, path.stat().st_size):  # a sample has at least one byte
-            raise InputError(where, f"states {stated} samples", f"At most {largest}, and no more than bytes, are read.")
+            hint = f"At most {largest} samples are accepted, and not more samples than the file has bytes."
+            raise InputError(where, f"states {stated} samples", hint)
         file.seek(0)
         channels = [channel for group in TdmsFile.read(file).groups() for channel in group.channels()]
         vectors = [np.asarray(channel[:], dtype=np.float64) for channel in channels]
@@ -34,7 +35,7 @@ def read_tdms_table(path: Path, names: tuple[str, ...], largest: int) -> list[Me
     values = stack_channels([vector for _, vector in kept], where, largest)
     steps = {channel.properties.get("wf_increment") for channel, _ in kept}
     if len(steps) > 1:
-        raise InputError(where, "its channels differ in sampling interval", SAMPLED_TOGETHER)
+        raise InputError(where, "has channels with different sampling intervals", SAMPLED_TOGETHER)
     (step,) = steps
     columns = tuple(
         TableColumn(channel.name, unit=str(channel.properties.get("unit_string") or "") or None) for channel, _ in kept

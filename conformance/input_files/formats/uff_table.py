@@ -44,10 +44,10 @@ def _build_table(sets: list[dict[str, Any]], source: str, names: tuple[str, ...]
     steps = {round(float(data_set["abscissa_inc"]), 12) for data_set in sets}
     if len(steps) > 1:
         found = ", ".join(f"{step:g}" for step in sorted(steps)[:4])
-        raise InputError(where, f"its channels differ in sampling interval ({found} s)", SAMPLED_TOGETHER)
+        raise InputError(where, f"has channels with different sampling intervals ({found} s)", SAMPLED_TOGETHER)
     (step,) = steps
     if not step > 0:
-        raise InputError(where, f"sampling interval {step:g} s", "Export evenly spaced time histories.")
+        raise InputError(where, f"states a sampling interval of {step:g} s", "The interval must be positive.")
     columns = tuple(
         _read_stated_facts(data_set) if names else _read_column(data_set, f"{where}, data set {number}")
         for number, data_set in enumerate(sets, 1)
@@ -64,8 +64,8 @@ def _read_sets(path: Path, where: str) -> list[dict[str, Any]]:
         if len(data_set["data"]) != int(data_set["num_pts"]):
             raise InputError(
                 f"{where}, data set {number}",
-                f"{len(data_set['data'])} samples, its head says {int(data_set['num_pts'])}",
-                "The file is truncated: export it again.",
+                f"holds {len(data_set['data'])} samples, but its head states {int(data_set['num_pts'])}",
+                "Export the file again; its end is missing.",
             )
     return sets
 
@@ -77,7 +77,7 @@ def _read_stated_facts(data_set: dict[str, Any]) -> TableColumn:
 
 
 def _read_column(data_set: dict[str, Any], where: str) -> TableColumn:
-    """Full description of a channel; the data type of the format stands in for a missing unit label."""
+    """Full description of a channel; without a unit label, the data type of the format gives the unit."""
     channel = _match_channel(data_set)
     types = {number: SI_UNITS[quantity] for quantity, number in DATA_TYPES.items()}
     unit = _unit_label(data_set) or types.get(int(data_set["ordinate_spec_data_type"]))

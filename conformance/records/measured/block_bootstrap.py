@@ -1,8 +1,8 @@
 """Uncertainty of statistics from the length of a record: the moving-block bootstrap.
 
-The force changes from span to span. A longer record would have a somewhat different mean, standard deviation and
-extremes. Blocks of one span, drawn at random with replacement, stand for other records of the same length (Kuensch
-1989, doi:10.1214/aos/1176347265). The scatter of a statistic among these replicates is its uncertainty.
+The force differs from span to span, so that another record of the same length would have somewhat different statistics.
+Replicates represent such records: they consist of blocks of one span, drawn at random with replacement (Kuensch 1989,
+doi:10.1214/aos/1176347265). The scatter of a statistic among the replicates gives its uncertainty.
 """
 
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ from pantocheck.conformance.quantities.unavailable import NotResampled, Quantity
 
 BOOTSTRAP_REPLICATES = 1000
 FEWEST_BLOCKS = 5
-"""Smallest number of blocks in a record: from fewer, the scatter of a statistic cannot be estimated."""
+"""Smallest number of blocks in a record; fewer blocks do not give the scatter of a statistic."""
 
 NORMAL_QUANTILE = 1.96
 """Half-width of a 95 % interval in standard deviations."""
@@ -83,8 +83,8 @@ class BlockReplicates(Sampling):
 def bootstrap_uncertainties(signals: PantographSignals, block_s: float, digest: str) -> dict[str, float]:
     """Half-widths of the 95 % intervals of the statistics of a record.
 
-    For the largest and smallest value, the uncertainty shows how much they depend on single events of the record.
-    No resampling shows that a longer record can bring larger ones.
+    The uncertainty of the largest and smallest value shows their dependence on single events of the record. It does not
+    show that a longer record may contain larger events.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def bootstrap_uncertainties(signals: PantographSignals, block_s: float, digest: 
     block_s : float
         Length of a block: one span [s].
     digest : str
-        SHA-256 of the record in hexadecimal, the seed of the random numbers.
+        SHA-256 of the record in hexadecimal, which is the seed of the random numbers.
 
     Returns
     -------
@@ -106,7 +106,7 @@ def bootstrap_uncertainties(signals: PantographSignals, block_s: float, digest: 
         return {}
     if replicates is None:
         return {}
-    # The scatter among n blocks is taken about their own mean: smaller by (n - 1) / n than about the true one.
+    # The variance of n blocks about their own mean is (n - 1) / n of the variance about the true mean.
     blocks = replicates.starts.shape[1]
     wider = NORMAL_QUANTILE * np.sqrt(blocks / (blocks - 1))
     uncertainties = {}

@@ -1,4 +1,4 @@
-"""Checks of a measured force: outliers, and a low-pass filter that the sidecar does not state."""
+"""Checks of a measured force: outliers, and a low-pass filter that is not stated in the sidecar."""
 
 from dataclasses import replace
 
@@ -11,11 +11,11 @@ from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE
 from pantocheck.conformance.quantities.signals import PantographSignals
 
 FILTERED_RATIO = 0.08
-"""RMS at 30-50 Hz over RMS at 5-20 Hz below which a force counts as low-passed, whatever its sidecar states.
+"""RMS at 30-50 Hz over RMS at 5-20 Hz, below which a force counts as low-pass filtered, whatever the sidecar states.
 
-The force of the reference simulator has 0.26 to 0.40 (EN 50318:2002 at 250 and 300 km/h, AC simple at 320 km/h), and
-0.02 to 0.08 after a filter of order 4 or 6 at 20 Hz. If a sidecar correctly states "none", only the numbers above 20 Hz
-are lost."""
+In the reference simulator the ratio is 0.26 to 0.40 (EN 50318:2002 at 250 and 300 km/h, AC simple at 320 km/h). After a
+filter of order 4 or 6 at 20 Hz it is 0.02 to 0.08. If the ratio of an unfiltered force is lower, only its quantities
+above 20 Hz are skipped."""
 
 
 NEIGHBOURS = 7
@@ -29,12 +29,17 @@ SMALLEST_DISTANCE_N = 50.0
 
 
 def find_outliers(force: RealArray) -> NDArray[np.intp]:
-    """Indices of samples far from their neighbours; they are reported but never removed, because a peak may be real.
+    """Find samples far from their neighbours; they are reported but not removed, because a peak may be real.
 
     Parameters
     ----------
     force : (n,) ndarray
         Contact force without missing values [N].
+
+    Returns
+    -------
+    (k,) ndarray
+        Indices of the outliers.
     """
     if force.size < NEIGHBOURS:
         return np.empty(0, dtype=np.intp)
@@ -60,7 +65,7 @@ def detect_filtered(signals: PantographSignals, name: str) -> tuple[PantographSi
     signals : PantographSignals
         Signals with the filter that was applied.
     warnings : list of str
-        A warning if an unstated filter was detected.
+        One warning if a filter was detected.
     """
     channel = signals.force
     if channel.filter_applied_Hz is not None or channel.rate * HIGHEST_SHARE_OF_RATE < 50:
@@ -71,8 +76,8 @@ def detect_filtered(signals: PantographSignals, name: str) -> tuple[PantographSi
         return signals, []
     cutoff = channel.low_pass.cutoff_Hz
     warning = (
-        f"the force of {name} has no content at 30-50 Hz ({upper:.2g} N, {inner:.3g} N at 5-20 Hz): it is taken as "
-        f"filtered at {cutoff:g} Hz by the measuring chain; values above that are skipped"
+        f"the force of {name} has almost no content at 30-50 Hz ({upper:.2g} N, but {inner:.3g} N at 5-20 Hz): it "
+        f"counts as low-pass filtered at {cutoff:g} Hz by the measuring chain; higher frequencies are not evaluated"
     )
     return replace(signals, force=replace(channel, filter_applied_Hz=cutoff)), [warning]
 

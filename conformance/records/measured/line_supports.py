@@ -1,4 +1,4 @@
-"""Supports of a measured line, as far as its record states them."""
+"""Supports of a measured line, from the positions and the span length in its record."""
 
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
@@ -11,12 +11,12 @@ from pantocheck.conformance.quantities.signals import SUPPORT_TOLERANCE_M, suppo
 def list_line_supports(
     listed: Sequence[float], span_m: float | None, section: tuple[float, float]
 ) -> tuple[float, ...] | None:
-    """Positions of the supports of a section: the listed ones, and others where the distance exceeds a span.
+    """Positions of the supports of a section: the listed ones, and one more where their distance exceeds a span.
 
     Parameters
     ----------
     listed : sequence of float
-        Positions of the supports that the record lists [m].
+        Positions of the supports in the record [m].
     span_m : float or None
         Length of the longest span [m]; None if it is not known.
     section : tuple of float
@@ -25,7 +25,7 @@ def list_line_supports(
     Returns
     -------
     tuple of float or None
-        Positions in increasing order [m]; None if the length of a span is not known.
+        Positions in increasing order [m]; None if the span length is not known.
     """
     if span_m is None:
         return None

@@ -1,4 +1,4 @@
-"""Preparation of a measured record: from its samples to signals, with notes on every cut."""
+"""Preparation of a measured record: from samples to signals, with a note on each cut."""
 
 from dataclasses import dataclass
 
@@ -36,7 +36,7 @@ class PreparedRecord:
     rate : float
         Sampling rate after resampling [Hz].
     speed : float
-        Mean speed of the steady part, or the nominal speed [m/s].
+        Mean speed of the samples at nominal speed, or the nominal speed if there are none [m/s].
     section : tuple of float
         Start and end of the analysis section [m].
     seconds : float
@@ -59,7 +59,7 @@ class PreparedRecord:
 
 @dataclass(frozen=True)
 class _Settings:
-    """Rate [Hz], analysis section [m], filters and steady samples, common to all pantographs."""
+    """Sampling rate [Hz], analysis section [m], filters, and mask of the samples at nominal speed."""
 
     rate: float
     section: tuple[float, float]
@@ -84,6 +84,11 @@ def prepare_record(
     speed_tolerance_pct : float
         Largest difference from the nominal speed in the analysis section [%].
 
+    Returns
+    -------
+    PreparedRecord
+        Signals over the usable sections.
+
     Raises
     ------
     RecordInvalid
@@ -93,7 +98,8 @@ def prepare_record(
     samples, time, position = placed.samples, placed.time, placed.position
     rate = float(f"{1 / float(np.median(np.diff(time))):.6g}")
     if (time[-1] - time[0]) * rate > MAX_SAMPLES:
-        raise RecordInvalid("time", f"{time[-1] - time[0]:.4g} s at {rate:.4g} Hz are more than {MAX_SAMPLES} samples")
+        found = f"{time[-1] - time[0]:.4g} s at {rate:.4g} Hz give more than the accepted {MAX_SAMPLES} samples"
+        raise RecordInvalid("time", found)
     nominal = sidecar.speed_km_h / 3.6
     speed = local_speed(time, position[0])
     recorded = [speed] if samples.speed is None else [speed, samples.speed]
@@ -101,8 +107,8 @@ def prepare_record(
     warnings = [*placed.warnings]
     if not steady.all():
         warnings.append(
-            f"{missing_share(~steady)} of the record was cut: the speed differs by more than {speed_tolerance_pct:g} % "
-            f"from {sidecar.speed_km_h:g} km/h, first at {position[0][np.argmin(steady)]:.1f} m"
+            f"{missing_share(~steady)} of the record was cut, first at {position[0][np.argmin(steady)]:.1f} m: "
+            f"the speed differs by more than {speed_tolerance_pct:g} % from {sidecar.speed_km_h:g} km/h"
         )
     section = analysis_section(sidecar, position)
     if not section[0] < section[1]:
@@ -178,12 +184,12 @@ def _outlier_warnings(force: RealArray, position: RealArray, name: str) -> list[
     places = ", ".join(f"{force[i]:.4g} N at {position[i]:.1f} m" for i in outliers[:5])
     return [
         f"the force of {name} has {outliers.size} outlier{'s' if outliers.size > 1 else ''}, which are graded: {places}"
-        f"{', ...' if outliers.size > 5 else ''}; write nan for a sample that is not a force"
+        f"{', ...' if outliers.size > 5 else ''}; write nan for a wrong value"
     ]
 
 
 def _prepare_line(samples: RecordSamples, section: tuple[float, float], end: float) -> tuple[LineSignals, list[str]]:
-    """Uplift of the supports without missing values, and warnings; a missing value may be the largest one."""
+    """Uplift of the supports without missing values, and warnings; a missing value may be the largest uplift."""
     uplift = samples.uplift
     if uplift is None or samples.support_position is None:
         return LineSignals(section), []
@@ -191,7 +197,7 @@ def _prepare_line(samples: RecordSamples, section: tuple[float, float], end: flo
     warnings = []
     if missing.any():
         warnings.append(
-            f"{missing_share(missing)} of the uplift is missing: a support with missing values is not evaluated"
+            f"{missing_share(missing)} of the uplift is missing; supports with missing values are not evaluated"
         )
     complete = ~missing.any(axis=1)
     return LineSignals(section, samples.support_position[complete], uplift[complete], end=end), warnings
@@ -199,7 +205,7 @@ def _prepare_line(samples: RecordSamples, section: tuple[float, float], end: flo
 
 def _resampling_notes(placed: PlacedSamples, rate: float) -> list[str]:
     if placed.samples.time is None:
-        return [f"The record was sampled by distance; by its speed it was resampled to {rate:g} samples per second."]
+        return [f"The record was sampled by distance; it was resampled to {rate:g} samples per second with its speed."]
     if np.abs(np.diff(placed.time) * rate - 1).max() > 0.02:
         return [f"The record was not evenly sampled; it was resampled to {rate:g} samples per second."]
     return []

@@ -18,7 +18,7 @@ class PlacedSamples:
     Parameters
     ----------
     samples : RecordSamples
-        Remaining samples.
+        Samples with time and position.
     time : (n,) ndarray
         Time of each sample [s].
     position : (p, n) ndarray
@@ -43,6 +43,11 @@ def place_samples(samples: RecordSamples, sidecar: RecordSidecar) -> PlacedSampl
     sidecar : RecordSidecar
         Sidecar of the record.
 
+    Returns
+    -------
+    PlacedSamples
+        Remaining samples with time and position.
+
     Raises
     ------
     RecordInvalid
@@ -54,27 +59,28 @@ def place_samples(samples: RecordSamples, sidecar: RecordSidecar) -> PlacedSampl
     if known.sum() < 2:
         raise RecordInvalid("time", "fewer than two samples have a time or position")
     if not known.all():
-        warnings.append(f"{missing_share(~known)} of the samples have no time or position and were discarded")
+        warnings.append(f"{missing_share(~known)} of the samples were discarded: they have no time or no position")
         samples = samples.select(known)
     if samples.time is None and samples.speed is not None and not (samples.speed > 0).all():
         warnings.append(f"{missing_share(samples.speed <= 0)} of the samples were discarded: the train stands still")
         samples = samples.select(samples.speed > 0)
     if samples.force.shape[1] < 2:
-        raise RecordInvalid("speed", "the train stands still at nearly every sample")
+        raise RecordInvalid("speed", "fewer than two samples have a positive speed")
     time, position = complete_samples(samples, sidecar)
     if samples.time is not None:
         samples, time, position = _smooth_steps(samples, time, position)
     for name, axis in (("time", time[None]), ("position", position)):
         backwards = np.argwhere(np.diff(axis, axis=1).T <= 0)
         if backwards.size:
-            raise RecordInvalid(name, f"does not increase from sample {backwards[0][0] + 1} to the next")
+            first = backwards[0][0] + 1
+            raise RecordInvalid(name, f"the value of sample {first + 1} is not greater than that of sample {first}")
     return PlacedSamples(samples, time, position, tuple(warnings))
 
 
 def _smooth_steps(
     samples: RecordSamples, time: RealArray, position: RealArray
 ) -> tuple[RecordSamples, RealArray, RealArray]:
-    """Interpolate positions of a wheel-pulse counter, which stay constant for some samples and then step forwards."""
+    """Interpolate positions of a wheel-pulse counter, which are constant for some samples between two steps."""
     stepped = np.diff(position[0], prepend=-np.inf) > 0
     if stepped.all() or (np.diff(position, axis=1) < 0).any() or stepped.sum() < 2:
         return samples, time, position

@@ -10,16 +10,16 @@ from scipy.ndimage import uniform_filter1d
 from pantocheck.conformance.array_types import RealArray
 
 SHORT_GAP_S = 0.01
-"""Longest gap that is bridged [s]: a fifth of a period at 20 Hz cannot hide content below 20 Hz."""
+"""Longest gap that is interpolated [s]: a fifth of a period at 20 Hz, too short to hide content below 20 Hz."""
 
 GAP_STEPS = 1.5
-"""Distance of two samples, in median steps, from which there is a gap between them."""
+"""Smallest gap between two samples, over the median sampling interval [-]."""
 
 SHORTEST_S = 1.0
 """Shortest usable part [s]: its lowest band, 0-5 Hz, then has a few spectral lines."""
 
 SPEED_AVERAGED_S = 1.0
-"""Averaging time of the speed [s], so that the jitter of a position sensor is not taken for a change of speed."""
+"""Averaging time of the speed [s], so that noise of a position sensor does not appear as a change of speed."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ def local_speed(time: RealArray, position: RealArray) -> RealArray:
 
 
 def find_usable_sections(time: RealArray, usable: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
-    """Indices of the usable samples between gaps; gaps of up to `SHORT_GAP_S` are ignored.
+    """Find the sections of usable samples between gaps; gaps of up to `SHORT_GAP_S` are ignored.
 
     Parameters
     ----------
@@ -74,10 +74,10 @@ def find_usable_sections(time: RealArray, usable: NDArray[np.bool_]) -> list[NDA
 
 
 def resample_section(time: RealArray, section: UsableSection, rate: float) -> UsableSection:
-    """Section on a uniform time axis.
+    """Resample a section to a uniform time axis.
 
-    Evenly spaced samples are kept as they are. Others are interpolated by monotone cubics, which do not overshoot: a
-    contact loss remains one, and no extreme is created.
+    Evenly spaced samples remain unchanged. Others are interpolated by monotone cubics, which do not overshoot: contact
+    losses remain, and no new extremes appear.
 
     Parameters
     ----------
@@ -87,6 +87,11 @@ def resample_section(time: RealArray, section: UsableSection, rate: float) -> Us
         Channels as recorded; a height with missing values is dropped.
     rate : float
         Sampling rate of the result [Hz].
+
+    Returns
+    -------
+    UsableSection
+        Section with uniform sampling.
     """
     height = section.height
     if height is not None and not np.isfinite(height).all():

@@ -178,9 +178,9 @@ def pdf_without_pages() -> bytes:
         (pdf_with(), "no attachment named results.json"),
         (pdf_with(("other.json", b"{}")), "no attachment named results.json"),
         (pdf_with(("results.json", b"{}"), ("results.json", b"{}")), "2 attachments? named results.json"),
-        (pdf_with(("results.json", b"")), "not JSON"),
-        (pdf_with(("results.json", b"\xff\xfe\x00")), "not JSON"),
-        (pdf_with(("results.json", b"[" * 100_000)), "not JSON"),
+        (pdf_with(("results.json", b"")), "is not valid JSON"),
+        (pdf_with(("results.json", b"\xff\xfe\x00")), "is not valid JSON"),
+        (pdf_with(("results.json", b"[" * 100_000)), "is not valid JSON"),
         (pdf_with(("results.json", b"[]")), "top level"),
         (pdf_with(("results.json", b"{}")), "key suite"),
     ],
@@ -266,7 +266,9 @@ def test_attachment_behind_another_filter_is_refused(certificate_file: Path, nam
         if isinstance(item, StreamObject) and item.get("/Type") == "/EmbeddedFile":
             item[NameObject("/Filter")] = NameObject(name)
     writer.write(certificate_file)
-    with pytest.raises(InputError, match=r"certificate\.pdf(: a damaged PDF|, attachment results\.json: not JSON)"):
+    with pytest.raises(
+        InputError, match=r"certificate\.pdf(: a damaged PDF|, attachment results\.json: is not valid JSON)"
+    ):
         verify_certificate(certificate_file)
 
 

@@ -91,7 +91,7 @@ def test_pantograph_at_working_height_presses_with_its_static_force(tmp_path: Pa
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "there is no model of the pantograph"),
+        ("", "key chain: missing"),
         (
             "[modes]\nfrequency_Hz = [1.0]\ndamping_ratio = [0.1, 0.2]\nhead_shape = [0.3]\n" + PROVENANCE,
             "2 values for 1 modes",

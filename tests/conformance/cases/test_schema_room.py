@@ -50,8 +50,8 @@ def test_simple_stitched_and_twin_lines_fit() -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"stitch_wire": STITCH | {"length_m": 56.0}}, "would overlap"),
-        ({"messenger_wire": AC_SIMPLE["messenger_wire"] | {"number": 2}}, "two messenger wires above one"),
+        ({"stitch_wire": STITCH | {"length_m": 56.0}}, "must not overlap"),
+        ({"messenger_wire": AC_SIMPLE["messenger_wire"] | {"number": 2}}, "two messenger wires carry one contact wire"),
         ({"steady_arm": {"static_share": "none", **PROVENANCE}}, "neither a stiffness nor a length"),
     ],
 )

@@ -103,7 +103,7 @@ def test_option_of_the_command_line_replaces_that_of_the_plan(records: Path, len
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["run", "en50318-2002/251"], "there is no such case.\n  Did you mean en50318-2002/250"),
+        (["run", "en50318-2002/251"], "there is no case with this id.\n  Did you mean en50318-2002/250"),
         (["run", "--trust", "absolute"], "key trust: found 'absolute', expected 'primary'"),
         (["run", "--formats", "pdff"], "format 'pdff': there is no such format.\n  Did you mean pdf ?"),
         (["run", "--drift", "0"], "command line, key drift_pct"),
@@ -114,13 +114,13 @@ def test_option_of_the_command_line_replaces_that_of_the_plan(records: Path, len
         (["run", "--system", "magic"], "system 'magic': there is no such system"),
         (["run", "--plan", "none.toml"], "plan 'none.toml': cannot be read"),
         (["run", "none.toml"], "case 'none.toml': cannot be read"),
-        (["show", "vovan2015/nothing"], "there is no such case"),
+        (["show", "vovan2015/nothing"], "there is no case with this id"),
         (["schema", "cases"], "schema 'cases': there is no such format.\n  Did you mean case ?"),
         (
             ["simulate", "en50318-2002/*", "--out", "a.csv"],
             "expected one case with a train, found en50318-2002/250, en50318-2002/300",
         ),
-        (["simulate", "en50318-2002/250", "--out", "a.xls"], "format '.xls' is not known"),
+        (["simulate", "en50318-2002/250", "--out", "a.xls"], "has the unknown suffix '.xls'"),
     ],
 )
 def test_bad_input_ends_with_one_message_and_exit_code_2(

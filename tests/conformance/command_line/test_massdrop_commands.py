@@ -128,7 +128,7 @@ def test_fit_damping_recovers_the_damping_of_the_line(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (b"", "not JSON"),
+        (b"", "is not valid JSON"),
         (b"{}", "valid list"),
         (b'[{"frequency_Hz": -1}]', "key [1].frequency_Hz"),
         (b"[]", "holds no certain mode"),

@@ -83,7 +83,7 @@ def test_value_near_zero_drifts_by_its_unit(results: Results) -> None:
 def test_missing_value_is_skipped(results: Results) -> None:
     compared = compare_with_baseline(results, changed(results, "rms_20_50_N", 20.0), 1.0, "b.json")
     (finding,) = (row for row in compared.cases[0].criteria if row.verdict == "skip")
-    assert finding.reason == "the baseline has 20 N; now: the summary record does not give it"
+    assert finding.reason == "the baseline has 20 N; now: the summary does not state this quantity"
     assert compared.verdict == "skip"
     assert find_discrepancies(compared.to_dict()) == []
 
@@ -173,7 +173,12 @@ def test_baseline_on_the_command_line_and_in_a_plan(results: Results, tmp_path: 
 
 @pytest.mark.parametrize(
     ("text", "message"),
-    [("", "not JSON"), ('{"suite": ', "not JSON"), ("[" * 100_000, "not JSON"), ("{}", "key suite: field required")],
+    [
+        ("", "is not valid JSON"),
+        ('{"suite": ', "is not valid JSON"),
+        ("[" * 100_000, "is not valid JSON"),
+        ("{}", "key suite: field required"),
+    ],
 )
 def test_file_that_is_no_results_is_rejected(tmp_path: Path, text: str, message: str) -> None:
     path = tmp_path / "b.json"

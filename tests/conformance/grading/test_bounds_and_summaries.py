@@ -69,5 +69,5 @@ def test_summary_with_a_negative_deviation_is_refused(summary: Path) -> None:
 def test_pantograph_that_stands_still_is_refused(two_pantograph_record: Record) -> None:
     position = two_pantograph_record.position.copy()
     position[1, 10] = position[1, 9]
-    with pytest.raises(RecordInvalid, match="does not move forwards"):
+    with pytest.raises(RecordInvalid, match="position: does not increase from each sample"):
         replace(two_pantograph_record, position=np.asarray(position))

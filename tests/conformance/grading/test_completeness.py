@@ -231,8 +231,8 @@ def test_same_files_pass_before_they_are_spoilt(twin: Case, record: Record, tmp_
 @pytest.mark.parametrize(
     ("keys", "message"),
     [
-        (["spacing_m"], "2 pantographs have neither a position nor spacing_m"),
-        (["start_m"], "the first pantograph has neither a position nor start_m"),
+        (["spacing_m"], "channel position: missing, and the sidecar does not state spacing_m"),
+        (["start_m"], "channel position: missing, and the sidecar does not state start_m"),
     ],
 )
 def test_record_with_time_alone_needs_the_places_of_its_pantographs(

@@ -66,7 +66,7 @@ def test_hdf5_data_in_another_place_are_refused(
     """The SHA-256 of a table must cover its numbers."""
     with h5py.File(tmp_path / "a.h5", "w") as file:
         link(file if place == "/" else file.create_group(place), tmp_path)
-    with pytest.raises(InputError, match=r"record 'a\.h5'.*, 'force_N': (is a link to|stores its numbers in) another"):
+    with pytest.raises(InputError, match=r"record 'a\.h5'.*, 'force_N': (is a link to|takes its numbers from) another"):
         read_tables(tmp_path / "a.h5", (), LARGEST)
 
 
@@ -104,7 +104,7 @@ def test_hdf5_chunk_over_the_limit_is_refused(tmp_path: Path) -> None:
     """The library reads a chunk as a whole, even for one number of it."""
     with h5py.File(tmp_path / "a.h5", "w") as file:
         file.create_dataset("x", (10,), "f8", chunks=(10**8,), maxshape=(None,))
-    with pytest.raises(InputError, match="its chunks have the shape"):
+    with pytest.raises(InputError, match="has chunks of the shape"):
         read_tables(tmp_path / "a.h5", (), LARGEST)
 
 

@@ -11,7 +11,7 @@ from pantocheck.conformance.input_files.table_formats import CSV, HDF5, TABLE_FO
 def test_messages_list_all_formats() -> None:
     assert list_suffixes(TABLE_FORMATS) == ".csv, .uff, .mat, .h5, .tdms or .mf4"
     assert list_suffixes((CSV,)) == ".csv"
-    with pytest.raises(InputError, match=r"format '\.xls' is not known\.\n  Known formats are \.csv or \.h5\."):
+    with pytest.raises(InputError, match=r"has the unknown suffix '\.xls'\.\n  Known formats are \.csv or \.h5\."):
         find_table_format(Path("a.xls"), (CSV, HDF5))
 
 
@@ -22,4 +22,4 @@ def test_suffixes_are_unique_and_in_lower_case() -> None:
 
 
 def test_upper_case_suffix_is_read() -> None:
-    assert find_table_format(Path("A.HDF5")) is HDF5
+    assert find_table_format(Path("A.HDF5"), (CSV, HDF5)) is HDF5

@@ -31,7 +31,9 @@ def test_key_of_many_parts_is_refused_quickly(line: str, tmp_path: Path) -> None
     """The parser took 20 s and 2 GB for 20 000 parts."""
     (tmp_path / "a.toml").write_text(f"x = 1\n{line}\n")
     start = time.process_time()
-    with pytest.raises(InputError, match=rf"case 'a\.toml', line 2: is a key of .*\n  .* at most {MOST_PARTS} parts"):
+    with pytest.raises(
+        InputError, match=rf"case 'a\.toml', line 2: has a key with .*\n  .* at most {MOST_PARTS} parts"
+    ):
         read_toml(tmp_path / "a.toml", "case")
     assert time.process_time() - start < 1.0
 
@@ -59,14 +61,12 @@ def test_file_without_a_key_is_searched_in_linear_time(tmp_path: Path) -> None:
 
 def test_file_over_the_limit_has_its_own_message(tmp_path: Path) -> None:
     (tmp_path / "a.toml").write_bytes(b"#" * (MAX_TOML_BYTES + 1))
-    with pytest.raises(
-        InputError, match=r"case 'a\.toml': has 5000001 bytes\.\n  The largest accepted size is 5000000 bytes"
-    ):
+    with pytest.raises(InputError, match=r"case 'a\.toml': has 5000001 bytes\.\n  At most 5000000 bytes are accepted"):
         read_toml(tmp_path / "a.toml", "case")
 
 
 @pytest.mark.parametrize("content", ["a = " + "9" * 5000, "a = " + "[" * 5000, "a = " + "{b=" * 5000])
 def test_long_number_and_deep_nesting_are_refused(content: str, tmp_path: Path) -> None:
     (tmp_path / "a.toml").write_text(content)
-    with pytest.raises(InputError, match="a number or a nesting that is too long to read"):
+    with pytest.raises(InputError, match="a number that is too long, or tables nested too deeply"):
         read_toml(tmp_path / "a.toml", "case")

@@ -27,7 +27,7 @@ def test_g_is_grams_in_a_key_and_gravity_at_a_sensor() -> None:
 
 
 def test_unknown_unit_is_refused() -> None:
-    with pytest.raises(InputError, match="unit 'furlong' is not known"):
+    with pytest.raises(InputError, match="has the unknown unit 'furlong'"):
         convert_unit("furlong", "here")
 
 

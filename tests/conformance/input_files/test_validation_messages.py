@@ -72,8 +72,8 @@ LINE, PANTOGRAPH, CASE = "line.toml", "pantograph.toml", "250.toml"
             PANTOGRAPH,
             {"chain.uplift_force_on": "knee"},
             (
-                "pantograph 'pantograph.toml', key chain.uplift_force_on: no mass has the name 'knee'.\n"
-                "  The names are: frame, head."
+                "pantograph 'pantograph.toml', key chain.uplift_force_on: there is no mass 'knee'.\n"
+                "  Known names are frame, head."
             ),
         ),
         (
@@ -94,12 +94,12 @@ LINE, PANTOGRAPH, CASE = "line.toml", "pantograph.toml", "250.toml"
         (
             LINE,
             {"droppers.x_m.8": 65.0},
-            ("reference line 'line.toml', key droppers.x_m[9]: the dropper at 65 m lies outside its span of 60 m."),
+            ("reference line 'line.toml', key droppers.x_m[9]: 65 m is not inside the span of 60 m."),
         ),
         (
             LINE,
             {"droppers.x_m.1": 17.0, "droppers.x_m.2": 10.5},
-            ("reference line 'line.toml', key droppers.x_m[3]: 10.5 m does not follow 17 m."),
+            ("reference line 'line.toml', key droppers.x_m[3]: 10.5 m is not greater than the preceding 17 m."),
         ),
         (
             LINE,
@@ -109,7 +109,10 @@ LINE, PANTOGRAPH, CASE = "line.toml", "pantograph.toml", "250.toml"
         (
             LINE,
             {"droppers.axial_stiffness_EA_N": 2e5},
-            ("reference line 'line.toml', key droppers.stiffness_N_m: the stiffness of a dropper must be given once."),
+            (
+                "reference line 'line.toml', key droppers.stiffness_N_m: "
+                "the stiffness of the droppers is missing or given twice."
+            ),
         ),
         (
             LINE,
@@ -144,7 +147,7 @@ LINE, PANTOGRAPH, CASE = "line.toml", "pantograph.toml", "250.toml"
         (
             CASE,
             {"evaluated_spans": [1, 6]},
-            ("case '250.toml', key start_m: the last pantograph starts at 60 m, not before the evaluated spans"),
+            ("case '250.toml', key start_m: the last pantograph starts at 60 m, but the evaluated spans begin at 0 m"),
         ),
         (CASE, {"filter.order": 5}, ("case '250.toml', key filter.order: 5 is odd.")),
         (
@@ -184,8 +187,8 @@ def test_message_names_file_key_and_next_step(
             "is not valid TOML: Expected newline or end of document after a statement (at line ",
         ),
         ('title = "EN', "title = EN", "is not valid TOML: Invalid value (at line 3, column 9)"),
-        ("order = 6", f"order = {'9' * 5000}", "holds a number or a nesting that is too long to read."),
-        ("order = 6", "order = " + "[" * 100_000, "holds a number or a nesting that is too long to read."),
+        ("order = 6", f"order = {'9' * 5000}", "holds a number that is too long, or tables nested too deeply."),
+        ("order = 6", "order = " + "[" * 100_000, "holds a number that is too long, or tables nested too deeply."),
     ],
 )
 def test_text_that_is_not_toml_is_refused(tmp_path: Path, old: str, new: str, message: str) -> None:
@@ -217,5 +220,7 @@ def test_limit_of_a_line_quantity_has_no_pantograph(tmp_path: Path) -> None:
         '[[limit]]\nquantity = "max_uplift_at_support_mm"\npantograph = 1\nupper = 60.0\n'
         'trust = "primary"\nsource = "own"\n'
     )
-    with pytest.raises(InputError, match=r"key limit\[1\]\.pantograph: max_uplift_at_support_mm belongs to the line"):
+    with pytest.raises(
+        InputError, match=r"key limit\[1\]\.pantograph: max_uplift_at_support_mm is not a quantity of a pantograph"
+    ):
         read_limits(path)

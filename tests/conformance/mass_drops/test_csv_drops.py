@@ -22,7 +22,7 @@ def test_csv_reads_back(tmp_path: Path, record: DropRecord) -> None:
 def test_names_that_no_head_line_can_hold_are_refused(tmp_path: Path, record: DropRecord, name: str) -> None:
     """Neither the file nor its sidecar is left behind."""
     named = replace(record, channels=(replace(record.channels[0], name=name), *record.channels[1:]))
-    with pytest.raises(InputError, match="a name that a head line cannot hold"):
+    with pytest.raises(InputError, match="this name is not possible in the head line"):
         write_drop_csv(named, tmp_path / "r.csv")
     assert not list(tmp_path.iterdir())
 

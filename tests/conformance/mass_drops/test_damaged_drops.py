@@ -84,30 +84,42 @@ def empty(name: str) -> Damage:
 
 
 DAMAGES = {
-    "nan": (csv_damage(lambda t: t.replace(t.splitlines()[5].split(",")[1], "nan", 1)), "not numbers"),
+    "nan": (
+        csv_damage(lambda t: t.replace(t.splitlines()[5].split(",")[1], "nan", 1)),
+        "not finite, the first at 0.04 s",
+    ),
     "text": (csv_damage(lambda t: t.replace(t.splitlines()[5].split(",")[1], "oops", 1)), "'oops' is not a number"),
-    "cut line": (csv_damage(lambda t: t[:-30]), "is cut short"),
+    "cut line": (csv_damage(lambda t: t[:-30]), "line 401: has 2 values, expected 4"),
     "no samples": (csv_damage(lambda t: t.splitlines()[0] + "\n"), "no samples"),
     "missing column": (
         csv_damage(lambda t: "\n".join(line.rsplit(",", 1)[0] for line in t.splitlines())),
-        "missing: S2_z",
+        "S2_z missing",
     ),
-    "gap in time": (csv_damage(lambda t: "\n".join(t.splitlines()[:50] + t.splitlines()[60:])), "steps by"),
-    "wrong rate": (sidecar_damage("sampling_rate_hz = 100.0", "sampling_rate_hz = 200.0"), "says 200"),
-    "wrong unit": (sidecar_damage('unit = "m/s2"', 'unit = "furlong"'), "'furlong' is not known"),
-    "wrong direction": (sidecar_damage('direction = "+z"', 'direction = "up"'), "'up' is not known"),
-    "wrong name": (sidecar_damage('name = "S1_z"', 'name = "S9_z"'), "the sidecar calls it 'S9_z'"),
-    "late trigger": (sidecar_damage("trigger_nominal_s = 1.5", "trigger_nominal_s = 15.0"), "the record ends at 4 s"),
+    "gap in time": (
+        csv_damage(lambda t: "\n".join(t.splitlines()[:50] + t.splitlines()[60:])),
+        "the time increases by",
+    ),
+    "wrong rate": (
+        sidecar_damage("sampling_rate_hz = 100.0", "sampling_rate_hz = 200.0"),
+        "states a sampling rate of 200 Hz",
+    ),
+    "wrong unit": (sidecar_damage('unit = "m/s2"', 'unit = "furlong"'), "unknown unit 'furlong'"),
+    "wrong direction": (sidecar_damage('direction = "+z"', 'direction = "up"'), "unknown direction 'up'"),
+    "wrong name": (sidecar_damage('name = "S1_z"', 'name = "S9_z"'), "the sidecar names it 'S9_z'"),
+    "late trigger": (
+        sidecar_damage("trigger_nominal_s = 1.5", "trigger_nominal_s = 15.0"),
+        "after the end of the record at 4 s",
+    ),
     "no rate": (sidecar_damage("sampling_rate_hz = 100.0\n", ""), "sampling_rate_hz"),
-    "mixed units": (sidecar_damage('unit = "m/s2"', 'unit = "mm"'), "mixes"),
-    "channel twice": (sidecar_damage("column = 2", "column = 1"), "column 1 is described twice"),
-    "cut binary": (cut_binary, "missing: S2_z"),
-    "unknown number type": (unknown_number_type, "damaged or not a universal file"),
+    "mixed units": (sidecar_damage('unit = "m/s2"', 'unit = "mm"'), "holds channels of acceleration and displacement"),
+    "channel twice": (sidecar_damage("column = 2", "column = 1"), "describes column 1 twice"),
+    "cut binary": (cut_binary, "S2_z missing"),
+    "unknown number type": (unknown_number_type, "damaged, or is not a universal file"),
     "cut hdf5": (cut_hdf5, "damaged"),
-    "no sidecar": (without_sidecar, "no sidecar"),
+    "no sidecar": (without_sidecar, "nor a sidecar"),
     "empty csv": (empty("r.csv"), "is empty"),
     "empty uff": (empty("r.uff"), "is empty"),
-    "unknown format": (empty("r.xyz"), "'.xyz' is not known"),
+    "unknown format": (empty("r.xyz"), "unknown suffix '.xyz'"),
 }
 
 

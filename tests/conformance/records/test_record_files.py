@@ -182,13 +182,13 @@ def renamed_column(path: Path, old: str, new: str) -> Path:
 @pytest.mark.parametrize(
     ("line", "text", "message"),
     [
-        (5, "x,1,2,3", "line 5: does not fit: 4 values, expected 15"),
+        (5, "x,1,2,3", "line 5: has 4 values, expected 15"),
         (5, "abc" + ",1" * 14, "line 5, column 1: 'abc' is not a number"),
-        (5, "1,2,3", "line 5: does not fit: 3 values, expected 15"),
+        (5, "1,2,3", "line 5: has 3 values, expected 15"),
         (5, "0.003,260,nan" + ",1" * 12, "channel force: 1 values are not finite, the first at sample 4"),
-        (5, "0.003,260,-1e300" + ",1" * 12, "force_1_N: -1e\\+300 at sample 4 is impossible"),
+        (5, "0.003,260,-1e300" + ",1" * 12, "force_1_N: sample 4 has the impossible value -1e\\+300"),
         (1, "1" + ",1" * 14, "has no head line"),
-        (1, "time_s,position_1_m,contact_height_1_m", "line 2: does not fit: 15 values, expected 3"),
+        (1, "time_s,position_1_m,contact_height_1_m", "line 2: has 15 values, expected 3"),
     ],
 )
 def test_damaged_csv_names_its_place(written: Writer, line: int, text: str, message: str) -> None:
@@ -201,9 +201,9 @@ def test_damaged_csv_names_its_place(written: Writer, line: int, text: str, mess
     [
         ("force_1_N", "force_1_lbf", r"column 'force_1_lbf': unknown column.\n  Did you mean force_1_N"),
         ("force_1_N", "force_2_N", r"column 'force_2_N': the sidecar has no pantograph 2.\n  It has 1"),
-        ("time_s", "force_1_kN", "two columns have the same name"),
-        ("position_1_m", "time_ms", "two columns have the same name"),
-        ("force_1_N", "speed_m_s", "there is no channel force_N"),
+        ("time_s", "force_1_kN", "repeats the channel of another column"),
+        ("position_1_m", "time_ms", "repeats the channel of another column"),
+        ("force_1_N", "speed_m_s", "has no channel force_N"),
     ],
 )
 def test_wrong_column_is_named(written: Writer, old: str, new: str, message: str) -> None:
@@ -213,7 +213,11 @@ def test_wrong_column_is_named(written: Writer, old: str, new: str, message: str
 
 @pytest.mark.parametrize(
     ("start", "end", "message"),
-    [(1, None, "holds a head line but no samples"), (0, None, "holds no data"), (100, 200, "not evenly spaced")],
+    [
+        (1, None, "holds a head line but no samples"),
+        (0, None, "holds no line of data"),
+        (100, 200, "not evenly spaced"),
+    ],
 )
 def test_missing_lines_are_refused(written: Writer, start: int, end: int | None, message: str) -> None:
     path = without_digest(written("a.csv"))
@@ -251,7 +255,7 @@ def test_section_of_the_case_is_used_if_the_sidecar_states_none(written: Writer,
 def test_truncated_or_empty_hdf5_is_refused(written: Writer) -> None:
     path = without_digest(written("a.h5"))
     path.write_bytes(path.read_bytes()[:3000])
-    with pytest.raises(InputError, match="is damaged or not HDF5"):
+    with pytest.raises(InputError, match="is damaged, or is not HDF5"):
         read_record(path)
     path.write_bytes(b"")
     with pytest.raises(InputError, match="is empty"):
@@ -269,9 +273,9 @@ def test_changed_table_contradicts_its_digest(written: Writer) -> None:
     ("changes", "message"),
     [
         ({"filter_applied_Hz": None}, "key filter_applied_Hz: missing"),
-        ({"filter_applied_Hz": -20.0}, "-20 Hz is not a cut-off"),
+        ({"filter_applied_Hz": -20.0}, "found -20 Hz, expected a positive cut-off"),
         ({"schema": "pantocheck.record/9"}, "key schema: found 'pantocheck.record/9'"),
-        ({"file": "../a.csv"}, "is a path"),
+        ({"file": "../a.csv"}, "found the path"),
         ({"file": "b.csv"}, "record 'b.csv': cannot be read"),
         ({"speed_km_h": None, "speed_m_s": 69.4}, "key speed_m_s: unknown key"),
         ({"pantographs": 2}, "1 rows of position_m, expected 2"),
@@ -295,7 +299,7 @@ def test_record_never_overwrites_a_case_file(record: Record, tmp_path: Path) -> 
 
 
 def test_unknown_suffix_is_refused(record: Record, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"format '\.xls' is not known"):
+    with pytest.raises(InputError, match=r"has the unknown suffix '\.xls'"):
         write_record(tmp_path / "a.xls", record)
 
 

@@ -115,7 +115,10 @@ def test_force_filtered_at_20_hz_has_no_values_above_and_no_contact_loss() -> No
 def test_low_rate_has_no_values_up_to_50_hz() -> None:
     evaluation = evaluate_record(record(rate=100.0), LowPass())
     assert {"rms_20_50_N", "std_force_50_N", "cov_50"} < set(evaluation.skipped[1])
-    assert "needs at least 125 samples per second; the record has 100" in evaluation.skipped[1]["rms_20_50_N"]
+    assert (
+        "the record has 100 samples per second; a filter at 50 Hz needs at least 125"
+        in evaluation.skipped[1]["rms_20_50_N"]
+    )
     assert evaluation.values[1]["std_force_N"] > 0
 
 
@@ -123,7 +126,7 @@ def test_low_rate_has_no_values_up_to_50_hz() -> None:
 def test_truncated_record_has_no_values(length: float) -> None:
     evaluation = evaluate_record(record(length=length), LowPass())
     assert evaluation.values[1] == {}
-    assert "the analysis section is 200 m to 400 m" in evaluation.skipped[1]["mean_force_N"]
+    assert "but the analysis section extends from 200 m to 400 m" in evaluation.skipped[1]["mean_force_N"]
 
 
 @pytest.mark.parametrize("samples", [-20.0, -0.5, 0.0, 0.9, 1.1, 2.0, 5.0, 9.9, 100.0])
@@ -227,7 +230,7 @@ def test_impossible_record_is_rejected() -> None:
         replace(good, time=np.r_[good.time[:-1], good.time[-1] + 0.5])
     with pytest.raises(ValueError, match="expected \\(1, 12000\\)"):
         replace(good, position=good.position[:, :-1])
-    with pytest.raises(ValueError, match="move forwards"):
+    with pytest.raises(ValueError, match="does not increase from each sample"):
         replace(good, position=good.position[:, ::-1])
     with pytest.raises(ValueError, match="read-only"):
         good.force[0, 0] = 1.0

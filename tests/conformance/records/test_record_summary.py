@@ -74,7 +74,7 @@ def test_missing_quantity_is_skipped(tmp_path: Path) -> None:
     result = grade(tmp_path)
     assert result.verdict == "skip"
     (skipped,) = (item for item in result.criteria if item.verdict == "skip")
-    assert (skipped.quantity, skipped.reason) == ("max_force_N", "the summary record does not give it")
+    assert (skipped.quantity, skipped.reason) == ("max_force_N", "the summary does not state this quantity")
 
 
 @pytest.mark.parametrize(
@@ -96,13 +96,13 @@ def test_summary_of_another_case_is_an_error(changes: dict[str, Any], message: s
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"pantograph.0.std_force_kN": 0.0276}, r"pantograph\[1\].std_force_kN: there is no such quantity here"),
+        ({"pantograph.0.std_force_kN": 0.0276}, r"pantograph\[1\].std_force_kN: not a quantity of this table"),
         ({"pantograph.0.std_force_N": -27.6}, "-27.6 is negative"),
         ({"pantograph.0.std_force_N": math.nan}, "not a finite number"),
         ({"pantograph.0.std_force_N": "27.6"}, "found '27.6', expected a number"),
-        ({"pantograph.0.contact_loss_pct": 101.0}, "101 % is more than 100 %"),
+        ({"pantograph.0.contact_loss_pct": 101.0}, "101 % is above 100 %"),
         ({"pantograph.0.min_force_N": 200.0}, "200 is above max_force_N = 193.7"),
-        ({"quantities": {"mean_force_N": 52.2}}, r"quantities.mean_force_N: there is no such quantity here"),
+        ({"quantities": {"mean_force_N": 52.2}}, r"quantities.mean_force_N: not a quantity of this table"),
         ({"pantograph": None, "pantographs": []}, "key pantographs: unknown key.\n  Did you mean pantograph"),
         ({"trust": None}, "key trust: missing"),
     ],

@@ -236,17 +236,20 @@ def test_rear_pantograph_is_placed_by_its_spacing() -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda s: RecordSamples(s.force, s.time[::-1], position=s.position), "time: does not increase from sample 1"),
+        (
+            lambda s: RecordSamples(s.force, s.time[::-1], position=s.position),
+            "time: the value of sample 2 is not greater than that of sample 1",
+        ),
         (
             lambda s: RecordSamples(s.force, s.time, position=s.position[:, ::-1]),
-            "position: does not increase from sample 1",
+            "position: the value of sample 2 is not greater than that of sample 1",
         ),
         (lambda s: RecordSamples(s.force, np.full(s.time.size, np.nan)), "fewer than two samples"),
         (
             lambda s: RecordSamples(s.force, speed=np.zeros(s.time.size), position=s.position),
-            "stands still at nearly every",
+            "fewer than two samples have a positive speed",
         ),
-        (lambda s: RecordSamples(s.force, np.r_[s.time[:-1], 1e8], position=s.position), "are more than"),
+        (lambda s: RecordSamples(s.force, np.r_[s.time[:-1], 1e8], position=s.position), "give more than"),
     ],
 )
 def test_impossible_axes_are_rejected(change: Callable[[RecordSamples], RecordSamples], message: str) -> None:
