@@ -93,7 +93,7 @@ def read_samples(path: Path) -> tuple[RecordSamples, RecordSidecar, Path]:
     sidecar_path = path.with_suffix(".toml")
     sidecar = read_model(sidecar_path, RecordSidecar, "sidecar")
     table = sidecar_path.parent / sidecar.file
-    check_file(table, f"record '{table.name}'", MAX_TABLE_BYTES)
+    check_file(table, f"record '{table.name}'", MAX_FILE_BYTES)
     if not table.resolve().is_relative_to(sidecar_path.parent.resolve()):
         raise InputError(f"record '{table.name}'", "is a link to a file outside its folder", "Copy the table itself.")
     if sidecar.sha256 is not None and file_digest(table) != sidecar.sha256:

@@ -235,7 +235,7 @@ def test_rule_without_its_fact_of_the_line_is_skipped(train: Train) -> None:
     reasons = {row.quantity: row.reason for row in results.cases[0].criteria if row.verdict == "skip"}
     assert reasons == {
         "speed_over_wave_speed": "the wave speed of the line is not known: add wave_speed_m_s",
-        "max_uplift_at_support_mm": "the record does not give uplift_space_mm",
+        "max_uplift_at_support_mm": "the record does not state uplift_space_mm in its table [line]",
     }
     assert find_discrepancies(results.to_dict()) == []
 
@@ -386,7 +386,7 @@ def test_line_test_compares_with_the_measured_record(train: Train, tmp_path: Pat
     rows = by_quantity(results)
     assert results.verdict == "skip"
     height = rows["contact_height_range_mm"]
-    assert (height.verdict, height.reason) == ("skip", "the measured record has no such quantity")
+    assert (height.verdict, height.reason) == ("skip", "the measured record does not have this quantity")
     assert (rows["mean_force_N"].lower, rows["mean_force_N"].upper) == pytest.approx((115.7, 120.7))
     assert (rows["std_force_N"].lower, rows["std_force_N"].upper) == pytest.approx((0.8 * 27.6, 1.2 * 27.6))
     assert "around the measured value 27.6 of 250" in rows["std_force_N"].source

@@ -53,7 +53,7 @@ def test_damaged_mdf_ends_in_one_message(tmp_path: Path, record: DropRecord, cap
     capfd.readouterr()
     for length in (70, 200, 1000):
         (tmp_path / "r.mf4").write_bytes(content[:length])
-        with pytest.raises(InputError, match="is damaged or not MDF"):
+        with pytest.raises(InputError, match="is damaged, or is not MDF"):
             read_drop_records(tmp_path / "r.mf4")
     gc.collect()
     assert capfd.readouterr() == ("", "")

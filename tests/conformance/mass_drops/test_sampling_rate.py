@@ -35,7 +35,8 @@ def test_sources_agree_to_a_thousandth(source: str, factor: float, agrees: bool)
         assert find_sampling_rate(table, build_sidecar(RATE)) == RATE
         assert find_sampling_rate(table, None) == pytest.approx(other, rel=1e-9)
     else:
-        with pytest.raises(InputError, match=f"the sidecar says 400 samples per second, {source} says {other:g}"):
+        expected = f"the sidecar states a sampling rate of 400 Hz, but {source} {other:g} Hz"
+        with pytest.raises(InputError, match=expected):
             find_sampling_rate(table, build_sidecar(RATE))
 
 
@@ -44,7 +45,7 @@ def test_sources_agree_to_a_thousandth(source: str, factor: float, agrees: bool)
 def test_missing_sample_is_found_anywhere(sample: int, missing: int) -> None:
     """One sample of 1200 changes the rate by less than a thousandth: the gap itself shows it."""
     time = np.delete(np.arange(N) / RATE, slice(sample, sample + missing))
-    with pytest.raises(InputError, match="the time column steps by"):
+    with pytest.raises(InputError, match="the time increases by"):
         find_sampling_rate(build_table(time), None)
 
 

@@ -115,7 +115,7 @@ def test_section_with_a_gap_has_no_values() -> None:
     samples = by_time()
     holed = samples.select((samples.time < 10) | (samples.time > 11))
     found = ready(holed, evaluated_m=[10.0, 2000.0])
-    assert "the analysis section is 10 m to 2000 m" in (skip_reason(found) or "")
+    assert "the analysis section extends from 10 m to 2000 m" in (skip_reason(found) or "")
     assert found.seconds == 0
     assert any("2 usable parts between gaps; that from 764.0 m to 2083.2 m" in text for text in found.warnings)
     before = ready(holed, evaluated_m=[60.0, 660.0])
