@@ -53,7 +53,7 @@ def _find_largest_matrix(data: dict[str, RealArray], where: str) -> RealArray:
     if not tables:
         raise InputError(
             where,
-            f"holds no table of samples, only {', '.join(sorted(data)[:8]) or 'time or rate'}",
+            f"holds no table of samples; variables besides time and rate: {', '.join(sorted(data)[:8]) or 'none'}",
             "Store one matrix (samples by channels), or one vector per channel named as in the sidecar.",
         )
     most = max(table.size for table in tables.values())

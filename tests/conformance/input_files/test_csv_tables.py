@@ -56,17 +56,17 @@ def test_line_of_numbers_with_one_name_is_a_head_line(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "where", "found"),
     [
-        ("a;b\n0;0\n1;1\n2\n3;3\n", "line 4", "does not fit: 1 values, expected 2"),
-        ("a;b\n0;0\n1;1\n2\n", "line 4", "is cut short: 1 values, expected 2"),
+        ("a;b\n0;0\n1;1\n2\n3;3\n", "line 4", "has 1 values, expected 2"),
+        ("a;b\n0;0\n1;1\n2\n", "line 4", "has 1 values, expected 2"),
         ("a;b\n0;0\n1\n2;2\n", "line 2, column 1", "'0;0' is not a number"),
-        ("a,b\n0,0\n1,1,1\n", "line 3", "is cut short: 3 values, expected 2"),
+        ("a,b\n0,0\n1,1,1\n", "line 3", "has 3 values, expected 2"),
         ("a,b\n0,0\n1, x \n", "line 3, column 2", "'x' is not a number"),
         (f"a,b\n0,0\n{'y' * 50},1\n", "line 3, column 1", f"'{'y' * 40}' is not a number"),
         ("0,0\n1,x\n", "line 2, column 2", "'x' is not a number"),
         ("# c\n\na,b\n0,0\n\nx,1\n", "line 6, column 1", "'x' is not a number"),
-        ("a,b\n0,0\n# end\n", "line 3", "is cut short: 1 values, expected 2"),
+        ("a,b\n0,0\n# end\n", "line 3", "has 1 values, expected 2"),
         ("a,b\n", "", "holds a head line but no samples"),
-        ("# only\n# comments\n", "", "holds no data"),
+        ("# only\n# comments\n", "", "holds no line of data"),
     ],
 )
 def test_fault_is_named_with_its_line_and_column(text: str, where: str, found: str, tmp_path: Path) -> None:

@@ -97,13 +97,13 @@ def replace_run(values: object) -> Callable[[h5py.File], None]:
 @pytest.mark.parametrize(
     ("damage", "message"),
     [
-        (describe_nothing, "r.h5': describes no channel"),
+        (describe_nothing, "r.h5', group 'channels': describes no channel"),
         (replace_run(None), "r.h5', run_1: holds no table of samples"),
         (replace_run(SAMPLES[0]), "r.h5', run_1: holds no table of samples"),
         (replace_run(SAMPLES[None]), "r.h5', run_1: holds no table of samples"),
         (replace_run(h5py.Empty("f8")), "r.h5', run_1: holds no table of samples"),
         (replace_run(np.full((3, 20), b"x")), "r.h5', run_1: holds no table of samples"),
-        (replace_run(SAMPLES[:2]), "r.h5', run_1: 2 channels, but 3 are described"),
+        (replace_run(SAMPLES[:2]), "r.h5', run_1: holds 2 channels, but the group 'channels' describes 3"),
     ],
 )
 def test_damaged_run_is_refused(damage: Callable[[h5py.File], None], message: str, tmp_path: Path) -> None:
@@ -117,10 +117,13 @@ def test_damaged_run_is_refused(damage: Callable[[h5py.File], None], message: st
 @pytest.mark.parametrize(
     ("datasets", "message"),
     [
-        ({}, "r.h5': holds no data"),
-        ({"a": SAMPLES[None]}, r"data set 'a': its shape is \(1, 3, 20\)\."),
-        ({"a": 1.5}, r"data set 'a': its shape is \(\)\."),
-        ({"a": SAMPLES, "b": SAMPLES[0, 1:]}, r"data set 'b': its shape is \(19,\); the first data set has 20 samples"),
+        ({}, "r.h5': holds no data set"),
+        ({"a": SAMPLES[None]}, r"data set 'a': has the shape \(1, 3, 20\)\."),
+        ({"a": 1.5}, r"data set 'a': has the shape \(\)\."),
+        (
+            {"a": SAMPLES, "b": SAMPLES[0, 1:]},
+            r"data set 'b': has the shape \(19,\); the first data set has 20 samples",
+        ),
         ({"a": ["text"]}, "data set 'a': holds no table of samples"),
     ],
 )
@@ -156,5 +159,5 @@ def test_chunk_may_be_as_large_as_the_table(tmp_path: Path) -> None:
         if allowed:
             assert read(tmp_path / "r.h5")[0].values.size == 20
         else:
-            with pytest.raises(InputError, match=r"its chunks have the shape \(10001,\)"):
+            with pytest.raises(InputError, match=r"has chunks of the shape \(10001,\)"):
                 read(tmp_path / "r.h5")

@@ -80,9 +80,9 @@ def test_matrix_beside_an_incomplete_set_of_vectors_is_the_table(tmp_path: Path)
 @pytest.mark.parametrize(
     ("variables", "message"),
     [
-        ({"note": "text"}, r"holds no table of samples \(nothing\)"),
-        ({"b": 1.0, "a": 2.0}, r"holds no table of samples \(a, b\)"),
-        ({"raw": SAMPLES, "filtered": SAMPLES}, "r.mat', filtered, raw: holds several tables of one size"),
+        ({"note": "text"}, "holds no table of samples; variables besides time and rate: none"),
+        ({"b": 1.0, "a": 2.0}, "holds no table of samples; variables besides time and rate: a, b"),
+        ({"raw": SAMPLES, "filtered": SAMPLES}, "r.mat', filtered, raw: have the same size"),
     ],
 )
 def test_file_without_one_table_is_refused(variables: dict[str, Any], message: str, tmp_path: Path) -> None:

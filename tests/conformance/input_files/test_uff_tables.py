@@ -116,7 +116,7 @@ def test_functions_of_frequency_are_left_out(tmp_path: Path) -> None:
         (({}, {"rsp_dir": 4}), "r.uff', data set 2: states no direction"),
         (({}, {"ordinate_spec_data_type": 0}), "r.uff', data set 2: states no unit"),
         (({"rsp_dir": 0}, {}), "r.uff', data set 1: states no direction"),
-        (({}, {"data": SAMPLES[1, :39], "num_pts": 39}), "differ in length"),
+        (({}, {"data": SAMPLES[1, :39], "num_pts": 39}), "has channels of different length"),
     ],
 )
 def test_faulty_data_set_is_refused(changes: tuple[dict[str, Any], ...], message: str, tmp_path: Path) -> None:
@@ -127,9 +127,9 @@ def test_faulty_data_set_is_refused(changes: tuple[dict[str, Any], ...], message
 @pytest.mark.parametrize(
     ("interval_s", "message"),
     [
-        ((0.02, 0.01), r"r\.uff': its channels differ in sampling interval \(0\.01, 0\.02 s\)"),
-        ((0.0, 0.0), r"r\.uff': sampling interval 0 s"),
-        ((-0.02, -0.02), r"r\.uff': sampling interval -0\.02 s"),
+        ((0.02, 0.01), r"r\.uff': has channels with different sampling intervals \(0\.01, 0\.02 s\)"),
+        ((0.0, 0.0), r"r\.uff': states a sampling interval of 0 s"),
+        ((-0.02, -0.02), r"r\.uff': states a sampling interval of -0\.02 s"),
     ],
 )
 def test_channels_share_a_positive_interval(interval_s: tuple[float, float], message: str, tmp_path: Path) -> None:
@@ -141,7 +141,7 @@ def test_truncated_data_set_is_named(tmp_path: Path) -> None:
     path = write(tmp_path / "r.uff", {}, {})
     first, second, third = path.read_bytes().split(b"         4        40")
     path.write_bytes(first + b"         4        40" + second + b"         4        41" + third)
-    with pytest.raises(InputError, match=r"r\.uff', data set 2: 40 samples, its head says 41"):
+    with pytest.raises(InputError, match=r"r\.uff', data set 2: holds 40 samples, but its head states 41"):
         read(path)
 
 

@@ -95,5 +95,5 @@ def test_spellings_of_gravity_are_one_unit(text: str) -> None:
 def test_message_of_an_unknown_unit_is_short_and_lists_the_known_ones() -> None:
     with pytest.raises(InputError) as caught:
         convert_unit("x" * 100, "here")
-    assert caught.value.found == f"unit '{'x' * 40}' is not known"
+    assert caught.value.found == f"has the unknown unit '{'x' * 40}'"
     assert caught.value.hint == "Known units are m/s2, mm/s2, g, mg, m/s, mm/s, km/h, mph, m, mm, cm, km."
