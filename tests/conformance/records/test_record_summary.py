@@ -118,3 +118,78 @@ def test_shipped_numbers_are_the_published_ones(speed: str, mean: float, std: fl
     summary = open_record(PASSING / f"{speed}.toml")
     assert isinstance(summary, RecordSummary)
     assert (summary.pantograph[0]["mean_force_N"], summary.pantograph[0]["std_force_N"]) == (mean, std)
+
+
+@pytest.mark.parametrize(
+    ("quantity", "expected", "tolerance"),
+    [("statistical_min_N", 28.0, 0.3), ("statistical_max_N", 208.0, 0.3), ("cov_20", 30 / 118, 0.006)],
+)
+@pytest.mark.parametrize("sign", [-1, 1])
+@pytest.mark.parametrize("number", [1, 2])
+def test_statistic_beyond_the_rounding_of_print_is_a_contradiction(
+    quantity: str, expected: float, tolerance: float, sign: int, number: int, tmp_path: Path
+) -> None:
+    """Mean 118 N and deviation 30 N: mean plus and minus three deviations, and their ratio."""
+    tables = [{"mean_force_N": 118.0, "std_force_N": 30.0} for _ in range(2)]
+    for factor, contradicts in ((0.99, False), (1.01, True)):
+        tables[number - 1][quantity] = expected + sign * factor * tolerance
+        summary = open_record(change_summary(tmp_path, {"pantograph": tables}))
+        assert isinstance(summary, RecordSummary)
+        assert len(summary.contradictions) == contradicts
+        assert all(text.startswith(f"{quantity} of pantograph {number} is given as") for text in summary.contradictions)
+
+
+@pytest.mark.parametrize("missing", ["mean_force_N", "std_force_N"])
+def test_statistics_need_mean_and_deviation_for_a_comparison(missing: str, tmp_path: Path) -> None:
+    table = {"mean_force_N": 118.0, "std_force_N": 30.0, "statistical_max_N": 300.0}
+    del table[missing]
+    summary = open_record(change_summary(tmp_path, {"pantograph": [table]}))
+    assert isinstance(summary, RecordSummary)
+    assert summary.contradictions == ()
+
+
+@pytest.mark.parametrize("mean", [0.0, -5.0])
+def test_variation_about_no_mean_force_is_not_compared(mean: float, tmp_path: Path) -> None:
+    table = {"mean_force_N": mean, "std_force_N": 30.0, "cov_20": 9.0}
+    summary = open_record(change_summary(tmp_path, {"pantograph": [table]}))
+    assert isinstance(summary, RecordSummary)
+    assert summary.contradictions == ()
+
+
+def test_quantities_of_each_pantograph_and_of_the_line_stay_apart(tmp_path: Path) -> None:
+    tables = [{"mean_force_N": 118.0}, {"std_force_N": 30.0}]
+    changes = {"pantograph": tables, "quantities": {"max_uplift_at_support_mm": 52.0, "wave_speed_m_s": 120.0}}
+    summary = open_record(change_summary(tmp_path, changes))
+    assert isinstance(summary, RecordSummary)
+    evaluation = summary.evaluation
+    assert evaluation.values == {0: changes["quantities"], 1: tables[0], 2: tables[1]}
+    assert "max_uplift_at_support_mm" not in evaluation.skipped[0]
+    assert "mean_force_N" not in evaluation.skipped[1]
+    assert evaluation.skipped[2]["mean_force_N"] == "the summary record does not give it"
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"pantograph.0.contact_loss_pct": 100.0},
+        {"pantograph.0.max_force_N": 60.0, "pantograph.0.min_force_N": 60.0},
+        {"pantograph.0.min_force_N": -3.0},
+        {"pantograph.0.std_force_N": 0.0},
+        {"evaluated_m": [240.0, 360.0]},
+    ],
+)
+def test_values_at_a_bound_are_possible(changes: dict[str, Any], tmp_path: Path) -> None:
+    assert isinstance(open_record(change_summary(tmp_path, changes)), RecordSummary)
+
+
+def test_empty_section_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="the analysis section ends before it begins"):
+        open_record(change_summary(tmp_path, {"evaluated_m": [360.0, 360.0]}))
+
+
+@pytest.mark.parametrize(("schema", "found"), [(None, "missing"), (3, "found '3'"), ("x" * 70, f"found '{'x' * 60}'")])
+def test_schema_that_is_not_known_is_named_with_the_known_ones(schema: object, found: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError) as caught:
+        open_record(change_summary(tmp_path, {"schema": schema}))
+    assert caught.value.found == found
+    assert caught.value.hint == 'Write schema = "pantocheck.record/1" or "pantocheck.summary/1".'

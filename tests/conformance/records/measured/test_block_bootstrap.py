@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.quantities.bands import EXTENDED_BAND
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.quantities.signals import ForceChannel, PantographSignals
-from pantocheck.conformance.records.measured.block_bootstrap import bootstrap_uncertainties
+from pantocheck.conformance.quantities.unavailable import NotResampled
+from pantocheck.conformance.records.measured.block_bootstrap import BlockReplicates, bootstrap_uncertainties
 
 RATE, SPEED, SPAN = 100.0, 60.0, 60.0  # a span a second
 DIGEST = "9f" * 32
@@ -72,3 +74,60 @@ def test_short_record_has_no_uncertainty() -> None:
         force_signals(spans(np.random.default_rng(7), 40)), section=(0.0, 3000.0)
     )  # 40 spans are 2400 m
     assert bootstrap_uncertainties(cut_short, 1.0, DIGEST) == {}
+
+
+STARTS = np.array([[0, 3, 7, 7], [7, 0, 1, 2], [5, 5, 5, 5]])
+
+
+@pytest.mark.parametrize("length", [1, 2, 3])
+def test_statistics_of_a_replicate_are_those_of_its_blocks(length: int) -> None:
+    """Each replicate is written out as the series of its blocks; sums are rounded in another order."""
+    series = np.random.default_rng(8).normal(120, 0.2, 10)
+    replicates = BlockReplicates(STARTS, length)
+    written = np.array([np.concatenate([series[start : start + length] for start in row]) for row in STARTS])
+    assert replicates.mean(series) == pytest.approx(written.mean(axis=1), rel=1e-12)
+    assert replicates.std(series) == pytest.approx(written.std(axis=1), rel=1e-9, abs=1e-8)
+    assert replicates.largest(series) == pytest.approx(written.max(axis=1), rel=1e-15)
+    assert replicates.smallest(series) == pytest.approx(written.min(axis=1), rel=1e-15)
+    assert replicates.extent(series, 1e3) == pytest.approx(1e3 * np.ptp(written, axis=1), rel=1e-12)
+    assert replicates.percentage(series > 120) == pytest.approx(100 * (written > 120).mean(axis=1), rel=1e-12)
+
+
+def test_band_has_no_replicates() -> None:
+    signals = force_signals(spans(np.random.default_rng(6), 50))
+    with pytest.raises(NotResampled, match="the RMS in 20-50 Hz has no bootstrap uncertainty"):
+        BlockReplicates(STARTS, 2).band_rms(signals, EXTENDED_BAND)
+    assert not {"rms_0_5_N", "rms_5_20_N", "rms_20_50_N"} & set(bootstrap_uncertainties(signals, 1.0, DIGEST))
+
+
+@pytest.mark.parametrize("block_s", [1.0, 0.997, 1.003, 2.5])
+def test_uncertainty_of_the_mean_is_that_of_a_thousand_replicates(block_s: float) -> None:
+    """The seed is the first 16 digits of the digest. A scatter about the mean of n blocks is widened by n / (n - 1)."""
+    force = spans(np.random.default_rng(9), 12)[:-30]
+    signals = force_signals(force, filter_applied_Hz=20.0)
+    evaluated, length = force.size - 1, round(100 * block_s)  # the last sample is the end of the section
+    blocks = round(evaluated / length)
+    starts = np.random.default_rng(int(DIGEST[:16], 16)).choice(evaluated - length + 1, size=(1000, blocks))
+    means = np.lib.stride_tricks.sliding_window_view(force[:evaluated], length).mean(axis=1)[starts].mean(axis=1)
+    expected = 1.96 * means.std() * np.sqrt(blocks / (blocks - 1))
+    uncertainty = bootstrap_uncertainties(signals, block_s, DIGEST)["mean_force_N"]
+    assert uncertainty == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize(("digit", "same"), [(15, False), (16, True)])
+def test_seed_is_the_first_sixteen_digits(digit: int, same: bool) -> None:
+    signals = force_signals(spans(np.random.default_rng(6), 20))
+    other = DIGEST[:digit] + "0" + DIGEST[digit + 1 :]
+    assert (bootstrap_uncertainties(signals, 1.0, other) == bootstrap_uncertainties(signals, 1.0, DIGEST)) is same
+
+
+@pytest.mark.parametrize(("seconds", "available"), [(4.49, False), (4.53, True)])
+def test_five_blocks_are_needed(seconds: float, available: bool) -> None:
+    """4.5 blocks are rounded to five."""
+    force = spans(np.random.default_rng(7), 6)[: round(100 * seconds)]
+    assert bool(bootstrap_uncertainties(force_signals(force), 1.0, DIGEST)) is available
+
+
+def test_block_has_at_least_one_sample() -> None:
+    signals = force_signals(spans(np.random.default_rng(7), 6))
+    assert bootstrap_uncertainties(signals, 0.001, DIGEST) == bootstrap_uncertainties(signals, 0.01, DIGEST)

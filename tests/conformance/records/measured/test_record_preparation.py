@@ -284,3 +284,100 @@ def test_support_with_missing_uplift_is_not_evaluated() -> None:
     found = ready(lines, support_position_m=[300.0, 360.0]).line
     assert (found.uplift.shape[0], found.uplift.max()) == (1, 0.05)
     assert any("of the uplift is missing" in text for text in ready(lines, support_position_m=[300.0, 360.0]).warnings)
+
+
+@pytest.mark.parametrize(("section", "part"), [((900.0, 1800.0), "1041.7 m"), ((300.0, 1100.0), "0.0 m")])
+def test_part_with_the_longest_share_of_the_section_is_evaluated(section: tuple[float, float], part: str) -> None:
+    """The gap lies at 14.5 s to 15 s, or 1007 m to 1042 m: the section lies mostly behind it, or before it."""
+    samples = by_time()
+    found = ready(samples.select((samples.time < 14.5) | (samples.time >= 15)), evaluated_m=list(section))
+    (text,) = (text for text in found.warnings if "usable parts" in text)
+    assert text.startswith(f"the record of pantograph 1 has 2 usable parts between gaps; that from {part} to ")
+
+
+@pytest.mark.parametrize(("count", "shown"), [(2, 2), (5, 5), (7, 5)])
+def test_first_five_outliers_are_listed(count: int, shown: int) -> None:
+    """Outliers of 900 N every second from 10 s on: 694.4 m and every further 69.4 m."""
+    samples = by_time()
+    force = samples.force.copy()
+    force[0, 5000 : 5000 + 500 * count : 500] = 900.0
+    found = ready(RecordSamples(force=force, time=samples.time, position=samples.position))
+    places = ", ".join(f"900 N at {SPEED * (10 + i):.1f} m" for i in range(shown))
+    (text,) = (text for text in found.warnings if "outlier" in text)
+    assert f"has {count} outliers, which are graded: {places}{', ...' if count > shown else ''}; write nan" in text
+
+
+def test_notes_state_the_evaluated_length() -> None:
+    """864 m at 69.44 m/s are 12.44 s; the nominal speed times the duration is the length."""
+    found = ready(by_time(), evaluated_m=[100.0, 964.0])
+    assert found.seconds == pytest.approx(864 / SPEED, abs=0.002)  # one sample
+    assert found.notes == ("Evaluated: 12.44 s, about 0.864 km of line.",)
+    assert found.warnings == ()
+    assert (found.rate, found.section) == (500.0, (100.0, 964.0))
+    assert found.speed == pytest.approx(SPEED, rel=1e-9)
+
+
+def test_section_that_is_not_covered_has_no_duration() -> None:
+    found = ready(by_time(), evaluated_m=[100.0, 9000.0])
+    assert (found.seconds, found.notes) == (0.0, ())
+
+
+@pytest.mark.parametrize(("share", "noted"), [(0.015, False), (0.025, True)])
+def test_record_with_steps_that_differ_by_two_percent_is_called_uneven(share: float, noted: bool) -> None:
+    samples = by_time()
+    assert samples.time is not None
+    time = samples.time.copy()
+    time[2::4] += share / 500  # the steps before and after these samples; the median step stays
+    found = ready(RecordSamples(samples.force, time, position=SPEED * time[None]))
+    assert any(
+        note.startswith("The record was not evenly sampled; it was resampled to 500") for note in found.notes
+    ) == (noted)
+
+
+@pytest.mark.parametrize(("factor", "steady"), [(0.949, False), (0.951, True), (1.049, True), (1.051, False)])
+def test_speed_differs_by_at_most_the_tolerance_of_the_profile(factor: float, steady: bool) -> None:
+    """Five percent of 250 km/h; the position states the speed."""
+    samples = by_time()
+    assert samples.time is not None
+    moved = RecordSamples(samples.force, samples.time, position=factor * SPEED * samples.time[None])
+    if steady:
+        assert ready(moved).speed == pytest.approx(factor * SPEED, rel=1e-9)
+    else:
+        with pytest.raises(RecordInvalid, match="force: no 1 s of pantograph 1 are without gaps"):
+            ready(moved)
+
+
+def test_mean_speed_is_that_of_the_steady_part_of_the_speed_channel() -> None:
+    """The channel shows 1 % more than the nominal speed; the last second, at half of it, is cut: 3.3 % of 30 s."""
+    samples = by_time()
+    speed = np.where(samples.time < 29, 1.01 * SPEED, 0.5 * SPEED)
+    found = ready(replace(samples, speed=speed), evaluated_m=[100.0, 964.0])
+    assert found.speed == pytest.approx(1.01 * SPEED, rel=1e-9)
+    assert found.warnings == (
+        f"3.3 % of the record was cut: the speed differs by more than 5 % from 250 km/h, first at {SPEED * 29:.1f} m",
+    )
+
+
+def test_missing_force_and_uplift_are_reported_with_their_shares() -> None:
+    """Three of 15 000 forces, and 1500 of 30 000 uplifts."""
+    samples = by_time()
+    force = samples.force.copy()
+    force[0, 5000:5003] = np.nan
+    uplift = np.full((2, samples.force.shape[1]), 0.03)
+    uplift[1, :1500] = np.nan
+    lines = RecordSamples(force, samples.time, None, samples.position, None, uplift, np.array([300.0, 360.0]))
+    found = ready(lines, support_position_m=[300.0, 360.0], evaluated_m=[100.0, 964.0])
+    assert found.warnings == (
+        "0.02 % of the force of pantograph 1 is missing, first at 694.4 m",
+        "5 % of the uplift is missing: a support with missing values is not evaluated",
+    )
+    assert list(found.line.support_position) == [300.0]
+
+
+def test_height_of_each_pantograph_stays_its_own() -> None:
+    samples = by_time(20.0)
+    force = np.vstack([samples.force, force_at(samples.position - 200.0)])
+    height = np.vstack([np.full(samples.time.size, 5.3), np.full(samples.time.size, 5.1)])
+    two = RecordSamples(force, samples.time, None, samples.position, height)
+    found = ready(two, pantographs=2, spacing_m=[200.0], evaluated_m=[10.0, 1100.0])
+    assert [set(found.pantographs[number].height) for number in (1, 2)] == [{5.3}, {5.1}]
