@@ -52,7 +52,7 @@ def disturb(record: Record) -> Callable[[int, float], Record]:
 
 
 @pytest.mark.parametrize("row", [0, 1])
-@pytest.mark.parametrize("share", [0.18, 0.4])
+@pytest.mark.parametrize("share", [0.13, 0.4])
 def test_motion_that_the_force_does_not_explain_is_stated(
     two_pantograph_case: Case, disturb: Callable[[int, float], Record], row: int, share: float
 ) -> None:

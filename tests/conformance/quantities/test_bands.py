@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from pantocheck.conformance.quantities.bands import amplitude_spectrum, band_rms
+from pantocheck.conformance.quantities.bands import BANDS, amplitude_spectrum, band_rms
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandNotObservable
 
@@ -91,3 +91,46 @@ def test_spectrum_gives_the_amplitude_of_a_sine() -> None:
     assert frequency[-1] <= 50.0
     assert_allclose(amplitude[np.argmax(amplitude)], 10.0, rtol=1e-12)
     assert frequency[np.argmax(amplitude)] == 12.5
+
+
+def test_bands_of_the_contract_have_no_gap() -> None:
+    """]0, 5], ]5, 20] and ]20, 50] Hz (Vo Van et al. 2015, Table 1); the names of the quantities state them."""
+    assert [tuple(band) for band in BANDS] == [(0, 5, "rms_0_5_N"), (5, 20, "rms_5_20_N"), (20, 50, "rms_20_50_N")]
+
+
+@pytest.mark.parametrize(("rate", "known"), [(125.0, True), (124.0, False)])
+def test_band_is_known_up_to_two_fifths_of_the_rate(rate: float, known: bool) -> None:
+    """50 Hz is 0.4 of 125 samples per second."""
+    if known:
+        assert band_rms(noise(1), rate, 20, 50) > 0
+    else:
+        with pytest.raises(BandNotObservable):
+            band_rms(noise(1), rate, 20, 50)
+
+
+@pytest.mark.parametrize(("samples", "known"), [(400, True), (399, False)])
+def test_band_needs_four_spectral_lines(samples: int, known: bool) -> None:
+    """5 Hz times 0.8 s."""
+    if known:
+        assert band_rms(noise(1, samples), RATE, 0, 5) > 0
+    else:
+        with pytest.raises(BandNotObservable):
+            band_rms(noise(1, samples), RATE, 0, 5)
+
+
+@pytest.mark.parametrize(("applied", "known"), [(19.97, False), (19.99, True), (20.0, True)])
+def test_filter_at_the_edge_leaves_the_band(applied: float, known: bool) -> None:
+    """A thousandth for printed numbers."""
+    if known:
+        assert band_rms(noise(1), RATE, 5, 20, applied) == band_rms(noise(1), RATE, 5, 20)
+    else:
+        with pytest.raises(AlreadyFiltered):
+            band_rms(noise(1), RATE, 5, 20, applied)
+
+
+def test_spectrum_holds_every_line_up_to_its_end() -> None:
+    """4 s give lines every 0.25 Hz; the end itself belongs to the spectrum, the mean does not."""
+    frequency, amplitude = amplitude_spectrum(noise(1), RATE, 50.0)
+    assert_allclose(frequency, 0.25 * np.arange(1, 201), rtol=1e-12)
+    inside = np.sqrt(np.sum(amplitude**2) / 2)
+    assert_allclose(inside, band_rms(noise(1), RATE, 0, 50), rtol=1e-12)

@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.signal import butter, freqz
 
-from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.filters import LowPass, needs_filter
 from pantocheck.conformance.quantities.signals import ForceChannel
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandNotObservable
 
@@ -98,3 +98,40 @@ def test_force_filtered_at_the_same_cutoff_is_not_filtered_twice() -> None:
     with pytest.raises(AlreadyFiltered, match="filtered at 10 Hz"):
         _ = ForceChannel(force, RATE, LowPass(), 10.0).graded
     assert_allclose(ForceChannel(force, RATE, LowPass(), 200.0).graded, LowPass()(force, RATE))
+
+
+@pytest.mark.parametrize(("applied", "filtered"), [(19.99, False), (20.01, False), (20.03, True), (None, True)])
+def test_cutoffs_are_the_same_to_a_thousandth(applied: float | None, filtered: bool) -> None:
+    """A force delivered at 20 Hz is taken as it is; one delivered above goes through the filter."""
+    assert needs_filter(LowPass(), applied) is filtered
+
+
+def test_force_filtered_below_the_cutoff_cannot_be_graded() -> None:
+    with pytest.raises(AlreadyFiltered, match=r"filtered at 19\.97 Hz; its content up to 20 Hz is unknown"):
+        needs_filter(LowPass(), 19.97)
+
+
+@pytest.mark.parametrize(
+    ("order", "phase", "exists"),
+    [(6, "zero", True), (5, "zero", False), (0, "zero", False), (-2, "zero", False), (5, "causal", True),
+     (1, "causal", True), (0, "causal", False)],
+)  # fmt: skip
+def test_orders_of_a_filter(order: int, phase: Literal["zero", "causal"], exists: bool) -> None:
+    if exists:
+        assert LowPass(order=order, phase=phase).order == order
+    else:
+        with pytest.raises(ValueError, match="zero phase needs an even order"):
+            LowPass(order=order, phase=phase)
+
+
+@pytest.mark.parametrize("phase", ["zero", "causal"])
+def test_filter_acts_up_to_two_fifths_of_the_rate(phase: Literal["zero", "causal"]) -> None:
+    """20 Hz is 0.4 of 50 samples per second."""
+    assert LowPass(phase=phase).sections(50.0).shape[1] == 6
+    with pytest.raises(BandNotObservable, match="at least 50 samples per second; the record has 49"):
+        LowPass(phase=phase).sections(49.0)
+
+
+def test_record_shorter_than_the_padding_is_filtered() -> None:
+    """Two periods of 20 Hz at 1000 Hz are 100 samples; a record of 20 samples has 19 to mirror."""
+    assert_allclose(LowPass()(np.full(20, 120.0), RATE), 120.0, rtol=1e-9)

@@ -45,3 +45,34 @@ def test_histogram_holds_every_sample_once(values: list[float]) -> None:
     assert share.size == edges.size - 1
     assert_allclose(share.sum(), 100.0, rtol=1e-12)
     assert share.size <= 35  # 30 classes and two that are cut by the ends
+
+
+@pytest.mark.parametrize(
+    ("values", "bins", "width", "first", "last"),
+    [
+        ((0.0, 300.0), 30, 10, 0, 31),
+        ((0.0, 301.0), 30, 20, 0, 16),
+        ((0.0, 60.0), 30, 2, 0, 31),
+        ((0.0, 61.0), 30, 5, 0, 13),
+        ((0.0, 150.0), 30, 5, 0, 31),
+        ((0.0, 30.0), 30, 1, 0, 31),
+        ((0.0, 1.5), 3, 0.5, 0, 4),
+        ((-7.0, 24.0), 30, 2, -4, 13),
+        ((119.0, 119.0), 30, 0.05, 2380, 2381),  # a constant force: a width for a spread of 1 N
+        ((119.0, 119.5), 30, 0.05, 2380, 2391),
+    ],
+)
+def test_classes_are_1_2_or_5_times_a_power_of_ten(
+    values: tuple[float, float], bins: int, width: float, first: int, last: int
+) -> None:
+    """The smallest such width that gives at most the requested number of classes, besides one cut by each end."""
+    edges, share = force_histogram(np.array(values), bins)
+    assert_allclose(edges, np.arange(first, last + 1) * width, rtol=1e-12, atol=1e-12)
+    assert share[0] == pytest.approx(100.0 if values[0] == values[1] else 50.0)
+    assert share.sum() == pytest.approx(100.0)
+
+
+def test_histogram_has_about_30_classes() -> None:
+    """Spread of 310 N: 30 classes need 10.33 N, so 20 N; 31 classes would need 10 N."""
+    edges, _ = force_histogram(np.array([0.0, 310.0]))
+    assert_allclose(np.diff(edges), 20.0)
