@@ -16,8 +16,8 @@ from typer.testing import CliRunner, Result
 
 from helpers.case_fixtures import EditedCase
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.command_line import run_command, self_test_command
+from pantocheck.conformance.cases.library import library_folder, list_library, select_cases
+from pantocheck.conformance.command_line import run_command, self_test_command, show_command
 from pantocheck.conformance.command_line.app import COMMANDS, app
 from pantocheck.conformance.command_line.guard import guard_command
 from pantocheck.conformance.records.record_reading import read_record
@@ -151,6 +151,23 @@ def test_self_test_notices_a_folder_that_cannot_be_written_before_it_computes(
     assert "cannot be written" in result.output
 
 
+def test_self_test_tests_every_selected_case_with_a_train(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Both speeds by default; the static case of a selection is left out."""
+    tested: list[list[str]] = []
+
+    def run(cases: list[Case], _: object) -> SelfTest:
+        tested.append([case.id for case in cases])
+        return SelfTest({}, (), ())
+
+    monkeypatch.setattr(self_test_command, "run_self_test", run)
+    pantocheck("self-test")
+    pantocheck("self-test", "en50318-2018/ac-stitched/*")
+    assert tested == [
+        ["en50318-2002/250", "en50318-2002/300"],
+        ["en50318-2018/ac-stitched/275", "en50318-2018/ac-stitched/320"],
+    ]
+
+
 def test_self_test_prints_no_control_characters_of_a_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(self_test_command, "run_self_test", lambda *_: SelfTest({}, (), ()))
     result = pantocheck("self-test", "--markdown", tmp_path / "[red]page\x1b.md")
@@ -266,6 +283,34 @@ def test_cases_and_show_state_trust_and_source() -> None:
     shown = pantocheck("show", "en50318-2002/250").output
     for text in ("provisional", "Wang, Liu, Mu", "max_uplift_at_support_mm", "masses_kg", "15.0, 7.2", "sha256:"):
         assert text in shown
+
+
+def test_every_case_of_the_library_is_listed() -> None:
+    """One row per case; a case without limits has none."""
+    rows = {line.split()[0]: line for line in pantocheck("cases").output.splitlines()[1:] if line.strip()}
+    assert set(list_library(library_folder())) <= set(rows)
+    assert rows["en50318-2002/300"].split()[-2:] == ["8", "secondary"]
+
+
+def test_show_leaves_out_required_cases_only() -> None:
+    """An exact id is shown alone, even if other cases require it; a glob shows the cases that it selects."""
+
+    def shown(pattern: str) -> list[str]:
+        return re.findall(r"^(en50318-\S+) ", pantocheck("show", pattern).output, re.MULTILINE)
+
+    assert shown("en50318-2018/ac-simple/static") == ["en50318-2018/ac-simple/static"]
+    assert shown("en50318-2002/*") == ["en50318-2002/250", "en50318-2002/300"]
+    assert shown("en50318-2018/ac-stitched/*") == ["en50318-2018/ac-stitched/275", "en50318-2018/ac-stitched/320"]
+
+
+def test_drawing_in_a_folder_that_cannot_be_made_is_noticed_before_it_is_drawn(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "file").write_text("")
+    monkeypatch.setattr(show_command, "draw_line", lambda *_: pytest.fail("drawn"))
+    result = pantocheck("show", "en50318-2002/250", "--drawing", tmp_path / "file" / "line.svg")
+    assert result.exit_code == 2
+    assert "cannot be written" in result.stderr
 
 
 def test_control_characters_of_a_file_do_not_reach_the_terminal(edited_case: EditedCase) -> None:

@@ -11,7 +11,7 @@ import tomli_w
 from helpers.toml_edit import edit_toml
 from pantocheck.conformance.cases.library import library_folder
 from pantocheck.conformance.cases.profile_file import load_profile
-from pantocheck.conformance.grading.assessed_record import AssessedRecord, load_assessed_record
+from pantocheck.conformance.grading.assessed_record import AssessedRecord, find_equal_pantograph, load_assessed_record
 from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.quantities.evaluation import LINE
@@ -114,3 +114,53 @@ def test_summary_has_the_filter_of_the_profile(tmp_path: Path, cutoff: float, fi
         message = f"filtered at {cutoff:g} Hz, profile acceptance-ac requires 20 Hz"
         with pytest.raises(InputError, match=message):
             load_assessed_record(path, load_profile("acceptance-ac"), NOTHING)
+
+
+def test_copy_of_the_samples_is_found_in_any_pantograph_and_unit(load: Load, tmp_path: Path) -> None:
+    """The same force in newtons is a copy of that in kilonewtons; the rear alone in another record, too."""
+    keys = {"evaluated_m": [100.0, 1500.0], "speed_km_h": 3.6 * SPEED}
+    first = load(keys)
+    assert find_equal_pantograph(first, load(keys | {"system": {"name": "other"}})) == 1
+    table = (tmp_path / "train.csv").read_text().splitlines()
+    values = np.array([row.split(",") for row in table[1:]], dtype=np.float64)
+
+    placed = edit_toml(tmp_path / "train.toml", {"file": "placed.csv", "start_m": None, "spacing_m": None})
+    columns = np.column_stack([values, SPEED * values[:, 0], SPEED * values[:, 0] - 90.0])
+    names = ["time_s", "force_1_kN", "force_2_kN", "position_1_m", "position_2_m"]
+    write_csv_table(tmp_path / "placed.csv", names, columns, 12)
+
+    def other(front: float, rear: float) -> AssessedRecord:
+        columns = np.column_stack([values[:, 0], 1e3 * (values[:, 1] + front), 1e3 * (values[:, 2] + rear)])
+        columns = np.column_stack([columns, SPEED * values[:, 0], SPEED * values[:, 0] - 90.0])
+        names = ["time_s", "force_1_N", "force_2_N", "position_1_m", "position_2_m"]
+        write_csv_table(tmp_path / "other.csv", names, columns, 12)
+        edit = {"file": "other.csv"}
+        (tmp_path / "other.toml").write_text(placed.read_text())
+        edit_toml(tmp_path / "other.toml", edit)
+        return load_assessed_record(tmp_path / "other.toml", load_profile("acceptance-ac"), NOTHING)
+
+    subject = load_assessed_record(placed, load_profile("acceptance-ac"), NOTHING)
+    assert subject.values.values[2], "the quantities of the rear are computed"
+    assert find_equal_pantograph(subject, other(0.0, 0.0)) == 1
+    assert find_equal_pantograph(subject, other(0.005, 0.0)) == 2
+    assert find_equal_pantograph(subject, other(0.0, 0.005)) == 1
+    assert find_equal_pantograph(subject, other(0.005, 0.005)) is None
+
+
+@pytest.mark.parametrize(
+    ("changes", "equal"),
+    [
+        ({}, 1),
+        ({"pantograph.0.mean_force_N": 118.9}, None),
+        ({"pantograph.0.max_force_N": 190.0}, None),
+    ],
+)
+def test_summary_is_a_copy_if_all_its_statistics_are_equal(
+    tmp_path: Path, changes: dict[str, Any], equal: int | None
+) -> None:
+    records = []
+    for name, edit in (("a.toml", {}), ("b.toml", changes)):
+        (tmp_path / name).write_text(SUMMARY.read_text())
+        path = edit_toml(tmp_path / name, edit)
+        records.append(load_assessed_record(path, load_profile("acceptance-ac"), NOTHING))
+    assert find_equal_pantograph(*records) == equal

@@ -13,7 +13,7 @@ from helpers.toml_edit import change_keys, write_toml
 from pantocheck.conformance.authenticity.recomputation import find_discrepancies
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.command_line.app import app
-from pantocheck.conformance.grading.baseline import compare_with_baseline
+from pantocheck.conformance.grading.baseline import compare_with_baseline, read_baseline
 from pantocheck.conformance.grading.case_verdict import Participation
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.reports.formats.junit import render_junit
@@ -71,6 +71,33 @@ def test_value_that_drifts_fails_within_its_limits(results: Results, was: float,
         assert find_discrepancies(compared.to_dict()) == []
         assert b'name="drift of std_force_N of pantograph 1"' in render_junit(compared.to_dict())
         assert compared.cases[1].verdict == "unverified"
+
+
+@pytest.mark.parametrize(
+    ("name", "was", "text"),
+    [
+        ("std_force_N", 24.0, "drifted by +15 % from the baseline of 24 N"),
+        ("std_force_N", 30.0, "drifted by -8 % from the baseline of 30 N"),
+        ("contact_loss_pct", 0.5, "drifted by -50 % from the baseline of 0.5 %"),
+        ("min_force_N", -70.3, "drifted by +200 % from the baseline of -70.3 N"),
+    ],
+)
+def test_drift_is_stated_with_its_sign(results: Results, name: str, was: float, text: str) -> None:
+    """Per cent of the earlier value, or of one unit near zero: 27.6 N now, no contact loss, 70.3 N."""
+    compared = compare_with_baseline(results, changed(results, name, was), 2.0, "b.json")
+    (finding,) = (row for row in compared.cases[0].criteria if row.baseline is not None)
+    assert finding.reason == text
+
+
+@pytest.mark.parametrize(("was", "drifts"), [(0.0, False), (0.0099, False), (0.0101, True)])
+def test_ratio_near_zero_drifts_by_a_hundredth(results: Results, was: float, drifts: bool) -> None:
+    """A ratio of 0.02 may drift by 50 %: by 0.01 of itself, not by 0.5."""
+    now = changed(results, "cov_20", 0.02)
+    earlier = changed(results, "cov_20", 0.02 + was)
+    found = compare_with_baseline(now, earlier, 50.0, "b.json").cases[0].criteria
+    assert any(row.baseline is not None for row in found) is (was > 0.0199)
+    tiny = compare_with_baseline(changed(results, "cov_20", was), changed(results, "cov_20", 0.0), 100.0, "b.json")
+    assert any(row.baseline is not None for row in tiny.cases[0].criteria) is drifts
 
 
 def test_value_near_zero_drifts_by_its_unit(results: Results) -> None:
@@ -245,3 +272,27 @@ def test_results_are_kept_if_the_comparison_fails(
     assert [case.quantities for case in read_results(out / "results.json").cases] == [
         case.quantities for case in results.cases
     ]
+
+
+@pytest.mark.parametrize("value", [1.01e12, -1.01e12])
+def test_impossible_value_of_a_baseline_is_refused(results: Results, tmp_path: Path, value: float) -> None:
+    path = tmp_path / "b.json"
+    path.write_bytes(changed(results, "std_force_N", value).to_json())
+    with pytest.raises(InputError, match=f"a value of {value:g}".replace("+", r"\+")):
+        read_baseline(path)
+    path.write_bytes(changed(results, "std_force_N", 0.99 * value).to_json())
+    assert read_baseline(path).cases
+
+
+@pytest.mark.parametrize(("number", "accepted"), [(9_992, True), (9_994, False)])
+def test_number_of_values_of_a_baseline_is_bounded(
+    results: Results, tmp_path: Path, number: int, accepted: bool
+) -> None:
+    """The case has eight quantities; one of them gets a list of values."""
+    path = tmp_path / "b.json"
+    path.write_bytes(changed(results, "std_force_N", [1.0] * number).to_json())
+    if accepted:
+        assert read_baseline(path).cases
+    else:
+        with pytest.raises(InputError, match="10001 values; at most 10000 can be compared"):
+            read_baseline(path)

@@ -66,8 +66,10 @@ def test_uplift_is_drawn_in_millimetres_at_each_support() -> None:
     assert_allclose(traces[0].time_s, time[::14], rtol=1e-5)
 
 
-@pytest.mark.parametrize(("rate", "filter_applied_Hz", "highest"), [(200.0, None, 50.0), (100.0, None, 40.0),
-                                                                    (200.0, 30.0, 30.0), (60.0, 30.0, 24.0)])  # fmt: skip
+@pytest.mark.parametrize(
+    ("rate", "filter_applied_Hz", "highest"),
+    [(200.0, None, 50.0), (100.0, None, 40.0), (200.0, 30.0, 30.0), (60.0, 30.0, 24.0)],
+)
 def test_spectrum_ends_at_the_highest_known_frequency(
     rate: float, filter_applied_Hz: float | None, highest: float
 ) -> None:

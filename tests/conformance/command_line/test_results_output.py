@@ -1,0 +1,122 @@
+"""Printed results: every criterion with its errors and limits, and the lines of a case."""
+
+from typing import Any
+
+import pytest
+
+from pantocheck.conformance.command_line.results_output import LEGEND, print_results
+from pantocheck.conformance.results.results_format import Results
+
+
+def printed(results: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> str:
+    print_results(Results.model_validate(results), [])
+    return capsys.readouterr().out
+
+
+def rows(text: str, name: str) -> list[list[str]]:
+    """Cells of the rows of a criterion; columns are separated by one space."""
+    return [line.split() for line in text.splitlines() if line.startswith(name) and not line.startswith(f"{name}:")]
+
+
+@pytest.fixture
+def rear(passing: dict[str, Any]) -> dict[str, Any]:
+    """Criterion on the standard deviation of pantograph 2."""
+    criterion: dict[str, Any] = passing["cases"][0]["criteria"][9]
+    assert (criterion["quantity"], criterion["pantograph"]) == ("std_force_N", 2)
+    criterion |= {"value": 28.1234, "margin": 0.64, "close": [], "lower": 22.0, "upper": 31.0}
+    return criterion
+
+
+def test_error_is_the_uncertainty_where_it_is_known(
+    passing: dict[str, Any], rear: dict[str, Any], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Four digits of the value, two of its errors."""
+    rear |= {"discretisation_error": 0.01234, "spread": 0.5678, "uncertainty": None}
+    expected = [
+        "std_force_N,",
+        "pantograph",
+        "2",
+        "28.12",
+        "0.012",
+        "0.57",
+        "22",
+        "to",
+        "31",
+        "+0.64",
+        "PASS",
+        "secondary",
+    ]
+    assert rows(printed(passing, capsys), "std_force_N, pantograph 2") == [expected]
+    rear |= {"uncertainty": 0.98765, "spread": None}
+    expected[4:6] = ["0.99", "-"]
+    assert rows(printed(passing, capsys), "std_force_N, pantograph 2") == [expected]
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper", "cells"),
+    [
+        (22.0, 31.0, ["22", "to", "31"]),
+        (22.0, None, [">=", "22"]),
+        (None, 31.0, ["<=", "31"]),
+        (None, None, ["-"]),
+        (22.1264, 31.1264, ["22.13", "to", "31.13"]),
+        (22.1264, None, [">=", "22.13"]),
+        (None, 31.1264, ["<=", "31.13"]),
+    ],
+)
+def test_limits_are_printed_with_four_digits(
+    passing: dict[str, Any],
+    rear: dict[str, Any],
+    capsys: pytest.CaptureFixture[str],
+    lower: float | None,
+    upper: float | None,
+    cells: list[str],
+) -> None:
+    rear |= {"lower": lower, "upper": upper, "margin": None, "spread": None, "uncertainty": None}
+    rear |= {"discretisation_error": None}
+    (row,) = rows(printed(passing, capsys), "std_force_N, pantograph 2")
+    assert row[3:] == ["28.12", "-", "-", *cells, "-", "PASS", "secondary"]
+
+
+def test_columns_of_the_table_are_one_space_apart(passing: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> None:
+    """So that the table of a common case fits into 80 columns; there is no empty line below the headings."""
+    lines = printed(passing, capsys).splitlines()
+    heading = next(i for i, line in enumerate(lines) if line.startswith("criterion"))
+    assert lines[heading].rstrip().endswith("margin verdict trust")
+    assert lines[heading + 1].startswith("mean_force_N ")
+
+
+def test_first_pantograph_and_line_are_not_named(passing: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> None:
+    criteria = passing["cases"][0]["criteria"]
+    criteria[0] |= {"quantity": "dropper_length_m", "pantograph": 0, "item": 3}
+    text = printed(passing, capsys)
+    assert len(rows(text, "dropper_length_m[3] ")) == 1
+    assert len(rows(text, "mean_force_N, pantograph 2")) == 1
+    assert len(rows(text, "std_force_N ")) == 1
+
+
+def test_lines_of_a_case_stand_above_its_table(passing: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> None:
+    """State of the record, changes of limits and warnings above; reasons and close limits below."""
+    case = passing["cases"][0]
+    case["limit_changes"] = ["std_force_N: the limit 26 to 31 is removed", "cov_20: the limit <= 0.3 is removed"]
+    case["criteria"][0] |= {"reason": "2 N above the upper limit", "close": ["lies 1 N from a limit"]}
+    lines = printed(passing, capsys).splitlines()
+    heading = next(i for i, line in enumerate(lines) if line.startswith("criterion"))
+    above, below = lines[:heading], lines[heading:]
+    changes = "limits file: std_force_N: the limit 26 to 31 is removed; cov_20: the limit <= 0.3 is removed"
+    assert f"  {changes}" in above
+    assert any(line.startswith("  warning: The contact force is sampled at 1000 Hz") for line in above)
+    assert any("every consistency check confirms the record" in line for line in above)
+    assert "  mean_force_N: 2 N above the upper limit" in below
+    assert "  mean_force_N: lies 1 N from a limit" in below
+    assert LEGEND in below
+
+
+def test_case_without_changes_or_criteria_has_no_line_for_them(
+    results: dict[str, Any], capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = printed(results | {"verdict": "skip", "cases": results["cases"][2:]}, capsys)
+    assert "  the static case en50318-2018/ac-simple/static did not pass" in text.splitlines()
+    assert "limits file" not in text
+    assert "criterion" not in text.splitlines()[3:]
+    assert LEGEND not in text
