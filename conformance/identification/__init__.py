@@ -1,1 +1,1 @@
-"""Catenary damping from mass-drop records: poles, their uncertainty, and the damping model fitted to them."""
+"""Damping of a line from mass-drop records: poles with uncertainty, and a damping model fitted to the modes."""

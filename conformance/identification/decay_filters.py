@@ -1,4 +1,4 @@
-"""Frequency band of an identification, and finite filters: a filtered decay keeps its pole."""
+"""Frequency band of an identification, and filters of finite length, which do not change the pole of a decay."""
 
 from dataclasses import dataclass
 from typing import TypeVar
@@ -17,14 +17,14 @@ LOWEST_FREQUENCY = 0.3
 
 @dataclass(frozen=True)
 class FrequencyBand:
-    """Band of the reported modes, and the margins that fit and filters need above it.
+    """Band of the reported modes, with margins above it for fit and filters.
 
     Parameters
     ----------
     low, high : float
         Edges of the band of the reported modes [Hz].
     fitted : float
-        Upper edge of the fit [Hz]; the margin keeps the effects of the edge away from the reported modes.
+        Upper edge of the fit [Hz]; its distance from `high` keeps errors at the edge away from the reported modes.
     stop : float
         Lower edge of the stop band of the low-pass [Hz].
     """
@@ -36,7 +36,7 @@ class FrequencyBand:
 
     @classmethod
     def up_to(cls, high: float, rate: float) -> "FrequencyBand":
-        """Band up to a frequency [Hz], or to a lower one if the sampling rate [Hz] requires it."""
+        """Band up to a frequency [Hz], or up to a lower one if the sampling rate [Hz] is too low."""
         stop = min(high + 4.0, 0.45 * rate)
         fitted = min(high + 1.0, 0.78 * stop)
         return cls(LOWEST_FREQUENCY, min(high, 0.92 * fitted), fitted, stop)
@@ -53,6 +53,11 @@ def low_pass_decay(rate: float, passes: float, stops: float, attenuation: float)
         Edges of the transition band [Hz].
     attenuation : float
         Attenuation of the stop band [dB].
+
+    Returns
+    -------
+    (t,) ndarray
+        Taps; t is odd.
     """
     length, beta = scipy.signal.kaiserord(attenuation, (stops - passes) / (rate / 2))
     taps = scipy.signal.firwin(length | 1, (passes + stops) / 2, window=("kaiser", beta), fs=rate)
@@ -60,14 +65,14 @@ def low_pass_decay(rate: float, passes: float, stops: float, attenuation: float)
 
 
 def complete_overlap(samples: SampledArray, taps: RealArray) -> SampledArray:
-    """Filtered samples of complete overlaps only, (n - taps + 1, c): each decay keeps its pole exactly."""
+    """Filtered samples at full overlap with the filter, (n - t + 1, c), in which each decay has its exact pole."""
     return np.asarray(scipy.signal.oaconvolve(samples, taps[:, None], mode="valid", axes=0))
 
 
 def filter_gain(taps: RealArray, poles: ComplexArray, rate: float) -> ComplexArray:
-    """Factor by which the filter, its delay removed, multiplies the amplitude of a decay at each pole, (m,).
+    """Complex gain of the filter for a decay at each pole, (m,).
 
-    The first filtered sample is assigned to the time of the middle tap.
+    The delay of the filter is removed: the first filtered sample belongs to the time of the middle tap.
     """
     offsets = (np.arange(taps.size) - (taps.size - 1) / 2) / rate
     return np.asarray(np.exp(-np.outer(poles, offsets)) @ taps)

@@ -1,11 +1,11 @@
-"""Discrete Fourier transform of a truncated free decay, exactly.
+"""Exact discrete Fourier transform of a truncated free decay.
 
 A decay x_n = A exp(lambda n dt) + conj., n = 0..N-1, has at the lines w_k = 2 pi k / (N dt) the transform
 
     X_k = A (1 - exp(lambda N dt)) / (1 - q_k) + conj. part,    q_k = exp((lambda - i w_k) dt)
 
-because w_k N dt is a multiple of 2 pi. Leakage is thus part of the model: no window is needed, and the lines of white
-noise stay uncorrelated.
+because w_k N dt is a multiple of 2 pi. The model thus includes leakage: no window is needed, and the lines of white
+noise remain uncorrelated.
 """
 
 import numpy as np
@@ -14,7 +14,7 @@ from pantocheck.conformance.array_types import ComplexArray, IntegerArray, RealA
 
 
 def decay_kernel(poles: ComplexArray, omega: RealArray, dt: float, n: int) -> ComplexArray:
-    """Transform of exp(lambda n dt), n = 0..N-1, at lines of the record's own grid.
+    """Transform of exp(lambda n dt), n = 0..N-1, at spectral lines of the record.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ def decay_kernel(poles: ComplexArray, omega: RealArray, dt: float, n: int) -> Co
     Returns
     -------
     (k, m) ndarray
-        The finite geometric sum, without unit.
+        Sum of the geometric series [-].
     """
     return np.asarray(-np.expm1(poles * (n * dt)) / _one_minus_q(poles, omega, dt))
 
@@ -38,7 +38,7 @@ def decay_kernel(poles: ComplexArray, omega: RealArray, dt: float, n: int) -> Co
 def kernel_and_derivative(
     poles: ComplexArray, omega: RealArray, dt: float, n: int
 ) -> tuple[ComplexArray, ComplexArray]:
-    """The kernel and its derivative with respect to lambda [s], each (k, m); parameters as in `decay_kernel`."""
+    """Kernel [-] and its derivative with respect to lambda [s], each (k, m); parameters as in `decay_kernel`."""
     grown = np.exp(poles * (n * dt))
     one_minus_q = _one_minus_q(poles, omega, dt)
     value = (1 - grown) / one_minus_q
@@ -47,7 +47,7 @@ def kernel_and_derivative(
 
 
 def _one_minus_q(poles: ComplexArray, omega: RealArray, dt: float) -> ComplexArray:
-    """1 - q, (k, m), by expm1: near a pole q is close to one."""
+    """1 - q, (k, m), computed by expm1 because q is close to 1 near a pole."""
     return np.asarray(-np.expm1((poles[None, :] - 1j * omega[:, None]) * dt))
 
 
@@ -62,7 +62,7 @@ def real_columns(towards_pole: ComplexArray, towards_conjugate: ComplexArray) ->
     Returns
     -------
     (2 k, 2 m) ndarray
-        Rows are real parts then imaginary parts; columns multiply Re A of every pole, then Im A of every pole.
+        Rows: real parts, then imaginary parts. Columns: factors of Re A of all poles, then of Im A of all poles.
     """
     with_real = towards_pole + towards_conjugate
     with_imaginary = 1j * (towards_pole - towards_conjugate)
@@ -70,14 +70,14 @@ def real_columns(towards_pole: ComplexArray, towards_conjugate: ComplexArray) ->
 
 
 def stack_real_imaginary(spectrum: ComplexArray) -> RealArray:
-    """(k, ...) complex lines as (2 k, ...) real rows."""
+    """Real parts above imaginary parts: (k, ...) complex lines as (2 k, ...) real rows."""
     return np.concatenate([spectrum.real, spectrum.imag])
 
 
 def drift_columns(degree: int, n: int, lines: IntegerArray) -> RealArray:
-    """Transforms of Legendre polynomials 1..degree in time, for a drift of the offset, (2 k, degree), of unit length.
+    """Columns for a drift of the offset: transforms of Legendre polynomials 1..degree in time, (2 k, degree).
 
-    The offset itself contributes to line 0 only, which is not used.
+    The columns have unit length. A constant offset appears in line 0 only, which is not used.
     """
     t = np.linspace(-1.0, 1.0, n)
     polynomials = np.polynomial.legendre.legvander(t, degree)[:, 1:]
@@ -86,7 +86,7 @@ def drift_columns(degree: int, n: int, lines: IntegerArray) -> RealArray:
 
 
 def far_pole_columns(omega: RealArray, degree: int) -> RealArray:
-    """Residual terms of modes outside the band: complex polynomials over it, (2 k, 2 (degree + 1))."""
+    """Columns for modes outside the band: complex polynomials in frequency, (2 k, 2 (degree + 1)), of unit length."""
     middle = (omega[0] + omega[-1]) / 2
     half = max((omega[-1] - omega[0]) / 2, 1e-12)
     polynomials = np.polynomial.legendre.legvander((omega - middle) / half, degree)

@@ -1,4 +1,4 @@
-"""Preparation of a record: release, linear decay of its vertical channels, lateral channels."""
+"""Preparation of a mass-drop record: release, linear decay of the vertical channels, lateral channels."""
 
 from dataclasses import dataclass
 
@@ -13,15 +13,15 @@ from pantocheck.conformance.mass_drops.clipping import find_clipping
 from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropRecord
 
 CLIPPED_EARLY = 0.15
-"""Share of the decay: a channel that is clipped later is left out [-]."""
+"""Share of the decay after which a clipped channel is left out [-]."""
 
 GUARD = 2.0
-"""First guess of the time after the release in which all droppers have become taut again [s]."""
+"""Estimated time from the release until all droppers are taut again [s]."""
 
 
 @dataclass(frozen=True)
 class LinearDecay:
-    """Linear decay of one record, low-passed and decimated; every decay in it keeps its pole.
+    """Linear decay of one record, low-pass filtered and decimated, with unchanged poles.
 
     Parameters
     ----------
@@ -30,18 +30,18 @@ class LinearDecay:
     dt : float
         Sampling interval [s].
     taps : (t,) ndarray
-        The low-pass at the original sampling rate.
+        Taps of the low-pass, at the original sampling rate.
     rate : float
         Original sampling rate [Hz].
     start, end : float
-        Part of the record that was used, in the time of the record [s].
+        Start and end of the used part, in the time of the record [s].
     first : float
-        Time of the first sample after the delay of the filter, in the time of the record [s].
+        Time of the first sample, with the delay of the filter removed, in the time of the record [s].
     poles : (m,) complex ndarray
-        Poles of the search for the linear part [1/s]. An identification starts from them only if its records have
-        different sampling rates; else it searches its start poles in all records together.
+        Poles of the search for the linear part [1/s]. They are the start poles of an identification if its records
+        have different sampling rates; otherwise start poles are searched in all records together.
     warnings : tuple of str
-        Reasons why it is shorter than the record.
+        Reasons why the decay is shorter than the record.
     """
 
     samples: RealArray
@@ -69,15 +69,15 @@ class PreparedDecay:
     record : DropRecord
         The record as read.
     columns : tuple of int
-        Its vertical channels that are used.
+        Indices of the vertical channels that are used.
     release : Release
         Release of the mass.
     linear : LinearDecay
         Linear decay of those channels.
     lateral : (n, l) ndarray
-        Lateral channels over the same samples, filtered in the same way.
+        Lateral channels with the same filter, at the same times.
     warnings : tuple of str
-        Doubts about the record.
+        Caveats on the record.
     """
 
     record: DropRecord
@@ -99,7 +99,7 @@ class PreparedDecay:
 
     @property
     def test(self) -> tuple[object, ...]:
-        """Description of the drop, equal for repeats."""
+        """Properties of the drop, equal for repeated drops."""
         drop = self.record.drop
         return (drop.mass, drop.wire, drop.position, self.channels, self.record.quantity)
 
@@ -113,6 +113,11 @@ def prepare_decay(record: DropRecord, band: FrequencyBand) -> PreparedDecay:
         The record.
     band : FrequencyBand
         Band of the identification.
+
+    Returns
+    -------
+    PreparedDecay
+        Record with its release and linear decay.
 
     Raises
     ------
@@ -154,14 +159,25 @@ def _filter_lateral(record: DropRecord, linear: LinearDecay) -> RealArray:
 def find_linear_decay(
     record: DropRecord, columns: tuple[int, ...], release: Release, band: FrequencyBand, clipped_until: float = 0.0
 ) -> LinearDecay:
-    """Longest part after the release that a sum of decays explains down to the noise.
+    """Find the longest part after the release that equals a sum of decays within the noise.
 
     Parameters
     ----------
-    record, columns, release, band
-        As in `PreparedDecay` and `prepare_decay`.
+    record : DropRecord
+        The record.
+    columns : tuple of int
+        Indices of the vertical channels that are used.
+    release : Release
+        Release of the mass.
+    band : FrequencyBand
+        Band of the identification.
     clipped_until : float
         Time of the last clipped sample [s].
+
+    Returns
+    -------
+    LinearDecay
+        Filtered and decimated samples.
 
     Raises
     ------

@@ -1,8 +1,8 @@
 """Search for the linear part of a decay.
 
-The decay is linear after the last dropper has become taut and until wind or traffic moves the line; neither instant is
-known. Decays are fitted to a first minute and to ever longer parts of the record. The residual of each fit is compared
-with the noise in windows over the whole record: a disturbed window bounds the linear part.
+The decay is linear from the time when the last dropper becomes taut until wind or traffic moves the line. Both times
+are unknown. Decays are fitted to the first minute and then to longer and longer parts of the record. The residual of
+each fit is compared with the noise in windows over the whole record; a disturbed window limits the linear part.
 """
 
 from dataclasses import dataclass
@@ -23,18 +23,18 @@ FIRST_FIT = 60.0
 """Length of the first fit [s]."""
 
 LONG_WINDOW, SHORT_WINDOW = 4.0, 1.0
-"""Windows of the residual for the end and for the start of the linear part [s]."""
+"""Lengths of the windows of the residual for the end and for the start of the linear part [s]."""
 
 EARLIEST_START = 1.0
-"""Earliest start after the release [s]; the test of the residual is blind before the length of its filter."""
+"""Earliest start after the release [s]; earlier, the filter of the residual does not show disturbances."""
 
 TEST_TRANSITION = 2.5
-"""Transition band of the low-pass in front of that test [Hz]."""
+"""Transition band of the low-pass for the residual [Hz]."""
 
 
 @dataclass(frozen=True)
 class _TestedWindows:
-    """First samples of overlapping windows, windows disturbed, samples of a window and with those of its filter."""
+    """Windows of the residual: first samples, disturbed ones, samples of a window without and with its filter."""
 
     starts: IntegerArray
     disturbed: NDArray[np.bool_]
@@ -44,26 +44,26 @@ class _TestedWindows:
     def first_after_calm(self, begin: int) -> int:
         """First sample of the first disturbance after a calm window; beyond the record if there is none.
 
-        Disturbed windows at the very beginning belong to the start of the decay, not to its end.
+        Disturbed windows before the first calm window belong to the start of the decay, not to its end.
         """
         calm = np.flatnonzero(~self.disturbed & (self.starts >= begin))
         if not calm.size:
             return begin
-        # One window in a hundred is disturbed by chance; a moved line rings for several windows.
+        # One window in a hundred is disturbed by chance; a line vibrates for several windows after a disturbance.
         lasting = np.convolve(self.disturbed, np.ones(6), mode="full")[5:] >= 4
         later = np.flatnonzero(self.disturbed & lasting & (self.starts > self.starts[calm[0]]))
-        # Windows with a small part of a disturbance still pass as noise: a quarter of a window is given up.
+        # A window with a small part of a disturbance still counts as noise: a quarter of a window is left out.
         return int(self.starts[later[0]]) - self.window // 4 if later.size else np.iinfo(np.int64).max
 
     def stays_disturbed(self, sample: int) -> bool:
-        """Whether most windows after a sample are disturbed: the error of a fit decays, wind lasts."""
+        """Whether most windows after a sample are disturbed, as by wind; the error of a fit decays instead."""
         after = self.disturbed[self.starts >= sample]
         return after.size >= 8 and bool(after.mean() > 0.5)
 
 
 @dataclass(frozen=True)
 class DecaySearch:
-    """Search in the samples after a release, (n, c), low-passed and decimated to `dt` [s]; fits start at `begin`."""
+    """Search in the filtered and decimated samples after a release, (n, c), at intervals `dt` [s], from `begin`."""
 
     samples: RealArray
     begin: int
@@ -71,12 +71,12 @@ class DecaySearch:
     band: FrequencyBand
 
     def find_linear_part(self) -> tuple[int, int, ComplexArray]:
-        """First sample of the linear part, the one after its last, and the poles of the last fit, (m,) [1/s].
+        """Find the start and the end of the linear part [samples], and the poles of the last fit, (m,) [1/s].
 
-        Fits of ever longer parts end at a disturbance or with the record.
+        The fitted part becomes longer until a disturbance or the end of the record.
 
-        A fit of a short part may fail later because it did not separate close modes. An end therefore counts only if
-        a fit that spans it fails there, too.
+        The fit of a short part may have a large residual later, because it did not separate close modes. An end
+        therefore counts only if a fit that includes it also has a large residual there.
         """
         total, least = self.samples.shape[0], int(SHORTEST_DECAY / self.dt)
         begin, end, limit = self.begin, min(total, self.begin + int(FIRST_FIT / self.dt)), total
@@ -87,7 +87,7 @@ class DecaySearch:
             if late < end - tested.reach and late < limit:
                 limit = end = max(late, begin + least)
                 continue
-            # A fit that predicts far beyond its end is right about a disturbance; one that fails soon missed a mode.
+            # A large residual far behind the end of the fit is a disturbance; a near one is a mode missing in the fit.
             if end + (end - begin) // 4 < late < limit and tested.stays_disturbed(late):
                 return self._find_start(end, poles), late, poles
             further = min(limit, max(late, begin + (end - begin) * 3 // 2)) if late < limit else limit
@@ -112,24 +112,24 @@ class DecaySearch:
         return _TestedWindows(starts, _exceeds_noise(level / floor, width, self.band), window, reach)
 
     def _residual(self, end: int, poles: ComplexArray) -> RealArray:
-        """All samples minus the decays fitted to [begin, end); drift and signals outside the band remain."""
+        """Samples minus the decays fitted to [begin, end); drift and content outside the band remain."""
         block = build_block(self.samples[self.begin : end], self.dt, self.band.low, self.band.fitted)
         residues = solve_residues(poles, block).residues
         t = (np.arange(self.samples.shape[0]) - self.begin) * self.dt
-        # Poles beyond the band represent leakage and are no decays; nor is a fast decay extrapolated far back.
+        # Poles beyond the band represent leakage, not decays; fast decays are not extrapolated back to the release.
         real = (poles.imag < 2 * np.pi * self.band.fitted) & (-poles.real * self.begin * self.dt < 5)
         return np.asarray(self.samples - 2 * (np.exp(np.outer(t, poles[real])) @ residues[real]).real)
 
     def _find_start(self, end: int, poles: ComplexArray) -> int:
         tested = self._test_windows(end, poles, SHORT_WINDOW)
         earliest = int(EARLIEST_START / self.dt)
-        # Up to the first second or more of calm: a single disturbed window later is chance.
+        # Up to the first calm second or more; a single disturbed window after it is due to chance.
         calm = np.convolve(~tested.disturbed, np.ones(5), mode="full")[4:] == 5
         early = tested.disturbed & (tested.starts < self.begin + 0.25 * (end - self.begin))
         early &= np.cumsum(calm & (tested.starts >= earliest)) == 0
         if not early.any():
             return earliest
-        # Backwards in time, a window is first disturbed by its first samples; its filter has most weight in the middle.
+        # The last disturbed window contains the disturbance in its first samples, and its filter in the middle.
         reach = tested.window // 4 + 1 + _test_filter(self.dt, self.band).size // 2
         return min(max(int(tested.starts[early][-1]) + reach, earliest), end - 1)
 
@@ -137,9 +137,9 @@ class DecaySearch:
 def _residual_levels(
     residual: RealArray, window: int, dt: float, band: FrequencyBand
 ) -> tuple[IntegerArray, RealArray]:
-    """First samples of overlapping windows, (w,), and mean squares of the low-passed residual in them, (w, c).
+    """First samples of overlapping windows, (w,), and mean squares of the filtered residual in them, (w, c).
 
-    The trend of each window is removed.
+    The linear trend of each window is removed.
     """
     inner = complete_overlap(residual, _test_filter(dt, band))
     starts = np.arange(0, inner.shape[0] - window + 1, max(window // 4, 1))
@@ -151,15 +151,15 @@ def _residual_levels(
 
 
 def _exceeds_noise(ratio: RealArray, width: float, band: FrequencyBand) -> NDArray[np.bool_]:
-    """Windows that exceed the noise in all channels together or in one alone."""
+    """Windows whose residual exceeds the noise, on average over the channels or in one channel."""
     freedom = 2 * width * (band.high - band.low)
-    # Weak modes that are not fitted, and gusts, change the noise by some ten percent; a disturbance doubles it.
+    # Weak modes without a pole, and gusts, increase the residual by some ten percent; a disturbance doubles it.
     together = ratio.mean(axis=1) > 1 + max(6 * np.sqrt(2 / (freedom * ratio.shape[1])), 1.0)
     alone = ratio.max(axis=1) > 1 + max(9 * np.sqrt(2 / freedom), 2.0)
     return np.asarray(together | alone)
 
 
 def _test_filter(dt: float, band: FrequencyBand) -> RealArray:
-    """Low-pass in front of the test of the residual; short, to locate a disturbance in time."""
+    """Short low-pass for the residual, so that a disturbance is located in time."""
     passes = max(band.fitted - TEST_TRANSITION, 0.5 * band.fitted)
     return low_pass_decay(1 / dt, passes, band.fitted, 70.0)

@@ -1,4 +1,4 @@
-"""Frequency responses to a mass drop: the release is an upward step force m g at the position of the mass.
+"""Frequency responses of a line to a mass drop. The release is an upward step force m g at the position of the mass.
 
 A step of height F at t = 0 has the transform F / (i w), so the accelerance of a sensor is
 
@@ -15,15 +15,15 @@ from pantocheck.conformance.identification.line_fit import LineFit, RecordFit
 from pantocheck.conformance.input_files.units import STANDARD_GRAVITY
 
 POWER_OF_OMEGA = {"acceleration": 0, "velocity": 1, "displacement": 2}
-"""Powers of i w that turn a transform into that of the acceleration."""
+"""Power of i w that converts the transform of a quantity to that of the acceleration."""
 
 
 @dataclass(frozen=True)
 class FrequencyResponse:
     """Accelerance of the sensors of one record [m/s2/N], each (k, c), at k frequencies [Hz].
 
-    The measured one extends from the release to the end of the linear decay. The identified one is that of the poles,
-    extrapolated back to the release.
+    The measured response is that from the release to the end of the linear decay. The identified response is that of
+    the poles, extrapolated back to the release.
     """
 
     frequency: RealArray
@@ -32,7 +32,7 @@ class FrequencyResponse:
 
 
 def compute_frequency_response(fit: LineFit, record_fit: RecordFit) -> FrequencyResponse | None:
-    """Frequency responses of one of the records of a fit; None if its mass is unknown."""
+    """Compute the frequency responses of one record of a fit; None if its mass is not known."""
     decay, linear = record_fit.decay, record_fit.decay.linear
     record, columns = decay.record, list(decay.columns)
     if record.drop.mass is None:

@@ -26,7 +26,7 @@ class _Poles(BaseModel):
 
 
 def read_poles(path: Path) -> ComplexArray:
-    """Read start poles lambda, (m,) [1/s], from a TOML file with tables `[[pole]]`, or from a modes.json.
+    """Read start poles, (m,) [1/s], from a TOML file with tables `[[pole]]`, or from a modes.json.
 
     Raises
     ------

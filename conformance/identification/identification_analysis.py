@@ -1,4 +1,4 @@
-"""Analysis of an identification: groups, repeatability, spectra and frequency responses of a line."""
+"""Analysis of an identified line: groups of modes, repeatability, spectra and frequency responses."""
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from pantocheck.conformance.identification.repeatability import compare_records,
 
 
 def analyse_identification(identification: Identification) -> IdentifiedLine:
-    """Analyse the identification of one line."""
+    """Analyse the identification of one line, for identification.json."""
     fit, modes = identification.fit, identification.modes
     decays = [record.decay for record in fit.records]
     drops = [tuple(d for d in decays if d.test == test) for test in dict.fromkeys(decay.test for decay in decays)]

@@ -1,4 +1,4 @@
-"""Format of identification.json: all numbers of an identification, per line."""
+"""Format of identification.json: results of an identification, line by line."""
 
 from typing import Annotated, Literal
 
@@ -9,11 +9,11 @@ from pantocheck.conformance.identification.rounded_model import Rounded, Rounded
 from pantocheck.conformance.input_files.units import MotionQuantity
 
 Curve = list[float]
-"""Ordinates or abscissae of a curve, with six significant digits."""
+"""Values of a curve on one axis, with six significant digits."""
 
 
 class IdentifiedRecord(RoundedModel):
-    """Record of a mass drop and the part of it that was used."""
+    """Mass-drop record, and the part of it in the identification."""
 
     name: str
     source: Annotated[str, Field(description="name of the file")]
@@ -42,7 +42,7 @@ class ModeGroup(RoundedModel):
 
 
 class Comparison(RoundedModel):
-    """Two records of one drop compared at one sensor, in windows at the start and a minute later.
+    """Comparison of two records of one drop at one channel, in a window at the start and another a minute later.
 
     Keys that end in `later` are null if the records are too short.
     """
@@ -60,7 +60,7 @@ class Comparison(RoundedModel):
 
 
 class Repeatability(RoundedModel):
-    """Comparisons of all repeats of a drop with the first one, and the verdict."""
+    """Comparisons of the repeats of a drop with its first record, and their verdict."""
 
     verdict: Literal["repeatable", "not repeatable"]
     reason: str
@@ -68,21 +68,21 @@ class Repeatability(RoundedModel):
 
 
 class CurveWindow(RoundedModel):
-    """Signal of one sensor over a window after the release."""
+    """Signal of one channel in a time window after the release."""
 
     time_s: Curve
     signal: Curve
 
 
 class OverlayRun(RoundedModel):
-    """Windows of one record."""
+    """Signals of one record in time windows."""
 
     name: str
     windows: tuple[CurveWindow, ...]
 
 
 class Overlay(RoundedModel):
-    """Repeats of a drop at the sensor that moves most."""
+    """Signals of the repeats of a drop at the channel with the largest motion."""
 
     channel: str
     runs: tuple[OverlayRun, ...]
@@ -101,7 +101,7 @@ class RecordSpectra(RoundedModel):
 
 
 class ResponseCurve(RoundedModel):
-    """Accelerance of one sensor."""
+    """Accelerance of one channel."""
 
     model_config = ConfigDict(populate_by_name=True)
 
@@ -136,7 +136,7 @@ class IdentifiedLine(RoundedModel):
 
 
 class IdentificationFile(RoundedModel):
-    """File identification.json."""
+    """Content of identification.json."""
 
     model_config = ConfigDict(populate_by_name=True)
 

@@ -24,7 +24,7 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
 
 SHARED_POLES = 1.5
-"""Misfit above which the line is not linear, or several records do not share their poles."""
+"""Misfit above which the line is not linear, or its records have different poles [-]."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Identification:
     modes : tuple of Mode
         Modes in the reported band, by frequency.
     warnings : tuple of str
-        Doubts about the whole identification.
+        Caveats on the whole identification.
     """
 
     fit: LineFit
@@ -52,20 +52,25 @@ def identify_modes(
     poles: ComplexArray | None = None,
     progress: Callable[[str], None] = lambda text: None,
 ) -> tuple[Identification, ...]:
-    """Identify the modes of every line of the records.
+    """Identify the modes of each line in the records.
 
-    Records of one line (same spans, same tensions) share their poles; each has its own residues.
+    Records of one line (same spans and tensions) have common poles; the residues differ between records.
 
     Parameters
     ----------
     records : tuple of DropRecord
-        Repeats, or drops at several positions.
+        Repeated drops, or drops at several positions.
     highest : float
         Highest frequency of a reported mode [Hz].
     poles : (m,) complex ndarray or None
-        Start poles placed by hand [1/s]; none is added or removed. None: the start poles are searched in the records.
+        Start poles placed by hand [1/s], whose number is kept; None: start poles are searched in the records.
     progress : callable
-        Receives the name of each step.
+        Function that receives the name of each step.
+
+    Returns
+    -------
+    tuple of Identification
+        One identification per line.
 
     Raises
     ------
@@ -82,7 +87,7 @@ def identify_modes(
 
 def _line_key(record: DropRecord) -> object:
     line = record.line
-    # Records without data of their line belong to one line only if they come from the same file.
+    # Records without data of their line count as records of one line only if they are in the same file.
     return line if line.spans else (line, record.file or record.source)
 
 
@@ -123,7 +128,7 @@ def _find_start_poles(
 ) -> ComplexArray:
     intervals = {dt for _, dt in samples}
     if len(intervals) > 1:
-        # The search needs one sampling rate: with several, the poles of the longest linear decay are the start.
+        # The search needs one sampling rate; otherwise the poles of the longest linear decay are the start poles.
         return max(decays, key=lambda decay: decay.linear.duration).linear.poles
     scaled = [np.asarray(channels / channels.std(axis=0)) for channels, _ in samples]
     return find_start_poles(scaled, 1 / intervals.pop(), band.low, band.fitted + 0.5)

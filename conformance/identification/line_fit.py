@@ -1,4 +1,4 @@
-"""Fit of one line: poles shared by all its records, and residues of each record."""
+"""Fit of one line: common poles of all its records, and residues of each record."""
 
 from dataclasses import dataclass
 
@@ -17,12 +17,15 @@ from pantocheck.conformance.identification.projection import (
 )
 
 SAME_LENGTH = 0.02
-"""Relative difference of the lengths of repeats below which they are cut to the shorter one and share a block."""
+"""Largest relative difference in length of repeats that are cut to the shortest one and put into one block [-]."""
 
 
 @dataclass(frozen=True)
 class FittedBlock:
-    """Spectra of a block, their fit, noise per channel, (c,), and std of the residues for unit noise, (m,)."""
+    """Spectra of a block, their fit, noise of the channels, (c,), and standard deviation of the residues, (m,).
+
+    The standard deviation of the residues is that for unit noise.
+    """
 
     data: DataBlock
     fit: ProjectionFit
@@ -32,7 +35,7 @@ class FittedBlock:
 
 @dataclass(frozen=True)
 class RecordFit:
-    """Part of a fit that belongs to one record: its block, and its channels there."""
+    """Part of a fit for one record: its block, and its channels in the block."""
 
     decay: PreparedDecay
     block: FittedBlock
@@ -45,7 +48,7 @@ class RecordFit:
 
     @property
     def noise(self) -> RealArray:
-        """Standard deviation of the real or imaginary part of a line, (c,)."""
+        """Standard deviation of the real or imaginary part of a spectral line, (c,) [unit of the spectrum]."""
         return self.block.noise[self.columns]
 
 
@@ -58,15 +61,15 @@ class LineFit:
     band : FrequencyBand
         Band of the identification.
     poles : (m,) complex ndarray
-        Poles, including those beyond the band of the reported modes [1/s].
+        Poles, including those outside the band of the reported modes [1/s].
     covariance : (2 m, 2 m) ndarray
-        Covariance of their decay rates [1/s] and angular frequencies [rad/s].
+        Covariance of the decay rates [1/s] and angular frequencies [rad/s] of the poles.
     blocks : tuple of FittedBlock
         Data of the fit.
     records : tuple of RecordFit
-        The records, in the order of the user.
+        Parts of the fit for the records, in the order of the input.
     misfit : float
-        Squared residual over its expectation [-]; 1 if the model is complete.
+        Squared residual over its expectation for noise [-]; 1 for a complete model.
     """
 
     band: FrequencyBand
@@ -78,14 +81,19 @@ class LineFit:
 
 
 def share_blocks(decays: list[PreparedDecay]) -> tuple[list[tuple[RealArray, float]], list[tuple[int, slice]]]:
-    """Put repeats of about one length into one block, cut to the shortest.
+    """Put records of about equal length into one block, cut to the shortest.
+
+    Parameters
+    ----------
+    decays : list of PreparedDecay
+        The records.
 
     Returns
     -------
     list of ((n, c) ndarray, float)
         Samples and sampling interval [s] of each block.
     list of (int, slice)
-        Block of each record, and its channels there.
+        Block of each record, and its channels in the block.
     """
     blocks: list[tuple[RealArray, float]] = []
     places = []
@@ -118,15 +126,20 @@ def fit_line(
     decays : list of PreparedDecay
         The records.
     places : list of (int, slice)
-        Block of each record, and its channels there.
+        Block of each record, and its channels in the block.
     data : list of DataBlock
         The blocks.
     poles : (m,) complex ndarray
         Selected poles [1/s].
     noise : list of (c,) ndarray
-        Noise of each block.
+        Noise of the channels of each block [unit of the spectrum].
     band : FrequencyBand
         Band of the identification.
+
+    Returns
+    -------
+    LineFit
+        Poles with covariance, and residues.
     """
     white = whiten(data, noise)
     refined = refine_poles(poles, white, iterations=10)

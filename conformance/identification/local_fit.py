@@ -1,6 +1,6 @@
-"""Local fit: the poles and spectral lines around a frequency, without the contribution of distant poles.
+"""Local fit: poles and spectral lines near one frequency, without the contribution of distant poles.
 
-A trial with one pole more or less costs milliseconds there.
+A local fit with one pole more or less takes milliseconds.
 """
 
 from dataclasses import dataclass
@@ -14,17 +14,17 @@ from pantocheck.conformance.identification.decay_kernel import decay_kernel, far
 from pantocheck.conformance.identification.projection import DataBlock, ProjectionFit, pole_columns
 
 MIN_LOCAL_LINES = 8
-"""Spectral lines of a block that a local fit needs."""
+"""Smallest number of spectral lines of a block in a local fit."""
 
 DAMPING_TRIALS = (0.3, 1.0, 3.0)
-"""Decay rates of trial poles, over the median of the neighbours."""
+"""Decay rates of trial poles over the median decay rate of their neighbours [-]."""
 
 
 @dataclass(frozen=True)
 class LocalFit:
-    """Neighbourhood of a frequency: its poles, their places among all poles, and its spectral lines.
+    """Poles near one frequency, their mask among all poles, and blocks with the spectral lines near this frequency.
 
-    The contribution of the distant poles is removed from the lines.
+    The contribution of distant poles is removed from the lines.
     """
 
     poles: ComplexArray
@@ -35,7 +35,7 @@ class LocalFit:
 def restrict_fit(
     poles: ComplexArray, blocks: list[DataBlock], fits: list[ProjectionFit], centre: float, min_half: float = 0.0
 ) -> LocalFit:
-    """Restrict a fit to the neighbourhood of a frequency.
+    """Restrict a fit to the neighbourhood of one frequency.
 
     Parameters
     ----------
@@ -48,7 +48,12 @@ def restrict_fit(
     centre : float
         Centre of the neighbourhood [rad/s].
     min_half : float
-        Lower limit of its half-width [rad/s].
+        Lower limit of the half-width of the neighbourhood [rad/s].
+
+    Returns
+    -------
+    LocalFit
+        Poles and spectral lines in the neighbourhood.
     """
     resolution = 2 * np.pi / min(data.duration for data in blocks)
     half = max(12 * resolution, 2 * np.pi * 0.15, min_half)
@@ -68,7 +73,7 @@ def restrict_fit(
 
 
 def find_best_candidate(local: LocalFit, centre: float) -> tuple[complex, float] | None:
-    """Trial pole near a frequency [rad/s] that reduces the squared residual most, and the reduction."""
+    """Find the trial pole near a frequency [rad/s] with the largest reduction of the squared residual; return both."""
     resolution = 2 * np.pi / max(data.duration for data in local.blocks)
     decay = float(np.median(-local.poles.real)) if local.poles.size else 0.003 * centre
     omegas = centre + resolution * np.arange(-3, 3.01, 0.25)
@@ -89,7 +94,7 @@ def find_best_candidate(local: LocalFit, centre: float) -> tuple[complex, float]
 
 
 def pole_contributions(poles: ComplexArray, blocks: list[DataBlock]) -> RealArray:
-    """Reduction of the squared error by each pole while the others are fixed, (m,)."""
+    """Reduction of the squared residual by each pole, with all other poles present, (m,)."""
     m = poles.size
     reduction = np.zeros(m)
     for data in blocks:
@@ -104,7 +109,7 @@ def pole_contributions(poles: ComplexArray, blocks: list[DataBlock]) -> RealArra
 
 
 def crowded_poles(poles: ComplexArray, blocks: list[DataBlock]) -> NDArray[np.bool_]:
-    """Poles so close to another one that one of the two may be idle, (m,)."""
+    """Mask of the poles so close to another one that one of the two may be superfluous, (m,)."""
     resolution = 2 * np.pi / max(data.duration for data in blocks)
     distance = np.abs(poles[:, None] - poles[None, :]) + np.where(np.eye(poles.size) > 0, np.inf, 0)
     return np.asarray(distance.min(axis=1, initial=np.inf) < 1.5 * resolution)

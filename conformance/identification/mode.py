@@ -1,4 +1,4 @@
-"""Identified mode, shared by identification, damping fit and reports, and modes.json, the list of modes."""
+"""Identified modes, and modes.json, the file of their list."""
 
 from pathlib import Path
 from typing import Annotated
@@ -9,11 +9,11 @@ from pantocheck.conformance.identification.rounded_model import Rounded, Rounded
 from pantocheck.conformance.input_files.json_file import read_json, validate_json
 
 MAX_MODES_BYTES = 50_000_000
-"""Limit of the size of a modes.json [bytes]."""
+"""Largest accepted size of a modes.json [bytes]."""
 
 
 class SensorShape(RoundedModel):
-    """Component of a mode shape at one sensor."""
+    """Complex component of a mode shape at one sensor."""
 
     model_config = ConfigDict(allow_inf_nan=False)
 
@@ -26,7 +26,7 @@ class SensorShape(RoundedModel):
 
 
 class MeasuredLine(RoundedModel):
-    """Facts about the line of a record, by which a fit recognises it."""
+    """Properties of the line of a record, which a damping fit compares with its line."""
 
     model_config = ConfigDict(allow_inf_nan=False)
 
@@ -72,7 +72,7 @@ class Mode(RoundedModel):
 
 
 class ModesFile(RootModel[tuple[Mode, ...]]):
-    """Modes of all lines of an identification, each line by frequency."""
+    """Content of modes.json: modes of all lines, in the order of frequency within a line."""
 
 
 def read_modes(path: Path) -> tuple[Mode, ...]:

@@ -11,23 +11,23 @@ from pantocheck.conformance.identification.projection import build_block, estima
 from pantocheck.conformance.mass_drops.drop_record import DropLine
 
 POINTS_IN_HALF_POWER_BAND = 5
-"""Spectral lines that the half-power band should hold (Vo Van, Balmes, Lorang 2015)."""
+"""Recommended number of spectral lines in the half-power band (Vo Van, Balmes, Lorang 2015)."""
 
 UNCERTAIN = 0.05
 """Relative standard deviation above which a damping ratio is uncertain."""
 
 LATERAL = 20.0
-"""Lateral over vertical amplitude above which an oblique mounting of some degrees explains the vertical signal."""
+"""Lateral over vertical amplitude, above which an oblique mounting of some degrees explains the vertical signal [-]."""
 
 COINCIDENT = 2.0
-"""Half-power bandwidths: the spectrum does not separate two modes that are closer."""
+"""Smallest distance of two modes that are separate in the spectrum, in half-power bandwidths [-]."""
 
 FREQUENCY_REACH = 3
-"""Spectral lines on each side that show the residual of a mode."""
+"""Number of spectral lines on each side of a mode, over which its residual is evaluated."""
 
 
 def build_modes(fit: LineFit, spans: int | None) -> tuple[Mode, ...]:
-    """Modes in the reported band, by frequency, in groups of span modes; the number of spans may be unknown."""
+    """Build the modes of the reported band, in the order of frequency; `spans` is their number, None if unknown."""
     shares = [share for record in fit.records if (share := _lateral_shares(fit, record)) is not None]
     frequency = np.abs(fit.poles) / (2 * np.pi)
     reported = np.flatnonzero((frequency >= fit.band.low) & (frequency <= fit.band.high))
@@ -88,7 +88,7 @@ def _phase_collinearity(shape: ComplexArray) -> float | None:
 
 
 def _list_warnings(mode: Mode, duration: float, nearest: float) -> tuple[str, ...]:
-    """Reasons to doubt a mode in a decay of a duration [s], with the nearest other mode at a distance [Hz]."""
+    """Caveats on a mode in a decay of a duration [s]; `nearest` is the distance of the nearest other mode [Hz]."""
     warnings = []
     bandwidth = 2 * mode.damping_ratio * mode.frequency_Hz
     if bandwidth * duration < POINTS_IN_HALF_POWER_BAND:
@@ -109,7 +109,7 @@ def _list_warnings(mode: Mode, duration: float, nearest: float) -> tuple[str, ..
 
 
 def _inflation(blocks: tuple[FittedBlock, ...], pole: complex) -> float:
-    """Factor on standard deviations where the residual around a mode exceeds the noise."""
+    """Factor by which standard deviations are increased if the residual near a mode exceeds the noise."""
     energy, count = 0.0, 0
     for block in blocks:
         reach = max(FREQUENCY_REACH * 2 * np.pi / block.data.duration, -2 * pole.real)
@@ -120,9 +120,9 @@ def _inflation(blocks: tuple[FittedBlock, ...], pole: complex) -> float:
 
 
 def _shared_shape(repeats: list[RecordFit], best: RecordFit, j: int) -> tuple[ComplexArray, RealArray]:
-    """Residues common to the repeats of a drop, scaled to the best one, and the standard deviation of their parts.
+    """Common residues of the repeats of a drop, in the scale of the best record, and their standard deviation.
 
-    Residues belong to the first sample of a linear decay, which differs between repeats: hence the scale.
+    Residues are those at the first sample of a linear decay. Its time differs between repeats, and so does their scale.
     """
     table = np.array([record.residues[j] for record in repeats]).T
     left, values, right = np.linalg.svd(table, full_matrices=False)
@@ -159,7 +159,7 @@ def _band_error(blocks: tuple[FittedBlock, ...], pole: complex) -> float:
 
 
 def _lateral_shares(fit: LineFit, record: RecordFit) -> RealArray | None:
-    """Largest lateral over largest vertical amplitude of every pole, (m,); 0 where the lateral one is noise."""
+    """Largest lateral over largest vertical amplitude of each pole, (m,); 0 if the lateral amplitude is noise."""
     decay = record.decay
     if decay.lateral.shape[1] == 0:
         return None
@@ -172,5 +172,5 @@ def _lateral_shares(fit: LineFit, record: RecordFit) -> RealArray | None:
 
 
 def _finite(value: float) -> float:
-    """The value, or 0 (which no measured value is) where the data do not determine it."""
+    """The value, or 0 if the data do not determine it; a measured value is never 0."""
     return float(value) if np.isfinite(value) else 0.0

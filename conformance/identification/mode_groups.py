@@ -1,9 +1,9 @@
-"""Groups of span modes: the n-th bending of every span, one mode per span.
+"""Groups of span modes. In group n the spans vibrate with n half-waves; the group has one mode per span.
 
-The spans of a section are similar, so the modes form groups around multiples of one frequency. The groups become
-wider with their number and almost touch from the fifth on. The gaps between them stay regular: no mode lies near
-(k + 1/2) times the mean of the first group. That mean, and a slight stretch of the series by bending, are searched so
-that the gaps are as empty as possible and no group holds more modes than there are spans.
+The spans of a section are similar, so that the modes form groups near multiples of one frequency. Groups of higher
+number are wider; from the fifth group on they almost touch. The gaps between groups remain regular: there are no modes
+near (k + 1/2) times the mean frequency of the first group. This mean, and a slight increase of the multiples by bending
+stiffness, are chosen so that the gaps contain as few modes as possible and no group has more modes than spans.
 """
 
 import numpy as np
@@ -13,14 +13,14 @@ from pantocheck.conformance.array_types import IntegerArray, RealArray
 from pantocheck.conformance.identification.mode import Mode
 
 LAST_GROUP = 8
-"""Last group that is numbered; beyond it, bending of the spans and bending between droppers mix."""
+"""Last group that is numbered; beyond it, modes of the spans and modes between droppers mix."""
 
 CLEARANCE = 0.06
 """Half-width of the gap between two groups, over the mean frequency of the first group [-]."""
 
 
 def assign_groups(modes: list[Mode], spans: int | None) -> tuple[Mode, ...]:
-    """Number the groups of the vertical modes and mark the outliers of each group; parameters as in `number_groups`."""
+    """Assign the vertical modes to groups, and mark the outliers of each group; `spans` as in `number_groups`."""
     vertical = [i for i, mode in enumerate(modes) if not mode.lateral]
     frequency = np.array([mode.frequency_Hz for mode in modes])
     certain = np.array([modes[i].frequency_Hz for i in vertical if modes[i].certain])
@@ -37,7 +37,7 @@ def assign_groups(modes: list[Mode], spans: int | None) -> tuple[Mode, ...]:
 
 
 def number_groups(certain: RealArray, all_modes: RealArray, spans: int | None) -> IntegerArray:
-    """Number the groups of modes from 1; 0 beyond `LAST_GROUP`, and for all with fewer than three certain modes.
+    """Number of the group of each mode.
 
     Parameters
     ----------
@@ -47,6 +47,11 @@ def number_groups(certain: RealArray, all_modes: RealArray, spans: int | None) -
         Frequencies to number [Hz].
     spans : int or None
         Number of spans; None if unknown.
+
+    Returns
+    -------
+    (m,) int ndarray
+        Numbers from 1; 0 beyond `LAST_GROUP`, and for all modes if fewer than three are certain.
     """
     if certain.size < 3:
         return np.zeros(all_modes.size, dtype=np.int64)
@@ -61,7 +66,7 @@ def number_groups(certain: RealArray, all_modes: RealArray, spans: int | None) -
 
 
 def find_group_outliers(values: RealArray) -> NDArray[np.bool_]:
-    """Mark values over 1.5 interquartile ranges outside the quartiles (Tukey's rule), (n,); none of fewer than four."""
+    """Mark values more than 1.5 interquartile ranges outside the quartiles (Tukey), (n,); none of fewer than four."""
     if values.size < 4:
         return np.zeros(values.size, dtype=np.bool_)
     low, high = np.percentile(values, [25, 75])

@@ -1,7 +1,7 @@
-"""Model order: poles are added where the residual demands one, and removed where the data can do without them.
+"""Model order: poles are added where the residual exceeds the noise, and removed where they do not reduce the residual.
 
-A pole is kept if it reduces the squared error by more than noise would in one of a thousand records (chi-square with
-two parameters for the pole and two for each channel). Every trial is a local fit.
+A pole is kept if it reduces the squared residual by more than noise does in one of a thousand records (chi-square with
+two parameters for the pole and two for each channel). Each pole is tried in a local fit.
 """
 
 from dataclasses import dataclass
@@ -30,25 +30,25 @@ FALSE_ALARM = 1e-3
 """Probability that noise alone adds a pole to a record."""
 
 OUTSIDE = 0.5
-"""Distance beyond the band within which a pole is kept [Hz]."""
+"""Largest distance of a pole above the band [Hz]."""
 
 SECTION = 0.7
 """Width of the band whose poles are refined together [Hz]."""
 
 MAX_TRIALS = 40
-"""Frequencies at which a pole is tried in one round."""
+"""Largest number of frequencies in one round at which a pole is tried."""
 
 
 @dataclass(frozen=True)
 class PoleSelection:
-    """Poles [1/s] that the data support, sorted by frequency, and the noise of the c channels of each block, (c,)."""
+    """Selected poles in the order of frequency [1/s], and the noise of the c channels of each block, (c,)."""
 
     poles: ComplexArray
     noise: list[RealArray]
 
 
 def select_poles(poles: ComplexArray, blocks: list[DataBlock], rounds: int = 8) -> PoleSelection:
-    """Refine start poles [1/s], and add and remove poles, until they stay the same or the rounds are used up."""
+    """Refine start poles [1/s], and add and remove poles, until they no longer change, in at most `rounds` rounds."""
     noise = estimate_block_noise(poles, blocks)
     previous: ComplexArray | None = None
     for _ in range(rounds):
@@ -64,7 +64,7 @@ def select_poles(poles: ComplexArray, blocks: list[DataBlock], rounds: int = 8) 
 
 
 def find_hidden_poles(selection: PoleSelection, blocks: list[DataBlock]) -> PoleSelection:
-    """Try a second pole beside each selected pole, where the residual is too small to show it, and select again."""
+    """Try a second pole near each selected pole, where the residual does not exceed the noise, and select again."""
     white = whiten(blocks, selection.noise)
     extended = _add_poles(selection.poles, white, [float(omega) for omega in selection.poles.imag])
     if _are_equal(extended, selection.poles):
@@ -73,26 +73,26 @@ def find_hidden_poles(selection: PoleSelection, blocks: list[DataBlock]) -> Pole
 
 
 def estimate_block_noise(poles: ComplexArray, blocks: list[DataBlock]) -> list[RealArray]:
-    """Noise of each block from its residual with given poles [1/s]."""
+    """Noise of the channels of each block, from the residual of a fit with the poles [1/s]."""
     return [estimate_noise(solve_residues(poles, data), poles.size, data) for data in blocks]
 
 
 def _keep_in_band(poles: ComplexArray, blocks: list[DataBlock]) -> ComplexArray:
-    """Poles in the band or just outside: a strong mode beyond the edge leaks in and serves as a residual term."""
+    """Poles inside or near the band; a pole just outside represents the leakage of a strong mode into the band."""
     low = min(data.omega[0] for data in blocks)
     high = max(data.omega[-1] for data in blocks)
     return np.asarray(poles[(poles.imag > low / 2) & (poles.imag < high + 2 * np.pi * OUTSIDE)])
 
 
 def _detection_threshold(blocks: list[DataBlock]) -> float:
-    """Reduction of the squared error that a pole must bring."""
+    """Smallest reduction of the squared residual by a pole that is kept."""
     channels = sum(data.spectrum.shape[1] for data in blocks)
     lines = max(data.lines.size for data in blocks)
     return float(scipy.stats.chi2.isf(FALSE_ALARM / (4 * lines), 2 + 2 * channels))
 
 
 def _add_poles(poles: ComplexArray, blocks: list[DataBlock], centres: list[float] | None) -> ComplexArray:
-    """Add the poles that pay; tried at the centres [rad/s], or where the residual demands it."""
+    """Add poles that reduce the residual; they are tried at the centres [rad/s], or where it exceeds the noise."""
     least = _detection_threshold(blocks)
     fits = [solve_residues(poles, data) for data in blocks]
     for centre in _suspicious_frequencies(blocks, fits) if centres is None else centres:
@@ -109,7 +109,7 @@ def _add_poles(poles: ComplexArray, blocks: list[DataBlock], centres: list[float
 
 
 def _remove_poles(poles: ComplexArray, blocks: list[DataBlock]) -> ComplexArray:
-    """Remove the poles without which the squared error stays about the same."""
+    """Remove the poles that do not reduce the squared residual noticeably."""
     least = _detection_threshold(blocks)
     contribution = pole_contributions(poles, blocks)
     doubtful = np.flatnonzero((contribution < 3 * least) | crowded_poles(poles, blocks))
@@ -122,7 +122,7 @@ def _remove_poles(poles: ComplexArray, blocks: list[DataBlock]) -> ComplexArray:
         others = local.poles[np.abs(local.poles - poles[nearest]) > 0]
         complete = refine_poles(local.poles, local.blocks, iterations=10, tolerance=0.1)
         without = refine_poles(others, local.blocks, iterations=15, tolerance=0.1)
-        # A lower threshold than that for adding, or a pole on the edge would be added and removed for ever.
+        # The threshold is lower than that for adding; otherwise a pole near it would be added and removed repeatedly.
         if without.cost - complete.cost < 0.7 * least:
             poles = _keep_in_band(np.concatenate([poles[~local.near], without.poles]), blocks)
             fits = [solve_residues(poles, data) for data in blocks]
@@ -130,7 +130,7 @@ def _remove_poles(poles: ComplexArray, blocks: list[DataBlock]) -> ComplexArray:
 
 
 def _refine_sections(poles: ComplexArray, blocks: list[DataBlock]) -> ComplexArray:
-    """Refine section by section, each with its neighbours: near the optimum in a tenth of the time."""
+    """Refine the poles section by section, each with its neighbours; this takes a tenth of the time of a full fit."""
     for _ in range(2):
         fits = [solve_residues(poles, data) for data in blocks]
         refined = [np.zeros(0, dtype=np.complex128)]
@@ -154,7 +154,7 @@ def _are_equal(a: ComplexArray, b: ComplexArray) -> bool:
 
 
 def _suspicious_frequencies(blocks: list[DataBlock], fits: list[ProjectionFit]) -> list[float]:
-    """Angular frequencies [rad/s] where three neighbouring lines exceed the noise, the strongest first."""
+    """Angular frequencies [rad/s] where three neighbouring lines exceed the noise, in descending order of energy."""
     peaks: list[tuple[float, float]] = []
     for data, fit in zip(blocks, fits, strict=True):
         energy = np.convolve(np.sum(np.abs(fit.residual) ** 2, axis=1), np.ones(3), mode="same")

@@ -10,15 +10,21 @@ from pantocheck.conformance.identification.decay_kernel import kernel_and_deriva
 from pantocheck.conformance.identification.projection import DataBlock, project_spectrum
 
 SMALLEST_DAMPING_RATIO = 1e-6
-"""Lower limit of a damping ratio; a record of minutes does not show a slower decay [-]."""
+"""Lower limit of a damping ratio [-]; slower decays are not observable in a record of some minutes."""
 
 
 @dataclass(frozen=True)
 class RefinedPoles:
-    """Poles at the least output error, by frequency [1/s], with their cost and covariance.
+    """Poles with the smallest output error, in the order of frequency [1/s].
 
-    The cost is the sum of squared residuals. The covariance, (2 m, 2 m), belongs to the decay rates [1/s], then the
-    angular frequencies [rad/s], for channels in units of their noise.
+    Parameters
+    ----------
+    poles : (m,) complex ndarray
+        Poles [1/s].
+    cost : float
+        Sum of squared residuals, with channels in units of their noise [-].
+    covariance : (2 m, 2 m) ndarray
+        Covariance of the decay rates [1/s], followed by the angular frequencies [rad/s].
     """
 
     poles: ComplexArray
@@ -40,7 +46,12 @@ def refine_poles(
     iterations : int
         Largest number of steps.
     tolerance : float
-        Stop when a step reduces the cost by less [-].
+        Reduction of the cost in one step, below which the refinement ends [-].
+
+    Returns
+    -------
+    RefinedPoles
+        Poles with cost and covariance.
     """
     poles = poles[np.argsort(poles.imag)]
     current = build_normal_equations(poles, blocks)
@@ -71,7 +82,7 @@ def _step(poles: ComplexArray, matrix: RealArray, gradient: RealArray, damping: 
     change = np.linalg.lstsq(normalised, gradient / scale, rcond=1e-14)[0] / scale
     m = poles.size
     decay = -poles.real
-    # The model is about linear for a threefold decay rate and a frequency shift of a few bandwidths.
+    # The model is nearly linear within a threefold decay rate and a frequency shift of a few bandwidths.
     decay_new = np.clip(decay + change[:m], decay / 3, decay * 3)
     reach = 3 * np.maximum(decay, 0.02)
     omega = np.maximum(poles.imag + np.clip(change[m:], -reach, reach), 1e-3)
@@ -96,7 +107,7 @@ class NormalEquations:
 
 
 def build_normal_equations(poles: ComplexArray, blocks: list[DataBlock]) -> NormalEquations:
-    """Build the normal equations of the poles over all blocks; the residues are eliminated per channel.
+    """Build the normal equations of the poles over all blocks; the residues of each channel are eliminated.
 
     Parameters
     ----------
@@ -104,6 +115,11 @@ def build_normal_equations(poles: ComplexArray, blocks: list[DataBlock]) -> Norm
         Poles lambda = -delta + i omega [1/s].
     blocks : list of DataBlock
         Data, each channel in units of its noise.
+
+    Returns
+    -------
+    NormalEquations
+        Sum over the blocks.
     """
     m = poles.size
     cost, matrix, gradient = 0.0, np.zeros((2 * m, 2 * m)), np.zeros(2 * m)

@@ -1,4 +1,4 @@
-"""Output error of a set of poles, all linear parameters eliminated (variable projection).
+"""Output error of a set of poles, with all linear parameters eliminated (variable projection).
 
 For given poles the residues and the residual terms solve a linear least-squares problem. Its residual is
 r = (I - Q Q') x, where Q is an orthonormal basis of the columns Phi of the model. With Kaufman's Jacobian,
@@ -35,7 +35,7 @@ FAR_DEGREE = 3
 
 @dataclass(frozen=True)
 class DataBlock:
-    """Channels that share one time grid: the sensors of one record, or of repeats of one length.
+    """Channels with common sample times: those of one record, or of repeats with equal length.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class DataBlock:
     n : int
         Number of samples.
     residual_terms : (2 k, r) ndarray
-        Columns for the drift and for modes outside the band.
+        Columns for the drift of the offset and for modes outside the band.
     """
 
     lines: IntegerArray
@@ -70,14 +70,14 @@ class DataBlock:
 
 @dataclass(frozen=True)
 class ProjectionFit:
-    """Least-squares solution of one block for given poles.
+    """Least-squares solution of one block for known poles.
 
     Parameters
     ----------
     residues : (m, c) complex ndarray
         Residues A at the first sample of the block [unit of the spectrum].
     residual : (k, c) complex ndarray
-        Spectrum minus that of poles and residual terms.
+        Spectrum minus the fitted poles and residual terms.
     """
 
     residues: ComplexArray
@@ -85,7 +85,7 @@ class ProjectionFit:
 
 
 def build_block(samples: RealArray, dt: float, low: float, high: float) -> DataBlock:
-    """Transform channels, and build the residual terms of a band.
+    """Transform channels to spectral lines of a band, and build the residual terms.
 
     Parameters
     ----------
@@ -95,6 +95,11 @@ def build_block(samples: RealArray, dt: float, low: float, high: float) -> DataB
         Sampling interval [s].
     low, high : float
         Edges of the band [Hz].
+
+    Returns
+    -------
+    DataBlock
+        Spectral lines and residual terms.
     """
     n = samples.shape[0]
     lines = np.arange(max(1, int(np.ceil(low * n * dt))), min(n // 2, int(high * n * dt) + 1), dtype=np.int64)
@@ -105,21 +110,21 @@ def build_block(samples: RealArray, dt: float, low: float, high: float) -> DataB
 
 
 def pole_columns(poles: ComplexArray, data: DataBlock) -> RealArray:
-    """Real columns of the residues of the poles at the lines of a block, (2 k, 2 m)."""
+    """Real columns for the residues of the poles at the lines of a block, (2 k, 2 m)."""
     return real_columns(
         decay_kernel(poles, data.omega, data.dt, data.n), decay_kernel(poles.conj(), data.omega, data.dt, data.n)
     )
 
 
 def solve_residues(poles: ComplexArray, data: DataBlock) -> ProjectionFit:
-    """Solve for the residues of given poles, (m,) [1/s], by least squares."""
+    """Solve for the residues of known poles, (m,) [1/s], by least squares."""
     _, coefficients, residual = project_spectrum(pole_columns(poles, data), data)
     m, k = poles.size, data.lines.size
     return ProjectionFit(coefficients[:m] + 1j * coefficients[m : 2 * m], residual[:k] + 1j * residual[k:])
 
 
 def project_spectrum(columns: RealArray, data: DataBlock) -> tuple[RealArray, RealArray, RealArray]:
-    """Orthonormal basis of columns and residual terms, their least-squares coefficients, and the residual."""
+    """Project a spectrum: orthonormal basis of columns and residual terms, their coefficients, and the residual."""
     q, r = scipy.linalg.qr(np.hstack([columns, data.residual_terms]), mode="economic", check_finite=False)
     x = stack_real_imaginary(data.spectrum)
     projected = q.T @ x
@@ -136,10 +141,10 @@ def residue_spread(poles: ComplexArray, data: DataBlock) -> RealArray:
 
 
 def estimate_noise(fit: ProjectionFit, poles: int, data: DataBlock) -> RealArray:
-    """Standard deviation of the real or imaginary part of a spectral line, per channel, (c,), from a fit of a block.
+    """Estimate the standard deviation of the real or imaginary part of a spectral line, per channel, (c,).
 
-    It follows from the median over the lines, which a few peaks outside the model do not move: |r|^2 / (2 sigma^2) of
-    white noise has the median ln 2. It is corrected for the number of fitted parameters.
+    It follows from the median of the residual over the lines, which does not depend on a few peaks outside the model:
+    |r|^2 / (2 sigma^2) of white noise has the median ln 2. A factor corrects for the number of fitted parameters.
     """
     rows, channels = 2 * data.lines.size, data.spectrum.shape[1]
     fitted = 2 * poles + data.residual_terms.shape[1] + 2 * poles / channels
@@ -149,5 +154,5 @@ def estimate_noise(fit: ProjectionFit, poles: int, data: DataBlock) -> RealArray
 
 
 def whiten(blocks: list[DataBlock], noise: list[RealArray]) -> list[DataBlock]:
-    """Blocks with each channel in units of its noise."""
+    """Scale each channel of the blocks to units of its noise."""
     return [replace(data, spectrum=data.spectrum / sigma) for data, sigma in zip(blocks, noise, strict=True)]

@@ -8,27 +8,27 @@ from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.input_files.input_error import InputError
 
 TRIGGER_TOLERANCE = 0.6
-"""The record counts as at rest until this time before the planned release [s]."""
+"""Time before the planned release, until which the record counts as rest [s]."""
 
 ONSET = 8.0
-"""Movement over noise at rest that marks the release [-]."""
+"""Smallest motion over noise at rest that counts as release [-]."""
 
 MIN_REST = 1.0
-"""Rest before the release that is needed to estimate the noise [s]."""
+"""Shortest rest before the release for an estimate of the noise [s]."""
 
 
 @dataclass(frozen=True)
 class Release:
-    """Release as the sensors measured it.
+    """Measured release.
 
     Parameters
     ----------
     time : float
-        First movement of a sensor, in the time of the record [s].
+        First motion of a sensor, in the time of the record [s].
     rest_end : float
-        End of the rest before it [s]; 0 if the record has none.
+        End of the rest before the release [s]; 0 if the record has no rest.
     warnings : tuple of str
-        Doubts about the release.
+        Caveats on the release.
     """
 
     time: float
@@ -37,7 +37,7 @@ class Release:
 
 
 def find_release(signals: RealArray, rate: float, nominal: float | None, name: str) -> Release:
-    """Find the first sustained movement of any channel.
+    """Find the release: the first lasting motion of a channel.
 
     Parameters
     ----------
@@ -50,10 +50,15 @@ def find_release(signals: RealArray, rate: float, nominal: float | None, name: s
     name : str
         Name of the record, for messages.
 
+    Returns
+    -------
+    Release
+        Time of the release.
+
     Raises
     ------
     InputError
-        No channel moves, the record ends too early, or it has no rest to detect the release.
+        No channel moves, the record ends too early, or it has neither a planned release nor a rest at its start.
     """
     n = signals.shape[0]
     if nominal is not None and nominal - TRIGGER_TOLERANCE < MIN_REST:
@@ -86,7 +91,7 @@ def find_release(signals: RealArray, rate: float, nominal: float | None, name: s
 
 
 def _quiet_start(signals: RealArray, rate: float, name: str) -> int:
-    """Samples of rest at the beginning if no trigger time is known: until the spread of half-second windows jumps."""
+    """Number of samples of rest at the start, until the standard deviation of half-second windows jumps."""
     width = max(int(0.5 * rate), 4)
     spread = signals[: signals.shape[0] // width * width].reshape(-1, width, signals.shape[1]).std(axis=1)
     floor = np.maximum(spread.min(axis=0, initial=np.inf), np.finfo(float).tiny)

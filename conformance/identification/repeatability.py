@@ -1,4 +1,4 @@
-"""Repeatability of a mass drop: its records are compared at the start and a minute later."""
+"""Repeatability of a mass drop: comparison of its records at the start and a minute later."""
 
 import numpy as np
 
@@ -18,23 +18,23 @@ WINDOW = 10.0
 """Length of a compared window [s]."""
 
 EARLY = 1.5
-"""Start of the first compared window after the release [s]; before it slack droppers make the repeats differ."""
+"""Start of the first compared window after the release [s]; earlier, slack droppers make the repeats differ."""
 
 LATER = 60.0
 """Start of the second compared window after the release [s]."""
 
 MIN_CORRELATION_AT_START, MIN_CORRELATION_LATER = 0.98, 0.95
-"""Correlations that a repeatable drop reaches, as shares of the correlation that noise permits [-]."""
+"""Smallest correlations of a repeatable drop, over the correlation of equal signals with the same noise [-]."""
 
 HIGHEST_COMPARED = 6.0
-"""Upper frequency of the comparison [Hz]."""
+"""Highest frequency of the comparison [Hz]."""
 
 CURVE_STEP = 0.025
 """Time step of the drawn curves [s]."""
 
 
 def compare_records(repeats: tuple[PreparedDecay, ...]) -> Repeatability:
-    """Compare every further record of a drop with the first one, at each sensor."""
+    """Compare the repeats of a drop with its first record, at each channel."""
     comparisons = [comparison for other in repeats[1:] for comparison in _compare_pair(repeats[0], other)]
     failed = next((c for c in comparisons if not _is_repeatable(c)), None)
     if failed is None:
@@ -48,7 +48,7 @@ def compare_records(repeats: tuple[PreparedDecay, ...]) -> Repeatability:
 
 
 def overlay_records(repeats: tuple[PreparedDecay, ...]) -> Overlay:
-    """Curves of the repeats of a drop at the sensor that moves most."""
+    """Curves of the repeats of a drop at the channel with the largest motion."""
     lowest_rate = min(decay.record.rate for decay in repeats)
     curves = [_align_record(decay, lowest_rate) for decay in repeats]
     channel = int(np.argmax(curves[0][1].std(axis=0)))
@@ -65,7 +65,7 @@ def overlay_records(repeats: tuple[PreparedDecay, ...]) -> Overlay:
 
 
 def round_curve(values: RealArray) -> Curve:
-    """Values with six significant digits, enough to draw."""
+    """Values with six significant digits, for a figure."""
     return [float(f"{value:.6g}") for value in values]
 
 
@@ -78,9 +78,9 @@ def _is_repeatable(c: Comparison) -> bool:
 
 
 def _align_record(decay: PreparedDecay, lowest_rate: float) -> tuple[RealArray, RealArray]:
-    """Time from the release [s], (n,), and the low-passed vertical channels, (n, c).
+    """Time from the release, (n,) [s], and the low-pass filtered vertical channels, (n, c).
 
-    The band ends at `HIGHEST_COMPARED`, or earlier if the lowest sampling rate of the repeats [Hz] requires it.
+    The cut-off is `HIGHEST_COMPARED`, or lower if the lowest sampling rate of the repeats [Hz] requires it.
     """
     rate, passes = decay.record.rate, min(HIGHEST_COMPARED, 0.28 * lowest_rate)
     taps = low_pass_decay(rate, passes, 1.5 * passes, 50.0)
@@ -127,7 +127,7 @@ def _compare_pair(first: PreparedDecay, second: PreparedDecay) -> list[Compariso
 
 
 def _compare_signals(a: RealArray, b: RealArray, noise_a: float, noise_b: float) -> tuple[float, float, float]:
-    """Correlation, the correlation that the noise permits, and the relative residual of two signals."""
+    """Correlation of two signals, correlation of equal signals with the same noise, and relative residual."""
     signal = [max(float(np.mean(v**2)) - s**2, 0.0) for v, s in ((a, noise_a), (b, noise_b))]
     share = [p / (p + s**2) if p > 0 else 0.0 for p, s in zip(signal, (noise_a, noise_b), strict=True)]
     correlation = float(a @ b / np.sqrt((a @ a) * (b @ b)))
@@ -142,7 +142,7 @@ def _noise_at_rest(time: RealArray, samples: RealArray) -> RealArray:
 
 
 def _delay(t1: RealArray, x1: RealArray, t2: RealArray, x2: RealArray, rate: float) -> float:
-    """Delay of the second record [s], from all channels together, to a fraction of a sample."""
+    """Delay of the second record from all channels together, with a resolution below one sample [s]."""
     grid = EARLY + np.arange(int(WINDOW * rate)) / rate
     a = np.column_stack([np.interp(grid, t1, column) for column in x1.T])
     a = a - a.mean(axis=0)

@@ -1,4 +1,4 @@
-"""Base of the JSON files of an identification: numbers are written with eight significant digits."""
+"""Base of the JSON files of an identification, whose numbers have eight significant digits."""
 
 import json
 import math
@@ -10,11 +10,11 @@ from pydantic import BaseModel, ConfigDict, PlainSerializer
 from pantocheck.conformance.input_files.atomic_writing import write_atomically
 
 SIGNIFICANT_DIGITS = 8
-"""Digits of a number in a file; far below any uncertainty, and equal on every machine."""
+"""Digits of a number in a file: more than every uncertainty needs, and equal on all machines."""
 
 
 def round_significant(value: float) -> float:
-    """Round to `SIGNIFICANT_DIGITS`; a value that is not finite becomes 0, which no measured value is."""
+    """Round to `SIGNIFICANT_DIGITS`; a value that is not finite becomes 0, because a measured value is never 0."""
     return float(f"{value:.{SIGNIFICANT_DIGITS}g}") if math.isfinite(value) else 0.0
 
 
@@ -28,7 +28,7 @@ class RoundedModel(BaseModel):
     model_config = ConfigDict(extra="ignore", frozen=True)
 
     def rounded(self) -> Self:
-        """The model with the digits that its file keeps, so that a value in memory equals the value in the file."""
+        """Same model with rounded numbers, so that values in memory and in the file are equal."""
         return type(self).model_validate(self.model_dump())
 
 

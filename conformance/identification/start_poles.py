@@ -1,8 +1,8 @@
 """Start poles: subspace identification (eigensystem realization algorithm) in narrow, decimated bands.
 
-Each band is shifted to zero frequency, low-passed by a finite filter and decimated. Only complete overlaps of the
-filter are kept, so every decay keeps its pole. The order of a band has the lowest Bayesian information criterion of the
-fitted signal; poles that do not decay are dropped.
+Each band is shifted to zero frequency, low-pass filtered and decimated. Only samples at full overlap with the filter
+are kept, so that every decay keeps its pole. The order of a band is that with the lowest Bayesian information
+criterion of the fitted signal; poles without decay are left out.
 
 References
 ----------
@@ -22,16 +22,16 @@ BAND = 1.0
 """Width of a band [Hz]."""
 
 LARGEST_ORDER = 24
-"""Largest number of poles in a band with its flanks."""
+"""Largest number of poles in a band and its flanks."""
 
 
 def find_start_poles(records: list[RealArray], rate: float, low: float, high: float) -> ComplexArray:
-    """Find the poles of all bands between two frequencies.
+    """Find the poles between two frequencies, band by band.
 
     Parameters
     ----------
     records : list of (n, c) ndarray
-        Channels over the linear decay of each record, scaled to unit variance; all share the poles.
+        Channels over the linear decay of each record, scaled to unit variance; all records have the same poles.
     rate : float
         Sampling rate [Hz].
     low, high : float
@@ -40,7 +40,7 @@ def find_start_poles(records: list[RealArray], rate: float, low: float, high: fl
     Returns
     -------
     (m,) ndarray
-        Poles, by frequency [1/s].
+        Poles, in the order of frequency [1/s].
     """
     edges = np.linspace(low, high, max(1, round((high - low) / BAND)) + 1)
     poles = np.concatenate([_band_poles(records, rate, a, b) for a, b in pairwise(edges)])
@@ -64,7 +64,7 @@ def _band_poles(records: list[RealArray], rate: float, low: float, high: float) 
     best = min(trials, key=lambda poles: _information_criterion(signals, poles, dt), default=np.zeros(0))
     poles = best + 1j * middle
     inside = (poles.imag >= 2 * np.pi * low) & (poles.imag < 2 * np.pi * high) & (poles.real < 0)
-    # Faster decays vanish within the filter: they are flanks of other modes.
+    # Faster decays are shorter than the filter: they are flanks of other modes.
     return np.asarray(poles[inside & (-poles.real < 0.1 * poles.imag)])
 
 
@@ -81,7 +81,7 @@ def _signal_subspace(signals: list[ComplexArray]) -> ComplexArray:
 
 
 def _subspace_poles(basis: ComplexArray, dt: float) -> ComplexArray:
-    """Poles of the signals that span a subspace, shifted by the middle of the band [1/s]."""
+    """Poles of the signals in a subspace, relative to the middle of the band [1/s]."""
     transition = np.linalg.lstsq(basis[:-1], basis[1:], rcond=None)[0]
     q = np.linalg.eigvals(transition)
     return np.asarray(np.log(q[np.abs(q) > 0]) / dt)

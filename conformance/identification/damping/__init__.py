@@ -1,1 +1,1 @@
-"""From identified modes to a damping model."""
+"""Damping model of a line from its identified modes."""

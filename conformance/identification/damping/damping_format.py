@@ -52,7 +52,7 @@ class Matching(RoundedModel):
 
 
 class MeasuredBand(RoundedModel):
-    """Median measured damping ratio of a group of span modes, and the band that it is used in."""
+    """Median measured damping ratio of a group of span modes, and its frequency band."""
 
     from_Hz: Rounded
     to_Hz: Rounded
@@ -82,9 +82,9 @@ class Observability(RoundedModel):
 
 
 class Thresholds(RoundedModel):
-    """Lower limits of the keys of the same name.
+    """Thresholds of the quantities of the same name.
 
-    An observable coefficient reaches the first two, a determined one all of them.
+    An observable coefficient reaches the first two thresholds, a determined coefficient all of them.
     """
 
     largest_share: float
@@ -114,7 +114,7 @@ class MeasuredRatios(RoundedModel):
 
 
 class ModelComparison(RoundedModel):
-    """Damping ratios measured and of the models at the computed modes."""
+    """Measured damping ratios, and those of several damping models at the computed modes."""
 
     measured: MeasuredRatios
     frequency_Hz: Annotated[tuple[Rounded, ...], Field(description="frequencies of the computed modes [Hz]")]
@@ -122,7 +122,7 @@ class ModelComparison(RoundedModel):
 
 
 class DampingResults(RoundedModel):
-    """File damping.json."""
+    """Content of damping.json."""
 
     model_config = ConfigDict(populate_by_name=True)
 

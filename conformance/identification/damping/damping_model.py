@@ -1,7 +1,7 @@
 """Fit of piecewise Rayleigh damping to measured damping ratios.
 
-The damping ratios are linear in the coefficients (see `damping_terms`), and no coefficient is negative: they follow
-from non-negative least squares.
+The damping ratios are linear functions of the coefficients (see `damping_terms`), and no coefficient is negative.
+The fit is a non-negative least-squares problem.
 
 References
 ----------
@@ -29,7 +29,7 @@ FIT_REPLICATES = 400
 """Replicates of the confidence intervals."""
 
 LAST_BAND = 3
-"""Last group of span modes that gets a band of modal damping."""
+"""Last group of span modes with a band of modal damping."""
 
 WIRES: tuple[str, ...] = (Kind.CONTACT_WIRE, Kind.MESSENGER_WIRE)
 """Kinds of component that are fitted."""
@@ -37,10 +37,16 @@ WIRES: tuple[str, ...] = (Kind.CONTACT_WIRE, Kind.MESSENGER_WIRE)
 
 @dataclass(frozen=True)
 class MeasuredModes:
-    """Measured modes that have a computed counterpart, each (m,).
+    """The m measured modes with a computed counterpart.
 
-    They have a frequency [Hz], a damping ratio [-] with its standard deviation, and the number of their group of span
-    modes, 0 for none.
+    Parameters
+    ----------
+    frequency : (m,) ndarray
+        Frequency [Hz].
+    damping_ratio, std : (m,) ndarray
+        Damping ratio and its standard deviation [-].
+    group : (m,) int ndarray
+        Number of the group of span modes; 0: none.
     """
 
     frequency: RealArray
@@ -51,10 +57,18 @@ class MeasuredModes:
 
 @dataclass(frozen=True)
 class DampingFit:
-    """Fitted piecewise Rayleigh damping, and the damping ratios that it predicts at the measured modes, (m,) [-].
+    """Fitted piecewise Rayleigh damping.
 
-    Outliers of their group are not `used`. `residual` is the root mean square of (measured - predicted) / measured over
-    the modes used [-].
+    Parameters
+    ----------
+    coefficients : tuple of Coefficient
+        Fitted coefficients.
+    predicted : (m,) ndarray
+        Damping ratios of the fit at the measured modes [-].
+    used : (m,) bool ndarray
+        Mask of the modes in the fit; outliers of their group are left out.
+    residual : float
+        Root mean square of (measured - predicted) / measured over the modes in the fit [-].
     """
 
     coefficients: tuple[Coefficient, ...]
@@ -71,8 +85,9 @@ class DampingFit:
 def fit_damping_model(basis: DampingBasis, measured: MeasuredModes) -> DampingFit:
     """Fit the coefficients of the wires by non-negative least squares.
 
-    All groups of span modes have the same weight, whatever their number of modes. Within a group a mode is weighted by
-    its uncertainty and that of the line model. A mode whose residual is far from the median of its group is left out.
+    All groups of span modes have the same weight, whatever their number of modes. Within a group, the weight of a mode
+    follows from its uncertainty and that of the line model. Modes with a residual far from the median of their group
+    are left out.
 
     Parameters
     ----------
@@ -80,6 +95,11 @@ def fit_damping_model(basis: DampingBasis, measured: MeasuredModes) -> DampingFi
         Damping ratios of the computed counterparts of the measured modes per unit of each coefficient.
     measured : MeasuredModes
         The measured modes.
+
+    Returns
+    -------
+    DampingFit
+        Coefficients and residual.
 
     Raises
     ------
@@ -99,7 +119,7 @@ def fit_damping_model(basis: DampingBasis, measured: MeasuredModes) -> DampingFi
     for _ in range(3):
         values = solve_weighted(columns, target, fit_weights(std, measured.group, used))
         used = _near_their_group(target - columns @ values, std, measured.group)
-    # Once more, so that the values belong to the final set of modes.
+    # The last fit uses the final set of modes.
     values = solve_weighted(columns, target, fit_weights(std, measured.group, used))
     predicted = columns @ values
     low, high = _confidence_intervals(columns, measured, std, used)
@@ -112,14 +132,14 @@ def fit_damping_model(basis: DampingBasis, measured: MeasuredModes) -> DampingFi
 
 
 def fit_deviation(measured: MeasuredModes) -> RealArray:
-    """Standard deviation of measured minus computed damping ratios, (m,), from the measurement and the line model."""
+    """Standard deviation of measured minus computed damping ratios, (m,), due to measurement and line model [-]."""
     return np.hypot(measured.std, MODEL_ERROR * measured.damping_ratio)
 
 
 def fit_weights(std: RealArray, group: IntegerArray, used: NDArray[np.bool_]) -> RealArray:
-    """Square roots of the weights of the modes, (m,): 1 / std, over the square root of the number used in the group.
+    """Square roots of the weights of the modes, (m,): 1 / (std sqrt(n)) with n used modes in the group.
 
-    Modes that are not used have no weight.
+    Modes that are not used have the weight 0.
     """
     count = np.array([max(int(np.sum(used & (group == number))), 1) for number in group])
     return np.where(used, 1 / (std * np.sqrt(count)), 0.0)
@@ -145,7 +165,7 @@ def _near_their_group(residual: RealArray, std: RealArray, group: IntegerArray) 
 def _confidence_intervals(
     columns: RealArray, measured: MeasuredModes, std: RealArray, used: NDArray[np.bool_]
 ) -> tuple[RealArray, RealArray]:
-    """Percentiles 2.5 and 97.5 over replicates: modes of each group redrawn, and disturbed by their noise."""
+    """Percentiles 2.5 and 97.5 over replicates with redrawn modes of each group and added measurement noise."""
     random = np.random.default_rng(20150817)
     target, noise, group = measured.damping_ratio, measured.std, measured.group
     numbers = [np.flatnonzero((group == number) & used) for number in np.unique(group)]
@@ -160,7 +180,7 @@ def _confidence_intervals(
 
 
 def fit_modal_bands(measured: MeasuredModes) -> tuple[ModalBand, ...]:
-    """Measured medians of the first groups, each over a band that ends half-way to the next group."""
+    """Median measured damping ratios of the first groups, each in a band that ends half-way to the next group."""
     present = [number for number in range(1, LAST_BAND + 2) if np.any(measured.group == number)]
     edges = {
         n: (measured.frequency[measured.group == n].min(), measured.frequency[measured.group == n].max())

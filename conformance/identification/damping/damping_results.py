@@ -41,19 +41,31 @@ from pantocheck.model.modal.modal_damping import apply_modal_bands
 from pantocheck.model.modal.modes import component_energies, compute_modes_below, damping_ratios
 
 MAX_NOTE = 4000
-"""Longest note that a line file may hold [characters]."""
+"""Largest length of a note in a line file [characters]."""
 
 MIN_PAIRS = 6
-"""Identified modes with a computed counterpart that a fit needs."""
+"""Smallest number of identified modes with a computed counterpart for a fit."""
 
 
 def select_usable(modes: Sequence[Mode], source: str) -> list[Mode]:
-    """Identified modes that a fit can use: certain, vertical and in a group; `source` is the name of their file.
+    """Select the modes for a fit: certain, vertical and in a group.
+
+    Parameters
+    ----------
+    modes : sequence of Mode
+        Identified modes.
+    source : str
+        Name of their file, for messages.
+
+    Returns
+    -------
+    list of Mode
+        Usable modes.
 
     Raises
     ------
     InputError
-        There is none.
+        None of the modes is usable.
     """
     usable = [mode.rounded() for mode in modes if mode.certain and not mode.lateral and mode.group is not None]
     if not usable:
@@ -69,16 +81,21 @@ def build_damping_results(modes: Sequence[Mode], line: Catenary, element: float,
     modes : sequence of Mode
         Identified modes; lateral, uncertain and ungrouped ones are left out.
     line : Catenary
-        The line that was measured; its present damping is the reference of the comparison.
+        Line of the record; its present damping is the reference of the comparison.
     element : float
         Element length [m].
     source : str
         Name of the file of the modes, for messages.
 
+    Returns
+    -------
+    DampingResults
+        Content of damping.json.
+
     Raises
     ------
     InputError
-        There are too few modes, or too few have a counterpart in the model of the line.
+        There are too few modes, or too few of them have a computed counterpart.
     """
     usable = select_usable(modes, source)
     comparison = compare_line(usable, line)
@@ -153,7 +170,7 @@ def build_damping_results(modes: Sequence[Mode], line: Catenary, element: float,
 
 
 def _summarise_matching(modes: int, pairs: Sequence[ModePair], shapes: Sequence[ComplexArray]) -> Matching:
-    # The shape at a single sensor agrees with every other shape.
+    # At a single sensor, all shapes agree.
     mac = [pair.mac for pair in pairs if shapes[pair.measured].size > 1]
     return Matching(
         modes=modes,
@@ -165,7 +182,7 @@ def _summarise_matching(modes: int, pairs: Sequence[ModePair], shapes: Sequence[
 
 
 def _warn_about_coefficients(coefficients: Sequence[Coefficient]) -> list[str]:
-    """One warning per set of coefficients that are not determined for the same reason."""
+    """Warnings about coefficients that are not determined, one per reason."""
     names: dict[str, list[str]] = {}
     for c in coefficients:
         if not c.determined:
@@ -174,16 +191,21 @@ def _warn_about_coefficients(coefficients: Sequence[Coefficient]) -> list[str]:
 
 
 def write_damping_toml(results: DampingResults, modal: Sequence[MeasuredBand] = ()) -> str:
-    """Table `damping` of a line file, below the warnings as comments.
+    """Text of the table `damping` of a line file, with the warnings as comments.
 
-    A coefficient that is not determined is a comment, too, so that nobody simulates with it unknowingly.
+    A coefficient that is not determined is also a comment, so that no simulation uses it.
 
     Parameters
     ----------
     results : DampingResults
         The fit.
     modal : sequence of MeasuredBand
-        Bands with a damping ratio of their own: `results.modal` for Rayleigh + modal damping.
+        Frequency bands of modal damping: `results.modal`, or none for Rayleigh damping alone.
+
+    Returns
+    -------
+    str
+        Content of damping.toml.
     """
     tables: dict[str, Any] = {
         "trust": "provisional",
@@ -208,5 +230,5 @@ def write_damping_toml(results: DampingResults, modal: Sequence[MeasuredBand] = 
 
 
 def _join_lines(text: str) -> str:
-    """Text as a comment of a TOML file: on one line, without characters that a comment cannot hold."""
+    """Text in one line, without characters that are not possible in a TOML comment."""
     return " ".join("".join(c if c.isprintable() else " " for c in text).split())

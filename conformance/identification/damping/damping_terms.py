@@ -14,7 +14,7 @@ from pantocheck.model import Kind
 from pantocheck.model.modal.modes import ComponentEnergies
 
 Term = tuple[str, str]
-"""Kind of component, and the name of the matrix that the coefficient multiplies."""
+"""Kind of component, and name of the matrix of the coefficient."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ MATRICES = {
     "stiffness": DampingMatrix("stiffness_coefficient_s", "s", 1e-4),
     "mass": DampingMatrix("mass_coefficient_1_s", "1/s", 0.1),
 }
-"""Matrices by name, in the order of the terms; plausible is the largest value in Vo Van, Balmes, Lorang 2015."""
+"""Matrices by name, in the order of the terms; plausible values are the largest in Vo Van, Balmes, Lorang 2015."""
 
 TABLE_OF_KIND = {
     Kind.CONTACT_WIRE: "contact_wire",
@@ -50,7 +50,7 @@ class DampingBasis:
     Parameters
     ----------
     terms : tuple of Term
-        (t,) kind and matrix of each coefficient.
+        Kind and matrix of each of the t coefficients.
     ratios : (m, t) ndarray
         Damping ratio per unit of the coefficient [1/s] for stiffness, [s] for mass.
     """
@@ -59,12 +59,12 @@ class DampingBasis:
     ratios: RealArray
 
     def select_modes(self, modes: IntegerArray) -> "DampingBasis":
-        """Basis of some of the modes, by index."""
+        """Basis of selected modes, by index."""
         return DampingBasis(self.terms, self.ratios[modes])
 
 
 def build_damping_basis(frequency: RealArray, energies: ComponentEnergies) -> DampingBasis:
-    """Damping ratios per unit of each coefficient, from the frequencies [Hz] and energies of the modes."""
+    """Build the basis from the frequencies [Hz] and the energies of the modes."""
     terms = tuple((str(kind), matrix) for kind in energies.kinds for matrix in MATRICES)
     both = np.stack([energies.stiffness, energies.mass], axis=2).reshape(frequency.size, -1)
     return DampingBasis(terms, np.asarray(both / (4 * np.pi * frequency[:, None])))

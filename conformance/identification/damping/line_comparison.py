@@ -1,6 +1,6 @@
-"""Comparison of the line that was measured with the line of a fit.
+"""Comparison of the line of the record with the line of a fit.
 
-A fit on another line pairs modes that do not belong together, and its confidence intervals do not show that error.
+A fit with another line pairs modes that do not correspond, and its confidence intervals do not include this error.
 """
 
 from collections.abc import Iterator, Sequence
@@ -13,16 +13,16 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.model import Catenary, Kind
 
 SPAN_TOLERANCE = 0.1
-"""Largest difference of the lengths of a span [m]; it changes the frequencies of the span by about 0.2 %."""
+"""Largest difference between the lengths of a span [m]; it changes the frequencies of the span by about 0.2 %."""
 
 TENSION_TOLERANCE = 0.01
-"""Largest relative difference of the tensions of a wire [-]; it changes a fitted coefficient by about 1 %."""
+"""Largest relative difference between the tensions of a wire [-]; it changes a fitted coefficient by about 1 %."""
 
 UNKNOWN_LINE = MeasuredLine()
 
 
 def compare_line(modes: Sequence[Mode], line: Catenary) -> LineComparison:
-    """Compare spans, tensions and sensors of the records of identified modes with a line."""
+    """Compare spans, tensions and sensor positions of the records of identified modes with a line."""
     records: dict[MeasuredLine, list[str]] = {}
     for mode in modes:
         records.setdefault(mode.line or UNKNOWN_LINE, []).append(mode.record)
@@ -43,12 +43,12 @@ def compare_line(modes: Sequence[Mode], line: Catenary) -> LineComparison:
 
 
 def refuse_other_line(comparison: LineComparison, source: str) -> None:
-    """Refuse a line that is not the line of the record.
+    """Refuse a line that is not the line of the record; `source` is the name of the file of the modes.
 
     Raises
     ------
     InputError
-        The comparison has differences; the message names all of them. `source` is the name of the file of the modes.
+        The comparison has differences; the message names all of them.
     """
     if comparison.differences:
         raise InputError(
@@ -59,7 +59,7 @@ def refuse_other_line(comparison: LineComparison, source: str) -> None:
 
 
 def warn_about_line(comparison: LineComparison) -> tuple[str, ...]:
-    """Warnings for a reader of the fit; none for a verified line."""
+    """Warnings about the line of a fit; none for a verified line."""
     warnings = []
     if comparison.differences:
         warnings.append(
@@ -75,7 +75,7 @@ def warn_about_line(comparison: LineComparison) -> tuple[str, ...]:
 
 
 def list_differences(comparison: LineComparison) -> str:
-    """All differences in one line of text."""
+    """All differences as text in one line."""
     return "; ".join(
         f"{row.fact} is {row.record} in the record, {row.line} on the line" for row in comparison.differences
     )
@@ -127,7 +127,7 @@ def _list_missing(measured: MeasuredLine) -> Iterator[str]:
 
 
 def _span_lengths(line: Catenary) -> list[float]:
-    """Lengths of the spans of a line [m]: its supports and the ends of its contact wire limit them."""
+    """Lengths of the spans of a line [m], between its supports and the ends of its contact wire."""
     wire = line.contact_wires[0]
     supports = {support.position for support in line.messenger_supports}
     return [b - a for a, b in pairwise(sorted({wire.start, wire.end, *supports}))]

@@ -14,7 +14,7 @@ from pantocheck.model.catenary import Wire
 from pantocheck.model.modal.modes import Modes, deflection_at
 
 LARGEST_FREQUENCY_GAP = 0.05
-"""Largest relative difference of the frequencies of a pair [-]."""
+"""Largest relative difference between the frequencies of a pair [-]."""
 
 MIN_MAC = 0.5
 """Smallest modal assurance criterion of a pair [-]."""
@@ -23,12 +23,12 @@ KIND_OF_WIRE = {"CW": Kind.CONTACT_WIRE, "MW": Kind.MESSENGER_WIRE, "SW": Kind.S
 """Kinds of wire by their names in mass-drop records."""
 
 Positions = dict[tuple[str, float], str]
-"""Name of the wire in the line, by wire in the record and position along the line [m] of a sensor."""
+"""Wire of the line under a sensor, by wire in the record and position of the sensor along the line [m]."""
 
 
 @dataclass(frozen=True)
 class ModePair:
-    """Indices of a measured mode and of its computed counterpart, and the modal assurance criterion of their shapes."""
+    """Indices of a measured mode and of its computed counterpart, and the MAC of their shapes."""
 
     measured: int
     computed: int
@@ -47,9 +47,9 @@ def pair_modes(
     computed_frequency: RealArray,
     computed_shapes: list[RealArray],
 ) -> tuple[ModePair, ...]:
-    """Pair the modes with the least total distance.
+    """Pair measured and computed modes so that the sum of their distances is smallest.
 
-    The main error of a line model is a common factor on its frequencies; that factor is removed first.
+    The main error of a line model is a common factor on its frequencies; this factor is removed first.
 
     Parameters
     ----------
@@ -61,6 +61,11 @@ def pair_modes(
         Frequencies of the computed modes [Hz].
     computed_shapes : list of (n, s) ndarray
         Computed shapes at the sensors of each measured mode.
+
+    Returns
+    -------
+    tuple of ModePair
+        Pairs, in the order of the measured modes.
     """
     m, n = measured_frequency.size, computed_frequency.size
     if m == 0 or n == 0:
@@ -83,7 +88,7 @@ def pair_modes(
 
 
 def _common_factor(measured: RealArray, computed: RealArray, similarity: RealArray) -> float:
-    """Factor on the computed frequencies that brings them closest to the measured ones."""
+    """Factor on the computed frequencies with the best agreement with the measured ones."""
     trials = np.linspace(1 - LARGEST_FREQUENCY_GAP, 1 + LARGEST_FREQUENCY_GAP, 201)
 
     def misfit(factor: float) -> float:
@@ -94,21 +99,26 @@ def _common_factor(measured: RealArray, computed: RealArray, similarity: RealArr
 
 
 def find_sensor_positions(modes: Sequence[Mode], line: Catenary, source: str) -> Positions:
-    """Positions of the sensors on wires of the line.
+    """Find the wires of the line under the sensors.
 
     Parameters
     ----------
     modes : sequence of Mode
         Identified modes.
     line : Catenary
-        The line that was measured.
+        Line of the fit.
     source : str
         Name of the file of the modes, for messages.
+
+    Returns
+    -------
+    dict of tuple of (str, float) to str
+        Wire of the line, by wire in the record and position of the sensor [m].
 
     Raises
     ------
     InputError
-        The line has no wire of the same kind at a sensor.
+        The line has no wire of this kind at the position of a sensor.
     """
     positions = {}
     for name, x in {(sensor.wire, sensor.position_m) for mode in modes for sensor in mode.sensor_shape}:
@@ -129,21 +139,25 @@ def find_sensor_positions(modes: Sequence[Mode], line: Catenary, source: str) ->
 def compute_sensor_shapes(
     modes: Sequence[Mode], mesh: DiscretisedLine, shapes: Modes, positions: Positions
 ) -> tuple[list[ComplexArray], list[RealArray]]:
-    """Identified and computed shapes at the sensors of each identified mode.
+    """Compute the shapes at the sensors of each identified mode.
 
     Parameters
     ----------
-    modes, positions
-        As in `find_sensor_positions`, and its result.
+    modes : sequence of Mode
+        Identified modes.
     mesh : DiscretisedLine
         The line, with a station at each sensor.
     shapes : Modes
-        Its n computed modes.
+        The n computed modes of the line.
+    positions : dict of tuple of (str, float) to str
+        Result of `find_sensor_positions`.
 
     Returns
     -------
-    list of (s,) complex ndarray, list of (n, s) ndarray
-        Identified shape of each mode at its s sensors, and the computed shapes there.
+    measured : list of (s,) complex ndarray
+        Shape of each identified mode at its s sensors.
+    computed : list of (n, s) ndarray
+        Shapes of the computed modes at the same sensors.
     """
     deflections = {
         (name, x): deflection_at(mesh, shapes, mesh.mesh.row_of[wire, "z"], x) for (name, x), wire in positions.items()
@@ -158,6 +172,6 @@ def compute_sensor_shapes(
 
 
 def find_wire(line: Catenary, kind: Kind, position: float) -> Wire | None:
-    """First wire of a kind that reaches a position [m]; None if there is none."""
+    """First wire of a kind at a position along the line [m]; None if there is none."""
     reaching = (wire for wire in line.wires if wire.kind is kind and wire.start <= position <= wire.end)
     return next(reaching, None)

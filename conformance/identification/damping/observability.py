@@ -1,4 +1,4 @@
-"""Observability: the damping coefficients that the measured modes determine."""
+"""Observability of the coefficients of a damping model in the measured modes."""
 
 from collections.abc import Sequence
 
@@ -21,14 +21,15 @@ from pantocheck.conformance.identification.damping.damping_model import (
 from pantocheck.conformance.identification.damping.damping_terms import MATRICES, DampingBasis, Term
 
 THRESHOLDS = Thresholds(largest_share=0.05, plausible_over_std=3.0, matched_share=0.8, median_mac=0.9)
-"""Lower limits for an observable (the first two) and for a determined coefficient.
+"""Lower limits for an observable coefficient (the first two) and for a determined coefficient (all).
 
-Modes of the record T1 on its line: matched share 1.0, median MAC 0.998; on a line with other spans 0.58 and 0.82.
+The record T1 has the matched share 1.0 and the median MAC 0.998 on its line, and 0.58 and 0.82 on a line with other
+spans.
 """
 
 
 def compute_observability(basis: DampingBasis, measured: MeasuredModes, fit: DampingFit) -> tuple[Observability, ...]:
-    """Observability of every coefficient; parameters as for `fit_damping_model`, and its result."""
+    """Compute the observability of each coefficient; parameters as in `fit_damping_model`, and its result `fit`."""
     weighted = basis.ratios / fit_deviation(measured)[:, None]
     rows = []
     for i, (kind, matrix) in enumerate(basis.terms):
@@ -64,7 +65,7 @@ def compute_observability(basis: DampingBasis, measured: MeasuredModes, fit: Dam
 def judge_coefficients(
     coefficients: Sequence[Coefficient], observability: Sequence[Observability], matching: Matching
 ) -> tuple[Coefficient, ...]:
-    """Mark each coefficient as determined, or state the thresholds that it does not reach."""
+    """Mark each coefficient as determined, or state the thresholds that are not reached."""
     common = []
     if matching.matched_share < THRESHOLDS.matched_share:
         common.append(
@@ -83,7 +84,7 @@ def judge_coefficients(
 
 
 def residual_without_term(basis: DampingBasis, measured: MeasuredModes, fit: DampingFit, left_out: Term) -> float:
-    """Root mean square of the relative residual of a fit without one coefficient, over the modes used [-]."""
+    """Root mean square of the relative residual of a fit without one coefficient, over the modes in the fit [-]."""
     kept = [basis.terms.index(term) for term in fit.values if term != left_out]
     target, weight = measured.damping_ratio, fit_weights(fit_deviation(measured), measured.group, fit.used)
     values = solve_weighted(basis.ratios[:, kept], target, weight)
