@@ -87,5 +87,5 @@ def _misfit(frequencies: RealArray, mean: float, stretch: float, spans: int | No
     below = float(np.sum(frequencies < 0.5 * mean))
     if spans is None:
         return crowding + 3 * below
-    counts = np.bincount(np.searchsorted(gaps, frequencies), minlength=1)[:LAST_GROUP]
+    counts = np.bincount(np.searchsorted(gaps, frequencies))[:LAST_GROUP]
     return crowding + 3 * below + 2 * float(np.maximum(counts - spans, 0).sum())
