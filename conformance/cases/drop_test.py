@@ -53,7 +53,11 @@ class MassDrop(SourcedTable):
     )
     noise_rms: Annotated[
         NonNegative,
-        Field(le=10, description="RMS of the white noise of each sensor [SI unit of quantity]; equal for equal drops"),
+        Field(
+            le=10,
+            description="RMS of the white noise of each sensor [SI unit of quantity]; each drop has its own noise, "
+            "the same in every run",
+        ),
     ] = 0.0
     highest_Hz: Annotated[Positive, Field(le=200, description="highest frequency of the identified modes [Hz]")] = 10.0
     compared: Annotated[DampingModels, Field(default_factory=dict)]

@@ -18,7 +18,9 @@ from pantocheck.conformance.systems.system_choice import choose_system
 def simulate_command(
     case: Annotated[str, typer.Argument(help="Id or path of one case, e.g. en50318-2002/250.")],
     out: Annotated[Path, typer.Option(help="Record to write: NAME.csv or NAME.h5; NAME.toml is written beside it.")],
-    system: Annotated[str, typer.Option(help="builtin, record:DIR or command:PROGRAM ARGUMENTS.")] = "builtin",
+    system: Annotated[
+        str, typer.Option(help="System that simulates: builtin (reference simulator) or command:PROGRAM ARGUMENTS.")
+    ] = "builtin",
 ) -> None:
     """Simulate a case and write its record.
 

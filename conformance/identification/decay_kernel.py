@@ -70,7 +70,7 @@ def real_columns(towards_pole: ComplexArray, towards_conjugate: ComplexArray) ->
 
 
 def stack_real_imaginary(spectrum: ComplexArray) -> RealArray:
-    """Real parts above imaginary parts: (k, ...) complex lines as (2 k, ...) real rows."""
+    """Real parts above imaginary parts: (k, ...) complex spectral lines as (2 k, ...) real rows."""
     return np.concatenate([spectrum.real, spectrum.imag])
 
 

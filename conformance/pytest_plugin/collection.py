@@ -35,7 +35,7 @@ def _open_session(config: pytest.Config, path: Path, folder: Path) -> PlanSessio
 
 
 class PlanFile(pytest.File):
-    """File of a plan."""
+    """Collector of pytest for a plan (TOML file): one node per case."""
 
     def collect(self) -> "Iterator[CaseNode]":
         """Cases of the plan."""

@@ -146,7 +146,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Figures:
-    """Figures in their order."""
+    """Block of a document: figures, shown in this order."""
 
     figures: tuple[Figure, ...]
 

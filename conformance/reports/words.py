@@ -26,12 +26,12 @@ def quantity_unit(quantity: str) -> str:
     return QUANTITIES[quantity].unit if quantity in QUANTITIES else ""
 
 
-def name_holder(key: str | int) -> str:
-    """Holder of a value: `pantograph 1`, or `line`."""
+def name_pantograph(key: str | int) -> str:
+    """Owner of values by the number of a pantograph: `pantograph 1`, or `line` for 0."""
     return "line" if key in (0, "0") else f"pantograph {key}"
 
 
 def name_owner(criterion: dict[str, Any]) -> str:
-    """Holder of the value of a criterion, with its number among several: `pantograph 1`, `line, no. 3`."""
+    """Owner of the value of a criterion, with its number among several: `pantograph 1`, `line, no. 3`."""
     number = f", no. {criterion['item']}" if criterion["item"] else ""
-    return f"{name_holder(criterion['pantograph'])}{number}"
+    return f"{name_pantograph(criterion['pantograph'])}{number}"

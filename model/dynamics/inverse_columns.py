@@ -39,7 +39,10 @@ def _inverse_column(factor: Factor, row: int, station: int, slope: int, column: 
 
 
 def column_half_width(factor: Factor, loads: list[tuple[int, int]]) -> int:
-    """Number of stations on either side after which the columns of all loads (row, station) are negligible."""
+    """Number of stations to keep on either side of a load: the rest of its column is negligible for every load.
+
+    A load is a row and a station.
+    """
     width = 8
     while width < factor.meeting.shape[1]:
         column = np.zeros((2, 2 * width))

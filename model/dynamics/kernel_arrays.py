@@ -25,7 +25,7 @@ from pantocheck.model.modal.modal_damping import build_modal_terms
 
 
 class Load(NamedTuple):
-    """Row and station of an external vertical load."""
+    """Point of an external vertical load: row of wires, and station (node of the mesh) along the track."""
 
     row: int
     station: int

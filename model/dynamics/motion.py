@@ -31,7 +31,7 @@ class Motion(NamedTuple):
 
 
 def motion_at_rest(deflection: Deflection, modes: int = 0) -> Motion:
-    """Line at rest in a static deflection, with a number of modes that have modal damping."""
+    """State of a line at rest in a static deflection; `modes` is the number of modes with modal damping."""
     w, r = (np.zeros((3, *deflection.displacement.shape[:2])) for _ in range(2))
     # Far from the loads the deflection decays to denormal numbers, which processors handle a hundred times slower.
     displacement = np.where(np.abs(deflection.displacement) < 1e-30, 0.0, deflection.displacement)

@@ -122,11 +122,11 @@ def fit_damping_model(basis: DampingBasis, measured: MeasuredModes) -> DampingFi
     # The last fit uses the final set of modes.
     values = solve_weighted(columns, target, fit_weights(std, measured.group, used))
     predicted = columns @ values
-    low, high = _confidence_intervals(columns, measured, std, used)
+    low_95, high_95 = _confidence_intervals(columns, measured, std, used)
     relative = (target - predicted) / target
     coefficients = tuple(
         Coefficient(kind=kind, matrix=matrix, value=float(value), low_95=float(lower), high_95=float(upper))
-        for (kind, matrix), value, lower, upper in zip(terms, values, low, high, strict=True)
+        for (kind, matrix), value, lower, upper in zip(terms, values, low_95, high_95, strict=True)
     )
     return DampingFit(coefficients, predicted, used, float(np.sqrt(np.mean(relative[used] ** 2))))
 
@@ -168,11 +168,11 @@ def _confidence_intervals(
     """Percentiles 2.5 and 97.5 over replicates with redrawn modes of each group and added measurement noise."""
     random = np.random.default_rng(20150817)
     target, noise, group = measured.damping_ratio, measured.std, measured.group
-    numbers = [np.flatnonzero((group == number) & used) for number in np.unique(group)]
-    numbers = [members for members in numbers if members.size]
+    group_members = [np.flatnonzero((group == number) & used) for number in np.unique(group)]
+    group_members = [members for members in group_members if members.size]
     replicates = np.empty((FIT_REPLICATES, columns.shape[1]))
     for r in range(FIT_REPLICATES):
-        rows = np.concatenate([random.choice(members, members.size) for members in numbers])
+        rows = np.concatenate([random.choice(members, members.size) for members in group_members])
         noisy = target[rows] + noise[rows] * random.standard_normal(rows.size)
         all_used = np.ones(rows.size, dtype=np.bool_)
         replicates[r] = solve_weighted(columns[rows], noisy, fit_weights(std[rows], group[rows], all_used))

@@ -147,7 +147,7 @@ def _prepare_pantograph(placed: PlacedSamples, row: int, settings: _Settings) ->
     warnings += _outlier_warnings(force[present], position[present], name)
     parts = find_usable_sections(placed.time, present & settings.steady)
     if not parts:
-        raise RecordInvalid("force", f"no {SHORTEST_S:g} s of {name} are without gaps and at the nominal speed")
+        raise RecordInvalid("force", f"{name} has no section of {SHORTEST_S:g} s without gaps at the nominal speed")
     indices = max(parts, key=lambda part: _overlap(position[part], settings.section))
     if len(parts) > 1:
         warnings.append(

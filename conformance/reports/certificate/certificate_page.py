@@ -35,27 +35,27 @@ HEADING = "Conformance report"
 
 def build_certificate(results: dict[str, Any]) -> doc.Document:
     """The certificate of a run, from results.json as a dictionary."""
-    cleaned = prepare_results(results)
-    header = build_header(cleaned)
-    cases = cleaned["cases"]
+    prepared = prepare_results(results)
+    header = build_header(prepared)
+    cases = prepared["cases"]
     anchors = [f"case-{number}" for number in range(1, len(cases) + 1)]
-    warnings = list_identity_warnings(cleaned)
-    reasons = list_reasons(cleaned) or (doc.Paragraph("Nothing was graded."),)
+    warnings = list_identity_warnings(prepared)
+    reasons = list_reasons(prepared) or (doc.Paragraph("Nothing was graded."),)
     trusts = read_words()["trust"].items()
     levels = doc.BulletList(tuple((doc.TrustMark(name), f" {level['meaning']}") for name, level in trusts))
     closing = doc.Paragraph(f"This is a {header.statement}. It is not a certification by a third party.")
     return doc.Document(
-        title=f"{read_words()['verdict'][header.verdict]['word']} – {HEADING} – {name_system(cleaned)}",
+        title=f"{read_words()['verdict'][header.verdict]['word']} – {HEADING} – {name_system(prepared)}",
         header=header,
         blocks=(
             *((doc.WarningBox(warnings),) if warnings else ()),
-            *build_scope_section(cleaned, dict(zip((case["id"] for case in cases), anchors, strict=True))),
+            *build_scope_section(prepared, dict(zip((case["id"] for case in cases), anchors, strict=True))),
             doc.Section("Reasons", reasons, anchor="reasons"),
             doc.Section("Cases", (_case_index(cases, anchors),), anchor="cases"),
             *map(_case_section, cases, anchors),
             doc.Section(
                 "Reproducibility",
-                (list_suite_facts(cleaned), doc.Section("Levels of trust", (levels,)), closing),
+                (list_suite_facts(prepared), doc.Section("Levels of trust", (levels,)), closing),
                 anchor="reproducibility",
             ),
         ),

@@ -6,7 +6,7 @@ from typing import Any
 from pantocheck.conformance.quantities.registry import QUANTITIES, table_quantities
 from pantocheck.conformance.reports.document import Code, Column, RichText, Table
 from pantocheck.conformance.reports.page_text import format_value
-from pantocheck.conformance.reports.words import name_holder, quantity_label, quantity_unit, read_words
+from pantocheck.conformance.reports.words import name_pantograph, quantity_label, quantity_unit, read_words
 
 BAND_CAPTION = (
     "Standard deviation, coefficient of variation and RMS by band; each value with its verdict, or informative where "
@@ -14,7 +14,7 @@ BAND_CAPTION = (
 )
 
 
-def list_holders(case: dict[str, Any]) -> list[str]:
+def list_owners(case: dict[str, Any]) -> list[str]:
     """Keys of the quantities of a case: pantographs in running order, then the line as "0"."""
     keys = set(case["quantities"]) | set(case["skipped"])
     return sorted(keys, key=lambda key: (key == "0", len(key), key))
@@ -35,13 +35,13 @@ def build_band_table(case: dict[str, Any]) -> Table:
         verdict = verdicts.get((quantity, key))
         return f"{format_value(value)} ({read_words()['verdict'][verdict]['word'] if verdict else 'informative'})"
 
-    pantographs = [key for key in list_holders(case) if key != "0"]
+    pantographs = [key for key in list_owners(case) if key != "0"]
     return _table(table_quantities("bands") if pantographs else (), pantographs, cell, BAND_CAPTION)
 
 
 def build_quantity_table(case: dict[str, Any]) -> Table:
     """Every quantity of a case; a quantity that a pantograph does not have is a dash."""
-    keys = list_holders(case)
+    keys = list_owners(case)
     order = list(QUANTITIES)
     names = {name for key in keys for name in (*case["quantities"].get(key, {}), *case["skipped"].get(key, {}))}
     ordered = sorted(names, key=lambda name: (order.index(name) if name in order else len(order), name))
@@ -60,16 +60,16 @@ def build_quantity_table(case: dict[str, Any]) -> Table:
 def list_skipped(case: dict[str, Any]) -> tuple[str, ...]:
     """Skipped quantities with their reasons."""
     return tuple(
-        f"{name_holder(key).capitalize()}, {quantity_label(quantity)}: {reason}"
-        for key in list_holders(case)
+        f"{name_pantograph(key).capitalize()}, {quantity_label(quantity)}: {reason}"
+        for key in list_owners(case)
         for quantity, reason in sorted(case["skipped"].get(key, {}).items())
     )
 
 
 def _table(quantities: Iterable[str], keys: list[str], cell: Callable[[str, str], str], caption: str = "") -> Table:
-    holders = (Column(name_holder(key).capitalize(), share=1, number=True) for key in keys)
+    owners = (Column(name_pantograph(key).capitalize(), share=1, number=True) for key in keys)
     rows: list[tuple[RichText, ...]] = []
     for name in quantities:
         label = (f"{quantity_label(name)} ", Code(name))
         rows.append((label, quantity_unit(name) or "–", *(cell(name, key) for key in keys)))
-    return Table((Column("Quantity", share=2.4), Column("Unit"), *holders), tuple(rows), caption)
+    return Table((Column("Quantity", share=2.4), Column("Unit"), *owners), tuple(rows), caption)

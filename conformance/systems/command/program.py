@@ -86,7 +86,7 @@ class Program:
         self._end()
 
     def send(self, line: bytes) -> None:
-        """Send a line. A program that does not read it gives no answer."""
+        """Send one line of text without waiting; if the program does not read it, `read_line` misses the answer."""
         threading.Thread(target=self._write, args=(line,), daemon=True).start()
 
     def _write(self, line: bytes) -> None:

@@ -94,7 +94,9 @@ class Started(InputTable):
 class File(InputTable):
     """Delivered file."""
 
-    file: Annotated[str, Field(min_length=1, max_length=500, description="name, relative to the folder of the run")]
+    file: Annotated[
+        str, Field(min_length=1, max_length=500, description="path of the file, relative to the folder of the run")
+    ]
     sha256: Annotated[str, Field(pattern="^[0-9a-f]{64}$", description="digest of the content")]
 
 

@@ -8,6 +8,7 @@ import pytest
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.bands import EXTENDED_BAND
 from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.sampling import Sampling
 from pantocheck.conformance.quantities.signals import ForceChannel, PantographSignals
 from pantocheck.conformance.quantities.unavailable import NotResampled
 from pantocheck.conformance.records.measured.block_bootstrap import BlockReplicates, bootstrap_uncertainties
@@ -28,6 +29,13 @@ def spans(random: np.random.Generator, count: int) -> RealArray:
     phase = np.arange(count * 100) / 100
     noise = np.repeat(random.standard_normal(count * 4), 25) * 8
     return 120 + np.repeat(amplitude, 100) * np.sin(2 * np.pi * phase) + noise
+
+
+def test_every_statistic_has_replicates() -> None:
+    """A statistic of `Sampling` that `BlockReplicates` inherits is one number: its uncertainty would be zero."""
+    statistics = {name for name in vars(Sampling) if not name.startswith("_")}
+    assert len(statistics) >= 7
+    assert statistics <= vars(BlockReplicates).keys()
 
 
 SIGMA = np.sqrt(30**2 * (1 + 0.3**2) / 2 + 8**2)
