@@ -134,14 +134,17 @@ def prepare_decay(record: DropRecord, band: FrequencyBand) -> PreparedDecay:
     for c in vertical:
         last = max((end for _, end in find_clipping(record.signals[:, c])), default=0) / record.rate
         if last > release.time + CLIPPED_EARLY * (record.duration - release.time):
-            warnings.append(f"{name}: channel '{record.channels[c].name}' is clipped far into the decay and left out")
+            channel = record.channels[c].name
+            warnings.append(
+                f"{name}: channel '{channel}' is left out, because it is clipped in a large part of the decay"
+            )
             continue
         clipped_until = max(clipped_until, last)
         columns.append(c)
     if not columns:
-        raise InputError(name, "every vertical channel is clipped", "Repeat the drop with a larger range.")
+        raise InputError(name, "all vertical channels are clipped", "Repeat the drop with a larger measuring range.")
     if len(columns) == 1:
-        warnings.append(f"{name}: a single sensor; it misses modes with a node there and gives no mode shape")
+        warnings.append(f"{name}: a single channel does not show modes with a node there, and gives no mode shape")
     linear = find_linear_decay(record, tuple(columns), release, band, clipped_until)
     return PreparedDecay(
         record, tuple(columns), release, linear, _filter_lateral(record, linear), (*warnings, *linear.warnings)
@@ -192,35 +195,35 @@ def find_linear_decay(
     if available - GUARD < SHORTEST_DECAY:
         raise InputError(
             name,
-            f"only {max(available, 0):.1f} s after the release",
-            f"At least {SHORTEST_DECAY + GUARD:g} s are needed, and minutes for a damping ratio: record 120 to 240 s.",
+            f"ends {max(available, 0):.1f} s after the release",
+            f"Record 120 to 240 s after the release; at least {SHORTEST_DECAY + GUARD:g} s are needed.",
         )
     samples = complete_overlap(signals[begin:], taps)[::step]
     dt, total, shortest = step / rate, samples.shape[0], SHORTEST_DECAY - taps.size / rate
     guard = max(int(GUARD / dt), int(np.ceil((clipped_until - release.time) / dt)) + 1)
     if (total - guard) * dt < shortest:
-        raise InputError(name, "is clipped or disturbed almost to its end", "Repeat the drop with a larger range.")
+        raise InputError(name, "is clipped almost to its end", "Repeat the drop with a larger measuring range.")
     dead = np.flatnonzero(np.ptp(signals[begin + guard * step :], axis=0) == 0)
     if dead.size:
         raise InputError(
             f"{name}, channel '{record.channels[columns[dead[0]]].name}'",
-            "never changes after the release",
-            "The sensor was lost: remove this channel from the sidecar.",
+            "is constant after the release",
+            "Leave this channel out; its sensor failed.",
         )
     start, end, poles = DecaySearch(samples, guard, dt, band).find_linear_part()
     if clipped_until > release.time:
         start = max(start, guard)
     warnings = []
     if end < total:
-        warnings.append(f"{name}: used up to {end * dt:.0f} s after the release; the rest is not a free decay")
+        warnings.append(f"{name}: used up to {end * dt:.0f} s after the release; later it is not a free decay")
     if (end - start) * dt < shortest:
         raise InputError(
             name,
             f"is a free decay for only {(end - start) * dt:.1f} s",
-            "Repeat the drop in calm weather and away from traffic.",
+            "Repeat the drop in calm weather and without traffic.",
         )
     if start * dt > GUARD + 1.0:
-        warnings.append(f"{name}: not a linear decay before {start * dt:.1f} s after the release")
+        warnings.append(f"{name}: the decay is linear only from {start * dt:.1f} s after the release")
     half_filter = (taps.size - 1) / 2 / rate
     return LinearDecay(
         samples=samples[start:end],

@@ -16,7 +16,7 @@ class _Pole(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
     frequency_Hz: Annotated[float, Field(gt=0, le=1000, description="undamped frequency [Hz]")]
-    damping_ratio: Annotated[float, Field(gt=0, lt=1, description="share of critical damping")] = 0.002
+    damping_ratio: Annotated[float, Field(gt=0, lt=1, description="damping ratio [-]")] = 0.002
 
 
 class _Poles(BaseModel):
@@ -37,7 +37,7 @@ def read_poles(path: Path) -> ComplexArray:
     if path.suffix == ".json":
         rows = [(mode.frequency_Hz, mode.damping_ratio) for mode in read_modes(path)]
         if not rows:
-            raise InputError(f"modes '{path.name}'", "holds no mode", "Give at least one start pole.")
+            raise InputError(f"modes '{path.name}'", "holds no mode", "Give a file with at least one mode.")
     else:
         rows = [(pole.frequency_Hz, pole.damping_ratio) for pole in read_model(path, _Poles, "poles").pole]
     frequency, damping = np.array(rows).T

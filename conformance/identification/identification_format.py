@@ -22,7 +22,7 @@ class IdentifiedRecord(RoundedModel):
     mass_kg: float | None
     drop_wire: str
     drop_position_m: float | None
-    release_s: Annotated[Rounded, Field(description="first movement, in the time of the record [s]")]
+    release_s: Annotated[Rounded, Field(description="release, in the time of the record [s]")]
     used_from_s: Annotated[Rounded, Field(description="start of the linear decay, in the time of the record [s]")]
     used_to_s: Annotated[Rounded, Field(description="end of the linear decay, in the time of the record [s]")]
     channels: Annotated[tuple[str, ...], Field(description="names of the vertical channels")]
@@ -53,7 +53,7 @@ class Comparison(RoundedModel):
     shift_s: Annotated[Rounded, Field(description="delay of the second record [s]")]
     correlation_at_start: Rounded
     correlation_later: Rounded | None
-    possible_at_start: Annotated[Rounded, Field(description="correlation of equal signals with this noise [-]")]
+    possible_at_start: Annotated[Rounded, Field(description="correlation of equal signals with the same noise [-]")]
     possible_later: Rounded | None
     residual_at_start: Annotated[Rounded, Field(description="RMS of the difference over RMS of the first record [-]")]
     residual_later: Rounded | None
@@ -122,17 +122,21 @@ class RecordResponses(RoundedModel):
 class IdentifiedLine(RoundedModel):
     """Identification of one line from all its records."""
 
-    quantity: Annotated[MotionQuantity, Field(description="quantity that the sensors measure")]
+    quantity: Annotated[MotionQuantity, Field(description="measured quantity")]
     band_Hz: Annotated[tuple[float, float], Field(description="band of the reported modes [Hz]")]
-    misfit: Annotated[Rounded, Field(description="squared residual over that of noise alone; 1: complete model")]
+    misfit: Annotated[
+        Rounded, Field(description="squared residual over its expectation for noise [-]; 1: complete model")
+    ]
     warnings: tuple[str, ...]
     records: tuple[IdentifiedRecord, ...]
     groups: tuple[ModeGroup, ...]
     modes: tuple[Mode, ...]
-    repeatability: Annotated[tuple[Repeatability, ...], Field(description="one per drop with repeats")]
-    overlays: Annotated[tuple[Overlay, ...], Field(description="one per drop with repeats")]
-    spectra: Annotated[tuple[RecordSpectra, ...], Field(description="one per record")]
-    frequency_responses: Annotated[tuple[RecordResponses, ...], Field(description="records with a known mass")]
+    repeatability: Annotated[tuple[Repeatability, ...], Field(description="repeatability of each repeated drop")]
+    overlays: Annotated[tuple[Overlay, ...], Field(description="signals of each repeated drop")]
+    spectra: Annotated[tuple[RecordSpectra, ...], Field(description="spectra of each record")]
+    frequency_responses: Annotated[
+        tuple[RecordResponses, ...], Field(description="frequency responses of each record with a known mass")
+    ]
 
 
 class IdentificationFile(RoundedModel):

@@ -78,7 +78,7 @@ def identify_modes(
         A record cannot be used.
     """
     if not records:
-        raise InputError("records", "none given", "Name at least one record.")
+        raise InputError("records", "missing", "Name at least one record.")
     lines: dict[object, list[DropRecord]] = {}
     for record in records:
         lines.setdefault(_line_key(record), []).append(record)
@@ -117,8 +117,8 @@ def _choose_band(records: list[DropRecord], highest: float) -> FrequencyBand:
     if band.high < min(2 * band.low, highest):
         raise InputError(
             slowest.name,
-            f"its sampling rate of {slowest.rate:g} Hz is too low: the highest mode would be at {band.high:.2g} Hz",
-            "Export the record at its original rate; 50 Hz or more are usual.",
+            f"the sampling rate of {slowest.rate:g} Hz is too low; it limits the modes to {band.high:.2g} Hz",
+            "Export the record at its original sampling rate, usually 50 Hz or more.",
         )
     return band
 
@@ -143,13 +143,13 @@ def _refine_start_poles(poles: ComplexArray, data: list[DataBlock]) -> PoleSelec
 def _list_warnings(fit: LineFit) -> tuple[str, ...]:
     warnings = [text for record in fit.records for text in record.decay.warnings]
     if fit.misfit > SHARED_POLES:
-        several = " or the records do not share their poles" if len(fit.records) > 1 else ""
+        several = " or the records have different poles" if len(fit.records) > 1 else ""
         warnings.append(
-            f"the residual of the fit is {fit.misfit:.1f} times the noise: the line is not linear{several}; "
-            "uncertainties are widened"
+            f"the squared residual of the fit is {fit.misfit:.1f} times that of the noise: the line is not "
+            f"linear{several}; uncertainties are increased"
         )
     lengths = [record.decay.linear.duration for record in fit.records]
     if max(lengths) > (1 + SAME_LENGTH) * min(lengths):
         durations = ", ".join(f"{length:.0f} s" for length in lengths)
-        warnings.append(f"the decays differ in length ({durations}): each is used over its own length")
+        warnings.append(f"the linear decays differ in length ({durations}); each is used over its whole length")
     return tuple(dict.fromkeys(warnings))

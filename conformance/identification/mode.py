@@ -18,11 +18,11 @@ class SensorShape(RoundedModel):
     model_config = ConfigDict(allow_inf_nan=False)
 
     sensor: Annotated[int, Field(description="number of the sensor")]
-    wire: Annotated[str, Field(description="CW contact wire, MW messenger wire; empty: unknown")] = ""
-    position_m: Annotated[float | None, Field(description="position from the first support [m]; null: unknown")] = None
-    re: Annotated[Rounded, Field(description="real part; the largest component of a shape is 1")]
-    im: Annotated[Rounded, Field(description="imaginary part")]
-    std: Annotated[Rounded | None, Field(description="standard deviation of each part")] = None
+    wire: Annotated[str, Field(description="wire: CW (contact wire) or MW (messenger wire); empty: unknown")] = ""
+    position_m: Annotated[float | None, Field(description="distance from the first support [m]; null: unknown")] = None
+    re: Annotated[Rounded, Field(description="real part [-]; the largest component of a shape is 1")]
+    im: Annotated[Rounded, Field(description="imaginary part [-]")]
+    std: Annotated[Rounded | None, Field(description="standard deviation of real and imaginary part [-]")] = None
 
 
 class MeasuredLine(RoundedModel):
@@ -45,30 +45,35 @@ class Mode(RoundedModel):
     model_config = ConfigDict(allow_inf_nan=False)
 
     frequency_Hz: Annotated[Rounded, Field(gt=0, description="undamped natural frequency [Hz]")]
-    frequency_std_Hz: Annotated[Rounded | None, Field(description="its standard deviation [Hz]")] = None
-    damping_ratio: Annotated[Rounded, Field(gt=0, lt=1, description="share of critical damping [-]")]
-    damping_ratio_std: Annotated[Rounded, Field(ge=0, description="its standard deviation [-]")]
+    frequency_std_Hz: Annotated[Rounded | None, Field(description="standard deviation of the frequency [Hz]")] = None
+    damping_ratio: Annotated[Rounded, Field(gt=0, lt=1, description="damping ratio [-]")]
+    damping_ratio_std: Annotated[Rounded, Field(ge=0, description="standard deviation of the damping ratio [-]")]
     group: Annotated[int | None, Field(description="number of the group of span modes, from 1; null: none")] = None
     sensor_shape: Annotated[tuple[SensorShape, ...], Field(description="mode shape at the sensors of `record`")]
-    error: Annotated[Rounded | None, Field(description="residual over measured signal in the mode's band [-]")] = None
-    record: Annotated[str, Field(description="name of the record that shows the mode best")] = ""
+    error: Annotated[Rounded | None, Field(description="residual over measured signal in the half-power band [-]")] = (
+        None
+    )
+    record: Annotated[str, Field(description="name of the record with the largest signal of the mode over noise")] = ""
     line: Annotated[MeasuredLine | None, Field(description="line of `record`; null: unknown")] = None
-    warnings: Annotated[tuple[str, ...], Field(description="reasons to doubt the mode")] = ()
-    certain: Annotated[bool, Field(description="damping ratio known to 5 % (one standard deviation)")] = True
-    outlier: Annotated[bool, Field(description="damping ratio far from that of its group")] = False
+    warnings: Annotated[tuple[str, ...], Field(description="caveats on the mode")] = ()
+    certain: Annotated[bool, Field(description="true: standard deviation below 5 % of the damping ratio")] = True
+    outlier: Annotated[bool, Field(description="true: damping ratio far from those of its group")] = False
     lateral: Annotated[
-        bool, Field(description="lateral mode; vertical channels measure it because of their mounting")
+        bool, Field(description="true: lateral mode, measured by vertical channels because of oblique mounting")
     ] = False
     amplitude_at_release: Annotated[
         Rounded | None, Field(description="largest amplitude of a sensor at the release [unit of the record]")
     ] = None
     phase_collinearity: Annotated[
-        Rounded | None, Field(description="modal phase collinearity, 1 for a normal mode; null: a single sensor")
+        Rounded | None, Field(description="modal phase collinearity [-], 1 for a normal mode; null: single sensor")
     ] = None
     lateral_over_vertical: Annotated[
-        Rounded | None, Field(description="largest lateral over largest vertical amplitude; null: no lateral channel")
+        Rounded | None,
+        Field(description="largest lateral over largest vertical amplitude [-]; null: no lateral channel"),
     ] = None
-    half_power_points: Annotated[Rounded | None, Field(description="spectral lines in the half-power band")] = None
+    half_power_points: Annotated[
+        Rounded | None, Field(description="number of spectral lines in the half-power band")
+    ] = None
 
 
 class ModesFile(RootModel[tuple[Mode, ...]]):

@@ -93,17 +93,17 @@ def _list_warnings(mode: Mode, duration: float, nearest: float) -> tuple[str, ..
     bandwidth = 2 * mode.damping_ratio * mode.frequency_Hz
     if bandwidth * duration < POINTS_IN_HALF_POWER_BAND:
         warnings.append(
-            f"half-power band: {bandwidth * duration:.1f} spectral lines in {duration:.0f} s; "
-            f"{POINTS_IN_HALF_POWER_BAND} need a record of {POINTS_IN_HALF_POWER_BAND / bandwidth:.0f} s"
+            f"half-power band: {bandwidth * duration:.1f} spectral lines in {duration:.0f} s, recommended are "
+            f"{POINTS_IN_HALF_POWER_BAND}, which need a record of {POINTS_IN_HALF_POWER_BAND / bandwidth:.0f} s"
         )
     if not mode.certain:
         relative = 100 * (mode.damping_ratio_std / mode.damping_ratio)
-        warnings.append(f"weakly excited: the damping ratio is uncertain by {relative:.0f} % (one standard deviation)")
+        warnings.append(f"weakly excited: the standard deviation of the damping ratio is {relative:.0f} %")
     if nearest < COINCIDENT * bandwidth or nearest * duration < 1.5:
-        warnings.append(f"near-coincident: another mode is only {1000 * nearest:.1f} mHz away")
+        warnings.append(f"near-coincident: the distance to another mode is only {1000 * nearest:.1f} mHz")
     if mode.lateral:
         warnings.append(
-            "lateral: the mode moves the sensors sideways; their mounting explains the signal of the vertical channels"
+            "lateral: the sensors move laterally; the signal of the vertical channels is due to oblique mounting"
         )
     return tuple(warnings)
 

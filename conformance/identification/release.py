@@ -62,13 +62,13 @@ def find_release(signals: RealArray, rate: float, nominal: float | None, name: s
     """
     n = signals.shape[0]
     if nominal is not None and nominal - TRIGGER_TOLERANCE < MIN_REST:
-        return Release(nominal, 0.0, (f"{name}: no rest before the release; the planned release is used",))
+        return Release(nominal, 0.0, (f"{name}: no rest before the release; the planned time of release is used",))
     rest_end = int((nominal - TRIGGER_TOLERANCE) * rate) if nominal is not None else _quiet_start(signals, rate, name)
     if n - rest_end < rate:
         raise InputError(
             name,
             f"ends after {n / rate:.2f} s, but the release is planned at {nominal or rest_end / rate:.2f} s",
-            "Record the whole decay, or correct the trigger time.",
+            "Record the whole decay, or correct trigger_nominal_s in the sidecar.",
         )
     rest = signals[:rest_end]
     displaced = signals - np.median(rest, axis=0)
@@ -78,13 +78,11 @@ def find_release(signals: RealArray, rate: float, nominal: float | None, name: s
     sustained = np.convolve(beyond, np.ones(5), mode="valid") >= 3
     if not sustained.any():
         raise InputError(
-            name, "no channel moves after the trigger", "Check the trigger time, the channels and their units."
+            name, "no channel moves after the planned release", "Check trigger_nominal_s, the channels and their units."
         )
     time = (rest_end + int(np.argmax(sustained)) + int(np.argmax(beyond[np.argmax(sustained) :]))) / rate
     late = nominal is not None and time > nominal + 1.0
-    warnings = (
-        (f"{name}: the first movement is {time - (nominal or 0):.1f} s after the planned release",) if late else ()
-    )
+    warnings = (f"{name}: the first motion is {time - (nominal or 0):.1f} s after the planned release",) if late else ()
     if n / rate - time < 1.0:
         raise InputError(name, f"ends {n / rate - time:.2f} s after the release", "Record the whole decay.")
     return Release(time, max(0.0, min(rest_end / rate, time - 0.1)), warnings)
@@ -98,6 +96,6 @@ def _quiet_start(signals: RealArray, rate: float, name: str) -> int:
     jump = np.any(spread > 4 * np.maximum(floor, 1e-6 * spread.max(axis=0, initial=0.0)), axis=1)
     if not jump.any() or int(np.argmax(jump)) * width < MIN_REST * rate:
         raise InputError(
-            name, "has neither a trigger time nor a rest before the release", "Give trigger_nominal_s in the sidecar."
+            name, "has neither a planned release nor a rest at its start", "Give trigger_nominal_s in the sidecar."
         )
     return int(np.argmax(jump)) * width - width // 2

@@ -8,23 +8,23 @@ from pantocheck.conformance.identification.rounded_model import Rounded, Rounded
 
 
 class Coefficient(RoundedModel):
-    """Fitted coefficient of Rayleigh damping [s] for stiffness, [1/s] for mass."""
+    """Fitted coefficient of Rayleigh damping, in [s] for the stiffness matrix, in [1/s] for the mass matrix."""
 
     kind: Annotated[str, Field(description="kind of component")]
-    matrix: Annotated[str, Field(description="matrix that the coefficient multiplies: stiffness or mass")]
+    matrix: Annotated[str, Field(description="matrix of the coefficient: stiffness or mass")]
     value: Rounded
     low_95: Annotated[Rounded, Field(description="lower bound of the 95 % confidence interval")]
     high_95: Annotated[Rounded, Field(description="upper bound of the 95 % confidence interval")]
-    determined: Annotated[bool, Field(description="false: below a threshold, not for use in a simulation")] = False
-    reason: Annotated[str, Field(description="thresholds that are not reached; empty: determined")] = ""
+    determined: Annotated[bool, Field(description="false: below a threshold; do not use it in a simulation")] = False
+    reason: Annotated[str, Field(description="thresholds that are not reached; empty: all are reached")] = ""
 
 
 class LineDifference(RoundedModel):
     """Difference between the line of the record and the line of the fit."""
 
-    fact: Annotated[str, Field(description="span, tension or sensor")]
-    record: Annotated[str, Field(description="value of the record, with its unit")]
-    line: Annotated[str, Field(description="value of the line of the fit, with its unit")]
+    fact: Annotated[str, Field(description="compared property: span, tension or sensor")]
+    record: Annotated[str, Field(description="value for the line of the record, with unit")]
+    line: Annotated[str, Field(description="value for the line of the fit, with unit")]
 
 
 class LineComparison(RoundedModel):
@@ -32,23 +32,25 @@ class LineComparison(RoundedModel):
 
     state: Annotated[
         Literal["verified", "unverified", "contradicted"],
-        Field(description="verified: all facts agree; unverified: some are missing; contradicted: some differ"),
+        Field(description="verified: all properties agree; unverified: some are missing; contradicted: some differ"),
     ]
     differences: tuple[LineDifference, ...]
-    missing: Annotated[tuple[str, ...], Field(description="facts that the modes do not state")]
+    missing: Annotated[tuple[str, ...], Field(description="properties of the line that the modes do not state")]
 
 
 class Matching(RoundedModel):
-    """Identified modes that the fit can use, and those with a counterpart in the model of the line."""
+    """Numbers of usable and of matched modes, and the agreement of their shapes."""
 
-    modes: Annotated[int, Field(description="identified modes that are certain, vertical and in a group")]
-    matched: Annotated[int, Field(description="number of them with a computed counterpart")]
-    matched_share: Annotated[Rounded, Field(description="matched over modes [-]")]
+    modes: Annotated[int, Field(description="number of usable modes: certain, vertical and in a group")]
+    matched: Annotated[int, Field(description="number of usable modes with a computed counterpart")]
+    matched_share: Annotated[Rounded, Field(description="matched modes over usable modes [-]")]
     median_mac: Annotated[
         Rounded | None,
-        Field(description="median MAC of the matched modes with two sensors or more [-]; null: no such mode"),
+        Field(description="median MAC of the matched modes with at least two sensors [-]; null: no such mode"),
     ]
-    lowest_mac: Annotated[Rounded | None, Field(description="lowest MAC of the same modes [-]")]
+    lowest_mac: Annotated[
+        Rounded | None, Field(description="lowest MAC of the matched modes with at least two sensors [-]")
+    ]
 
 
 class MeasuredBand(RoundedModel):
@@ -60,23 +62,27 @@ class MeasuredBand(RoundedModel):
 
 
 class Observability(RoundedModel):
-    """Observability of one coefficient: whether the modes determine it."""
+    """Observability of one coefficient in the measured modes."""
 
     kind: Annotated[str, Field(description="kind of component")]
-    matrix: Annotated[str, Field(description="matrix that the coefficient multiplies: stiffness or mass")]
+    matrix: Annotated[str, Field(description="matrix of the coefficient: stiffness or mass")]
     largest_share: Annotated[
-        Rounded, Field(description="largest share of the plausible value in the damping ratio of a mode [-]")
+        Rounded,
+        Field(description="damping ratio due to the plausible value over measured ratio [-]; largest of all modes"),
     ]
     variance_inflation: Annotated[
-        Rounded | None, Field(description="1 / (1 - R^2) of the coefficient on the fitted ones; null: infinite")
+        Rounded | None,
+        Field(description="variance inflation factor 1 / (1 - R^2) with the fitted coefficients [-]; null: infinite"),
     ]
     std: Annotated[
-        Rounded | None, Field(description="lowest standard deviation, the fitted ones unknown too; null: infinite")
+        Rounded | None,
+        Field(description="lowest possible standard deviation, in the unit of the coefficient; null: infinite"),
     ]
     plausible: Annotated[float, Field(description="plausible value, in the unit of the coefficient")]
     plausible_over_std: Annotated[Rounded, Field(description="plausible value over standard deviation [-]")]
     residual_without: Annotated[
-        Rounded, Field(description="factor on the residual of the fit without the coefficient; 1: not fitted")
+        Rounded,
+        Field(description="residual of a fit without the coefficient over that with it [-]; 1: not fitted"),
     ]
     observable: bool
 
@@ -102,7 +108,7 @@ class PairedMode(RoundedModel):
     group: int | None
     measured: Annotated[Rounded, Field(description="measured damping ratio [-]")]
     fitted: Annotated[Rounded, Field(description="damping ratio of the fitted model [-]")]
-    used: Annotated[bool, Field(description="false: an outlier of its group, not used in the fit")]
+    used: Annotated[bool, Field(description="false: outlier of its group, left out of the fit")]
 
 
 class MeasuredRatios(RoundedModel):
@@ -127,17 +133,17 @@ class DampingResults(RoundedModel):
     model_config = ConfigDict(populate_by_name=True)
 
     schema_: Annotated[Literal["pantocheck.damping/1"], Field(alias="schema")] = "pantocheck.damping/1"
-    modes_file: Annotated[str, Field(description="source of the identified modes")]
-    warnings: Annotated[tuple[str, ...], Field(description="caveats for the user of the coefficients")]
-    line: Annotated[LineComparison, Field(description="whether the fit used the line of the record")]
+    modes_file: Annotated[str, Field(description="file of the identified modes")]
+    warnings: Annotated[tuple[str, ...], Field(description="caveats for the use of the coefficients")]
+    line: Annotated[LineComparison, Field(description="comparison of the lines of record and fit")]
     matching: Matching
-    residual: Annotated[Rounded, Field(description="RMS of (measured - fitted) / measured over the modes used [-]")]
+    residual: Annotated[Rounded, Field(description="RMS of (measured - fitted) / measured, all modes of the fit [-]")]
     coefficients: tuple[Coefficient, ...]
-    modal: Annotated[tuple[MeasuredBand, ...], Field(description="bands of the first groups of span modes")]
+    modal: Annotated[tuple[MeasuredBand, ...], Field(description="frequency bands of the first groups of span modes")]
     observability: tuple[Observability, ...]
     thresholds: Thresholds
     pairs: tuple[PairedMode, ...]
     comparison: ModelComparison
     unpaired: Annotated[
-        tuple[Rounded, ...], Field(description="frequencies of measured modes without a counterpart [Hz]")
+        tuple[Rounded, ...], Field(description="frequencies of the measured modes without computed counterpart [Hz]")
     ]

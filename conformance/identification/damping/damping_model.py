@@ -110,8 +110,8 @@ def fit_damping_model(basis: DampingBasis, measured: MeasuredModes) -> DampingFi
     if measured.frequency.size <= len(terms):
         raise InputError(
             "modes",
-            f"{measured.frequency.size} modes are too few for a fit of {len(terms)} coefficients",
-            f"Identify at least {len(terms) + 1} modes, or check that the case has the line that was measured.",
+            f"only {measured.frequency.size} modes for a fit of {len(terms)} coefficients",
+            f"Identify at least {len(terms) + 1} modes, or name the line of the record with --line.",
         )
     columns = basis.ratios[:, [basis.terms.index(term) for term in terms]]
     target, std = measured.damping_ratio, fit_deviation(measured)

@@ -69,7 +69,7 @@ def select_usable(modes: Sequence[Mode], source: str) -> list[Mode]:
     """
     usable = [mode.rounded() for mode in modes if mode.certain and not mode.lateral and mode.group is not None]
     if not usable:
-        raise InputError(source, "holds no certain mode that belongs to a group", "Identify longer or more records.")
+        raise InputError(source, "holds no certain vertical mode in a group", "Identify longer or more records.")
     return usable
 
 
@@ -108,8 +108,8 @@ def build_damping_results(modes: Sequence[Mode], line: Catenary, element: float,
     if len(pairs) < MIN_PAIRS:
         raise InputError(
             source,
-            f"only {len(pairs)} of {len(usable)} modes have a counterpart in the model of the line",
-            "Name a case with the line that was measured; its tensions and spans decide the frequencies.",
+            f"only {len(pairs)} of {len(usable)} modes have a computed counterpart, {MIN_PAIRS} are needed",
+            "Name the line of the record with --line; spans and tensions determine the frequencies.",
         )
     paired = [usable[pair.measured] for pair in pairs]
     measured = MeasuredModes(

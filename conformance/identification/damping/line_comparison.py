@@ -53,8 +53,9 @@ def refuse_other_line(comparison: LineComparison, source: str) -> None:
     if comparison.differences:
         raise InputError(
             source,
-            f"the record is from another line than that of --line: {list_differences(comparison)}",
-            "Name the line that was measured. The option --other-line permits another line and marks the result.",
+            f"the line of the record is not that of --line: {list_differences(comparison)}",
+            "Name the line of the record with --line. The option --other-line permits another line and marks the "
+            "result.",
         )
 
 
@@ -63,13 +64,13 @@ def warn_about_line(comparison: LineComparison) -> tuple[str, ...]:
     warnings = []
     if comparison.differences:
         warnings.append(
-            "The line of the fit is not the line of the record, so the coefficients can be wrong beyond their "
-            f"intervals: {list_differences(comparison)}."
+            "The line of the fit is not the line of the record, so that the errors of the coefficients can exceed "
+            f"their intervals: {list_differences(comparison)}."
         )
     if comparison.missing:
         warnings.append(
-            "The line of the fit is not verified, because the modes lack facts about the line of the record: "
-            f"{'; '.join(comparison.missing)}."
+            "The line of the fit is not verified, because the modes do not state all properties of the line of the "
+            f"record: {'; '.join(comparison.missing)}."
         )
     return tuple(warnings)
 

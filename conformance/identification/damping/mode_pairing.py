@@ -129,8 +129,8 @@ def find_sensor_positions(modes: Sequence[Mode], line: Catenary, source: str) ->
         if wire is None:
             raise InputError(
                 source,
-                f"a sensor at {x:g} m, where the line has no {kind.replace('_', ' ')}",
-                "Name the line that was measured with --line.",
+                f"a sensor is at {x:g} m, where the line has no {kind.replace('_', ' ')}",
+                "Name the line of the record with --line.",
             )
         positions[name, x] = wire.name
     return positions

@@ -69,16 +69,16 @@ def judge_coefficients(
     common = []
     if matching.matched_share < THRESHOLDS.matched_share:
         common.append(
-            f"{matching.matched} of {matching.modes} modes are matched, {100 * THRESHOLDS.matched_share:g} % are needed"
+            f"{matching.matched} of {matching.modes} modes are matched, needed are {100 * THRESHOLDS.matched_share:g} %"
         )
     if matching.median_mac is None:
-        common.append("the modes have a single sensor, so that their shapes confirm no match")
+        common.append("the modes have a single sensor, so that no shapes can be compared")
     elif matching.median_mac < THRESHOLDS.median_mac:
-        common.append(f"the median MAC is {matching.median_mac:.2g}, {THRESHOLDS.median_mac:g} is needed")
+        common.append(f"the median MAC is {matching.median_mac:.2g}, needed is {THRESHOLDS.median_mac:g}")
     observable = {(row.kind, row.matrix) for row in observability if row.observable}
     judged = []
     for c in coefficients:
-        reasons = common if (c.kind, c.matrix) in observable else [*common, "the modes do not observe it"]
+        reasons = common if (c.kind, c.matrix) in observable else [*common, "it is not observable in the modes"]
         judged.append(c.model_copy(update={"determined": not reasons, "reason": "; ".join(reasons)}))
     return tuple(judged)
 

@@ -113,7 +113,7 @@ def test_fit_damping_recovers_the_damping_of_the_line(folder: Path) -> None:
     assert results["matching"]["matched_share"] == 1.0
     assert sum(row["value"] for row in results["coefficients"] if row["matrix"] == "mass") > 0.0125
     for row in results["coefficients"]:
-        assert (row["determined"], row["reason"]) == (False, "the modes do not observe it")
+        assert (row["determined"], row["reason"]) == (False, "it is not observable in the modes")
         assert f"\n# not determined, left out: {row['kind']}.{row['matrix']}_coefficient" in text
     assert results["schema"] == "pantocheck.damping/1"
     jsonschema.validate(results, build_schema("damping-fit"))

@@ -171,7 +171,7 @@ def test_modal_bands_give_the_first_groups_their_medians(line: Line) -> None:
 
 def test_too_few_modes_are_refused(line: Line) -> None:
     measured = MeasuredModes(line.frequency[:4], np.full(4, 0.005), np.full(4, 1e-5), np.ones(4, dtype=np.int64))
-    with pytest.raises(InputError, match="4 modes are too few for a fit of 4 coefficients"):
+    with pytest.raises(InputError, match="only 4 modes for a fit of 4 coefficients"):
         fit_damping_model(line.basis.select_modes(np.arange(4)), measured)
 
 

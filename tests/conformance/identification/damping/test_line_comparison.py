@@ -268,7 +268,7 @@ def test_permitted_other_line_is_marked_in_every_file(tmp_path: Path, measured: 
     code, output = fit_other_line(tmp_path, measured, "--other-line", "--element", "1.5")
     assert code == 0
     difference = "length of span 3 is 58.5 m in the record, 63 m on the line"
-    assert "warning: The line of the fit is not the line of the record, so the coefficients" in output
+    assert "warning: The line of the fit is not the line of the record, so that the errors" in output
     results = json.loads((tmp_path / "fit" / "damping.json").read_text())
     assert results["line"]["state"] == "contradicted"
     assert {"fact": "length of span 5", "record": "54 m", "line": "63 m"} in results["line"]["differences"]
@@ -296,7 +296,7 @@ def test_other_line_cannot_carry_a_sensor_that_it_lacks(tmp_path: Path, measured
     ]
     code, output = fit_other_line(tmp_path, beyond, "--other-line")
     assert code == 2
-    assert "a sensor at 500 m, where the line has no contact wire" in output
+    assert "a sensor is at 500 m, where the line has no contact wire" in output
 
 
 COEFFICIENT = Coefficient(kind="contact_wire", matrix="mass", value=0.05, low_95=0.04, high_95=0.06)
@@ -317,10 +317,10 @@ ROW = Observability(
     ("matched", "median_mac", "observable", "reason"),
     [
         (8, 0.9, True, ""),
-        (7, 0.9, True, "7 of 10 modes are matched, 80 % are needed"),
-        (8, 0.89, True, "the median MAC is 0.89, 0.9 is needed"),
+        (7, 0.9, True, "7 of 10 modes are matched, needed are 80 %"),
+        (8, 0.89, True, "the median MAC is 0.89, needed is 0.9"),
         (8, None, True, "single sensor"),
-        (8, 0.9, False, "the modes do not observe it"),
+        (8, 0.9, False, "it is not observable in the modes"),
     ],
 )
 def test_each_threshold_alone_makes_a_coefficient_not_determined(
