@@ -112,11 +112,17 @@ def _find_fault(path: Path, where: str, dialect: tuple[str, str], named: bool) -
     width = lines[0][1].count(delimiter) + 1
     for number, line in lines[named:]:
         cells = [cell.strip() for cell in line.split(delimiter)]
-        if len(cells) != width:
+        if len(cells) < width:
+            return InputError(
+                f"{where}, line {number}",
+                f"has {len(cells)} of {width} values",
+                "Complete or remove this line; the export may have stopped within it.",
+            )
+        if len(cells) > width:
             return InputError(
                 f"{where}, line {number}",
                 f"has {len(cells)} values, expected {width}",
-                "Write one value per column in every line; the export may have stopped within a line.",
+                "Name every column in the head line; if columns are separated by commas, write decimals with points.",
             )
         for column, cell in enumerate(cells, 1):
             if not _is_number(cell, decimal):

@@ -56,15 +56,15 @@ def test_line_of_numbers_with_one_name_is_a_head_line(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "where", "found"),
     [
-        ("a;b\n0;0\n1;1\n2\n3;3\n", "line 4", "has 1 values, expected 2"),
-        ("a;b\n0;0\n1;1\n2\n", "line 4", "has 1 values, expected 2"),
+        ("a;b\n0;0\n1;1\n2\n3;3\n", "line 4", "has 1 of 2 values"),
+        ("a;b\n0;0\n1;1\n2\n", "line 4", "has 1 of 2 values"),
         ("a;b\n0;0\n1\n2;2\n", "line 2, column 1", "'0;0' is not a number"),
         ("a,b\n0,0\n1,1,1\n", "line 3", "has 3 values, expected 2"),
         ("a,b\n0,0\n1, x \n", "line 3, column 2", "'x' is not a number"),
         (f"a,b\n0,0\n{'y' * 50},1\n", "line 3, column 1", f"'{'y' * 40}' is not a number"),
         ("0,0\n1,x\n", "line 2, column 2", "'x' is not a number"),
         ("# c\n\na,b\n0,0\n\nx,1\n", "line 6, column 1", "'x' is not a number"),
-        ("a,b\n0,0\n# end\n", "line 3", "has 1 values, expected 2"),
+        ("a,b\n0,0\n# end\n", "line 3", "has 1 of 2 values"),
         ("a,b\n", "", "holds a head line but no samples"),
         ("# only\n# comments\n", "", "holds no line of data"),
     ],
@@ -74,6 +74,14 @@ def test_fault_is_named_with_its_line_and_column(text: str, where: str, found: s
         read(tmp_path, text)
     assert caught.value.where == ", ".join(filter(None, ("record 'r.csv'", where)))
     assert caught.value.found == found
+
+
+@pytest.mark.parametrize(
+    ("row", "advice"), [("1", "may have stopped within it"), ("1,5,2", "write decimals with points")]
+)
+def test_short_line_and_long_line_have_their_own_advice(row: str, advice: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=advice):
+        read(tmp_path, f"a,b\n0,0\n{row}\n")
 
 
 @pytest.mark.parametrize("text", ["a,b\n0,1\n2,3\n4,5\n", "0,1\n2,3\n4,5\n"])

@@ -89,7 +89,7 @@ DAMAGES = {
         "not finite, the first at 0.04 s",
     ),
     "text": (csv_damage(lambda t: t.replace(t.splitlines()[5].split(",")[1], "oops", 1)), "'oops' is not a number"),
-    "cut line": (csv_damage(lambda t: t[:-30]), "line 401: has 2 values, expected 4"),
+    "cut line": (csv_damage(lambda t: t[:-30]), "line 401: has 2 of 4 values"),
     "no samples": (csv_damage(lambda t: t.splitlines()[0] + "\n"), "no samples"),
     "missing column": (
         csv_damage(lambda t: "\n".join(line.rsplit(",", 1)[0] for line in t.splitlines())),

@@ -182,9 +182,9 @@ def renamed_column(path: Path, old: str, new: str) -> Path:
 @pytest.mark.parametrize(
     ("line", "text", "message"),
     [
-        (5, "x,1,2,3", "line 5: has 4 values, expected 15"),
+        (5, "x,1,2,3", "line 5: has 4 of 15 values"),
         (5, "abc" + ",1" * 14, "line 5, column 1: 'abc' is not a number"),
-        (5, "1,2,3", "line 5: has 3 values, expected 15"),
+        (5, "1,2,3", "line 5: has 3 of 15 values"),
         (5, "0.003,260,nan" + ",1" * 12, "channel force: 1 values are not finite, the first at sample 4"),
         (5, "0.003,260,-1e300" + ",1" * 12, "force_1_N: sample 4 has the impossible value -1e\\+300"),
         (1, "1" + ",1" * 14, "has no head line"),
