@@ -47,6 +47,11 @@ def test_runs_follow_their_numbers(quantity: str, tmp_path: Path) -> None:
         assert (table.rate, table.attributes["test"]) == (50.0, "T")
 
 
+def test_two_runs_are_numbered(tmp_path: Path) -> None:
+    write_runs(tmp_path / "r.h5", "1", "2")
+    assert [table.run for table in read(tmp_path / "r.h5")] == [1, 2]
+
+
 def test_channels_are_those_of_the_description(tmp_path: Path) -> None:
     write_runs(tmp_path / "r.h5", "1", rate=None)
     (table,) = read(tmp_path / "r.h5")

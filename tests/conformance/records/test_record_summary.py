@@ -136,7 +136,7 @@ def test_statistic_beyond_the_rounding_of_print_is_a_contradiction(
         summary = open_record(change_summary(tmp_path, {"pantograph": tables}))
         assert isinstance(summary, RecordSummary)
         assert len(summary.contradictions) == contradicts
-        assert all(text.startswith(f"{quantity} of pantograph {number} is given as") for text in summary.contradictions)
+        assert all(text.startswith(f"{quantity} of pantograph {number} is ") for text in summary.contradictions)
 
 
 @pytest.mark.parametrize("missing", ["mean_force_N", "std_force_N"])
@@ -165,7 +165,7 @@ def test_quantities_of_each_pantograph_and_of_the_line_stay_apart(tmp_path: Path
     assert evaluation.values == {0: changes["quantities"], 1: tables[0], 2: tables[1]}
     assert "max_uplift_at_support_mm" not in evaluation.skipped[0]
     assert "mean_force_N" not in evaluation.skipped[1]
-    assert evaluation.skipped[2]["mean_force_N"] == "the summary record does not give it"
+    assert evaluation.skipped[2]["mean_force_N"] == "the summary does not state this quantity"
 
 
 @pytest.mark.parametrize(
@@ -183,7 +183,7 @@ def test_values_at_a_bound_are_possible(changes: dict[str, Any], tmp_path: Path)
 
 
 def test_empty_section_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="the analysis section ends before it begins"):
+    with pytest.raises(InputError, match="the end is not greater than the start"):
         open_record(change_summary(tmp_path, {"evaluated_m": [360.0, 360.0]}))
 
 

@@ -354,7 +354,7 @@ def test_mean_speed_is_that_of_the_steady_part_of_the_speed_channel() -> None:
     found = ready(replace(samples, speed=speed), evaluated_m=[100.0, 964.0])
     assert found.speed == pytest.approx(1.01 * SPEED, rel=1e-9)
     assert found.warnings == (
-        f"3.3 % of the record was cut: the speed differs by more than 5 % from 250 km/h, first at {SPEED * 29:.1f} m",
+        f"3.3 % of the record was cut, first at {SPEED * 29:.1f} m: the speed differs by more than 5 % from 250 km/h",
     )
 
 
@@ -369,7 +369,7 @@ def test_missing_force_and_uplift_are_reported_with_their_shares() -> None:
     found = ready(lines, support_position_m=[300.0, 360.0], evaluated_m=[100.0, 964.0])
     assert found.warnings == (
         "0.02 % of the force of pantograph 1 is missing, first at 694.4 m",
-        "5 % of the uplift is missing: a support with missing values is not evaluated",
+        "5 % of the uplift is missing; supports with missing values are not evaluated",
     )
     assert list(found.line.support_position) == [300.0]
 

@@ -42,7 +42,7 @@ def test_samples_without_an_axis_are_discarded(channel: str) -> None:
     assert_array_equal(placed.samples.force, FORCE[:, kept])
     assert_array_equal(placed.time, TIME[kept])
     assert_allclose(placed.position, [POSITION[kept], POSITION[kept] - 100], rtol=1e-12)
-    assert placed.warnings == ("2 % of the samples have no time or position and were discarded",)
+    assert placed.warnings == ("2 % of the samples were discarded: they have no time or no position",)
 
 
 def test_position_missing_for_one_pantograph_discards_the_sample() -> None:
@@ -69,7 +69,7 @@ def test_samples_of_a_standing_train_are_discarded_where_time_follows_from_speed
 def test_train_that_stands_still_has_no_record(moving: int) -> None:
     """One sample has a place, but no duration."""
     speed = np.where(np.arange(N) < N - moving, 0.0, 50.0)
-    with pytest.raises(RecordInvalid, match="speed: the train stands still at nearly every sample"):
+    with pytest.raises(RecordInvalid, match="speed: fewer than two samples have a positive speed"):
         place(speed=speed, position=POSITION[None])
 
 
@@ -106,20 +106,32 @@ def test_pulse_counter_is_interpolated_between_its_steps() -> None:
 @pytest.mark.parametrize(
     ("channels", "message"),
     [
-        ({"time": change(TIME, 70, TIME[69]), "position": POSITION[None]}, "time: does not increase from sample 70 "),
-        ({"time": TIME, "position": change(POSITION[None], 70, 0.0)}, "position: does not increase from sample 70 "),
-        ({"position": change(POSITION[None], 70, POSITION[69])}, "does not increase from sample 70 "),
+        (
+            {"time": change(TIME, 70, TIME[69]), "position": POSITION[None]},
+            "time: the value of sample 71 is not greater than that of sample 70",
+        ),
+        (
+            {"time": TIME, "position": change(POSITION[None], 70, 0.0)},
+            "position: the value of sample 71 is not greater than that of sample 70",
+        ),
+        (
+            {"position": change(POSITION[None], 70, POSITION[69])},
+            "the value of sample 71 is not greater than that of sample 70",
+        ),
         # The counter stands still: one step at the beginning only.
-        ({"time": TIME, "position": np.full((1, N), 300.0)}, "position: does not increase from sample 1 "),
+        (
+            {"time": TIME, "position": np.full((1, N), 300.0)},
+            "position: the value of sample 2 is not greater than that of sample 1",
+        ),
         # The second pantograph alone goes back.
         (
             {"time": TIME, "position": np.array([POSITION, change(POSITION, 90, 0.0)])},
-            "position: does not increase from sample 90 ",
+            "position: the value of sample 91 is not greater than that of sample 90",
         ),
         # Both have a fault: that of the earlier sample is named.
         (
             {"time": TIME, "position": np.array([change(POSITION, 120, 0.0), change(POSITION, 90, 0.0)])},
-            "position: does not increase from sample 90 ",
+            "position: the value of sample 91 is not greater than that of sample 90",
         ),
     ],
 )
