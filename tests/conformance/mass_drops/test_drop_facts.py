@@ -253,7 +253,7 @@ def test_quantity_of_the_sidecar_is_that_of_the_units(quantity: str | None, refu
     sidecar = DropSidecar.model_validate({"record": recording, "channel": [channel]})
     if refused:
         with pytest.raises(
-            InputError, match="key record.quantity: found 'velocity', but the units are those of acceleration"
+            InputError, match=r"key record\.quantity: found 'velocity', but the units are those of acceleration"
         ):
             assemble_drop_record(build_table(NOISE), sidecar)
     else:
