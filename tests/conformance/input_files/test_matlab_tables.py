@@ -100,6 +100,14 @@ def test_numbers_that_look_like_a_compressed_variable_are_read(tmp_path: Path) -
     assert_array_equal(read(tmp_path, {"signals": samples}).values, samples)
 
 
+def test_search_for_large_compressed_data_does_not_stop_at_the_limit(tmp_path: Path) -> None:
+    """The data are inflated in parts of 2^20 bytes; two of them are the limit for 2^17 numbers, and here are five."""
+    largest = 2**17
+    scipy.io.savemat(tmp_path / "r.mat", {"signals": SAMPLES, "note": "a" * (5 * 2**20)}, do_compression=True)
+    with pytest.raises(InputError, match="more than 131072 numbers"):
+        read_tables(tmp_path / "r.mat", (), largest)
+
+
 @pytest.mark.parametrize("order", ["<", ">"])
 @pytest.mark.parametrize(("excess", "refused"), [(0, False), (1, True)])
 def test_compressed_data_may_fill_eight_bytes_per_number_and_a_mebibyte(

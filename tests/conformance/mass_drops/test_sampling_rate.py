@@ -54,3 +54,55 @@ def test_printed_times_are_even(digits: int) -> None:
     """A step of 2.5 ms, printed to a millisecond, is 2 ms or 3 ms: less than half a step from the mean."""
     time = np.round(np.arange(N) / RATE, digits)
     assert find_sampling_rate(build_table(time), None) == pytest.approx(RATE, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("time", "message"),
+    [
+        (np.where(np.arange(N) == 700, np.nan, np.arange(N) / RATE), "the time of sample 701 is not finite"),
+        (np.where(np.arange(N) >= 700, np.inf, np.arange(N) / RATE), "the time of sample 701 is not finite"),
+        (np.zeros(N), "the time column does not increase"),
+        (-np.arange(N) / RATE, "the time column does not increase"),
+    ],
+)
+def test_time_increases_and_has_no_missing_value(time: RealArray, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        find_sampling_rate(build_table(time), None)
+
+
+@pytest.mark.parametrize("shift", [-0.49, 0.49, -0.51, 0.51])
+def test_sample_is_displaced_by_less_than_half_a_step(shift: float) -> None:
+    """A step of 2.5 ms; a sample 1.275 ms late is followed by a short step."""
+    time = np.arange(N) / RATE
+    time[600] += shift / RATE
+    if abs(shift) < 0.5:
+        assert find_sampling_rate(build_table(time), None) == pytest.approx(RATE, rel=1e-12)
+    else:
+        with pytest.raises(InputError, match=r"s after 1\.\d+ s, but by 0\.0025 s on average"):
+            find_sampling_rate(build_table(time), None)
+
+
+@pytest.mark.parametrize("start", [0.0, 10.0, -3.0])
+def test_time_may_begin_anywhere(start: float) -> None:
+    assert find_sampling_rate(build_table(start + np.arange(N) / RATE), None) == pytest.approx(RATE, rel=1e-9)
+
+
+@pytest.mark.parametrize(("rate", "possible"), [(0.1, True), (0.099, False), (1e6, True), (1.01e6, False)])
+def test_rate_lies_between_a_tenth_and_a_million_hertz(rate: float, possible: bool) -> None:
+    if possible:
+        assert find_sampling_rate(build_table(rate=rate), None) == rate
+    else:
+        with pytest.raises(InputError, match=r"Give a rate from 0\.1 to 1e\+06 Hz"):
+            find_sampling_rate(build_table(rate=rate), None)
+
+
+def test_every_source_is_checked() -> None:
+    """The second and the third source of the rate, where the first is right."""
+    with pytest.raises(InputError, match="the file states a sampling rate of 0 Hz"):
+        find_sampling_rate(build_table(rate=0.0), build_sidecar(RATE))
+    time = np.arange(N) / (1.01 * RATE)
+    with pytest.raises(InputError, match="the sidecar states a sampling rate of 400 Hz, but the time column 404 Hz"):
+        find_sampling_rate(build_table(time, RATE), build_sidecar(RATE))
+    with pytest.raises(InputError, match="states no sampling rate"):
+        find_sampling_rate(build_table(), None)
+    assert find_sampling_rate(build_table(np.arange(N) / RATE, 1.0005 * RATE), None) == 1.0005 * RATE

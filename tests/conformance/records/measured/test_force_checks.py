@@ -80,8 +80,8 @@ def signals(*tones: tuple[float, float], rate: float = 500.0, seconds: float = 2
         ([(4, 20), (40, 0.1)], False),
         ([(21, 20), (40, 0.1)], False),
         # The reference is at least a thousandth of the standard deviation.
-        ([(1, 100), (10, 0.15)], True),
-        ([(1, 100), (10, 0.05)], False),
+        ([(1, 100), (10, 0.11)], True),
+        ([(1, 100), (10, 0.09)], False),
         ([(10, 0)], False),
     ],
 )

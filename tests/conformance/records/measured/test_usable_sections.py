@@ -67,13 +67,13 @@ def section(time: RealArray, height: bool = True) -> UsableSection:
 
 
 def test_even_samples_are_kept() -> None:
-    """300 samples, whose count is not large against one sample; the times are rounded by 0.9 % of a step."""
+    """300 samples, of which one is 0.3 %. The times are rounded by up to 1 % of a step, the rate by 0.1 %."""
     time = np.arange(300) / 100
     channels = section(time)
     rounding = 0.9e-4 * (-1.0) ** np.arange(300)
     rounding[[0, -1]] = 0.0
-    for rounded in (time, time + rounding):
-        kept = resample_section(rounded, channels, 100.0)
+    for rounded, rate in ((time, 100.0), (time + rounding, 100.0), (time, 100.08), (time, 99.92)):
+        kept = resample_section(rounded, channels, rate)
         assert kept.force is channels.force
         assert kept.position is channels.position
         assert kept.height is channels.height
@@ -84,7 +84,7 @@ def test_even_samples_are_kept() -> None:
     [
         (np.arange(300) / 100, 100.2, 300),  # even at another rate
         (np.arange(300) / 100, 99.8, 299),
-        (np.arange(300) / 100 + 2e-4 * (-1.0) ** np.arange(300), 100.0, 299),  # rounded by 2 % of a step
+        (np.arange(300) / 100 + 1.5e-4 * np.sin(np.pi * (np.arange(300) % 3) / 2), 100.0, 300),  # 1.5 % of a step
         (7 + np.linspace(0, 1, 300) ** 1.1 * 2.99, 100.0, 300),  # uneven
     ],
 )
