@@ -1,7 +1,10 @@
 """Runner: verdicts of cases and suite, isolation of failures, reproducible results."""
 
 import json
+import multiprocessing
 import re
+import sys
+import time
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
@@ -11,6 +14,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from helpers.waiting_system import Waiting
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases, source_text
@@ -19,7 +23,7 @@ from pantocheck.conformance.grading.criterion_grading import criterion_name
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.results.outcome import Delivered, Errored, Outcome, Skipped
-from pantocheck.conformance.results.results_format import Results
+from pantocheck.conformance.results.results_format import CaseResult, Results
 from pantocheck.conformance.runner import RunInterrupted, run_cases
 from pantocheck.conformance.schemas import build_schema
 from pantocheck.conformance.systems.record_folder import RecordFolder, open_record_folder
@@ -268,3 +272,56 @@ def test_cases_that_require_each_other_are_skipped(cases: list[Case], recorded: 
     ]
     for jobs in (1, 2):
         assert [case.verdict for case in run_cases(loop, recorded, jobs=jobs).cases] == ["skip", "skip"]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="signals as on Linux")
+@pytest.mark.parametrize("deaf", [False, True])
+def test_interrupted_parallel_run_ends_every_worker(cases: list[Case], tmp_path: Path, deaf: bool) -> None:
+    """A worker ends its case after a signal; one that ignores the signal is killed after the grace of 2 s.
+
+    Both waiting cases would run for a minute. A start of three interpreters and the end of the pool take seconds.
+    """
+    waiting = [replace(cases[1], file=cases[1].file.model_copy(update={"id": f"own/{name}"})) for name in "ab"]
+    system = Waiting(tmp_path, cases[0].id, len(waiting), deaf)
+    interrupted = []
+
+    def interrupt(result: CaseResult) -> None:
+        interrupted.append(time.monotonic())
+        raise KeyboardInterrupt
+
+    with pytest.raises(RunInterrupted) as caught:
+        run_cases([cases[0], *waiting], system, jobs=3, progress=interrupt)
+    assert time.monotonic() - interrupted[0] < 30
+    assert multiprocessing.active_children() == []
+    assert len(list(tmp_path.glob("ended-*"))) == (0 if deaf else 2)
+    assert [case.reason for case in caught.value.results.cases] == [
+        "all have begun",
+        *["the run was interrupted before this case was finished"] * 2,
+    ]
+
+
+@pytest.mark.parametrize(("length", "kept"), [(299, 299), (300, 300), (301, 300), (5000, 300)])
+def test_long_reason_of_an_exception_is_cut(case_250: Case, length: int, kept: int) -> None:
+    (result,) = run_cases([case_250], Scripted({case_250.id: ValueError("x" * length)})).cases
+    assert result.reason == "ValueError: " + "x" * kept
+
+
+def test_exception_without_a_text_is_named(case_250: Case) -> None:
+    (result,) = run_cases([case_250], Scripted({case_250.id: ZeroDivisionError()})).cases
+    assert (result.verdict, result.reason) == ("error", "ZeroDivisionError")
+
+
+def test_requirements_of_requirements_come_first(cases: list[Case], wave: type[Wave]) -> None:
+    """c requires b, b requires a: run in the order a, b, c, reported as given; a failure of a skips c as well as b."""
+
+    def case(name: str, *required: str, upper: float = 300.0) -> Case:
+        file = cases[0].file.model_copy(update={"id": name, "requires": required})
+        return limited(replace(cases[0], file=file), ("mean_force_N", 0.0, upper))
+
+    order: list[str] = []
+    given = [case("c", "b"), case("b", "a"), case("a")]
+    results = run_cases(given, wave(), progress=lambda result: order.append(result.id))
+    assert order == ["a", "b", "c"]
+    assert [(result.id, result.verdict) for result in results.cases] == [("c", "pass"), ("b", "pass"), ("a", "pass")]
+    failed = run_cases([*given[:2], case("a", upper=1.0)], wave())
+    assert [result.reason for result in failed.cases[:2]] == ["requires a, whose verdict is fail"] * 2
