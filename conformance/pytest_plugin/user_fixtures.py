@@ -96,13 +96,13 @@ def unverified_line(result: CaseResult) -> str:
 
 
 def criterion_line(criterion: Criterion) -> str:
-    """Line of a criterion: name, value, limits, and the reason if it is not met."""
+    """Line of a criterion that does not pass: name, value, limits and reason."""
     name = criterion_name(criterion)
     if criterion.value is None:
         return f"{name}: {criterion.verdict}, {criterion.reason}"
     bounds = " to ".join("any" if bound is None else f"{bound:g}" for bound in (criterion.lower, criterion.upper))
-    text = f"{name} = {criterion.value:.4g} {criterion.unit}".rstrip() + f", limits {bounds}"
-    return f"{text}: {criterion.reason}" if criterion.reason else text
+    value = f"{criterion.value:.4g} {criterion.unit}".rstrip()
+    return f"{name} = {value}, limits {bounds}: {criterion.reason}"
 
 
 def run_and_grade(

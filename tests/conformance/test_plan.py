@@ -72,3 +72,62 @@ def test_wrong_option_is_reported_before_anything_runs(
     plan = Plan.model_validate({"cases": ("en50318-2002/250",), "out": str(tmp_path / "report")} | options)
     with pytest.raises(InputError, match=message):
         prepare_plan(plan).start_system()
+
+
+TWO = ("en50318-2002/250", "en50318-2002/300")
+
+
+@pytest.mark.parametrize(
+    ("cases", "information", "listed"),
+    [
+        (TWO, (), ()),
+        (TWO, ("*/300",), ("en50318-2002/300",)),
+        (TWO, ("*/300", "*/250"), TWO),
+        (TWO, ("*/300", "en50318-2002/*"), TWO),
+        (("en50318-2018/ac-simple/275",), (), ()),
+        (("en50318-2018/ac-simple/275",), ("*/275",), ("en50318-2018/ac-simple/275",)),
+    ],
+)
+def test_cases_for_information_are_those_of_any_pattern(
+    cases: tuple[str, ...], information: tuple[str, ...], listed: tuple[str, ...]
+) -> None:
+    """A case that the user names takes part in the verdict, even if none of its limits counts."""
+    prepared = prepare_plan(Plan(cases=cases, information=information))
+    assert prepared.participation.information == listed
+
+
+def test_default_run_shows_required_cases_without_limits_for_information() -> None:
+    """A limit of the user at one case of AC simple counts; the static case that it requires has none that counts."""
+    prepared = prepare_plan(Plan(trust="secondary"))
+    counting = {
+        case.id for case in prepared.cases if any(limit.trust in ("primary", "secondary") for limit in case.limits)
+    }
+    assert set(TWO) <= counting
+    assert set(prepared.participation.information) == {case.id for case in prepared.cases} - counting
+
+
+@pytest.mark.parametrize("information", [("*/320",), ("*/250", "*/320"), ("*/320", "*/250")])
+def test_pattern_that_matches_no_case_is_refused(information: tuple[str, ...]) -> None:
+    number = information.index("*/320") + 1
+    with pytest.raises(InputError, match=rf"key information\[{number}\]: no case of this run matches '\*/320'"):
+        prepare_plan(Plan(cases=TWO, information=information))
+
+
+def test_paths_of_a_plan_are_relative_to_its_file(tmp_path: Path) -> None:
+    """Case files, records, results, baseline and limits; ids of the library stay as they are."""
+    (tmp_path / "records").mkdir()
+    path = tmp_path / "conformance.toml"
+    path.write_text(
+        'system = "record:records"\ncases = ["own.toml", "en50318-2002/250"]\nout = "certificates"\n'
+        'baseline = "b.json"\nlimits = "limits.toml"\n'
+    )
+    plan = read_plan(path)
+    assert plan.cases == (str(tmp_path / "own.toml"), "en50318-2002/250")
+    assert plan.system == f"record:{tmp_path / 'records'}"
+    assert [plan.out, plan.baseline, plan.limits] == [
+        str(tmp_path / name) for name in ("certificates", "b.json", "limits.toml")
+    ]
+    path.write_text('system = "record:en50318-2002/known-passing-code"\n')
+    plan = read_plan(path)
+    assert (plan.system, plan.baseline, plan.limits) == ("record:en50318-2002/known-passing-code", None, None)
+    assert (plan.timeout_s, plan.jobs, plan.trust) == (600.0, 1, "secondary")

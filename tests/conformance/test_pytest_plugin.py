@@ -14,7 +14,9 @@ import pytest
 from helpers.toml_edit import edit_toml, write_toml
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.library import load_case, select_cases
+from pantocheck.conformance.grading.criterion_grading import Requirement, build_criterion
 from pantocheck.conformance.pytest_plugin import collection  # noqa: F401 - once here, or anew in every session below
+from pantocheck.conformance.pytest_plugin.user_fixtures import criterion_line
 from pantocheck.conformance.records.record_writing import write_record
 
 pytest_plugins = ["pytester"]
@@ -158,7 +160,8 @@ def test_missing_records_are_reported_in_one_line(pytester: pytest.Pytester, pla
     done.stdout.no_fnmatch_line("*raise InputError*")
 
 
-def test_drift_from_a_baseline_fails_the_session(pytester: pytest.Pytester, plan: Path) -> None:
+@pytest.mark.parametrize("case", [0, 1])
+def test_drift_from_a_baseline_fails_the_session(pytester: pytest.Pytester, plan: Path, case: int) -> None:
     edit_toml(plan, {"system": PUBLISHED, "accept_unverified": [CODE]})
     assert session(pytester, "conformance.toml", "--pantocheck-out", "before").ret == 0
     (pytester.path / "before" / "results.json").rename(pytester.path / "baseline.json")
@@ -166,12 +169,14 @@ def test_drift_from_a_baseline_fails_the_session(pytester: pytest.Pytester, plan
     chosen = ("conformance.toml", "-k", "mean_force")
     assert session(pytester, *chosen).ret == 0
     content = json.loads((pytester.path / "baseline.json").read_text())
-    content["cases"][0]["quantities"]["1"]["std_force_N"] *= 1.05
+    content["cases"][case]["quantities"]["1"]["std_force_N"] *= 1.05
     (pytester.path / "baseline.json").write_text(json.dumps(content))
     done = session(pytester, *chosen)
     done.assert_outcomes(passed=2, deselected=14)
     assert done.ret == 1
-    done.stdout.fnmatch_lines(["conformance.toml: 1 values drifted from the baseline *baseline.json"])
+    done.stdout.fnmatch_lines(
+        ["*= pantocheck =*", "conformance.toml: 1 values drifted from the baseline *baseline.json"]
+    )
 
 
 def test_session_passes_only_with_the_verdict_pass(pytester: pytest.Pytester, plan: Path) -> None:
@@ -218,6 +223,32 @@ def test_check_fails_on_uncounted_limits_and_unverified_records(pytester: pytest
         """
     )
     session(pytester).assert_outcomes(passed=2)
+
+
+def test_criteria_of_a_case_are_one_group_of_xdist(pytester: pytest.Pytester, plan: Path) -> None:
+    """With `--dist loadgroup` one worker takes a case; without the plugin its mark would be unknown."""
+    grouped = session(pytester, "--collect-only", "-q", "conformance.toml", "-m", "xdist_group")
+    assert grouped.stdout.str().count("conformance.toml::") == 16
+    alone = session(pytester, "--collect-only", "-q", "conformance.toml", "-p", "no:xdist", "-W", "error")
+    assert alone.ret == 0
+    assert alone.stdout.str().count("conformance.toml::") == 16
+
+
+@pytest.mark.parametrize(
+    ("value", "lower", "upper", "name", "line"),
+    [
+        (158.6, 175.0, 210.0, "max_force_N", "max_force_N of pantograph 2 = 158.6 N, limits 175 to 210: "
+         "16.4 N below the lower limit"),
+        (0.35, None, 0.3, "cov_20", "cov_20 of pantograph 2 = 0.35, limits any to 0.3: 0.05 above the upper limit"),
+        (1.0, 2.0, None, "cov_20", "cov_20 of pantograph 2 = 1, limits 2 to any: 1 below the lower limit"),
+        (None, 0.0, 1.0, "cov_20", "cov_20 of pantograph 2: skip, not delivered"),
+    ],
+)  # fmt: skip
+def test_line_of_a_criterion(
+    value: float | None, lower: float | None, upper: float | None, name: str, line: str
+) -> None:
+    requirement = Requirement(name, 2, None, lower, upper, "primary", "test")
+    assert criterion_line(build_criterion(requirement, value, "not delivered", "primary")) == line
 
 
 def test_invalid_plan_is_reported_with_a_hint(pytester: pytest.Pytester, plan: Path) -> None:
