@@ -131,7 +131,7 @@ def test_fit_damping_recovers_the_damping_of_the_line(folder: Path) -> None:
         (b"", "is not valid JSON"),
         (b"{}", "valid list"),
         (b'[{"frequency_Hz": -1}]', "key [1].frequency_Hz"),
-        (b"[]", "holds no certain mode"),
+        (b"[]", "holds no certain vertical mode in a group"),
     ],
 )
 def test_bad_modes_are_refused(tmp_path: Path, content: bytes, message: str) -> None:
