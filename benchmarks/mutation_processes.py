@@ -132,6 +132,7 @@ def _do(tree: Path, work: Callable[[], int], limit: int) -> NoReturn:
         scripts = Path(__file__).resolve().parent
         sys.path[:] = [names, *(name for name in sys.path if name and Path(name).resolve() != scripts)]
         sys.argv = ["pytest"]
+        vars(sys.modules["__main__"]).pop("__file__", None)  # or a worker that a test spawns would import this program
         resource.setrlimit(resource.RLIMIT_CPU, (limit, limit + 5))
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY_BYTES, MEMORY_BYTES))
         resource.setrlimit(resource.RLIMIT_FSIZE, (FILE_BYTES, FILE_BYTES))

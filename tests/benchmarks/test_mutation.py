@@ -95,7 +95,12 @@ def toy(tmp_path: Path) -> Path:
     (root / "tests" / "test_limits.py").write_text(
         "from toy.limits import count_down, reaches\n\n\n"
         "def test_reaches():\n    assert reaches(3, 2) and not reaches(1, 2)\n\n\n"
-        "def test_count_down():\n    assert count_down(3) == 0\n"
+        "def test_count_down():\n    assert count_down(3) == 0\n\n\n"
+        "def test_reaches_in_a_worker():\n"
+        "    from concurrent.futures import ProcessPoolExecutor\n"
+        "    from multiprocessing import get_context\n"
+        "    with ProcessPoolExecutor(1, get_context('spawn')) as pool:\n"
+        "        assert pool.submit(reaches, 3, 2).result()\n"
     )
     (root / "mutation.toml").write_text(
         'seed = 1\n[areas.toy]\nmutants = 100\nfiles = ["toy/*.py"]\n[[equivalent]]\nfile = "toy/limits.py"\n'
@@ -129,7 +134,7 @@ def test_outcomes_on_a_toy_package(toy: Path, tmp_path: Path) -> None:
         assert done.stderr == ""
         return done.stdout
 
-    run("--seconds", "0")
+    assert "traced tests/test_limits.py: 3 tests, 0 not passed" in run("--seconds", "0")
     run()
     results = json.loads((tmp_path / "out" / "results.json").read_text())["mutants"]
     outcomes = {(entry["source"], entry["change"]): entry["outcome"] for entry in results.values()}
