@@ -167,8 +167,9 @@ def _diagnose(number: int, fit: ResponseFit, step: float, filter_applied_Hz: flo
     if not samples or not correlation >= 1 - CLEAR:  # the correlation with a constant force is nan
         share = 100 * max(0.0, 1 - fit.unexplained)
         return Finding("contradiction", f"{mismatch}: the force explains only {share:.0f} % of the motion")
-    text = f"{mismatch}: the force {'lags' if delay > 0 else 'leads'} the height by about {abs(delay):.1g} s"
-    if filter_applied_Hz is not None and 0 < delay < CAUSAL_DELAY_PERIODS / filter_applied_Hz:
+    lags = delay > 0
+    text = f"{mismatch}: the force {'lags' if lags else 'leads'} the height by about {abs(delay):.1g} s"
+    if lags and filter_applied_Hz is not None and delay < CAUSAL_DELAY_PERIODS / filter_applied_Hz:
         return Finding("doubt", f"{text}, as after a causal filter")
     return Finding("contradiction", text)
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.consistency.check import Check, Finding, worst_finding
-from pantocheck.conformance.quantities.filters import CUTOFF_TOLERANCE, HIGHEST_SHARE_OF_RATE
+from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE, is_same_cutoff
 from pantocheck.conformance.records.record_signals import RecordSignals
 
 STOP_BAND = (2.0, 2.5)
@@ -27,7 +27,7 @@ def _check_roll_off(case: Case, signals: RecordSignals) -> Finding | None:
     """
     record, low_pass = signals.record, case.file.filter.low_pass
     applied, cutoff = record.filter_applied_Hz, low_pass.cutoff_Hz
-    if applied is None or abs(applied / cutoff - 1) > CUTOFF_TOLERANCE:
+    if applied is None or not is_same_cutoff(applied, cutoff):
         return None  # delivered unfiltered, or filtered again by the suite
     if STOP_BAND[1] * cutoff > HIGHEST_SHARE_OF_RATE * record.rate:
         return Finding("unchecked", f"the roll-off check was not made: a rate of {record.rate:g} Hz is too low")

@@ -11,7 +11,7 @@ from pantocheck.conformance.cases.profile_file import Profile
 from pantocheck.conformance.input_files.bounded_file import file_digest
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value, evaluate_signals, skip_record
-from pantocheck.conformance.quantities.filters import CUTOFF_TOLERANCE
+from pantocheck.conformance.quantities.filters import is_same_cutoff
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.records.measured.block_bootstrap import FEWEST_BLOCKS, bootstrap_uncertainties
 from pantocheck.conformance.records.measured.line_supports import list_line_supports
@@ -173,7 +173,7 @@ def _missing_statement(samples: RecordSamples, sidecar: RecordSidecar) -> str | 
 
 def _assess_summary(path: Path, summary: RecordSummary, profile: Profile, line: LineTable) -> AssessedRecord:
     cutoff = profile.filter.cutoff_Hz
-    if not abs(summary.filter_cutoff_Hz / cutoff - 1) <= CUTOFF_TOLERANCE:
+    if not is_same_cutoff(summary.filter_cutoff_Hz, cutoff):
         raise InputError(
             f"summary record '{path.name}', key filter_cutoff_Hz",
             f"the force was filtered at {summary.filter_cutoff_Hz:g} Hz, profile {profile.name} requires {cutoff:g} Hz",

@@ -99,6 +99,11 @@ class LowPass:
         return np.asarray(np.abs(response) ** (2 if self.phase == "zero" else 1))
 
 
+def is_same_cutoff(stated_Hz: float, cutoff_Hz: float) -> bool:
+    """Whether a stated cut-off is that of a filter [Hz], up to `CUTOFF_TOLERANCE`."""
+    return abs(stated_Hz / cutoff_Hz - 1) <= CUTOFF_TOLERANCE
+
+
 def needs_filter(low_pass: LowPass, filter_applied_Hz: float | None) -> bool:
     """Whether a delivered force must still be filtered.
 

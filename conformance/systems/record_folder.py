@@ -9,7 +9,7 @@ from pantocheck.conformance.cases.library import library_folder, source_text
 from pantocheck.conformance.grading.record_mismatch import SECTION_TOLERANCE_M
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_toml
-from pantocheck.conformance.quantities.filters import CUTOFF_TOLERANCE
+from pantocheck.conformance.quantities.filters import is_same_cutoff
 from pantocheck.conformance.records.record import SPEED_TOLERANCE
 from pantocheck.conformance.records.record_reading import RECORD_SCHEMAS, open_record, read_record, record_digest
 from pantocheck.conformance.records.record_summary import RecordSummary
@@ -76,7 +76,7 @@ def _find_mismatch(summary: RecordSummary, case: Case) -> str | None:
         return f"the summary record has {len(summary.pantograph)} pantographs, the case has {len(case.pantographs)}"
     if speed is not None and not abs(summary.speed_km_h / speed - 1) <= SPEED_TOLERANCE:
         return f"the summary record is of {summary.speed_km_h:g} km/h, the case runs at {speed:g} km/h"
-    if not abs(summary.filter_cutoff_Hz / cutoff - 1) <= CUTOFF_TOLERANCE:
+    if not is_same_cutoff(summary.filter_cutoff_Hz, cutoff):
         return f"the summary record has a filter of {summary.filter_cutoff_Hz:g} Hz, the case requires {cutoff:g} Hz"
     section, (start, end) = summary.evaluated_m, case.analysis_section
     if section is not None and not max(abs(section[0] - start), abs(section[1] - end)) <= SECTION_TOLERANCE_M:

@@ -123,6 +123,7 @@ def test_mean_without_contact_has_no_coefficient_of_variation(ungraded: Results)
     ("frequency", "amplitude", "checked"),
     [
         ([1.0, 2.0, 3.0, 4.0], [3.0, 0.0, 4.0, 0.0], True),
+        ([0.0, 1.0, 2.0, 3.0], [7.0, 3.0, 0.0, 4.0], True),  # the mean belongs to no band
         ([1.0, 2.0, 3.0, 4.1], [3.0, 0.0, 4.0, 0.0], False),  # a line is missing: the curve was thinned
         ([1.0, 2.0, 3.0, 4.0001], [3.0, 0.0, 4.0, 0.0], False),
         ([1.0, 2.0, 3.0, 4.00002], [3.0, 0.0, 4.0, 0.0], True),  # six digits

@@ -124,6 +124,14 @@ def test_command_writes_a_file_per_drop(drop_case: DropCase, tmp_path: Path) -> 
     assert [read_drop_records(tmp_path / f"all-{n}.csv")[0].drop.mass for n in (1, 2, 3)] == [40.0, 30.0, 20.0]
 
 
+def test_single_drop_of_a_case_keeps_the_name_of_the_file(drop_case: DropCase, tmp_path: Path) -> None:
+    path = drop_case({})
+    (first, *_) = tomllib.loads(path.read_text(encoding="utf-8"))["mass_drop"]["drop"]
+    done = pantocheck("drop", drop_case({"mass_drop.drop": [first]}), "--out", tmp_path / "one.csv")
+    assert done.exit_code == 0, done.output
+    assert [path.name for path in tmp_path.glob("one*.csv")] == ["one.csv"]
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
