@@ -7,7 +7,9 @@ from typing import Literal
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.records.record_signals import RecordSignals
 
-CheckName = Literal["coverage", "motion", "support passing", "roll-off", "dynamics"]
+CheckName = Literal[
+    "coverage", "motion", "support passing", "coincidence", "roll-off", "dynamics", "implied force", "mean force"
+]
 
 
 @dataclass(frozen=True)

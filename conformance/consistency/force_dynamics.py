@@ -31,7 +31,7 @@ CLEAR = 0.05
 SMALLEST_MOTION_M = 0.001
 """Smallest RMS of the motion that can be compared [m]; heights are often rounded to a millimetre."""
 
-LONGEST_S, LONGEST_LAG_S = 30.0, 0.5
+LONGEST_S, LONGEST_LAG_S = 300.0, 0.5
 """Longest part of a record that is compared, and longest lag that is searched [s]."""
 
 CAUSAL_DELAY_PERIODS = 0.75
@@ -104,13 +104,13 @@ def fit_motion(file: PantographFile, force: RealArray, height: RealArray, step: 
     ResponseFit or None
         The fit; None if both the recorded and the computed motion are too small.
     """
-    response, free = _responses(file, force, step)
-    response, motion = _remove_free_motion(response, free), _remove_free_motion(height, free)
+    response, free = head_responses(file, force, step)
+    response, motion = remove_free_motion(response, free), remove_free_motion(height, free)
     if max(response.std(), motion.std()) < SMALLEST_MOTION_M:
         return None
     # The contact point is the head, or the wire, which the head penetrates by force over contact stiffness.
     head = _fit(motion, response)
-    wire = _fit(_remove_free_motion(height + force / file.contact.stiffness_N_m, free), response)
+    wire = _fit(remove_free_motion(height + force / file.contact.stiffness_N_m, free), response)
     return wire if wire.unexplained < head.unexplained / 2 else head
 
 
@@ -126,10 +126,19 @@ def _fit(motion: RealArray, response: RealArray) -> ResponseFit:
     )
 
 
-def _responses(file: PantographFile, force: RealArray, step: float) -> tuple[RealArray, RealArray]:
+def head_responses(file: PantographFile, force: RealArray, step: float) -> tuple[RealArray, RealArray]:
     """Response of the head to the force from rest, and its (n, k) free motions: a constant and the slow modes.
 
     Modes faster than the samples do not appear in filtered motions.
+
+    Parameters
+    ----------
+    file : PantographFile
+        Pantograph of the case.
+    force : (n,) ndarray
+        Contact force [N].
+    step : float
+        Time between samples [s].
     """
     model = build_pantograph(file, 0.0, 0.0)
     m = model.head.size
@@ -146,7 +155,7 @@ def _responses(file: PantographFile, force: RealArray, step: float) -> tuple[Rea
     return np.asarray(response), np.column_stack([np.ones(force.size), *drift, modes.real, modes.imag])
 
 
-def _remove_free_motion(signal: RealArray, free: RealArray) -> RealArray:
+def remove_free_motion(signal: RealArray, free: RealArray) -> RealArray:
     """Residual of a signal after a least-squares fit of the free motions."""
     scaled = free / np.maximum(np.abs(free).max(axis=0), TINY)
     return np.asarray(signal - scaled @ np.linalg.lstsq(scaled, signal, rcond=1e-9)[0])

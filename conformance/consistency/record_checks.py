@@ -3,12 +3,17 @@
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.consistency.check import Check, CheckName, Finding
 from pantocheck.conformance.consistency.force_dynamics import DYNAMICS
+from pantocheck.conformance.consistency.implied_force import IMPLIED_FORCE
+from pantocheck.conformance.consistency.mean_force import MEAN_FORCE
 from pantocheck.conformance.consistency.record_positions import COVERAGE, MOTION
 from pantocheck.conformance.consistency.roll_off import ROLL_OFF
+from pantocheck.conformance.consistency.support_coincidence import COINCIDENCE
 from pantocheck.conformance.consistency.support_passing import SUPPORT_PASSING
 from pantocheck.conformance.records.record_signals import RecordSignals
 
-RECORD_CHECKS: tuple[Check, ...] = (COVERAGE, MOTION, SUPPORT_PASSING, ROLL_OFF, DYNAMICS)
+RECORD_CHECKS: tuple[Check, ...] = (
+    COVERAGE, MOTION, SUPPORT_PASSING, COINCIDENCE, ROLL_OFF, DYNAMICS, IMPLIED_FORCE, MEAN_FORCE,
+)  # fmt: skip
 
 
 def check_record(case: Case, signals: RecordSignals) -> dict[CheckName, Finding]:

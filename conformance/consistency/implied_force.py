@@ -1,0 +1,191 @@
+"""Contact force that follows from the contact height, against the graded contact force.
+
+The contact height moves mainly below 5 Hz. A force that lost its content near the cut-off explains this motion almost
+as well as the true one. The dynamic stiffness D of the pantograph grows with the square of the frequency: the
+difference between the recorded motion and the response to the force, times D, is the error of the force in newtons,
+
+    F_implied - F  =  -D (z - z_response),        D = 1 / (H + c),
+
+with the receptance H of the head and c = 0 for the height of the head, c = 1 / k for that of the wire (contact
+stiffness k). It compares with the graded force itself, at every instant. A constant gain and lag of the force are
+removed first: the check of the dynamics limits them.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.signal.windows import tukey
+
+from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.pantograph_file import PantographFile
+from pantocheck.conformance.consistency.check import Check, Finding, worst_finding
+from pantocheck.conformance.consistency.force_dynamics import (
+    SAMPLES_PER_PERIOD,
+    TINY,
+    head_responses,
+    remove_free_motion,
+)
+from pantocheck.conformance.quantities.bands import EXTENDED_BAND
+from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE, LowPass
+from pantocheck.conformance.records.record_signals import RecordSignals
+from pantocheck.conformance.simulation.pantograph_model import build_pantograph
+
+LARGEST_ERROR = 0.15
+"""Largest error of the force, over its standard deviation.
+
+Simulated records have 0.03 or less at a time step of 2 ms; heights rounded to 0.1 mm have 0.1. A second pass of the
+filter of 20 Hz gives 0.2 to 0.3 where the force has content at 20 Hz."""
+
+LARGEST_EXTENDED_ERROR = 0.3
+"""The same up to 50 Hz, where an integration at 2 ms has errors of 7 %: 0.09 at most in simulated records."""
+
+LARGEST_LAG_S = 0.005
+"""Largest lag of the force that is removed [s]: one sample of a slow record."""
+
+LAG_ITERATIONS = 3
+"""Newton iterations of the lag; the force is not a straight line over a lag of 5 ms."""
+
+MARGIN_PERIODS = 4
+"""Periods of the cut-off that are compared before and after the analysis section; half of them are tapered."""
+
+COARSE_M = 0.5e-3
+"""Steps of a rounded height that hide an error of the force [m]; the error of heights rounded to 0.1 mm is accepted."""
+
+ROUNDING = 1e-9
+"""Differences that binary numbers make of equal decimal ones."""
+
+EXTENDED_QUANTITIES = frozenset({"std_force_50_N", "cov_50", EXTENDED_BAND.quantity})
+"""Quantities with content above the cut-off of the case."""
+
+
+def _check_implied_force(case: Case, signals: RecordSignals) -> Finding | None:
+    record, low_pass = signals.record, case.file.filter.low_pass
+    if record.contact_height is None:
+        return None  # the check of the dynamics states that the height is missing
+    limits = [(low_pass, LARGEST_ERROR)]
+    if not EXTENDED_QUANTITIES.isdisjoint(limit.quantity for limit in case.limits):
+        limits.append((replace(low_pass, cutoff_Hz=float(EXTENDED_BAND.high)), LARGEST_EXTENDED_ERROR))
+    findings = []
+    for band, largest in limits:
+        if band.cutoff_Hz > HIGHEST_SHARE_OF_RATE * record.rate:
+            continue  # its quantities are not available either
+        for number, file in enumerate(case.pantographs, 1):
+            error = force_error(file, signals, number, band)
+            if not error <= largest:
+                findings.append(_describe(number, error, band, record.contact_height[number - 1]))
+    return worst_finding(findings)
+
+
+def force_error(file: PantographFile, signals: RecordSignals, number: int, low_pass: LowPass) -> float:
+    """Largest error of the filtered force over the analysis section, over the standard deviation of the force.
+
+    Parameters
+    ----------
+    file : PantographFile
+        Pantograph of the case.
+    signals : RecordSignals
+        Signals of a record with contact height.
+    number : int
+        Number of the pantograph from 1.
+    low_pass : LowPass
+        Filter of the force.
+    """
+    record = signals.record
+    position, (start, end) = record.position[number - 1], record.evaluated
+    every = max(1, int(record.rate / (SAMPLES_PER_PERIOD * low_pass.cutoff_Hz)))
+    margin = round(MARGIN_PERIODS / low_pass.cutoff_Hz * record.rate)
+    first, last = np.searchsorted(position, [start, end])
+    window = slice(max(0, int(first) - margin), int(last) + margin, every)
+    step = every / record.rate
+    taper = round(MARGIN_PERIODS / 2 / low_pass.cutoff_Hz / step)
+    distance = position[window]
+    inside = (distance >= start) & (distance < end)
+    inside[:taper] = inside[-taper:] = False
+    assert record.contact_height is not None
+    height = record.contact_height[number - 1]
+    heights = [
+        height,
+        *(applied(height, record.rate) for applied in _stated_filters(low_pass, record.filter_applied_Hz)),
+    ]
+    force = low_pass(record.force[number - 1], record.rate)[window]
+    response, free = head_responses(file, force, step)
+    spread = max(float(force[inside].std()), TINY)
+    errors = []
+    for candidate in heights:
+        motion = low_pass(candidate, record.rate)[window]
+        for compliance in (0.0, 1 / file.contact.stiffness_N_m):
+            difference = remove_free_motion(motion - response + compliance * (force - force.mean()), free)
+            difference *= tukey(force.size, min(1.0, 2 * taper / force.size))
+            error = _multiply_by_dynamic_stiffness(file, difference, step, compliance)
+            errors.append(_largest_remainder(error, force, inside, step) / spread)
+    return min(errors)
+
+
+def _stated_filters(low_pass: LowPass, applied_Hz: float | None) -> list[LowPass]:
+    """Filters that the force may have passed, but not the height; none if it was delivered unfiltered."""
+    if applied_Hz is None:
+        return []
+    zero_or_case = replace(low_pass, cutoff_Hz=applied_Hz)
+    return [zero_or_case, replace(zero_or_case, phase="causal")]
+
+
+def _multiply_by_dynamic_stiffness(
+    file: PantographFile, difference: RealArray, step: float, compliance: float
+) -> RealArray:
+    """Force that causes a difference of the motion [N]; its mean is not determined."""
+    model = build_pantograph(file, 0.0, 0.0)
+    omega = 2 * np.pi * np.fft.rfftfreq(difference.size, step)[1:, None, None]
+    dynamic = model.stiffness + 1j * omega * model.damping - omega**2 * model.mass
+    receptance = np.linalg.solve(dynamic, model.head.astype(complex)[:, None])[..., 0] @ model.head
+    spectrum = np.fft.rfft(difference)
+    spectrum[0] = 0.0
+    spectrum[1:] /= -(receptance + compliance)
+    return np.asarray(np.fft.irfft(spectrum, difference.size))
+
+
+def _largest_remainder(error: RealArray, force: RealArray, inside: RealArray, step: float) -> float:
+    """Largest error inside the analysis section that neither a gain, a constant nor a small lag explains [N]."""
+    time = step * np.arange(force.size)
+    implied = CubicSpline(time, force + error)
+    known = np.column_stack([np.ones(force.size), force, np.gradient(force, step)])[inside]
+    lag, remainder = 0.0, error[inside]
+    for _ in range(LAG_ITERATIONS):
+        lag += float(np.linalg.lstsq(known, remainder, rcond=None)[0][-1])
+        lag = float(np.clip(lag, -LARGEST_LAG_S, LARGEST_LAG_S))
+        remainder = implied(time[inside] - lag) - force[inside]
+    remainder -= known[:, :2] @ np.linalg.lstsq(known[:, :2], remainder, rcond=None)[0]
+    return float(np.abs(remainder).max())
+
+
+def _describe(number: int, error: float, low_pass: LowPass, height: RealArray) -> Finding:
+    band = f"up to {low_pass.cutoff_Hz:g} Hz"
+    step = rounding_step(height)
+    if step >= COARSE_M:
+        return Finding(
+            "unchecked",
+            f"contact height of pantograph {number}: its steps of {1e3 * step:.2g} mm are too coarse to confirm the "
+            f"force {band}; deliver it to 0.1 mm",
+        )
+    return Finding(
+        "doubt",
+        f"pantograph {number}: the contact height implies another force {band}: the largest difference is "
+        f"{100 * error:.0f} % of the standard deviation, as after a filter that is not stated, or where values were "
+        "replaced",
+    )
+
+
+def rounding_step(values: RealArray) -> float:
+    """Smallest difference between two values [unit of the values]: the step to which they are rounded, if they are."""
+    steps = np.diff(np.unique(values))
+    return float(steps[steps > ROUNDING].min(initial=np.inf))
+
+
+IMPLIED_FORCE = Check(
+    name="implied force",
+    must_hold="at every instant, the contact height implies the graded force, up to the cut-off",
+    why="a filter that is not stated, or a clipped peak, changes the extremes of the force, but hardly the motion",
+    needs="contact force and contact height, to 0.1 mm",
+    run=_check_implied_force,
+)
