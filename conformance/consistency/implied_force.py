@@ -14,6 +14,7 @@ removed first: the check of the dynamics limits them.
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.signal.windows import tukey
 
@@ -27,6 +28,7 @@ from pantocheck.conformance.consistency.force_dynamics import (
     head_responses,
     remove_free_motion,
 )
+from pantocheck.conformance.consistency.rounding import COARSEST_STEP_M, rounding_step
 from pantocheck.conformance.quantities.bands import EXTENDED_BAND
 from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE, LowPass
 from pantocheck.conformance.records.record_signals import RecordSignals
@@ -49,12 +51,6 @@ LAG_ITERATIONS = 3
 
 MARGIN_PERIODS = 4
 """Periods of the cut-off that are compared before and after the analysis section; half of them are tapered."""
-
-COARSE_M = 0.5e-3
-"""Steps of a rounded height that hide an error of the force [m]; the error of heights rounded to 0.1 mm is accepted."""
-
-ROUNDING = 1e-9
-"""Differences that binary numbers make of equal decimal ones."""
 
 EXTENDED_QUANTITIES = frozenset({"std_force_50_N", "cov_50", EXTENDED_BAND.quantity})
 """Quantities with content above the cut-off of the case."""
@@ -93,28 +89,26 @@ def force_error(file: PantographFile, signals: RecordSignals, number: int, low_p
         Filter of the force.
     """
     record = signals.record
-    position, (start, end) = record.position[number - 1], record.evaluated
-    every = max(1, int(record.rate / (SAMPLES_PER_PERIOD * low_pass.cutoff_Hz)))
-    margin = round(MARGIN_PERIODS / low_pass.cutoff_Hz * record.rate)
-    first, last = np.searchsorted(position, [start, end])
-    window = slice(max(0, int(first) - margin), int(last) + margin, every)
-    step = every / record.rate
-    taper = round(MARGIN_PERIODS / 2 / low_pass.cutoff_Hz / step)
-    distance = position[window]
-    inside = (distance >= start) & (distance < end)
-    inside[:taper] = inside[-taper:] = False
     assert record.contact_height is not None
-    height = record.contact_height[number - 1]
-    heights = [
-        height,
-        *(applied(height, record.rate) for applied in _stated_filters(low_pass, record.filter_applied_Hz)),
-    ]
-    force = low_pass(record.force[number - 1], record.rate)[window]
+    height, (start, end) = record.contact_height[number - 1], record.evaluated
+    step, margin = 1 / (SAMPLES_PER_PERIOD * low_pass.cutoff_Hz), MARGIN_PERIODS / low_pass.cutoff_Hz
+    entry, exit_ = np.interp([start, end], record.position[number - 1], record.time)
+    time = np.arange(max(record.time[0], entry - margin), min(record.time[-1], exit_ + margin), step)
+    taper = round(margin / 2 / step)
+    inside = (time >= entry) & (time < exit_)
+    inside[:taper] = inside[-taper:] = False
+
+    def smooth(channel: RealArray) -> RealArray:
+        return np.asarray(CubicSpline(record.time, low_pass(channel, record.rate))(time))
+
+    heights = [height]
+    heights += [applied(height, record.rate) for applied in _stated_filters(low_pass, record.filter_applied_Hz)]
+    force = smooth(record.force[number - 1])
     response, free = head_responses(file, force, step)
     spread = max(float(force[inside].std()), TINY)
     errors = []
     for candidate in heights:
-        motion = low_pass(candidate, record.rate)[window]
+        motion = smooth(candidate)
         for compliance in (0.0, 1 / file.contact.stiffness_N_m):
             difference = remove_free_motion(motion - response + compliance * (force - force.mean()), free)
             difference *= tukey(force.size, min(1.0, 2 * taper / force.size))
@@ -145,7 +139,7 @@ def _multiply_by_dynamic_stiffness(
     return np.asarray(np.fft.irfft(spectrum, difference.size))
 
 
-def _largest_remainder(error: RealArray, force: RealArray, inside: RealArray, step: float) -> float:
+def _largest_remainder(error: RealArray, force: RealArray, inside: NDArray[np.bool_], step: float) -> float:
     """Largest error inside the analysis section that neither a gain, a constant nor a small lag explains [N]."""
     time = step * np.arange(force.size)
     implied = CubicSpline(time, force + error)
@@ -162,7 +156,7 @@ def _largest_remainder(error: RealArray, force: RealArray, inside: RealArray, st
 def _describe(number: int, error: float, low_pass: LowPass, height: RealArray) -> Finding:
     band = f"up to {low_pass.cutoff_Hz:g} Hz"
     step = rounding_step(height)
-    if step >= COARSE_M:
+    if step >= COARSEST_STEP_M:
         return Finding(
             "unchecked",
             f"contact height of pantograph {number}: its steps of {1e3 * step:.2g} mm are too coarse to confirm the "
@@ -174,12 +168,6 @@ def _describe(number: int, error: float, low_pass: LowPass, height: RealArray) -
         f"{100 * error:.0f} % of the standard deviation, as after a filter that is not stated, or where values were "
         "replaced",
     )
-
-
-def rounding_step(values: RealArray) -> float:
-    """Smallest difference between two values [unit of the values]: the step to which they are rounded, if they are."""
-    steps = np.diff(np.unique(values))
-    return float(steps[steps > ROUNDING].min(initial=np.inf))
 
 
 IMPLIED_FORCE = Check(

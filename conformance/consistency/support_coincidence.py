@@ -19,7 +19,7 @@ from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.consistency.check import Check, Finding, worst_finding
 from pantocheck.conformance.consistency.force_dynamics import TINY
-from pantocheck.conformance.consistency.implied_force import rounding_step
+from pantocheck.conformance.consistency.rounding import COARSEST_STEP_M, rounding_step
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.record_signals import RecordSignals
 
@@ -33,10 +33,6 @@ LARGEST_DATUM_DIFFERENCE_M = 5e-3
 
 LARGEST_GAIN_ERROR = 0.03
 """Largest error of the gain of the uplift, beside three standard errors; 0.02 in simulated records."""
-
-COARSEST_STEP_M = 0.5e-3
-"""Steps of a rounded uplift from which neither the constant nor the gain can be confirmed [m]."""
-
 
 LONGEST_HOLD_S = 0.15
 """Longest constant part of an uplift [s]: in whole tenths of a millimetre, a turning point lasts a fifth of it."""
@@ -58,7 +54,7 @@ class _Passages:
     wire : (m,) ndarray
         Height of the wire from the contact height [m].
     kink : float
-        Largest change of the uplift by the kink within one sample [m].
+        Largest change of the uplift by the kink within one sample, or within the rounding by a stated filter [m].
     """
 
     support: RealArray
@@ -80,8 +76,10 @@ def _check_coincidence(case: Case, signals: RecordSignals) -> Finding | None:
         return None  # the check of the support passing states that the uplift is missing
     if record.contact_height is None:
         return None  # the check of the dynamics states that the height is missing
-    if (step := max(rounding_step(row) for row in uplift)) >= COARSEST_STEP_M and np.isfinite(step):
-        text = f"steps of {1e3 * step:.2g} mm of the uplift are too coarse; deliver it to 0.1 mm"
+    steps = [rounding_step(row) for row in (*uplift, *record.contact_height)]
+    step = max((step for step in steps if np.isfinite(step)), default=0.0)
+    if step >= COARSEST_STEP_M:
+        text = f"steps of {1e3 * step:.2g} mm are too coarse; deliver both to 0.1 mm"
         return Finding("unchecked", f"contact height against uplift: {text}")
     passages = {number: _find_passages(case, signals, number) for number in signals.pantographs}
     rows = zip(signals.line.supports, uplift, strict=True)
@@ -110,7 +108,8 @@ def _find_passages(case: Case, signals: RecordSignals, number: int) -> _Passages
     spreads = [np.ptp((candidate - u)[touching]) if touching.any() else 0.0 for candidate in candidates]
     best = candidates[int(np.argmin(spreads))]
     net = abs(wire.number * wire.tension_N - wire.number * wire.mass_kg_m * record.speed**2)
-    kink = float(load.max(initial=0.0)) * record.speed / record.rate / max(net, TINY) / 4
+    duration = 1 / min(record.rate, 2 * np.pi * (record.filter_applied_Hz or np.inf))
+    kink = float(load.max(initial=0.0)) * record.speed * duration / max(net, TINY) / 4
     return _Passages(support[touching], u[touching], best[touching], kink)
 
 
@@ -177,7 +176,7 @@ def _compare_gain(passages: dict[int, _Passages], step: float) -> Finding | None
     squares = max(float(uplift @ uplift), TINY)
     gain = float(wire @ uplift) / squares
     scatter = np.sqrt(float(((wire - gain * uplift) ** 2).sum()) / freedom)
-    rounding = step / np.sqrt(6) if np.isfinite(step) else 0.0  # of uplift and height
+    rounding = step / np.sqrt(6)  # of uplift and height
     error = np.hypot(scatter, rounding) / np.sqrt(squares)
     if abs(gain - 1) <= LARGEST_GAIN_ERROR + 3 * error:
         return None

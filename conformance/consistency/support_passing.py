@@ -37,8 +37,10 @@ PASSING_TOLERANCE_M = 5.0
 COINCIDENCE_TOLERANCE_M = 0.5
 """Accepted shift of the coincidence [m]: two samples of a slow record."""
 
-LARGEST_SCATTER = 0.15
-"""Largest scatter at the passage, over the median of all shifts; 0.05 on most simulated records."""
+LARGEST_SCATTER = 0.25
+"""Largest scatter at the passage, over the median of all shifts.
+
+Most simulated records have 0.05; equal spans at 200 samples per second have 0.15."""
 
 KINK_LENGTH_M = 1.5
 """Distance L [m]: above the rounding by bending, some decimetres, and below the distance of droppers."""
