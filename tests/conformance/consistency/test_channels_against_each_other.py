@@ -189,3 +189,30 @@ def test_constant_added_to_the_force(
     """A share of the uplift force; the base spring of 160 N/m and a lift of 0.05 m leave 3 % + 11 % undetermined."""
     case, record = run
     assert doubts(case, change(record, "force", row, lambda force: force + 150.0 * share)) == expected
+
+
+def take(record: Record, source: int, delay: float, *channels: str) -> Record:
+    """Channels of one pantograph as those of the other, later by a delay [s]."""
+    for channel in channels:
+        row = np.interp(record.time - delay, record.time, getattr(record, channel)[source])
+        record = change(record, channel, 1 - source, lambda _, row=row: row)
+    return record
+
+
+@pytest.mark.parametrize("source", [0, 1])
+@pytest.mark.parametrize("spacings", [0.0, 1.0])
+@pytest.mark.parametrize("channels", [("force",), ("force", "contact_height")])
+def test_channels_of_the_other_pantograph_are_found(
+    run: tuple[Case, Record], source: int, spacings: float, channels: tuple[str, ...]
+) -> None:
+    """At the same time or at the same place. The second pantograph lifts the wire by more than 5 mm more."""
+    case, record = run
+    delay = spacings * (1 - 2 * source) * 100.0 / record.speed
+    assert doubts(case, take(record, source, delay, *channels)) != {}
+
+
+@pytest.mark.parametrize("channels", [("force",), ("contact_height",), ("force", "contact_height"), ("position",)])
+def test_swapped_pantographs_are_found(run: tuple[Case, Record], channels: tuple[str, ...]) -> None:
+    case, record = run
+    swapped = replace(record, **{name: getattr(record, name)[::-1] for name in channels})
+    assert doubts(case, swapped) != {}
