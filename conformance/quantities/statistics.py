@@ -5,7 +5,7 @@ from typing import TypeVar
 import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.quantities.sampling import WHOLE_RECORD, Sampling
+from pantocheck.conformance.quantities.sampling import Sampling
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, NoMeanForce
 
 Estimate = TypeVar("Estimate", float, RealArray)
@@ -30,9 +30,7 @@ def statistical_extremes(mean: Estimate, deviation: Estimate) -> tuple[Estimate,
     return mean - 3 * deviation, mean + 3 * deviation
 
 
-def contact_loss(
-    force: RealArray, filter_applied_Hz: float | None = None, sampling: Sampling = WHOLE_RECORD
-) -> RealArray:
+def contact_loss(force: RealArray, filter_applied_Hz: float | None, sampling: Sampling) -> RealArray:
     """Share of samples without contact [%].
 
     Parameters
@@ -62,15 +60,13 @@ def contact_loss(
     return sampling.percentage(force <= 0)
 
 
-def force_histogram(force: RealArray, bins: int = 30) -> tuple[RealArray, RealArray]:
-    """Histogram of a force; the class width is 1, 2 or 5 times a power of ten.
+def force_histogram(force: RealArray) -> tuple[RealArray, RealArray]:
+    """Histogram of a force with about 30 classes; their width is 1, 2 or 5 times a power of ten.
 
     Parameters
     ----------
     force : (n,) ndarray
         Contact force [N].
-    bins : int
-        Approximate number of classes.
 
     Returns
     -------
@@ -80,7 +76,7 @@ def force_histogram(force: RealArray, bins: int = 30) -> tuple[RealArray, RealAr
         Share of the samples in each class [%].
     """
     spread = float(np.ptp(force))
-    raw = max(spread, 1.0) / bins
+    raw = max(spread, 1.0) / 30
     decade = 10 ** np.floor(np.log10(raw))
     width = decade * next(step for step in (1, 2, 5, 10) if step * decade >= raw * (1 - 1e-9))
     first, last = np.floor(force.min() / width), np.floor(force.max() / width) + 1

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
+from pantocheck.conformance.quantities.sampling import WHOLE_RECORD
 from pantocheck.conformance.quantities.statistics import (
     coefficient_of_variation,
     contact_loss,
@@ -26,12 +27,12 @@ def test_coefficient_of_variation() -> None:
 
 def test_contact_loss_counts_samples_without_force() -> None:
     force = np.array([10.0, 0.0, 0.0, 5.0, 20.0, 0.0, 1e-6, 3.0])
-    assert contact_loss(force) == 37.5
+    assert contact_loss(force, None, WHOLE_RECORD) == 37.5
 
 
 def test_contact_loss_of_a_filtered_force_is_unknown() -> None:
     with pytest.raises(AlreadyFiltered, match="unfiltered"):
-        contact_loss(np.zeros(10), filter_applied_Hz=20.0)
+        contact_loss(np.zeros(10), 20.0, WHOLE_RECORD)
 
 
 @settings(max_examples=50, deadline=None)
@@ -48,25 +49,25 @@ def test_histogram_holds_every_sample_once(values: list[float]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("values", "bins", "width", "first", "last"),
+    ("values", "width", "first", "last"),
     [
-        ((0.0, 300.0), 30, 10, 0, 31),
-        ((0.0, 301.0), 30, 20, 0, 16),
-        ((0.0, 60.0), 30, 2, 0, 31),
-        ((0.0, 61.0), 30, 5, 0, 13),
-        ((0.0, 150.0), 30, 5, 0, 31),
-        ((0.0, 30.0), 30, 1, 0, 31),
-        ((0.0, 1.5), 3, 0.5, 0, 4),
-        ((-7.0, 24.0), 30, 2, -4, 13),
-        ((119.0, 119.0), 30, 0.05, 2380, 2381),  # a constant force: a width for a spread of 1 N
-        ((119.0, 119.5), 30, 0.05, 2380, 2391),
+        ((0.0, 300.0), 10, 0, 31),
+        ((0.0, 301.0), 20, 0, 16),
+        ((0.0, 60.0), 2, 0, 31),
+        ((0.0, 61.0), 5, 0, 13),
+        ((0.0, 150.0), 5, 0, 31),
+        ((0.0, 30.0), 1, 0, 31),
+        ((0.0, 15.0), 0.5, 0, 31),
+        ((-7.0, 24.0), 2, -4, 13),
+        ((119.0, 119.0), 0.05, 2380, 2381),  # a constant force: a width for a spread of 1 N
+        ((119.0, 119.5), 0.05, 2380, 2391),
     ],
 )
 def test_classes_are_1_2_or_5_times_a_power_of_ten(
-    values: tuple[float, float], bins: int, width: float, first: int, last: int
+    values: tuple[float, float], width: float, first: int, last: int
 ) -> None:
-    """The smallest such width that gives at most the requested number of classes, besides one cut by each end."""
-    edges, share = force_histogram(np.array(values), bins)
+    """The smallest such width that gives at most 30 classes, besides one cut by each end."""
+    edges, share = force_histogram(np.array(values))
     assert_allclose(edges, np.arange(first, last + 1) * width, rtol=1e-12, atol=1e-12)
     assert share[0] == pytest.approx(100.0 if values[0] == values[1] else 50.0)
     assert share.sum() == pytest.approx(100.0)
