@@ -160,7 +160,7 @@ def _filter_lateral(record: DropRecord, linear: LinearDecay) -> RealArray:
 
 
 def find_linear_decay(
-    record: DropRecord, columns: tuple[int, ...], release: Release, band: FrequencyBand, clipped_until: float = 0.0
+    record: DropRecord, columns: tuple[int, ...], release: Release, band: FrequencyBand, clipped_until: float
 ) -> LinearDecay:
     """Find the longest part after the release that equals a sum of decays within the noise.
 
@@ -175,7 +175,7 @@ def find_linear_decay(
     band : FrequencyBand
         Band of the identification.
     clipped_until : float
-        Time of the last clipped sample [s].
+        Time of the last clipped sample [s]; 0: no sample is clipped.
 
     Returns
     -------

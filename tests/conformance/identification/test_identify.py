@@ -282,7 +282,7 @@ def test_linear_decay_begins_after_the_last_clipped_sample() -> None:
     band = FrequencyBand.up_to(4.0, synthetic.rate)
     release = find_release(synthetic.signals, synthetic.rate, 5.0, "clean")
     last = release.time + 4.0
-    free = find_linear_decay(synthetic, (0, 1, 2, 3), release, band)
+    free = find_linear_decay(synthetic, (0, 1, 2, 3), release, band, 0.0)
     late = find_linear_decay(synthetic, (0, 1, 2, 3), release, band, last)
     assert free.start < release.time + 2.1
     assert late.start >= last
