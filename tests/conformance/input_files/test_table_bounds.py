@@ -141,6 +141,18 @@ def test_matlab_bomb_behind_a_small_stated_shape_is_refused(order: str, tmp_path
         read_tables(tmp_path / "a.mat", (), LARGEST)
 
 
+def test_compressed_matlab_variable_is_read_in_parts(tmp_path: Path) -> None:
+    """48 MiB of random bytes, which do not become smaller; the first part shows that they are too many."""
+    compressor = zlib.compressobj(0)
+    with (tmp_path / "a.mat").open("wb") as file:
+        file.write(b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<H", 0x100) + b"IM")
+        file.write(struct.pack("<II", 15, 48 * 2**20))
+        for _ in range(48):
+            file.write(compressor.compress(os.urandom(2**20)))
+    with pytest.raises(InputError, match="10000"):
+        read_tables(tmp_path / "a.mat", (), LARGEST)
+
+
 @pytest.mark.filterwarnings("ignore")
 def test_damaged_tdms_is_read_or_refused(tmp_path: Path) -> None:
     """Bytes of lengths and counts are set to their largest value, one after the other."""

@@ -9,6 +9,7 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
+import pyuff
 
 from helpers.drop_records import N, assert_same_record
 from helpers.toml_edit import edit_toml
@@ -80,6 +81,8 @@ def test_universal_file_states_a_channel_whose_name_it_can_hold(
     """Otherwise the name is made of sensor and axis, as for a file of another program."""
     channels = (replace(record.channels[2], **changes), *record.channels[:2])
     write_drop_uff(replace(record, channels=channels), tmp_path / "r.uff")
+    lines = [str(data_set["id3"]).strip() for data_set in pyuff.UFF(str(tmp_path / "r.uff")).read_sets()]
+    assert lines == ["NONE", "S1_z CW at 12 m dir +z", "S1_y CW at 12 m dir +y"]
     (tmp_path / "r.toml").unlink()
     first, second, _ = read_drop_records(tmp_path / "r.uff")[0].channels
     assert (first.name, first.wire, first.position) == ("S2_z", "", None)
@@ -94,6 +97,7 @@ def test_identification_line_has_eighty_characters(length: int, shown: int, reco
     assert read_drop_records(tmp_path / "r.uff")[0].name == name
     (tmp_path / "r.toml").unlink()
     assert read_drop_records(tmp_path / "r.uff")[0].name == "T" * shown
+    assert b"T" * 81 not in (tmp_path / "r.uff").read_bytes()
 
 
 def test_empty_name_is_that_of_the_file(record: DropRecord, tmp_path: Path) -> None:

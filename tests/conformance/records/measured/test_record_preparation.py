@@ -343,7 +343,7 @@ def test_speed_differs_by_at_most_the_tolerance_of_the_profile(factor: float, st
     if steady:
         assert ready(moved).speed == pytest.approx(factor * SPEED, rel=1e-9)
     else:
-        with pytest.raises(RecordInvalid, match="force: no 1 s of pantograph 1 are without gaps"):
+        with pytest.raises(RecordInvalid, match="force: pantograph 1 has no section of 1 s without gaps"):
             ready(moved)
 
 
