@@ -109,7 +109,7 @@ def test_shift_is_stated_with_its_direction(
     record = wave().record(two_pantograph_case)
     position = record.position.copy()
     position[row] += shift
-    found = check(two_pantograph_case, replace(record, position=position))
+    found = check(two_pantograph_case, replace(record, position=position, contact_height=None))
     assert found is not None
     assert found.kind == "contradiction"
     assert found.text.startswith(f"the position of pantograph {row + 1} contradicts the uplift")
