@@ -33,7 +33,7 @@ TEST_TRANSITION = 2.5
 
 
 @dataclass(frozen=True)
-class _TestedWindows:
+class ResidualWindows:
     """Windows of the residual: first samples, disturbed ones, samples of a window without and with its filter."""
 
     starts: IntegerArray
@@ -102,14 +102,14 @@ class DecaySearch:
         poles = find_start_poles([scaled], 1 / self.dt, self.band.low, self.band.fitted + 0.5)
         return select_poles(poles, [build_block(samples, self.dt, self.band.low, self.band.fitted)], rounds=4).poles
 
-    def _test_windows(self, end: int, poles: ComplexArray, width: float) -> _TestedWindows:
+    def _test_windows(self, end: int, poles: ComplexArray, width: float) -> ResidualWindows:
         """Compare the residual of a fit with its median, in windows of a width [s]."""
         window = int(width / self.dt)
         starts, level = _residual_levels(self._residual(end, poles), window, self.dt, self.band)
         reach = window + _test_filter(self.dt, self.band).size
         inside = (starts >= self.begin) & (starts + reach < end)
         floor = np.maximum(np.median(level[inside], axis=0), np.finfo(float).tiny)
-        return _TestedWindows(starts, _exceeds_noise(level / floor, width, self.band), window, reach)
+        return ResidualWindows(starts, _exceeds_noise(level / floor, width, self.band), window, reach)
 
     def _residual(self, end: int, poles: ComplexArray) -> RealArray:
         """Samples minus the decays fitted to [begin, end); drift and content outside the band remain."""

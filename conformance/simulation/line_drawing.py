@@ -9,8 +9,6 @@ from pantocheck.conformance.cases.line_file import Geometry
 from pantocheck.conformance.reports.figures.figure_style import FULL, GREY, INK, render_svg
 from pantocheck.model import DiscretisedLine, Kind, Wire
 
-SPANS = 2
-"""Number of spans of the drawing, in the middle of the line."""
 EXAGGERATED = 10
 """Scale of heights and lateral positions relative to lengths along the track."""
 WIDTHS = {Kind.CONTACT_WIRE: 1.8, Kind.MESSENGER_WIRE: 1.2, Kind.STITCH_WIRE: 0.9}
@@ -30,7 +28,7 @@ def draw_line(line: DiscretisedLine, title: str, geometry: Geometry) -> Figure:
         Spans of the line.
     """
     before = round(geometry.spans / 2)
-    first, last = before - SPANS // 2, before + 1 + SPANS // 2
+    first, last = before - 1, before + 2
     shown = (
         geometry.mid_span(first) if first >= 1 else 0.0,
         geometry.mid_span(last) if last <= geometry.spans else geometry.length,

@@ -10,7 +10,11 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.runner import run_cases
 from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.simulation.static_quantities import SAMPLES_PER_SPAN, compute_static_quantities
+from pantocheck.conformance.simulation.static_quantities import (
+    compute_static_quantities,
+    first_modes,
+    sample_span,
+)
 from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
 from pantocheck.model import discretise
 
@@ -47,12 +51,42 @@ def test_string_statics_give_published_lengths_and_bending_and_stagger_add_to_th
 def test_elasticity_is_symmetrical_and_larger_when_droppers_slacken(simple: tuple[Case, dict[str, Any]]) -> None:
     _, found = simple
     small, large = (np.array(found[f"elasticity{name}_along_span_mm_N"]) for name in ("", "_200_N"))
-    assert small.size == SAMPLES_PER_SPAN
+    assert small.size == large.size == 24
     assert small[1:] == pytest.approx(small[:0:-1], rel=1e-3)
     assert (large > small - 1e-12).all()
     assert large.max() / small.min() > 1
     assert np.abs(large - small).max() > 0.01
-    assert found["elasticity_mm_N"] == small.max()
+    for name, elasticity in (("elasticity", small), ("elasticity_200_N", large)):
+        lowest, highest = elasticity.min(), elasticity.max()
+        assert found[f"{name}_mm_N"] == highest
+        assert found[f"{name}_non_uniformity_pct"] == pytest.approx(100 * (highest - lowest) / (highest + lowest))
+    assert 0.1 < small.min() < small.max() < 1.0  # [mm/N], the order of every main line
+
+
+def test_samples_of_a_span_end_before_the_next_support() -> None:
+    """Every 2.5 m of 60 m."""
+    assert sample_span(120.0, 180.0) == pytest.approx(np.arange(120.0, 180.0, 2.5))
+
+
+def test_presag_is_that_of_the_droppers_of_one_span(simple: tuple[Case, dict[str, Any]]) -> None:
+    case, found = simple
+    sag = np.array(found["presag_mm"])
+    assert sag.size == len(case.line.droppers.length_m) == len(found["dropper_length_m"])
+    assert sag == pytest.approx(sag[::-1], abs=1e-6)
+
+
+def test_modes_are_those_of_ten_spans() -> None:
+    """A line of twelve spans: elements of 5 m over 10 spans; ten modes that move the wires vertically."""
+    case = shortened("en50318-2018/ac-simple/static", 12)
+    modes = first_modes(case.line, 5.0)
+    assert modes.frequency.size == 10
+    mesh = discretise(
+        build_catenary(case.line.model_copy(update={"geometry": case.line.geometry.shorten(10)})), 5.0
+    ).mesh
+    assert modes.shape.shape == (10, mesh.rows, mesh.position.size, 2)
+    lateral = [row for row in range(mesh.rows) if mesh.row_field[row] == "y"]
+    size = (modes.shape[..., 0] ** 2).sum(axis=2)
+    assert (size[:, lateral].sum(axis=1) < 0.5 * size.sum(axis=1)).all()
 
 
 def test_waves_and_modes(simple: tuple[Case, dict[str, Any]]) -> None:

@@ -42,7 +42,7 @@ def means(run: MeanForces) -> RealArray:
 
 
 @pytest.mark.parametrize(
-    ("gain", "cross", "most_runs"), [(1.0, 0.0, 2), (0.93, 0.0, 3), (0.98, 0.05, 5), (0.8, -0.1, 7)]
+    ("gain", "cross", "most_runs"), [(1.0, 0.0, 2), (0.93, 0.0, 3), (1.6, 0.0, 3), (0.98, 0.05, 5), (0.8, -0.1, 7)]
 )
 def test_targets_are_met_in_few_runs(gain: float, cross: float, most_runs: int) -> None:
     run = CoupledPantographs(gain, cross)
@@ -71,6 +71,13 @@ def test_last_allowed_run_can_meet_the_target() -> None:
 def test_mean_that_does_not_follow_its_uplift_force_is_a_failure() -> None:
     with pytest.raises(TuningFailed, match=r"^pantograph 1: .* is 50\.00 N, its target_mean_force_N is 144\.00 N$"):
         tune_uplift(lambda forces: MeanForces(forces, np.full(1, 50.0)), means, (120.0,), (144.0,))
+
+
+def test_failure_names_the_pantograph_that_is_farthest_from_its_target() -> None:
+    """The second one is 6 N above its target, the first one 1 N below, the third one has none."""
+    values = np.array([143.0, 175.0, 300.0])
+    with pytest.raises(TuningFailed, match=r"^pantograph 2: after 12 runs the mean contact force is 175\.00 N"):
+        tune_uplift(lambda forces: MeanForces(forces, values), means, (120.0,) * 3, (144.0, 169.0, None))
 
 
 @pytest.fixture

@@ -90,6 +90,14 @@ def test_changes_of_the_rear_pantograph_alone() -> None:
     assert band_changes(*values) == {2: {"change_rms_20_50_pct": 25.0}}
 
 
+def test_changes_need_a_value_on_both_sides() -> None:
+    """Values of the line, of a pantograph on one side alone, and zeros before the change give no change."""
+    before = {0: {"rms_0_5_N": 1.0}, 1: {"rms_0_5_N": 20.0, "rms_5_20_N": 0.0, "rms_20_50_N": 10.0}, 2: {}}
+    after = {0: {"rms_0_5_N": 2.0}, 1: {"rms_0_5_N": 30.0, "rms_5_20_N": 5.0, "rms_20_50_N": 9.0}, 3: {}}
+    assert band_changes(before, after) == {1: {"change_rms_0_5_pct": 50.0, "change_rms_20_50_pct": pytest.approx(-10)}}
+    assert band_changes(after, {}) == {}
+
+
 def test_the_printed_values_meet_every_limit(case: Case) -> None:
     """The limits express the findings of the paper."""
     static = replace(case, file=case.file.model_copy(update={"speed_km_h": None, "study": None}))

@@ -66,6 +66,14 @@ def test_findings_of_groups_calculated_by_hand(damping_pct: tuple[float, ...], d
     assert findings["damping_rise_pct"] == pytest.approx(rise)
 
 
+def test_three_groups_give_a_decrease_but_no_rise() -> None:
+    modes = [build_mode(float(number), damping, number) for number, damping in enumerate((0.010, 0.008, 0.006), 1)]
+    findings = compute_group_findings(modes)
+    assert findings["damping_decrease_pct"] == pytest.approx(20.0)
+    assert "damping_rise_pct" not in findings
+    assert "damping_decrease_pct" not in compute_group_findings(modes[:2])
+
+
 def build_mode(frequency: float, damping: float, group: int) -> Mode:
     return Mode(
         frequency_Hz=frequency, damping_ratio=damping, damping_ratio_std=1e-5, group=group, sensor_shape=(), record="T"
