@@ -100,20 +100,23 @@ def test_passage_without_contact_does_not_count(five_supports: Case, coinciding:
     assert check(five_supports, replace(coinciding, contact_height=height, force=force)) is None
 
 
-@pytest.mark.parametrize(("shift", "side"), [(12.0, "past"), (-12.0, "before")])
+@pytest.mark.parametrize(("shift", "side"), [(12.0, "past"), (-12.0, "before"), (30.0, "past")])
 @pytest.mark.parametrize("row", [0, 1])
 def test_shift_is_stated_with_its_direction(
     two_pantograph_case: Case, wave: type[Wave], row: int, shift: float, side: str
 ) -> None:
-    """The position of one pantograph is 12 m too large: the wire bends where it is said to be 12 m past a support."""
+    """The position of one pantograph is 12 m too large: the wire bends where it is said to be 12 m past a support.
+
+    Force and height repeat in every span of 60 m, so that they coincide with the uplift at any shift, half a span too.
+    """
     record = wave().record(two_pantograph_case)
     position = record.position.copy()
     position[row] += shift
-    found = check(two_pantograph_case, replace(record, position=position, contact_height=None))
+    found = check(two_pantograph_case, replace(record, position=position))
     assert found is not None
     assert found.kind == "contradiction"
     assert found.text.startswith(f"the position of pantograph {row + 1} contradicts the uplift")
-    assert found.text.endswith(f"when the position is 12 m {side} it")
+    assert found.text.endswith(f"when the position is {abs(shift):g} m {side} it")
 
 
 @pytest.mark.parametrize(("rate", "made"), [(50.0, True), (49.0, False)])
