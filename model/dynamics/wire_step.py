@@ -221,7 +221,7 @@ def _add_rate(q: Array, v: Array, coefficient: float, damped: Array) -> None:
 @njit(cache=True)
 def _stiffness_forces(stiffness: PieceStiffness, w: Array, r: Array, forces: ElementForces) -> None:
     """Forces of the stiffness under deflections w and slopes r; the drag is zero."""
-    w0, w1, r0, r1 = w[:-1], w[1:], r[:-1], r[1:]
+    w0, w1, r0, r1 = w, w[1:], r, r[1:]
     shear, tilt, bend = forces.shear, forces.tilt, forces.bend
     k11, k12, k_tilt, k_bend = stiffness.shear, stiffness.coupling, stiffness.tilt, stiffness.bend
     for e in range(shear.size):
@@ -235,7 +235,7 @@ def _stiffness_forces(stiffness: PieceStiffness, w: Array, r: Array, forces: Ele
 @njit(cache=True)
 def _add_antisymmetric_damping(mass: Array, length: Array, v: Array, u: Array, forces: ElementForces) -> None:
     """Damping of the consistent mass against deflection velocities v that differ and slope velocities u that add."""
-    v0, v1, u0, u1 = v[:-1], v[1:], u[:-1], u[1:]
+    v0, v1, u0, u1 = v, v[1:], u, u[1:]
     shear, tilt = forces.shear, forces.tilt
     for e in range(shear.size):
         difference, total = v0[e] - v1[e], length[e] * (u0[e] + u1[e])
@@ -246,7 +246,7 @@ def _add_antisymmetric_damping(mass: Array, length: Array, v: Array, u: Array, f
 @njit(cache=True)
 def _add_symmetric_damping(mass: Array, length: Array, v: Array, u: Array, forces: ElementForces) -> None:
     """Damping of the consistent mass against deflection velocities v that add and slope velocities u that differ."""
-    v0, v1, u0, u1 = v[:-1], v[1:], u[:-1], u[1:]
+    v0, v1, u0, u1 = v, v[1:], u, u[1:]
     drag, bend = forces.drag, forces.bend
     for e in range(drag.size):
         total, difference = v0[e] + v1[e], length[e] * (u0[e] - u1[e])
@@ -257,6 +257,6 @@ def _add_symmetric_damping(mass: Array, length: Array, v: Array, u: Array, force
 @njit(cache=True)
 def _add_reactions(antisymmetric: Array, symmetric: Array, force: Array) -> None:
     """Store the reactions of the elements before and after each station."""
-    a0, a1, s0, s1 = antisymmetric[:-1], antisymmetric[1:], symmetric[:-1], symmetric[1:]
+    a0, a1, s0, s1 = antisymmetric, antisymmetric[1:], symmetric, symmetric[1:]
     for s in range(force.size):
         force[s] = (a0[s] - a1[s]) - (s0[s] + s1[s])
