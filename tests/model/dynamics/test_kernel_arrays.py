@@ -6,10 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from helpers.lines import DAMPED, Array, simple_line
+from helpers.lines import DAMPED, Array, bare_wire, simple_line
 from pantocheck.model import Kind, ModalBand, discretise
 from pantocheck.model.dynamics.active_window import max_wave_speed
 from pantocheck.model.dynamics.block_tridiagonal import solve_line
+from pantocheck.model.dynamics.inverse_columns import column_half_width
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, build_kernel_arrays, build_workspace
 from pantocheck.model.dynamics.train import build_empty_train
 
@@ -39,6 +40,22 @@ def test_self_compliance_is_the_response_of_a_connector_to_its_own_tension() -> 
     solve_line(kernel.factor, 0, w.shape[1] - 1, w, r)
     response = kernel.connectors.tension_per_acceleration[number] * (coefficient @ w[:, station])
     assert kernel.connectors.self_compliance[number] == pytest.approx(response, rel=1e-10)
+
+
+def test_columns_reach_far_enough_for_every_contact_wire() -> None:
+    """Two contact wires without connectors; waves on the second one are 12 times as fast, and its columns wider.
+
+    The first station is an anchor, where a force has no column.
+    """
+    slow = replace(bare_wire(60.0, 5e3, 10.0).wires[0], name="a")
+    fast = replace(bare_wire(60.0, 40e3, 0.5).wires[0], name="b")
+    for wires in ((slow, fast), (fast, slow)):
+        line = discretise(replace(bare_wire(60.0), wires=wires), 0.25)
+        kernel = build_kernel_arrays(line, 2e-3)
+        loads = [(row, s) for row in line.contact_rows for s in range(line.mesh.position.size)]
+        width = kernel.contact.columns.shape[-1] // 2
+        assert width == column_half_width(kernel.factor, loads)
+        assert width > column_half_width(kernel.factor, [(line.mesh.row_of["a", "z"], s) for _, s in loads])
 
 
 def test_modal_damping_makes_the_whole_line_active() -> None:

@@ -46,6 +46,22 @@ def test_mesh_rows_share_wires_of_one_kind_that_do_not_overlap() -> None:
     assert mesh.row_of["left", "z"] != mesh.row_of["right", "z"]
 
 
+def test_station_is_known_to_a_micrometre() -> None:
+    mesh = build_mesh(simple_line(), 1.0)
+    for sign in (-1, 1):
+        assert mesh.station(60.0 + sign * 0.9e-6) == mesh.station(60.0)
+        with pytest.raises(KeyError, match="no station"):
+            mesh.station(60.0 + sign * 1.1e-6)
+
+
+def test_wire_overlaps_any_wire_of_its_row() -> None:
+    """Three tension sections: the third overlaps the second, which shares a row with the first, and touches nothing."""
+    ends = {"first": (0.0, 100.0), "second": (120.0, 200.0), "third": (180.0, 300.0), "fourth": (310.0, 400.0)}
+    wires = tuple(Wire(name, Kind.CONTACT_WIRE, start, end, 1e4, 1.0, 0.0) for name, (start, end) in ends.items())
+    mesh = build_mesh(Catenary(wires), 1.0)
+    assert [mesh.row_of[name, "z"] for name in ends] == [0, 0, 1, 0]
+
+
 @pytest.mark.parametrize(
     ("position", "element", "share"), [(0.0, 0, 0.0), (0.5, 0, 0.5), (1.0, 0, 1.0), (2.0, 1, 0.5), (3.0, 1, 1.0)]
 )

@@ -11,7 +11,7 @@ from pantocheck.model.dynamics.motion import Motion
 from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.train import build_empty_train
 from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, stepping_mass
-from pantocheck.model.modal.modal_damping import build_modal_terms
+from pantocheck.model.modal.modal_damping import apply_modal_bands, build_modal_terms
 from pantocheck.model.modal.modes import compute_modes, damping_ratios
 
 UNIFORM = dict.fromkeys(Kind, Rayleigh(0.05, 1e-4))
@@ -41,6 +41,20 @@ def test_complex_eigenvalues_have_the_modal_ratios_and_rayleigh_ratios_elsewhere
     matrices = assemble_matrices(line)
     roots = complex_roots(matrices.mass.toarray(), full_damping(line), matrices.stiffness.toarray(), 12)
     np.testing.assert_allclose(-roots.real / np.abs(roots), expected, rtol=1e-5)
+
+
+def test_band_includes_its_lower_and_not_its_upper_edge() -> None:
+    """Bands whose edges are the frequencies of modes; every band has another ratio, as Rayleigh damping has."""
+    plain = discretise(simple_line(damping=UNIFORM), 2.0)
+    frequency = compute_modes(plain, 16).frequency[:6]
+    rayleigh = damping_ratios(plain, compute_modes(plain, 16))[:6]
+    bands = tuple(ModalBand(float(frequency[i]), float(frequency[i + 2]), ratio) for i, ratio in ((1, 0.02), (3, 0.03)))
+    terms = build_modal_terms(replace(plain, catenary=replace(plain.catenary, modal_damping=bands)))
+    ratios = np.array([0.02, 0.02, 0.03, 0.03])
+    added = 4 * np.pi * frequency[1:5] * (ratios - rayleigh[1:5])
+    np.testing.assert_allclose(terms.damping, added, rtol=1e-6)
+    expected = [rayleigh[0], *ratios, rayleigh[5]]
+    np.testing.assert_allclose(apply_modal_bands(rayleigh, frequency, bands), expected, rtol=1e-12)
 
 
 def test_step_with_modal_damping_equals_the_full_matrix() -> None:

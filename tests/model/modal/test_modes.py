@@ -6,15 +6,28 @@ import pytest
 from helpers.lines import DAMPED, bare_wire, complex_roots, simple_line
 from pantocheck.model import Kind, Rayleigh, discretise
 from pantocheck.model.discretised_line import with_damping
-from pantocheck.model.fem.assembly import assemble_matrices
+from pantocheck.model.fem.assembly import assemble_matrices, free_unknowns
 from pantocheck.model.fem.beam import pinned_frequencies
-from pantocheck.model.modal.modes import component_energies, compute_modes, damping_ratios
+from pantocheck.model.modal.modes import component_energies, compute_modes, compute_modes_below, damping_ratios
 
 
 def test_compute_modes_of_a_bare_wire_are_the_closed_form() -> None:
     """Elements of 1 m on a wave of 12 m and more: the measured error is 2e-7."""
     modes = compute_modes(discretise(bare_wire(60.0), 1.0), 10)
     np.testing.assert_allclose(modes.frequency, pinned_frequencies(10, 60.0, 20e3, 195.0, 1.35), rtol=1e-6)
+
+
+def test_all_modes_below_a_frequency_are_found() -> None:
+    """A wire of 60 m has a mode every 1 Hz: 40 of them need more than one trial. The limit itself is excluded."""
+    line = discretise(bare_wire(60.0), 1.0)
+    exact = pinned_frequencies(60, 60.0, 20e3, 195.0, 1.35)
+    for limit in (0.5, 10.0, 40.0):
+        modes = compute_modes_below(line, limit)
+        assert modes.frequency == pytest.approx(exact[exact < limit], rel=1e-3)
+        assert len(modes.shape) == len(modes.frequency)
+    assert compute_modes_below(line, compute_modes(line, 16).frequency[2]).frequency.size == 2
+    unknowns = free_unknowns(line).size
+    assert compute_modes_below(line, 1e9).frequency.size == unknowns - 2  # the most that the eigenvalue solver gives
 
 
 def test_component_energies_of_mass_normalised_modes_add_up() -> None:
