@@ -1,0 +1,152 @@
+"""The second formulation: its scheme against closed forms, its time step against its statics, one case against ours."""
+
+import sys
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.linalg import eigh
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.library import select_cases
+
+sys.path.append(str(Path(__file__).parents[2] / "benchmarks"))
+
+from difference_arrays import Model, build_model
+from difference_data import Heads
+from difference_line import build_line
+from difference_passage import difference_quantities, force_quantities, simulate
+from difference_statics import HeldStructure, rows
+from difference_step import march
+from difference_strands import Strand, Wire, lay_out
+from finite_differences import reference_quantities
+
+CASES = ("en50318-2002/250", "en50318-2018/ac-simple/320", "en50318-2018/ac-stitched/320")
+
+
+def strand(length: float, spacing: float, bending_stiffness: float) -> Strand:
+    wire = Wire("contact", 0.0, length, 22e3, bending_stiffness, 1.35)
+    return lay_out([wire], "z", spacing)["contact", "z"]
+
+
+@cache
+def case(name: str, spans: int | None = None) -> Case:
+    found = next(candidate for candidate in select_cases([name]) if candidate.id == name)
+    if spans is None:
+        return found
+    geometry = found.line.geometry.shorten(spans)
+    return replace(found, line=found.line.model_copy(update={"geometry": geometry}))
+
+
+@cache
+def model(name: str) -> Model:
+    return build_model(build_line(case(name, 3).line), 0.25)
+
+
+def distant_heads() -> Heads:
+    """A pantograph far below the wire."""
+    one, row = np.ones(1), np.ones((1, 1))
+    return Heads(10.0 * one, 0.0, row, 0 * row, 0 * row, 0 * one, 0 * row, 5e4, -10 * row, 0 * row)
+
+
+def frequency_error(spacing: float, bending_stiffness: float, mode: int) -> float:
+    part, length = strand(30.0, spacing, bending_stiffness), 30.0
+    inner = slice(1, part.count - 1)
+    stiffness = part.stiffness(part.count).toarray()[inner, inner]
+    w2 = eigh(stiffness, eigvals_only=True, subset_by_index=[0, mode - 1])[-1] / (1.35 * spacing)
+    k = mode * np.pi / length
+    return float(np.sqrt(w2 / ((22e3 * k**2 + bending_stiffness * k**4) / 1.35)) - 1)
+
+
+@pytest.mark.parametrize(("bending_stiffness", "order"), [(0.0, 4.0), (2e4, 2.0)])
+def test_pinned_frequencies_converge(bending_stiffness: float, order: float) -> None:
+    """The string part is of fourth order, the bending part of second order; mode 12 lies at 26 Hz on a string."""
+    coarse, fine = (abs(frequency_error(h, bending_stiffness, 12)) for h in (0.25, 0.125))
+    assert np.log2(coarse / fine) == pytest.approx(order, abs=0.1)
+
+
+def test_contact_wire_frequencies_up_to_50_hz() -> None:
+    """At 0.125 m the frequency of a contact wire near 50 Hz is exact to 0.05 %: mode 23 of 30 m."""
+    assert abs(frequency_error(0.125, 195.0, 23)) < 5e-4
+
+
+@pytest.mark.parametrize("x", [15.0, 7.5, 7.5625, 7.6])
+def test_static_deflection_under_a_point_force(x: float) -> None:
+    """String x (L - x) / T L, less l / 2 T of the bending, plus the excess flexibility of the points: exact."""
+    part, length, tension, bending = strand(30.0, 0.125, 195.0), 30.0, 22e3, 195.0
+    points, weights = part.weights(x)
+    load = np.zeros(part.count)
+    load[points] = 100 * weights
+    held = rows([part.weights(0.0), part.weights(length)], part.count)
+    shape = HeldStructure(part.stiffness(part.count), held).solve(load, np.zeros(2))[0]
+    exact = x * (length - x) / (tension * length) - np.sqrt(bending / tension) / (2 * tension)
+    assert weights @ shape[points] / 100 == pytest.approx(exact + part.excess_at(x), rel=1e-9)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_static_uplift_is_an_equilibrium_of_the_time_step(name: str) -> None:
+    """Matrices and time step are written separately: the first step from a static uplift returns minus its load.
+
+    Under 400 N droppers are slack.
+    """
+    line = model(name)
+    load = line.point_load(80.0, 400.0)
+    displacement, n = line.uplift.displacement(load), load.size
+    velocity = np.zeros(n)
+    nothing = np.zeros(0, dtype=np.int64)
+    march(line.arrays, distant_heads(), displacement, velocity, np.zeros((1, 1)), np.zeros((0, 1)), nothing, 1)
+    moving = line.arrays.gain > 0
+    # Rounding: bending forces of 1e5 N/m times displacements of 1e-3 m, to 1e-13.
+    assert velocity[moving] / line.arrays.gain[moving] == pytest.approx(-load[moving], abs=1e-6)
+    assert np.abs(velocity[~moving]).max() < 1e-9
+
+
+def test_slack_droppers_carry_nothing() -> None:
+    """Under 400 N droppers near the load are slack, and the uplift exceeds 400 times that of 1 N by more than 5 %."""
+    line = model("en50318-2002/250")
+    linear = 400 * line.uplift.displacement(line.point_load(90.0, 1.0))
+    slack = line.uplift.displacement(line.point_load(90.0, 400.0))
+    assert line.lift(90.0, slack) > 1.05 * line.lift(90.0, linear)
+
+
+def test_pantograph_at_rest_stays_at_rest() -> None:
+    """Without speed and base spring, the start is an equilibrium: the contact force stays at the uplift force."""
+    moving, line = case("en50318-2002/250", 3), model("en50318-2002/250")
+    pantograph = moving.pantographs[0]
+    assert pantograph.chain is not None
+    chain = pantograph.chain.model_copy(update={"stiffness_N_m": (0.0, 4200.0)})
+    # At 1e-6 km/h the run of 1e-7 m takes 0.36 s, 450 steps.
+    update = {"speed_km_h": 1e-6, "evaluated_spans": (2,), "run_out_m": 0.0, "start_m": 120.0 - 1e-7}
+    still = replace(
+        moving,
+        pantographs=(pantograph.model_copy(update={"chain": chain}),),
+        file=moving.file.model_copy(update=update),
+    )
+    force = simulate(still, line, (120.0,)).force
+    # Rounding: 1e-13 of the elastic forces; the wire is 1e-7 m from the support.
+    assert force.size > 400
+    assert force == pytest.approx(120.0, abs=1e-4)
+
+
+def test_quantities_of_a_known_force() -> None:
+    """A sine of 10 Hz and 20 N on 100 N, over whole periods."""
+    rate, speed = 2000.0, 50.0
+    t = np.arange(0, 8, 1 / rate)
+    force = 100 + 20 * np.sin(2 * np.pi * 10 * t)
+    low_pass = case("en50318-2002/250").file.filter.low_pass
+    values = force_quantities(force, speed * t, rate, (100.0, 300.0), low_pass)
+    assert values["mean_force_N"] == pytest.approx(100)
+    assert values["rms_5_20_N"] == pytest.approx(20 / np.sqrt(2))
+    assert values["max_force_N"] == pytest.approx(100 + 20 / (1 + 0.5**6 * (np.sqrt(2) - 1)), abs=0.05)
+
+
+def test_2002_model_agrees_with_the_reference_simulator() -> None:
+    """Spacing 0.25 m and elements of 0.5 m agree within 2 % in every band; the page compares finer meshes."""
+    reference_case = case("en50318-2002/250")
+    second = difference_quantities(reference_case, 0.25, (120.0,))
+    reference = reference_quantities(reference_case, 0.5, 1e-3, (120.0,))
+    assert second.keys() == reference.keys()
+    for key, value in second.items():
+        assert value == pytest.approx(reference[key], rel=0.02), key
