@@ -13,13 +13,14 @@ from numpy.testing import assert_allclose
 from typer.testing import CliRunner, Result
 
 from helpers.toml_edit import edit_toml
+from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.damping_file import Damping
 from pantocheck.conformance.cases.library import library_folder, load_case, select_cases
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
 from pantocheck.conformance.plan import Plan, prepare_plan
-from pantocheck.conformance.simulation.drop_simulation import decimate, simulate_drop
+from pantocheck.conformance.simulation.drop_simulation import decimate, require_mass_drop, simulate_drop
 
 DropCase = Callable[[dict[str, Any]], Path]
 """Function that writes the short drop case with changed values; gives its path."""
@@ -96,6 +97,11 @@ def test_record_is_the_decay_at_the_rate_of_the_record(drop_case: DropCase) -> N
     later = decay.time > 2.0
     rms = np.sqrt(np.mean(decay.motion[:, later, 2] ** 2, axis=1))
     assert_allclose(np.sqrt(np.mean(record.signals[700:] ** 2, axis=0)), rms, rtol=0.005)
+
+
+def test_case_without_a_mass_drop_is_named(case_250: Case) -> None:
+    with pytest.raises(ValueError, match=r"^case en50318-2002/250 has no mass drop$"):
+        require_mass_drop(case_250)
 
 
 def test_noise_is_reproducible_and_differs_between_drops(drop_case: DropCase) -> None:

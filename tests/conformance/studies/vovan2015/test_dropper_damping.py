@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
+import pytest
 from numpy.testing import assert_allclose
 
 from helpers.computed_modes import grade_findings
@@ -76,6 +77,8 @@ def test_only_compensation_of_the_elastic_force_locks_a_dropper() -> None:
     assert elastic[-1] < 0.1 * elastic[0]
     assert outcome.study.findings[LINE]["dropper_locked_force_pct"] < 10
     assert outcome.record is not None
+    # The run of the record, and one of every coefficient under each law.
+    assert outcome.run.simulated_s == pytest.approx((1 + 2 * 3) * outcome.record.time[-1], rel=0.01)
 
 
 def test_both_laws_are_the_same_while_every_dropper_is_taut() -> None:

@@ -66,6 +66,11 @@ def test_gain_fades_from_the_second_to_the_last_band() -> None:
     assert_allclose(findings["damping_gain_fading_pct"], 40)
 
 
+def test_gain_does_not_fade_with_two_bands() -> None:
+    """The second band is the last."""
+    assert set(damping_gains([0.002, 0.002], [0.003, 0.0025])) == {"damping_gain_pct"}
+
+
 def test_every_band_has_the_modes_from_its_lower_edge_to_below_its_upper_edge(
     case: Case, monkeypatch: pytest.MonkeyPatch
 ) -> None:
