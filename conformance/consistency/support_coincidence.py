@@ -31,7 +31,7 @@ Simulated records have 0.01 to 0.3 mm; a passage shifted by 10 m has 2 to 9 mm o
 LARGEST_DATUM_DIFFERENCE_M = 5e-3
 """Largest difference of the constant between equal pantographs [m]; 0.3 mm in simulated records."""
 
-LARGEST_GAIN_ERROR = 0.03
+LARGEST_UPLIFT_GAIN_ERROR = 0.03
 """Largest error of the gain of the uplift, beside three standard errors; 0.02 in simulated records."""
 
 LONGEST_HOLD_S = 0.15
@@ -178,7 +178,7 @@ def _compare_gain(passages: dict[int, _Passages], step: float) -> Finding | None
     scatter = np.sqrt(float(((wire - gain * uplift) ** 2).sum()) / freedom)
     rounding = step / np.sqrt(6)  # of uplift and height
     error = np.hypot(scatter, rounding) / np.sqrt(squares)
-    if abs(gain - 1) <= LARGEST_GAIN_ERROR + 3 * error:
+    if abs(gain - 1) <= LARGEST_UPLIFT_GAIN_ERROR + 3 * error:
         return None
     return Finding(
         "doubt",

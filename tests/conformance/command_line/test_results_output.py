@@ -18,6 +18,12 @@ def rows(text: str, name: str) -> list[list[str]]:
     return [line.split() for line in text.splitlines() if line.startswith(name) and not line.startswith(f"{name}:")]
 
 
+@pytest.fixture(autouse=True)
+def wide_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No line of these tests wraps."""
+    monkeypatch.setenv("COLUMNS", "140")
+
+
 @pytest.fixture
 def rear(passing: dict[str, Any]) -> dict[str, Any]:
     """Criterion on the standard deviation of pantograph 2."""

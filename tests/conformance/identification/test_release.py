@@ -24,7 +24,7 @@ def test_movement_counts_from_eight_standard_deviations_of_the_rest() -> None:
     release = find_release(build_signals({6.0: 0.10, 7.5: 0.03}), RATE, 5.0, "record")
     assert release.time == pytest.approx(7.5)
     assert release.rest_end == pytest.approx(4.4)  # 0.6 s before the planned release
-    assert release.warnings == ("record: the first movement is 2.5 s after the planned release",)
+    assert release.warnings == ("record: the first motion is 2.5 s after the planned release",)
 
 
 def test_early_movement_ends_the_rest() -> None:
@@ -48,7 +48,7 @@ def test_record_without_noise_moves_at_the_first_change() -> None:
 def test_planned_release_without_rest_is_used() -> None:
     release = find_release(build_signals({0.0: 1.0}), RATE, 1.5, "record")
     assert (release.time, release.rest_end) == (1.5, 0.0)
-    assert "the planned release is used" in release.warnings[0]
+    assert "no rest before the release; the planned time of release is used" in release.warnings[0]
     with pytest.raises(InputError, match="no channel moves"):
         find_release(build_signals({}), RATE, 1.81, "record")
 
@@ -66,7 +66,7 @@ def test_release_without_a_trigger_time_follows_a_quiet_start(time: float) -> No
 
 
 def test_release_in_the_first_second_needs_a_trigger_time() -> None:
-    with pytest.raises(InputError, match="neither a trigger time nor a rest"):
+    with pytest.raises(InputError, match="has neither a planned release nor a rest"):
         find_release(build_signals({0.7: 1.0, 0.9: -1.0}), RATE, None, "record")
 
 

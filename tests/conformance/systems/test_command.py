@@ -241,7 +241,7 @@ def test_record_that_names_no_case_is_refused(program: Callable[..., System], ca
     """A record without a case may be of any run, although the program answers for this one."""
     system = program("well")
     edit_toml(tmp_path / "record.toml", {"case": None})
-    assert system.run(case_250) == Errored("p: the record is of case None in place of 'en50318-2002/250'")
+    assert system.run(case_250) == Errored("p: the record is of case None; expected 'en50318-2002/250'")
 
 
 def running_processes(text: bytes) -> list[str]:
