@@ -38,9 +38,9 @@ def test_folder_of_the_user_is_kept(monkeypatch: pytest.MonkeyPatch, tmp_path: P
     assert os.environ[kernel_cache.VARIABLE] == str(tmp_path)
 
 
-@pytest.mark.parametrize(("path", "writable"), [("", True), ("a/b", True), ("file", False), ("file/a", False)])
+@pytest.mark.parametrize(("path", "writable"), [("", True), ("a/b", True), ("program", False), ("program/a", False)])
 def test_writable_folder_is_found(path: str, writable: bool, tmp_path: Path) -> None:
-    (tmp_path / "file").touch()
+    (tmp_path / "program").touch(mode=0o755)
     assert kernel_cache._is_writable(tmp_path / path) is writable
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from helpers.lines import simple_line
+from helpers.lines import bare_wire, simple_line
 from pantocheck.model import Kind, Rayleigh, discretise
 from pantocheck.model.catenary import GRAVITY
 from pantocheck.model.dynamics.mass_drop import MassDropSetup, simulate_mass_drop
@@ -50,6 +50,16 @@ def test_mass_drop_is_at_rest_before_the_release_and_weaker_after_a_slow_release
     assert np.ptp(at_once.motion[0, before, 0]) < 1e-9
     fast, slow = (np.abs(decay.motion[0, :, 2]).max() for decay in (at_once, slowly))
     assert slow < 0.5 * fast
+
+
+def test_weight_decreases_linearly_during_the_release() -> None:
+    """A slow release: the wire, with a period of 1 s, follows the weight; its swing about it is below 4 %."""
+    line = bare_wire(60.0)
+    decay = simulate_mass_drop(
+        line, 2.0, MassDropSetup(2.0, "contact", 30.0, 8.0, 0.1, 9.0, 5e-3, (("contact", 30.0),))
+    )
+    share = decay.motion[0, :, 0] / decay.motion[0, 0, 0]
+    np.testing.assert_allclose(share, np.interp(decay.time, [0.0, 8.0], [1.0, 0.0]), rtol=0, atol=0.04)
 
 
 def test_mass_drop_of_a_heavy_mass_on_the_messenger_wire_slackens_droppers() -> None:
