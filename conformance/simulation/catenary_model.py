@@ -60,7 +60,7 @@ def build_catenary(line: LineFile) -> Catenary:
     )
     if not line.droppers.mass_kg_m:
         return catenary
-    # The lengths depend slightly on the weights: after two passes they are accurate to a micrometre.
+    # The lengths depend slightly on the weights: after two passes they are accurate to 0.1 mm.
     for _ in range(2):
         masses = line.droppers.mass_kg_m * discretise(catenary, COARSE).state.dropper_length
         droppers = zip(catenary.droppers, masses, strict=True)

@@ -1,8 +1,10 @@
-"""Catenary of a case: weight of the droppers."""
+"""Catenary of a case: weight of the droppers, and lateral positions of parallel wires."""
+
+import pytest
 
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.simulation.catenary_model import COARSE, build_catenary
-from pantocheck.model import discretise
+from pantocheck.model import Kind, discretise
 
 
 def test_dropper_masses_belong_to_the_lengths_of_the_loaded_line() -> None:
@@ -16,3 +18,17 @@ def test_dropper_masses_belong_to_the_lengths_of_the_loaded_line() -> None:
     lengths = discretise(catenary, COARSE).state.dropper_length
     errors = [abs(d.mass / 0.117 - length) for d, length in zip(catenary.droppers, lengths, strict=True)]
     assert max(errors) < 1e-4
+
+
+@pytest.mark.parametrize(("number", "offsets"), [(1, [0.0]), (2, [-0.02, 0.02])])
+def test_parallel_contact_wires_lie_on_either_side_of_the_stagger(number: int, offsets: list[float]) -> None:
+    """The stagger changes its side at every support; the offset of a wire, half the spacing, does not."""
+    line = select_cases(["en50318-2018/ac-simple/static"])[0].line
+    geometry = line.geometry.shorten(3).model_copy(update={"stagger_contact_wire_m": 0.2})
+    wires = line.contact_wire.model_copy(update={"number": number, "spacing_m": 0.04})
+    catenary = build_catenary(line.model_copy(update={"geometry": geometry, "contact_wire": wires}))
+    contact = [wire for wire in catenary.wires if wire.kind is Kind.CONTACT_WIRE]
+    for wire, offset in zip(contact, offsets, strict=True):
+        assert wire.stagger is not None
+        assert [x for x, _ in wire.stagger] == list(geometry.span_limits)
+        assert [y - offset for _, y in wire.stagger] == pytest.approx([0.2, -0.2, 0.2, -0.2])
