@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import splu
 
-from helpers.lines import DAMPED, Array, simple_line, without_connectors
+from helpers.lines import DAMPED, Array, bare_wire, simple_line, without_connectors
 from pantocheck.model.discretised_line import DiscretisedLine, discretise
 from pantocheck.model.dynamics.block_tridiagonal import solve_line
 from pantocheck.model.dynamics.effective_matrix import factorise
@@ -63,6 +63,14 @@ def test_columns_are_no_wider_than_needed(line_and_step: tuple[DiscretisedLine, 
     relative = size / np.maximum(size.max(axis=1, keepdims=True), np.finfo(float).tiny)
     assert relative[:, [0, -1]].max() < 1e-12
     assert width == 8 or relative[:, [8, -9]].max() >= 1e-12
+
+
+@pytest.mark.parametrize("load", [1, -2])
+def test_columns_near_an_anchor_are_as_wide_as_elsewhere(load: int) -> None:
+    """Beside the first or last station the column ends at the anchor on one side; the other side decides its width."""
+    line = discretise(bare_wire(60.0), 0.25)
+    factor, stations = factorise(line.beams, 2e-3), line.mesh.position.size
+    assert column_half_width(factor, [(0, load % stations)]) == column_half_width(factor, [(0, stations // 2)]) > 8
 
 
 def test_solve_line_agrees_with_a_sparse_solver(line_and_step: tuple[DiscretisedLine, float]) -> None:
