@@ -201,3 +201,9 @@ def test_modes_of_different_shapes_are_no_pair(mac: float, paired: bool) -> None
     pairs = pair_modes(frequency, [shape, same.astype(complex)], frequency, [computed, np.array([same[::-1], same])])
     assert [(pair.measured, pair.computed) for pair in pairs] == [(0, 0)] * paired + [(1, 1)]
     assert [pair.mac for pair in pairs] == pytest.approx([mac] * paired + [1.0])
+
+
+def test_single_sensor_says_nothing_about_the_shape() -> None:
+    """One sensor has no shape to compare: its similarity is 1, on a node of the computed mode, too."""
+    (pair,) = pair_modes(np.array([1.0]), [np.array([1.0 + 0.0j])], np.array([1.0]), [np.array([[0.0]])])
+    assert (pair.measured, pair.computed, pair.mac) == (0, 0, 1.0)
