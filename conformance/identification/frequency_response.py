@@ -39,12 +39,14 @@ def compute_frequency_response(fit: LineFit, record_fit: RecordFit) -> Frequency
         return None
     begin, end = (int(t * record.rate) for t in (decay.release.time, linear.end))
     signals = record.signals[begin:end, columns]
+    rest = record.signals[: max(int(decay.release.rest_end * record.rate), 1), columns]
     n = signals.shape[0]
     frequency = np.asarray(np.fft.rfftfreq(n, 1 / record.rate), dtype=np.float64)
     used = (frequency >= fit.band.low) & (frequency <= fit.band.high)
     omega: RealArray = 2 * np.pi * frequency[used]
     to_accelerance = (1j * omega) ** (1 + POWER_OF_OMEGA[record.quantity]) / (record.drop.mass * STANDARD_GRAVITY)
-    measured = np.fft.rfft(signals, axis=0)[used] / record.rate
+    offset = rest.mean(axis=0) if rest.shape[0] > 10 else signals.mean(axis=0)
+    measured = np.fft.rfft(signals - offset, axis=0)[used] / record.rate
     to_release = np.exp(-fit.poles * (linear.first - decay.release.time))
     to_release = to_release / filter_gain(linear.taps, fit.poles, linear.rate)
     inside = np.abs(fit.poles) < 2 * np.pi * fit.band.fitted
