@@ -300,17 +300,6 @@ def test_interrupted_parallel_run_ends_every_worker(cases: list[Case], tmp_path:
     ]
 
 
-def test_death_of_a_process_is_an_error_of_the_running_cases_only(cases: list[Case], tmp_path: Path) -> None:
-    """One worker ends while another case runs: the pool is lost with both; the third case has a new pool."""
-    running = replace(cases[1], file=cases[1].file.model_copy(update={"id": "own/running"}))
-    system = Waiting(tmp_path, cases[0].id, others=1, fatal=True)
-    last = replace(cases[1], file=cases[1].file.model_copy(update={"id": "own/last", "requires": ("own/running",)}))
-    results = run_cases([cases[0], running, last], system, jobs=2).cases
-    reason = "the process of this case, or of a parallel case, ended unexpectedly"
-    assert [(case.verdict, case.reason) for case in results[:2]] == [("error", reason)] * 2
-    assert (results[2].verdict, results[2].reason) == ("skip", "requires own/running, whose verdict is error")
-
-
 @pytest.mark.parametrize(("length", "kept"), [(299, 299), (300, 300), (301, 300), (5000, 300)])
 def test_long_reason_of_an_exception_is_cut(case_250: Case, length: int, kept: int) -> None:
     (result,) = run_cases([case_250], Scripted({case_250.id: ValueError("x" * length)})).cases
