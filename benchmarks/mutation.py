@@ -60,9 +60,9 @@ def main() -> int:
         settings = replace(settings, seed=arguments.seed)
     sources = Sources(snapshot, settings)
     preload(["coverage", *settings.preload])
-    for pattern in (pattern for area in settings.areas.values() for pattern in area["files"]):
-        if not sources.files([pattern]):
-            print(f"{arguments.settings.name}: no file matches {pattern}")
+    patterns = [pattern for area in settings.areas.values() for pattern in area["files"]]
+    if unmatched := [pattern for pattern in patterns if not sources.files([pattern])]:
+        sys.exit(f"{arguments.settings.name}: no file matches {', '.join(unmatched)}")
     areas = arguments.areas.split(",") if arguments.areas else list(settings.areas)
     traces = _trace(sources, arguments, out)
     results = (

@@ -121,6 +121,15 @@ def test_sample_depends_on_the_seed_alone(toy: Path, tmp_path: Path) -> None:
     assert samples[0] == samples[1] != samples[2]
 
 
+def test_every_pattern_of_the_committed_settings_matches_a_file() -> None:
+    from mutation_project import Settings, Sources
+
+    settings = Settings.read(BENCHMARKS / "mutation.toml")
+    sources = Sources(BENCHMARKS.parent, settings)
+    patterns = [pattern for area in settings.areas.values() for pattern in area["files"]]
+    assert [pattern for pattern in patterns if not sources.files([pattern])] == []
+
+
 def test_outcomes_on_a_toy_package(toy: Path, tmp_path: Path) -> None:
     pytest.importorskip("coverage", reason="the extra `mutation` is not installed")
     before = (toy / "toy" / "limits.py").read_bytes()
