@@ -128,6 +128,7 @@ class ChangeCollector(ast.NodeVisitor):
     # Statements
 
     def visit(self, node: ast.AST) -> None:
+        """Visit a node; a statement becomes the place of the changes inside it."""
         if isinstance(node, ast.stmt):
             before, self.statement = self.statement, node
             super().visit(node)
@@ -136,6 +137,7 @@ class ChangeCollector(ast.NodeVisitor):
             super().visit(node)
 
     def visit_FunctionDef(self, node: ast.FunctionDef) -> None:
+        """Change the defaults and the body, in the scope of the function; decorators and annotations stay."""
         for default in (*node.args.defaults, *node.args.kw_defaults):
             if default is not None:
                 self.visit(default)
@@ -149,42 +151,50 @@ class ChangeCollector(ast.NodeVisitor):
     visit_AsyncFunctionDef = visit_FunctionDef  # type: ignore[assignment]
 
     def visit_ClassDef(self, node: ast.ClassDef) -> None:
+        """Change the body, in the scope of the class."""
         self.scopes.append(node.name)
         for child in node.body:
             self.visit(child)
         self.scopes.pop()
 
     def visit_If(self, node: ast.If) -> None:
+        """Negate the condition; a block for type checkers alone stays."""
         if isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING":
             return
         self._negate(node.test)
         self.generic_visit(node)
 
     def visit_While(self, node: ast.While) -> None:
+        """Negate the condition."""
         self._negate(node.test)
         self.generic_visit(node)
 
     def visit_IfExp(self, node: ast.IfExp) -> None:
+        """Negate the condition."""
         self._negate(node.test)
         self.generic_visit(node)
 
     def visit_comprehension(self, node: ast.comprehension) -> None:
+        """Keep the first element alone; negate each condition."""
         self._take_first(node.iter)
         for test in node.ifs:
             self._negate(test)
         self.generic_visit(node)
 
     def visit_For(self, node: ast.For) -> None:
+        """Keep the first element alone."""
         self._take_first(node.iter)
         self.generic_visit(node)
 
     def visit_AnnAssign(self, node: ast.AnnAssign) -> None:
+        """Drop the assignment of an attribute; change the value, not the type."""
         if node.value is not None:
             if isinstance(node.target, ast.Attribute):
                 self._replace(node, "drop statement", "pass")
             self.visit(node.value)
 
     def visit_Assign(self, node: ast.Assign) -> None:
+        """Drop the assignment of an attribute or element inside a function; `__all__` stays."""
         if any(isinstance(target, ast.Name) and target.id == "__all__" for target in node.targets):
             return
         if self.functions and any(isinstance(target, ast.Attribute | ast.Subscript) for target in node.targets):
@@ -192,6 +202,7 @@ class ChangeCollector(ast.NodeVisitor):
         self.generic_visit(node)
 
     def visit_AugAssign(self, node: ast.AugAssign) -> None:
+        """Drop the statement; replace its operator."""
         self._replace(node, "drop statement", "pass")
         new = ARITHMETIC.get(type(node.op))
         if new and not _is_text(node.value):
@@ -200,13 +211,15 @@ class ChangeCollector(ast.NodeVisitor):
         self.generic_visit(node)
 
     def visit_Raise(self, node: ast.Raise) -> None:
-        # The arguments of an exception are its message.
+        """Drop the statement; its arguments are a message."""
         self._replace(node, "drop raise", "pass")
 
     def visit_Assert(self, node: ast.Assert) -> None:
+        """Change the condition; the message stays."""
         self.visit(node.test)
 
     def visit_Expr(self, node: ast.Expr) -> None:
+        """Drop a call that does more than print a message; docstrings stay."""
         if isinstance(node.value, ast.Constant):
             return
         if isinstance(node.value, ast.Call) and _name(node.value.func) not in MESSAGES:
@@ -214,12 +227,15 @@ class ChangeCollector(ast.NodeVisitor):
         self.generic_visit(node)
 
     def visit_Continue(self, node: ast.Continue) -> None:
+        """Drop the statement."""
         self._replace(node, "drop statement", "pass")
 
     def visit_Break(self, node: ast.Break) -> None:
+        """Drop the statement."""
         self._replace(node, "drop statement", "pass")
 
     def visit_Return(self, node: ast.Return) -> None:
+        """Drop a return without value; return None where the type of the function allows it."""
         if node.value is None:
             self._replace(node, "drop statement", "pass")
             return
@@ -232,6 +248,7 @@ class ChangeCollector(ast.NodeVisitor):
     # Expressions
 
     def visit_Compare(self, node: ast.Compare) -> None:
+        """Move the boundary of a comparison; negate it."""
         operands = [node.left, *node.comparators]
         for left, operator, right in zip(operands, node.ops, operands[1:], strict=False):
             token = TOKENS[type(operator)]
@@ -241,12 +258,14 @@ class ChangeCollector(ast.NodeVisitor):
         self.generic_visit(node)
 
     def visit_BoolOp(self, node: ast.BoolOp) -> None:
+        """Replace `and` by `or` and the reverse."""
         token, new = (r"\band\b", "or") if isinstance(node.op, ast.And) else (r"\bor\b", "and")
         for left, right in zip(node.values, node.values[1:], strict=False):
             self._replace_between((node, left, right), "connective", token, new)
         self.generic_visit(node)
 
     def visit_BinOp(self, node: ast.BinOp) -> None:
+        """Replace an arithmetic operator; texts, lists and unions of types stay."""
         new = ARITHMETIC.get(type(node.op))
         masks = isinstance(node.op, ast.BitAnd | ast.BitOr)
         if new and not _is_text(node) and not (masks and (not self.functions or _is_union(node))):
@@ -254,6 +273,7 @@ class ChangeCollector(ast.NodeVisitor):
         self.generic_visit(node)
 
     def visit_UnaryOp(self, node: ast.UnaryOp) -> None:
+        """Drop `not`, a minus sign or `~`."""
         names = {ast.Not: "drop not", ast.USub: "drop sign", ast.Invert: "drop not"}
         if type(node.op) in names:
             self._replace_token(node, names[type(node.op)])
@@ -267,6 +287,7 @@ class ChangeCollector(ast.NodeVisitor):
         self._add(node, operator, f"{text} -> {normalise(self._text(node.operand))}", Edit(start, end, kept))
 
     def visit_Call(self, node: ast.Call) -> None:
+        """Drop `abs`, call the opposite function, change the arguments; the call of a message stays."""
         name = _name(node.func)
         if name in MESSAGES:
             return
@@ -284,6 +305,7 @@ class ChangeCollector(ast.NodeVisitor):
                 self.visit(keyword.value)
 
     def visit_Subscript(self, node: ast.Subscript) -> None:
+        """Drop the bounds of a slice; replace index 0 by 1, 1 by 0 and a negative index by 0."""
         for part in node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]:
             if isinstance(part, ast.Slice):
                 for bound in (part.lower, part.upper):
@@ -299,6 +321,7 @@ class ChangeCollector(ast.NodeVisitor):
         self.visit(node.value)
 
     def visit_Constant(self, node: ast.Constant) -> None:
+        """Replace a number: an integer by its neighbours, a real number by its double and its half."""
         value = node.value
         if isinstance(value, bool):
             self._replace(node, "constant", str(not value))
@@ -312,7 +335,7 @@ class ChangeCollector(ast.NodeVisitor):
                 self._replace(node, "constant", repr(value / 2))
 
     def visit_JoinedStr(self, node: ast.JoinedStr) -> None:
-        """A text with values: a message."""
+        """Keep a text with values: it is a message."""
 
     def _negate(self, test: ast.expr) -> None:
         # A comparison has its own negation, `not x` loses its `not`.

@@ -31,6 +31,7 @@ class Settings:
 
     @classmethod
     def read(cls, path: Path) -> "Settings":
+        """Read the settings from a TOML file."""
         table = tomllib.loads(path.read_text(encoding="utf-8"))
         return cls(
             table["seed"],
@@ -124,6 +125,7 @@ class Sources:
         return sorted(test for test in found if not any(fnmatch(test, name) for name in self.settings.ignored_tests))
 
     def read(self, file: str) -> bytes:
+        """Content of a file of the tree."""
         return (self.tree / file).read_bytes()
 
     def mutants(self, area: str) -> list[Mutant]:

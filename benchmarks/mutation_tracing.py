@@ -45,20 +45,24 @@ class _Tracer:
         self.lost = 0.0
 
     def enter(self, context: str) -> None:
+        """Attribute the lines that follow to a test or fixture."""
         self.contexts.append(context)
         self.switch()
 
     def leave(self) -> None:
+        """Attribute the lines that follow to the test or fixture before."""
         self.contexts.pop()
         self.switch()
 
     def switch(self) -> None:
+        """Make the last context that of this process and of the programs that it starts."""
         context = self.contexts[-1] if self.contexts else ""
         self.coverage.switch_context(context)
         os.environ["MUTATION_CONTEXT"] = context or "outside tests"
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Iterator[None]:
+        """Trace a test; its time excludes the fixtures that tests share."""
         _clear_caches()
         definitions = item._fixtureinfo.name2fixturedefs if hasattr(item, "_fixtureinfo") else {}
         shared = [_fixture_name(found[-1]) for found in definitions.values() if found[-1].scope != "function"]
@@ -73,6 +77,7 @@ class _Tracer:
 
     @pytest.hookimpl(wrapper=True)
     def pytest_fixture_setup(self, fixturedef: Any) -> Iterator[Any]:
+        """Trace the set-up of a fixture that tests share."""
         if fixturedef.scope == "function":
             return (yield)
         name = _fixture_name(fixturedef)
@@ -87,6 +92,7 @@ class _Tracer:
             self.lost = before + seconds
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """Note whether a test has passed; a failed set-up or tear-down counts as a failure."""
         if report.when == "call":
             self.tests[report.nodeid]["passed"] = report.passed
         elif report.failed:

@@ -43,6 +43,7 @@ def guard_command(command: Callable[P, R]) -> Callable[P, R]:
 
     @functools.wraps(command)
     def run(*args: P.args, **kwargs: P.kwargs) -> R:
+        """Run the command; every failure ends with a message and an exit code."""
         try:
             return command(*args, **kwargs)
         except (typer.Exit, BrokenPipeError):

@@ -52,6 +52,7 @@ class BoundedFile(io.BufferedReader):
         self._size = size
 
     def read(self, size: int | None = -1, /) -> bytes:
+        """Read at most `size` bytes, and at most one byte more than the file had when it was opened."""
         return super().read(-1 if size is None or size < 0 else min(size, self._size + 1))
 
 

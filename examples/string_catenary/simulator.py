@@ -103,6 +103,7 @@ class Line:
         return Points(node, np.asarray(x) / self.h - node)
 
     def contact_nodes(self):
+        """Number of grid points of the contact wire."""
         return self.contact.w.size
 
     def solve_initial_state(self, height, arms_carry):

@@ -39,6 +39,7 @@ def render_svg(paint: Callable[Arguments, Figure]) -> Callable[Arguments, str]:
 
     @wraps(paint)
     def render(*args: Arguments.args, **kwargs: Arguments.kwargs) -> str:
+        """Paint the figure in the common style; return its SVG text."""
         read_source_date()  # refuse a wrong date: matplotlib reads it as well and fails without a message
         with matplotlib.rc_context(_read_style()):
             buffer = io.StringIO()
