@@ -177,6 +177,31 @@ def preload_springs(pantograph: Pantograph, displacement: Array) -> Pantograph:
     return replace(pantograph, force=pantograph.force + pantograph.stiffness @ displacement)
 
 
+def equilibrium(pantograph: Pantograph, head_height: float) -> tuple[Array, float]:
+    """Static equilibrium with the head held at a height.
+
+    Parameters
+    ----------
+    pantograph : Pantograph
+        Linear model.
+    head_height : float
+        Height of the head above the contact wire at the supports [m].
+
+    Returns
+    -------
+    displacement : (n,) ndarray
+        Displacements of the unknowns, all but the head in equilibrium.
+    contact_force : float
+        Contact force that holds the head [N].
+    """
+    n = pantograph.head.size
+    system = np.zeros((n + 1, n + 1))
+    system[:n, :n] = pantograph.stiffness
+    system[:n, n] = system[n, :n] = pantograph.head
+    solution = np.linalg.solve(system, np.append(pantograph.force, head_height))
+    return np.asarray(solution[:n]), float(solution[n])
+
+
 def frequencies(pantograph: Pantograph) -> Array:
     """Undamped natural frequencies with the base fixed and the head free, ascending [Hz]."""
     w2 = eigh(pantograph.stiffness, pantograph.mass, eigvals_only=True)

@@ -39,8 +39,9 @@ class ChainTable(SourcedTable):
     base_spring_unstretched: Annotated[
         Literal["working_height", "wire_height"],
         Field(
-            description="height at which the base spring is without force; working_height: static working height, so "
-            "that the static contact force equals the uplift force; wire_height: nominal height of the contact wire"
+            description="height from which the displacements of all masses count: with every mass at this height, all "
+            "springs are without force; working_height: static height of the head under the uplift force; "
+            "wire_height: nominal height of the contact wire"
         ),
     ] = "working_height"
 
@@ -70,7 +71,7 @@ Matrix = Annotated[tuple[NumberList, ...], Field(strict=False, min_length=1, max
 
 
 class MatricesTable(SourcedTable):
-    """Matrices of a linear pantograph with fixed base; the uplift force equals the static contact force."""
+    """Matrices of a linear pantograph with fixed base; springs are without force at the static working height."""
 
     mass_kg: Annotated[Matrix, Field(description="mass matrix, row by row [kg]")]
     damping_N_s_m: Annotated[Matrix, Field(description="damping matrix, row by row [N s/m]")]
@@ -79,10 +80,20 @@ class MatricesTable(SourcedTable):
         NumberList,
         Field(max_length=50, description="displacement of the head per unit of each degree of freedom, e.g. [0, 0, 1]"),
     ]
+    uplift_force_on: Annotated[
+        NumberList | None,
+        Field(
+            max_length=50,
+            description="displacement of the point of the uplift force per unit of each degree of freedom, e.g. "
+            "[1, 0, 0] for the lowest mass of a chain; default: the head, so that the static contact force at the "
+            "working height equals the uplift force",
+        ),
+    ] = None
 
     @model_validator(mode="after")
     def _possible(self) -> "MatricesTable":
         n = len(self.head)
+        _check_lengths(self, ("uplift_force_on",), n, "degree of freedom", "degrees of freedom")
         if not any(self.head):
             raise validation_problem("head", "all values are 0", "Give at least one value that is not 0.")
         for key in ("mass_kg", "damping_N_s_m", "stiffness_N_m"):
@@ -105,7 +116,7 @@ class MatricesTable(SourcedTable):
 
 
 class ModesTable(SourcedTable):
-    """Mass-normalised modes of a linear pantograph with fixed base and free head; uplift force as for matrices."""
+    """Mass-normalised modes of a linear pantograph with fixed base, free head; working height as for matrices."""
 
     frequency_Hz: Annotated[
         NonNegativeList,
@@ -115,10 +126,20 @@ class ModesTable(SourcedTable):
     head_shape: Annotated[
         NumberList, Field(max_length=200, description="displacement of the head in each mode [kg^-1/2]")
     ]
+    uplift_force_on: Annotated[
+        NumberList | None,
+        Field(
+            max_length=200,
+            description="displacement of the point of the uplift force in each mode [kg^-1/2]; default: the head, as "
+            "for matrices",
+        ),
+    ] = None
 
     @model_validator(mode="after")
     def _same_length(self) -> "ModesTable":
-        _check_lengths(self, ("damping_ratio", "head_shape"), len(self.frequency_Hz), "mode", "modes")
+        _check_lengths(
+            self, ("damping_ratio", "head_shape", "uplift_force_on"), len(self.frequency_Hz), "mode", "modes"
+        )
         if not any(self.head_shape):
             raise validation_problem("head_shape", "all values are 0", "Give at least one value that is not 0.")
         return self

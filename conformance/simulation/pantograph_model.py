@@ -1,5 +1,7 @@
 """Pantograph of the reference simulator from a pantograph file."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from pantocheck.conformance.cases.pantograph_file import PantographFile
@@ -8,6 +10,10 @@ from pantocheck.model.pantograph import Pantograph, chain, from_matrices, from_m
 
 def build_pantograph(file: PantographFile, uplift_force: float, working_height: float) -> Pantograph:
     """Pantograph with an uplift force and a static working height.
+
+    One convention holds for chains, matrices and modes: displacements count from the static working height of the
+    head, and with all of them zero every spring is without force. The base spring of a chain whose uplift force acts
+    below the head therefore carries a part of it: the frame is above that datum, as the springs over it are compressed.
 
     Parameters
     ----------
@@ -40,6 +46,7 @@ def build_pantograph(file: PantographFile, uplift_force: float, working_height: 
         table = file.matrices
         matrices = (np.array(table.mass_kg), np.array(table.damping_N_s_m), np.array(table.stiffness_N_m))
         model = from_matrices(*matrices, np.array(table.head), uplift_force, contact)
+        model = replace(model, force=uplift_force * np.array(table.uplift_force_on or table.head))
         # Any displacement with the head at the working height is suitable: its spring forces become preload.
         return preload_springs(model, model.head * working_height / (model.head @ model.head))
     modes = file.modes
@@ -47,5 +54,5 @@ def build_pantograph(file: PantographFile, uplift_force: float, working_height: 
         raise ValueError("a pantograph without a model")  # No valid file has this content.
     omega, shape = 2 * np.pi * np.array(modes.frequency_Hz), np.array(modes.head_shape)
     preload = omega**2 * shape * working_height / (shape @ shape)
-    force = uplift_force * shape + preload
+    force = uplift_force * np.array(modes.uplift_force_on or modes.head_shape) + preload
     return from_modes(np.array(modes.frequency_Hz), np.array(modes.damping_ratio), shape, force, uplift_force, contact)

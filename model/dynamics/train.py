@@ -6,7 +6,7 @@ import numpy as np
 
 from pantocheck.model.arrays import Array
 from pantocheck.model.dynamics.passage import Passage
-from pantocheck.model.pantograph import Pantograph
+from pantocheck.model.pantograph import equilibrium
 
 
 class Train(NamedTuple):
@@ -84,7 +84,7 @@ def build_train(passage: Passage, wire_height: Array, flexibility: Array) -> Tra
         train.contact_stiffness[p] = pantograph.contact_stiffness
         train.contact[p] = pantograph.static_force / wires
         overlap = train.contact[p, 0] * (1 / pantograph.contact_stiffness + float(flexibility[p].mean()))
-        train.z[0, p, :n] = _equilibrium(pantograph, float(wire_height[p].mean()) + overlap)
+        train.z[0, p, :n], _ = equilibrium(pantograph, float(wire_height[p].mean()) + overlap)
     return train
 
 
@@ -103,12 +103,3 @@ def _allocate(pantographs: int, unknowns: int, contact_wires: int) -> Train:
         z=np.zeros((3, pantographs, unknowns)),
         contact=np.zeros((pantographs, contact_wires)),
     )
-
-
-def _equilibrium(pantograph: Pantograph, head_height: float) -> Array:
-    """Displacements of a pantograph with the head held at a height and all other parts in equilibrium."""
-    n = pantograph.head.size
-    system = np.zeros((n + 1, n + 1))
-    system[:n, :n] = pantograph.stiffness
-    system[:n, n] = system[n, :n] = pantograph.head
-    return np.asarray(np.linalg.solve(system, np.append(pantograph.force, head_height))[:n])
