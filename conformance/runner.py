@@ -27,6 +27,9 @@ from pantocheck.conformance.systems.system import System
 GRACE = 2.0
 """Time of a process to end its program after a signal [s]."""
 
+PROCESS_DIED = "the process of this case, or of a parallel case, ended unexpectedly"
+"""Reason of a case that was running when a process died."""
+
 Progress = Callable[[CaseResult], None]
 """Callback that receives each result as soon as its case is finished."""
 
@@ -165,7 +168,7 @@ def _run_in_parallel(
     waiting = _order_cases(cases)
     running: dict[Future[CaseResult], Case] = {}
     others = set(multiprocessing.active_children())
-    pool = _start_pool(jobs)
+    pool, broken = _start_pool(jobs), False
     try:
         while waiting or running:
             unfinished = {case.id for case in (*waiting, *running.values())}
@@ -174,26 +177,34 @@ def _run_in_parallel(
                 ready = waiting[:1]  # cases that require each other: none of them can run
             # At most one case per process is submitted: a process that dies loses only the cases that are running.
             for case in ready[: jobs - len(running)]:
-                waiting.remove(case)
                 if (skipped := _check_requirements(case, finished, cases)) is not None:
                     keep(skipped)
+                elif (future := _submit(pool, case, system, trust)) is None:
+                    broken = True
+                    break
                 else:
-                    running[pool.submit(run_case, case, system, trust)] = case
-            if running and (lost := _keep_finished(running, keep)):
+                    running[future] = case
+                waiting.remove(case)
+            lost = _keep_finished(running, keep) if running else []
+            if lost or broken:
                 for case in (*lost, *running.values()):
-                    keep(
-                        build_ungraded(
-                            case, "error", "the process of this case, or of a parallel case, ended unexpectedly"
-                        )
-                    )
+                    keep(build_ungraded(case, "error", PROCESS_DIED))
                 running.clear()
                 pool.shutdown(wait=False)
-                pool = _start_pool(jobs)
+                pool, broken = _start_pool(jobs), False
     except KeyboardInterrupt:
         _end_workers(set(multiprocessing.active_children()) - others)
         raise
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _submit(pool: Executor, case: Case, system: System, trust: Trust) -> Future[CaseResult] | None:
+    """Submit a case to a process; None if a process has died since the last result, so that a new pool is needed."""
+    try:
+        return pool.submit(run_case, case, system, trust)
+    except BrokenProcessPool:
+        return None
 
 
 def _end_workers(workers: set[BaseProcess]) -> None:

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from helpers.dying_system import Dying
 from helpers.waiting_system import Waiting
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
@@ -298,6 +299,38 @@ def test_interrupted_parallel_run_ends_every_worker(cases: list[Case], tmp_path:
         "all have begun",
         *["the run was interrupted before this case was finished"] * 2,
     ]
+
+
+LOST = ("error", "the process of this case, or of a parallel case, ended unexpectedly")
+
+
+def named(case: Case, name: str, *required: str) -> Case:
+    return replace(case, file=case.file.model_copy(update={"id": name, "requires": required}))
+
+
+def test_death_of_the_processes_is_an_error_of_the_running_cases_only(case_250: Case, tmp_path: Path) -> None:
+    """Two cases run after the first one, and both processes end. The last case runs in new processes."""
+    system = Dying(tmp_path, {"a": "b", "b": "a"}, {})
+    cases = [named(case_250, "first"), *(named(case_250, name, "first") for name in ("a", "b", "last"))]
+    results = run_cases(cases, system, jobs=2).cases
+    finished = ("skip", "finished")
+    assert [(case.verdict, case.reason) for case in results] == [finished, LOST, LOST, finished]
+
+
+def test_death_of_a_process_before_the_next_case_starts(case_250: Case, tmp_path: Path) -> None:
+    """The process of `fatal` ends after `quick` is finished and before `last` is started, which loses nothing."""
+
+    def end_process(result: CaseResult) -> None:
+        if result.id == "quick":
+            (tmp_path / "kept").touch()
+            limit = time.monotonic() + 60.0
+            while multiprocessing.active_children() and time.monotonic() < limit:
+                time.sleep(0.02)
+
+    system = Dying(tmp_path, {"fatal": "kept"}, {"quick": "fatal"})
+    cases = [named(case_250, name) for name in ("quick", "fatal", "last")]
+    results = run_cases(cases, system, jobs=2, progress=end_process).cases
+    assert [(case.verdict, case.reason) for case in results] == [("skip", "finished"), LOST, ("skip", "finished")]
 
 
 @pytest.mark.parametrize(("length", "kept"), [(299, 299), (300, 300), (301, 300), (5000, 300)])

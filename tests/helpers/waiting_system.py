@@ -1,6 +1,5 @@
 """System for parallel runs: one case ends at once, the others wait until they are ended. Workers import it by name."""
 
-import os
 import signal
 import time
 from dataclasses import dataclass
@@ -25,15 +24,12 @@ class Waiting:
         Number of the other cases.
     deaf : bool
         Whether the others ignore the signals that end a process.
-    fatal : bool
-        Whether the first case ends its process, like a crash of a compiled library.
     """
 
     folder: Path
     quick: str
     others: int
     deaf: bool = False
-    fatal: bool = False
     name: str = "waiting"
     version: str = "1"
     kind: Literal["builtin"] = "builtin"
@@ -44,8 +40,6 @@ class Waiting:
         if case.id == self.quick:
             while len(list(self.folder.glob("begun-*"))) < self.others and time.monotonic() < limit:
                 time.sleep(0.02)
-            if self.fatal:
-                os._exit(1)
             return Skipped("all have begun")
         if self.deaf:
             signal.signal(signal.SIGTERM, signal.SIG_IGN)

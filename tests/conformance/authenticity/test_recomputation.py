@@ -132,6 +132,7 @@ def test_mean_without_contact_has_no_coefficient_of_variation(ungraded: Results)
         ([], [], False),
         ([1.0, 3.0, 5.0, 7.0], [3.0, 4.0, 0.0, 0.0], False),  # a line on the edge of 5 Hz
         ([1.0, 2.9999, 4.9998, 6.9997], [3.0, 4.0, 0.0, 0.0], True),
+        ([1.0, 2.99996, 4.99992, 6.99988], [3.0, 4.0, 0.0, 0.0], False),  # 8e-5 Hz from 5 Hz; rounding moves it by 1e-4
     ],
 )
 def test_band_is_checked_only_with_all_its_lines(
