@@ -4,7 +4,7 @@ import ast
 import tomllib
 from collections import defaultdict
 from collections.abc import Iterator
-from graphlib import TopologicalSorter
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import grimp
@@ -23,7 +23,15 @@ def test_import_rules_hold(capfd: pytest.CaptureFixture[str]) -> None:
 
 def test_files_do_not_import_in_a_circle() -> None:
     graph = grimp.build_graph("pantocheck.model", "pantocheck.conformance", cache_dir=None)
-    TopologicalSorter({module: graph.find_modules_directly_imported_by(module) for module in graph.modules}).prepare()
+    imports = {module: graph.find_modules_directly_imported_by(module) for module in graph.modules}
+    assert len(imports) >= len(FILES)
+    assert _find_circle(imports) == []
+
+
+def test_circle_of_imports_is_found() -> None:
+    circle = _find_circle({"a": {"b"}, "b": {"c"}, "c": {"a"}, "d": {"a"}})
+    assert circle[0] == circle[-1]
+    assert sorted(circle[1:]) == ["a", "b", "c"]
 
 
 def test_a_file_name_occurs_once() -> None:
@@ -45,6 +53,15 @@ def test_every_package_folder_is_installed() -> None:
     assert {"pantocheck." + ".".join(folder.parts) for folder in folders} == set(
         project["tool"]["setuptools"]["packages"]
     )
+
+
+def _find_circle(imports: dict[str, set[str]]) -> list[str]:
+    """Modules that import each other in a circle; the first one is also the last. Empty if there is no circle."""
+    try:
+        TopologicalSorter(imports).prepare()
+    except CycleError as error:
+        return list(error.args[1])
+    return []
 
 
 def _public_names(tree: ast.Module) -> Iterator[str]:

@@ -1,5 +1,6 @@
 """Content of a certificate: criteria, reasons, bands, facts and figures."""
 
+import json
 from typing import Any
 
 from pantocheck.conformance.quantities.registry import QUANTITIES
@@ -37,7 +38,8 @@ def sentences(section: Section) -> tuple[str, ...]:
 
 
 def test_example_has_the_format_of_results(results: dict[str, Any]) -> None:
-    Results.model_validate(results)
+    content = json.loads(Results.model_validate(results).to_json())
+    assert content == results
 
 
 def test_every_quantity_has_a_label() -> None:
