@@ -12,6 +12,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.command_line.console import build_table, escape_text, format_number
 from pantocheck.conformance.input_files.sourced_table import PROVENANCE
+from pantocheck.conformance.quantities.limit_text import name_value
 
 OTHER_TABLES = {"id", "title", "line", "model", "requires", "limit", "pantograph", "mass_drop", "study"}
 """Keys of a case file that are no inputs, or that have a table of their own."""
@@ -70,9 +71,9 @@ def _build_limit_table(case: Case) -> Table:
         "limit", *numbers, "trust", "source", title="Limits", unbroken=(*numbers, "trust"), right=numbers
     )
     for limit in case.limits:
-        item = f"[{limit.item}]" if limit.item else ""
+        pantograph = f", pantograph {limit.owner}" if limit.owner else ""
         table.add_row(
-            escape_text(f"{limit.quantity}{item}{f', pantograph {limit.owner}' if limit.owner else ''}"),
+            escape_text(name_value(limit.quantity, limit.item) + pantograph),
             format_number(limit.lower),
             format_number(limit.upper),
             limit.trust,

@@ -11,6 +11,7 @@ from rich.text import Text
 
 from pantocheck.conformance.command_line.console import build_table, console, escape_text, format_number, style_verdict
 from pantocheck.conformance.grading.verdicts import Verdict
+from pantocheck.conformance.quantities.limit_text import format_bounds, name_value
 from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline, describe_record
 from pantocheck.conformance.results.results_format import CaseResult, Criterion, Results, name_case
 from pantocheck.conformance.runner import Progress as ResultCallback
@@ -72,7 +73,7 @@ def _build_criterion_table(case: CaseResult) -> Table:
             format_number(item.value),
             format_number(error, 2),
             format_number(item.spread, 2),
-            _format_limits(item),
+            format_bounds(item.lower, item.upper, 4),
             "-" if item.margin is None else f"{item.margin:+.2f}",
             style_verdict(item.verdict),
             Text(item.trust),
@@ -80,12 +81,6 @@ def _build_criterion_table(case: CaseResult) -> Table:
     return table
 
 
-def _format_limits(item: Criterion) -> str:
-    if item.lower is None:
-        return "-" if item.upper is None else f"<= {format_number(item.upper)}"
-    return f">= {format_number(item.lower)}" if item.upper is None else f"{item.lower:.4g} to {item.upper:.4g}"
-
-
 def _name(item: Criterion) -> str:
     pantograph = f", pantograph {item.pantograph}" if item.pantograph > 1 else ""
-    return f"{item.quantity}{f'[{item.item}]' if item.item else ''}{pantograph}"
+    return name_value(item.quantity, item.item) + pantograph

@@ -9,6 +9,7 @@ from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.profile_file import Profile, list_profiles, load_profile
 from pantocheck.conformance.cases.study_tables import DampingSensitivity
 from pantocheck.conformance.input_files.trust import LEVELS
+from pantocheck.conformance.quantities.limit_text import format_bounds, name_value
 from pantocheck.conformance.results.results_format import LibraryIdentity
 
 
@@ -78,13 +79,13 @@ def describe_limit_change(stated: Limit, limit: Limit | None) -> str | None:
     limit : Limit or None
         Limit of the user that replaces it; None if it was removed.
     """
-    name = f"{stated.quantity}{f'[{stated.item}]' if stated.item else ''}"
-    name += f" of pantograph {stated.owner}" if stated.owner else ""
+    name = name_value(stated.quantity, stated.item) + (f" of pantograph {stated.owner}" if stated.owner else "")
+    bounds = format_bounds(stated.lower, stated.upper)
     if limit is None:
-        return f"{name}: the limit {_describe_bounds(stated)} is removed"
+        return f"{name}: the limit {bounds} is removed"
     parts = []
     if _is_wider(stated, limit):
-        parts.append(f"the limit {_describe_bounds(stated)} is widened to {_describe_bounds(limit)}")
+        parts.append(f"the limit {bounds} is widened to {format_bounds(limit.lower, limit.upper)}")
     if limit.trust != stated.trust:
         change = "lowered" if LEVELS.index(limit.trust) > LEVELS.index(stated.trust) else "raised"
         parts.append(f"the trust of the limit is {change} from {stated.trust} to {limit.trust}")
@@ -95,9 +96,3 @@ def _is_wider(stated: Limit, limit: Limit) -> bool:
     lower = stated.lower is not None and (limit.lower is None or limit.lower < stated.lower)
     upper = stated.upper is not None and (limit.upper is None or limit.upper > stated.upper)
     return lower or upper
-
-
-def _describe_bounds(limit: Limit) -> str:
-    if limit.lower is None:
-        return f"<= {limit.upper:g}"
-    return f">= {limit.lower:g}" if limit.upper is None else f"{limit.lower:g} to {limit.upper:g}"

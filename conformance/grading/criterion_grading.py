@@ -10,6 +10,7 @@ from pantocheck.conformance.grading.near_limit import NO_ERRORS, ValueErrors, ne
 from pantocheck.conformance.grading.verdicts import Verdict, judge, margin
 from pantocheck.conformance.input_files.trust import Trust, limit_counts
 from pantocheck.conformance.quantities.evaluation import Evaluation, Value
+from pantocheck.conformance.quantities.limit_text import name_value
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results.results_format import Criterion
 
@@ -153,7 +154,7 @@ def build_criterion(
 
 def criterion_name(criterion: Criterion) -> str:
     """Name of a criterion: quantity, item and owner."""
-    name = f"{criterion.quantity}[{criterion.item}]" if criterion.item else criterion.quantity
+    name = name_value(criterion.quantity, criterion.item)
     return f"{name} of pantograph {criterion.pantograph}" if criterion.pantograph else f"{name} of the line"
 
 

@@ -13,6 +13,7 @@ from pantocheck.conformance.plan import prepare_plan, read_plan
 from pantocheck.conformance.pytest_plugin.campaign import PlanSession, list_registered
 from pantocheck.conformance.pytest_plugin.session import shared_folder
 from pantocheck.conformance.pytest_plugin.user_fixtures import criterion_line, is_unverified, unverified_line
+from pantocheck.conformance.quantities.limit_text import name_value
 from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline
 from pantocheck.conformance.reports.formats.report_writers import FILES, write_all
 from pantocheck.conformance.results.results_format import CaseResult
@@ -99,7 +100,7 @@ class PantographNode(pytest.Collector):
             raise TypeError("a pantograph belongs to a case")
         for limit in self.parent.case.limits:
             if limit.owner == self.number:
-                name = f"{limit.quantity}[{limit.item}]" if limit.item else limit.quantity
+                name = name_value(limit.quantity, limit.item)
                 yield CriterionItem.from_parent(self, name=name, case_node=self.parent, limit=limit)
 
 

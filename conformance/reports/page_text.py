@@ -5,6 +5,8 @@ import unicodedata
 from collections.abc import Callable
 from typing import Any
 
+from pantocheck.conformance.quantities.limit_text import format_bounds
+
 LONGEST = 2000
 """Largest number of characters of a text."""
 # Noncharacters, private use and lone surrogates have no meaning for a reader; bidirectional controls can make one text
@@ -78,11 +80,5 @@ def format_beside_limits(value: float | None, lower: float | None, upper: float 
 
 
 def format_limits(lower: float | None, upper: float | None) -> str:
-    """Limits: `26 to 31`, `≤ 225`, `≥ 30`, `= 0`, `none`."""
-    if lower is None and upper is None:
-        return "none"
-    if lower is None:
-        return f"≤ {format_plain(upper)}"
-    if upper is None:
-        return f"≥ {format_plain(lower)}"
-    return f"= {format_plain(lower)}" if lower == upper else f"{format_plain(lower)} to {format_plain(upper)}"
+    """Limits with typographic signs: `26 to 31`, `≤ 225`, `≥ 30`, `= 0`, `none`."""
+    return replace_minus(format_bounds(lower, upper)).replace("<=", "≤").replace(">=", "≥")
