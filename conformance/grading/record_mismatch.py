@@ -1,9 +1,13 @@
 """Difference between a record and the run of a case that it should represent."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.quantities.filters import is_same_cutoff
 from pantocheck.conformance.records.record import SPEED_TOLERANCE, Record
+from pantocheck.conformance.records.record_summary import RecordSummary
 
 SECTION_TOLERANCE_M = 0.01
 """Tolerance of the analysis section of a record against that of its case [m]."""
@@ -25,14 +29,40 @@ def find_record_mismatch(case: Case, record: Record) -> str | None:
     record : Record
         Delivered record.
     """
-    if record.pantographs != len(case.pantographs):
-        return f"the record has {record.pantographs} pantographs, the case has {len(case.pantographs)}"
-    if not abs(record.speed / case.speed - 1) <= SPEED_TOLERANCE:
-        return f"the record was made at {3.6 * record.speed:.4g} km/h, the case runs at {3.6 * case.speed:.4g} km/h"
-    (start, end), (first, last) = record.evaluated, case.analysis_section
-    if not max(abs(start - first), abs(end - last)) <= SECTION_TOLERANCE_M:
-        return f"the record evaluates {start:g} m to {end:g} m, the case {first:g} m to {last:g} m"
-    return _find_other_spacing(case, record)
+    other = _find_other_run(case, record.pantographs, 3.6 * record.speed, record.evaluated)
+    return f"the record {other}" if other is not None else _find_other_spacing(case, record)
+
+
+def find_summary_mismatch(case: Case, summary: RecordSummary) -> str | None:
+    """Reason why a summary record is not of a run of a case; None if it is.
+
+    Parameters
+    ----------
+    case : Case
+        Case with its train.
+    summary : RecordSummary
+        Delivered summary record.
+    """
+    other = _find_other_run(case, len(summary.pantograph), summary.speed_km_h, summary.evaluated_m)
+    if other is not None:
+        return f"the summary record {other}"
+    stated, cutoff = summary.filter_cutoff_Hz, case.file.filter.cutoff_Hz
+    if not is_same_cutoff(stated, cutoff):
+        return f"the summary record has a filter of {stated:g} Hz, the case requires {cutoff:g} Hz"
+    return None
+
+
+def _find_other_run(case: Case, pantographs: int, speed_km_h: float, section: Sequence[float] | None) -> str | None:
+    """Difference of train, speed or analysis section from a case; a static case has no speed."""
+    if pantographs != len(case.pantographs):
+        return f"has {pantographs} pantographs, the case has {len(case.pantographs)}"
+    expected = case.file.speed_km_h
+    if expected is not None and not abs(speed_km_h / expected - 1) <= SPEED_TOLERANCE:
+        return f"was made at {speed_km_h:.4g} km/h, the case runs at {expected:.4g} km/h"
+    start, end = case.analysis_section
+    if section is not None and not max(abs(section[0] - start), abs(section[1] - end)) <= SECTION_TOLERANCE_M:
+        return f"evaluates {section[0]:g} m to {section[1]:g} m, the case {start:g} m to {end:g} m"
+    return None
 
 
 def _find_other_spacing(case: Case, record: Record) -> str | None:

@@ -6,11 +6,9 @@ from typing import Literal
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import library_folder, source_text
-from pantocheck.conformance.grading.record_mismatch import SECTION_TOLERANCE_M
+from pantocheck.conformance.grading.record_mismatch import find_summary_mismatch
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_toml
-from pantocheck.conformance.quantities.filters import is_same_cutoff
-from pantocheck.conformance.records.record import SPEED_TOLERANCE
 from pantocheck.conformance.records.record_reading import RECORD_SCHEMAS, open_record, read_record, record_digest
 from pantocheck.conformance.records.record_summary import RecordSummary
 from pantocheck.conformance.results.outcome import Delivered, Errored, Outcome, Skipped, note_case_version
@@ -52,7 +50,7 @@ class RecordFolder:
 
 
 def _deliver_summary(summary: RecordSummary, case: Case, digest: str) -> Outcome:
-    if (mismatch := _find_mismatch(summary, case)) is not None:
+    if (mismatch := find_summary_mismatch(case, summary)) is not None:
         return Errored(mismatch)
     source = (summary.source,) if isinstance(summary.source, str) else tuple(summary.source)
     return Delivered(
@@ -67,21 +65,6 @@ def _deliver_summary(summary: RecordSummary, case: Case, digest: str) -> Outcome
         case_digest=summary.case_digest,
         digest=digest,
     )
-
-
-def _find_mismatch(summary: RecordSummary, case: Case) -> str | None:
-    """Difference between a summary record and a run of the case; None if they agree."""
-    cutoff, speed = case.file.filter.cutoff_Hz, case.file.speed_km_h
-    if len(summary.pantograph) != len(case.pantographs):
-        return f"the summary record has {len(summary.pantograph)} pantographs, the case has {len(case.pantographs)}"
-    if speed is not None and not abs(summary.speed_km_h / speed - 1) <= SPEED_TOLERANCE:
-        return f"the summary record is of {summary.speed_km_h:g} km/h, the case runs at {speed:g} km/h"
-    if not is_same_cutoff(summary.filter_cutoff_Hz, cutoff):
-        return f"the summary record has a filter of {summary.filter_cutoff_Hz:g} Hz, the case requires {cutoff:g} Hz"
-    section, (start, end) = summary.evaluated_m, case.analysis_section
-    if section is not None and not max(abs(section[0] - start), abs(section[1] - end)) <= SECTION_TOLERANCE_M:
-        return f"the summary record evaluates {section[0]:g} m to {section[1]:g} m, the case {start:g} m to {end:g} m"
-    return None
 
 
 def open_record_folder(folder: Path) -> RecordFolder:

@@ -45,8 +45,8 @@ def test_bound_of_the_record_is_multiplied_by_its_factor() -> None:
 @pytest.mark.parametrize(
     ("key", "value", "message"),
     [
-        ("speed_km_h", 248.0, "is of 248 km/h, the case runs at 250 km/h"),
-        ("speed_km_h", 252.0, "is of 252 km/h, the case runs at 250 km/h"),
+        ("speed_km_h", 248.0, "was made at 248 km/h, the case runs at 250 km/h"),
+        ("speed_km_h", 252.0, "was made at 252 km/h, the case runs at 250 km/h"),
         ("filter_cutoff_Hz", 19.9, "has a filter of 19.9 Hz, the case requires 20 Hz"),
         ("filter_cutoff_Hz", 20.1, "has a filter of 20.1 Hz, the case requires 20 Hz"),
     ],

@@ -80,7 +80,7 @@ def test_missing_quantity_is_skipped(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"speed_km_h": 300.0}, "of 300 km/h, the case runs at 250 km/h"),
+        ({"speed_km_h": 300.0}, "was made at 300 km/h, the case runs at 250 km/h"),
         ({"filter_cutoff_Hz": 50.0}, "has a filter of 50 Hz, the case requires 20 Hz"),
         ({"pantograph": [{"mean_force_N": 118.0}, {"mean_force_N": 1.0}]}, "has 2 pantographs, the case has 1"),
         ({"evaluated_m": [0.0, 60.0]}, "evaluates 0 m to 60 m, the case 240 m to 360 m"),
