@@ -7,6 +7,7 @@ from pydantic import Field, model_validator
 from pantocheck.conformance.input_files.sourced_table import InputTable, NumberList, PositiveList, validation_problem
 from pantocheck.conformance.records.sidecar_tables import (
     CaseDigest,
+    CaseName,
     LineTable,
     RunTable,
     Speed,
@@ -24,7 +25,7 @@ class RecordSidecar(InputTable):
         Literal["pantocheck.record/1"],
         Field(alias="schema", description='version of the format: "pantocheck.record/1"'),
     ]
-    case: Annotated[str | None, Field(max_length=200, description="id of the case that was run")] = None
+    case: CaseName = None
     case_digest: CaseDigest | None = None
     file: Annotated[str, Field(min_length=1, max_length=500, description="name of the table beside the sidecar")]
     sha256: Annotated[

@@ -13,6 +13,7 @@ from pantocheck.conformance.quantities.statistics import coefficient_of_variatio
 from pantocheck.conformance.records.record import LARGEST_NUMBER
 from pantocheck.conformance.records.sidecar_tables import (
     CaseDigest,
+    CaseName,
     LineTable,
     RunTable,
     Speed,
@@ -33,7 +34,7 @@ class RecordSummary(SourcedTable):
         Literal["pantocheck.summary/1"],
         Field(alias="schema", description='version of the format: "pantocheck.summary/1"'),
     ]
-    case: Annotated[str | None, Field(max_length=200, description="id of the case that was run")] = None
+    case: CaseName = None
     case_digest: CaseDigest | None = None
     speed_km_h: Speed
     filter_cutoff_Hz: Annotated[

@@ -1,6 +1,6 @@
 """Writing of contact-force records: the table first, then the sidecar, so that every sidecar has its table."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -8,17 +8,20 @@ from typing import Any
 import numpy as np
 import tomli_w
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.input_files.atomic_writing import produce_atomically, write_atomically
 from pantocheck.conformance.input_files.bounded_file import file_digest
 from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
 from pantocheck.conformance.input_files.formats.hdf5_table import write_hdf5_table
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.table_formats import CSV, TableFormat, find_table_format
+from pantocheck.conformance.input_files.table_formats import CSV, HDF5, TableFormat, find_table_format
 from pantocheck.conformance.input_files.toml_file import read_toml
-from pantocheck.conformance.records.channel_rows import RECORD_FORMATS
 from pantocheck.conformance.records.record import Record
-from pantocheck.conformance.records.record_channels import CHANNELS
+from pantocheck.conformance.records.record_channels import CHANNELS, RecordChannel
 from pantocheck.conformance.records.record_sidecar import RECORD_SCHEMA, RecordSidecar
+
+Rows = dict[RecordChannel, RealArray]
+"""Samples of each channel, one row per pantograph or support."""
 
 
 def write_record(
@@ -57,7 +60,7 @@ def write_record(
         The suffix is not that of a record, a file cannot be written, or the sidecar would overwrite another file.
     """
     check_record_path(path)
-    produce_atomically(path, partial(_write_table, record, find_table_format(path, RECORD_FORMATS)))
+    produce_atomically(path, partial(_write_table, record, find_table_format(path, tuple(RECORD_WRITERS))))
     sidecar: dict[str, Any] = {
         "schema": RECORD_SCHEMA,
         "case": case,
@@ -87,7 +90,7 @@ def check_record_path(path: Path) -> None:
     InputError
         The suffix is not that of a record, or the sidecar would overwrite another file.
     """
-    find_table_format(path, RECORD_FORMATS)
+    find_table_format(path, tuple(RECORD_WRITERS))
     target = path.with_suffix(".toml")
     if target.exists() and read_toml(target, "sidecar").get("schema") != RECORD_SCHEMA:
         raise InputError(
@@ -107,8 +110,17 @@ def _write_table(record: Record, table_format: TableFormat, path: Path) -> None:
         "uplift": record.support_uplift,
     }
     rows = {CHANNELS[name]: values for name, values in channels.items() if values is not None}
-    if table_format is CSV:
-        names = [channel.column(i + 1) for channel, values in rows.items() for i in range(len(np.atleast_2d(values)))]
-        write_csv_table(path, names, np.vstack(list(rows.values())).T, 12)
-    else:
-        write_hdf5_table(path, {}, {channel.key: values for channel, values in rows.items()})
+    RECORD_WRITERS[table_format](path, rows)
+
+
+def _write_csv(path: Path, rows: Rows) -> None:
+    names = [channel.column(i + 1) for channel, values in rows.items() for i in range(len(np.atleast_2d(values)))]
+    write_csv_table(path, names, np.vstack(list(rows.values())).T, 12)
+
+
+def _write_hdf5(path: Path, rows: Rows) -> None:
+    write_hdf5_table(path, {}, {channel.key: values for channel, values in rows.items()})
+
+
+RECORD_WRITERS: dict[TableFormat, Callable[[Path, Rows], None]] = {CSV: _write_csv, HDF5: _write_hdf5}
+"""Formats in which records are written, with their writers."""

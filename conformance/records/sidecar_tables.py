@@ -8,6 +8,8 @@ from pantocheck.conformance.input_files.sourced_table import InputTable, NonNega
 
 Speed = Annotated[float, Field(ge=1, le=600, description="speed of the train [km/h]")]
 
+CaseName = Annotated[str | None, Field(max_length=200, description="id of the case that was run")]
+
 CaseDigest = Annotated[
     str,
     Field(
