@@ -14,7 +14,7 @@ from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.consistency.check import Check, Finding, worst_finding
-from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE
+from pantocheck.conformance.quantities.filters import is_observable
 from pantocheck.conformance.quantities.signals import PantographSignals
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph
@@ -70,7 +70,7 @@ def _check_force_dynamics(case: Case, signals: RecordSignals) -> Finding | None:
     record, low_pass = signals.record, case.file.filter.low_pass
     if record.contact_height is None:
         return Finding("unchecked", "the dynamics check was not made: the record has no contact height")
-    if low_pass.cutoff_Hz > HIGHEST_SHARE_OF_RATE * record.rate:
+    if not is_observable(low_pass.cutoff_Hz, record.rate):
         return Finding("unchecked", f"the dynamics check was not made: a rate of {record.rate:g} Hz is too low")
     findings = []
     step = max(1, int(record.rate / (SAMPLES_PER_PERIOD * low_pass.cutoff_Hz)))

@@ -30,7 +30,7 @@ from pantocheck.conformance.consistency.force_dynamics import (
 )
 from pantocheck.conformance.consistency.rounding import COARSEST_STEP_M, rounding_step
 from pantocheck.conformance.quantities.bands import EXTENDED_BAND
-from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE, LowPass
+from pantocheck.conformance.quantities.filters import LowPass, is_observable
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 
@@ -65,7 +65,7 @@ def _check_implied_force(case: Case, signals: RecordSignals) -> Finding | None:
         limits.append((replace(low_pass, cutoff_Hz=float(EXTENDED_BAND.high)), LARGEST_EXTENDED_ERROR))
     findings = []
     for band, largest in limits:
-        if band.cutoff_Hz > HIGHEST_SHARE_OF_RATE * record.rate:
+        if not is_observable(band.cutoff_Hz, record.rate):
             continue  # its quantities are not available either
         for number, file in enumerate(case.pantographs, 1):
             error = force_error(file, signals, number, band)

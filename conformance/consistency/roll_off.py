@@ -4,7 +4,7 @@ import numpy as np
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.consistency.check import Check, Finding, worst_finding
-from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE, is_same_cutoff
+from pantocheck.conformance.quantities.filters import is_observable, is_same_cutoff
 from pantocheck.conformance.records.record_signals import RecordSignals
 
 STOP_BAND = (2.0, 2.5)
@@ -29,7 +29,7 @@ def _check_roll_off(case: Case, signals: RecordSignals) -> Finding | None:
     applied, cutoff = record.filter_applied_Hz, low_pass.cutoff_Hz
     if applied is None or not is_same_cutoff(applied, cutoff):
         return None  # delivered unfiltered, or filtered again by the suite
-    if STOP_BAND[1] * cutoff > HIGHEST_SHARE_OF_RATE * record.rate:
+    if not is_observable(STOP_BAND[1] * cutoff, record.rate):
         return Finding("unchecked", f"the roll-off check was not made: a rate of {record.rate:g} Hz is too low")
     if (STOP_BAND[1] - STOP_BAND[0]) * cutoff * (record.time[-1] - record.time[0]) < MIN_ROLL_OFF_LINES:
         return Finding("unchecked", "the roll-off check was not made: the record is too short")

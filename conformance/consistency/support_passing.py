@@ -27,7 +27,7 @@ from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.consistency.check import Check, Finding
 from pantocheck.conformance.consistency.force_dynamics import TINY
-from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE
+from pantocheck.conformance.quantities.filters import is_observable
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.record_signals import RecordSignals
 
@@ -67,7 +67,7 @@ def _check_support_passing(case: Case, signals: RecordSignals) -> Finding | None
         passages = _Passages(case, signals)
     except QuantityUnavailable as reason:
         return Finding("unchecked", f"the support passing check was not made: {reason}")
-    if passages.length > PASSING_TOLERANCE_M or cutoff > HIGHEST_SHARE_OF_RATE * record.rate:
+    if passages.length > PASSING_TOLERANCE_M or not is_observable(cutoff, record.rate):
         return Finding("unchecked", f"the support passing check was not made: a rate of {record.rate:g} Hz is too low")
     near = np.abs(passages.shifts) <= PASSING_TOLERANCE_M
     unclear = []

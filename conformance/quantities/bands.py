@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.quantities.filters import CUTOFF_TOLERANCE, HIGHEST_SHARE_OF_RATE
+from pantocheck.conformance.quantities.filters import CUTOFF_TOLERANCE, check_observable
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandNotObservable
 
 MIN_BAND_LINES = 4
@@ -59,11 +59,7 @@ def band_rms(force: RealArray, rate: float, low: float, high: float, filter_appl
     AlreadyFiltered
         The force was filtered below the upper edge before delivery.
     """
-    if high > HIGHEST_SHARE_OF_RATE * rate:
-        raise BandNotObservable(
-            f"the record has {rate:g} samples per second; "
-            f"a band up to {high:g} Hz needs at least {high / HIGHEST_SHARE_OF_RATE:g}"
-        )
+    check_observable(high, rate, f"a band up to {high:g} Hz")
     if filter_applied_Hz is not None and filter_applied_Hz < (1 - CUTOFF_TOLERANCE) * high:
         raise AlreadyFiltered(
             f"the force was low-pass filtered at {filter_applied_Hz:g} Hz before delivery, "

@@ -19,6 +19,35 @@ CUTOFF_TOLERANCE = 0.001
 """Relative difference up to which two stated cut-offs are the same; they are printed with three digits or more."""
 
 
+def is_observable(frequency: float, rate: float) -> bool:
+    """Whether a record with a sampling rate [Hz] supports a frequency [Hz]."""
+    return frequency <= HIGHEST_SHARE_OF_RATE * rate
+
+
+def check_observable(frequency: float, rate: float, purpose: str) -> None:
+    """Refuse a sampling rate that is too low for a frequency.
+
+    Parameters
+    ----------
+    frequency : float
+        Highest frequency that is needed [Hz].
+    rate : float
+        Sampling rate [Hz].
+    purpose : str
+        Filter or band that needs the frequency, for the message.
+
+    Raises
+    ------
+    BandNotObservable
+        The rate is too low.
+    """
+    if not is_observable(frequency, rate):
+        raise BandNotObservable(
+            f"the record has {rate:g} samples per second; "
+            f"{purpose} needs at least {frequency / HIGHEST_SHARE_OF_RATE:g}"
+        )
+
+
 @dataclass(frozen=True)
 class LowPass:
     """Butterworth low-pass, -3 dB at its cut-off.
@@ -60,11 +89,7 @@ class LowPass:
         BandNotObservable
             The cut-off is too high for the rate.
         """
-        if self.cutoff_Hz > HIGHEST_SHARE_OF_RATE * rate:
-            raise BandNotObservable(
-                f"the record has {rate:g} samples per second; "
-                f"a filter at {self.cutoff_Hz:g} Hz needs at least {self.cutoff_Hz / HIGHEST_SHARE_OF_RATE:g}"
-            )
+        check_observable(self.cutoff_Hz, rate, f"a filter at {self.cutoff_Hz:g} Hz")
         if self.phase == "causal":
             return np.asarray(butter(self.order, self.cutoff_Hz, fs=rate, output="sos"))
         half = self.order // 2

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.signal import medfilt, welch
 
 from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE
+from pantocheck.conformance.quantities.filters import is_observable
 from pantocheck.conformance.quantities.signals import PantographSignals
 
 FILTERED_RATIO = 0.08
@@ -68,7 +68,7 @@ def detect_filtered(signals: PantographSignals, name: str) -> tuple[PantographSi
         One warning if a filter was detected.
     """
     channel = signals.force
-    if channel.filter_applied_Hz is not None or channel.rate * HIGHEST_SHARE_OF_RATE < 50:
+    if channel.filter_applied_Hz is not None or not is_observable(50, channel.rate):
         return signals, []
     upper, inner = (_leakage_free_rms(signals, low, high) for low, high in ((30, 50), (5, 20)))
     # Without content at 5-20 Hz there is no reference.
