@@ -26,7 +26,7 @@ from pantocheck.model.fem.assembly import (
     point_load,
     stepping_mass,
 )
-from pantocheck.model.fem.residual_flexibility import local_flexibility
+from pantocheck.model.fem.residual_flexibility import residual_flexibility
 
 Array = NDArray[np.float64]
 
@@ -66,7 +66,7 @@ class DroppersAndContact:
         moving = [train.z[0, p, :size] for p, size in enumerate(sizes)]
         self.at_rest = np.concatenate([at_rest, *moving])
         self.rest = line.state.deflection.ravel()[place]
-        self.bubble = stepping.contact.bubble[0]
+        self.flexibility = stepping.contact.flexibility[0]
         unilateral = line.connectors.unilateral
         self.bars = sp.csr_matrix(
             sp.vstack(
@@ -120,7 +120,7 @@ class DroppersAndContact:
         direction[: self.free.size], direction[self.own[p]] = -share[self.free], model.head
         stations = self.line.mesh.position
         e = int(np.clip(np.searchsorted(stations, x) - 1, 0, stations.size - 2))
-        flexibility = local_flexibility(self.bubble[e], (x - stations[e]) / (stations[e + 1] - stations[e]))
+        flexibility = residual_flexibility(self.flexibility[e], (x - stations[e]) / (stations[e + 1] - stations[e]))
         touched = np.flatnonzero(direction)
         shares = direction[touched]
         closing = float(shares @ q[touched] - share @ self.rest)

@@ -67,13 +67,14 @@ def discretise(catenary: Catenary, element_length: float, places: tuple[float, .
     mesh = build_mesh(catenary, element_length, places)
     beams = build_beams(catenary, mesh)
     state = compute_initial_state(catenary, mesh, beams)
-    return DiscretisedLine(catenary, mesh, beams, build_connectors(catenary, mesh, state), state)
+    return DiscretisedLine(catenary, mesh, beams, build_connectors(catenary, mesh, beams, state), state)
 
 
 def with_damping(line: DiscretisedLine, damping: Mapping[Kind, Rayleigh]) -> DiscretisedLine:
     """Replace the damping of a line; its initial state does not depend on it."""
     catenary = replace(line.catenary, damping=dict(damping))
-    beams, connectors = build_beams(catenary, line.mesh), build_connectors(catenary, line.mesh, line.state)
+    beams = build_beams(catenary, line.mesh)
+    connectors = build_connectors(catenary, line.mesh, beams, line.state)
     return replace(line, catenary=catenary, beams=beams, connectors=connectors)
 
 

@@ -22,7 +22,7 @@ from pantocheck.model.dynamics.motion import Motion
 from pantocheck.model.dynamics.sweeps import NEGLIGIBLE_FORCE, maximum
 from pantocheck.model.dynamics.train import Train
 from pantocheck.model.fem.mesh import find_element
-from pantocheck.model.fem.residual_flexibility import element_bubbles, local_flexibility
+from pantocheck.model.fem.residual_flexibility import residual_flexibility
 
 _find_element = njit(cache=True)(find_element)
 
@@ -40,8 +40,8 @@ class ContactArrays(NamedTuple):
         Rows of the contact wires.
     rest : (W, S, 2) ndarray
         Height and slope of the contact wires in the initial state [m, -].
-    bubble : (W, S-1, 6) ndarray
-        Residual flexibility of the elements, see `condensed_bubbles` [m/N].
+    flexibility : (W, S-1, 7) ndarray
+        Residual flexibility of the elements, see `element_flexibility` [m/N].
     columns : (W, S, 2, 2, 2H) ndarray
         Columns of the inverse around every station, for a force and for a moment.
     """
@@ -50,7 +50,7 @@ class ContactArrays(NamedTuple):
     position: Array
     row: Indices
     rest: Array
-    bubble: Array
+    flexibility: Array
     columns: Array
 
 
@@ -88,7 +88,7 @@ def build_contact_arrays(line: DiscretisedLine, factor: Factor, time_step: float
         position=line.mesh.position,
         row=row,
         rest=np.ascontiguousarray(line.state.deflection[line.contact_rows]),
-        bubble=np.array([element_bubbles(line.beams, r) for r in line.contact_rows]),
+        flexibility=np.ascontiguousarray(line.beams.flexibility[line.contact_rows]),
         columns=columns.reshape(row.size, stations, 2, 2, 2 * half_width),
     )
 
@@ -155,7 +155,9 @@ def _predict_contact(
                 station = half_width + i - j
                 compliance += n[2 * j + slope] * (n[2 * i] * column[0, station] + n[2 * i + 1] * column[1, station])
     work.element[p] = e
-    work.stiffness[p, wire] = 1 / (1 / train.contact_stiffness[p] + local_flexibility(contact.bubble[wire, e], s))
+    work.stiffness[p, wire] = 1 / (
+        1 / train.contact_stiffness[p] + residual_flexibility(contact.flexibility[wire, e], s)
+    )
     work.overlap[p, wire] -= height
     work.compliance[p, wire] = compliance
 

@@ -16,7 +16,7 @@ from pantocheck.model.failures import ImpossiblePassage
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.assembly import point_load
 from pantocheck.model.fem.mesh import find_element
-from pantocheck.model.fem.residual_flexibility import local_flexibility
+from pantocheck.model.fem.residual_flexibility import residual_flexibility
 from pantocheck.model.statics.static_solver import StaticSolver
 
 
@@ -90,4 +90,4 @@ def _contact_point(contact: ContactArrays, profile: Array, wire: int, position: 
     """Height of a contact wire with a static profile, and its residual flexibility at a position [m, m/N]."""
     element, length, s = find_element(contact.position, position)
     height = float(beam.shape(s, length) @ profile[element : element + 2].ravel())
-    return height, local_flexibility(contact.bubble[wire, element], s)
+    return height, residual_flexibility(contact.flexibility[wire, element], s)

@@ -14,7 +14,7 @@ from pantocheck.model.dynamics.mass_correction import mass_correction
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.beams import assemble_row, wire_mass, wire_stiffness
 from pantocheck.model.fem.mesh import find_element
-from pantocheck.model.fem.residual_flexibility import condensed_bubbles, local_flexibility
+from pantocheck.model.fem.residual_flexibility import residual_flexibility
 
 
 @dataclass(frozen=True)
@@ -141,7 +141,5 @@ def contact_stiffness(line: DiscretisedLine, row: int, position: float, penalty:
     float
         Stiffness [N/m].
     """
-    beams = line.beams
-    element, length, s = find_element(line.mesh.position, position)
-    tension, bending_stiffness = float(beams.tension[row, element]), float(beams.bending_stiffness[row, element])
-    return 1 / (1 / penalty + local_flexibility(condensed_bubbles(length, tension, bending_stiffness), s))
+    element, _, s = find_element(line.mesh.position, position)
+    return 1 / (1 / penalty + residual_flexibility(line.beams.flexibility[row, element], s))

@@ -15,6 +15,12 @@ from pantocheck.model.catenary import Catenary, Kind
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.lumped_parts import sum_lumped_parts
 from pantocheck.model.fem.mesh import Mesh
+from pantocheck.model.fem.residual_flexibility import (
+    damping_in_series,
+    element_flexibility,
+    in_series,
+    station_flexibility,
+)
 
 
 class Beams(NamedTuple):
@@ -27,11 +33,14 @@ class Beams(NamedTuple):
     tension, bending_stiffness, mass_per_length : (B, S-1) ndarray
         Properties of each element, zero where the row has no wire [N, N m2, kg/m].
     lumped_mass, lumped_stiffness, lumped_damping : (B, S) ndarray
-        Lumped parts on the deflections [kg, N/m, N s/m].
+        Lumped parts on the deflections; springs and dampers are in series with the residual flexibility
+        [kg, N/m, N s/m].
     mass_coefficient, stiffness_coefficient : (B,) ndarray
         Rayleigh damping of the wires [1/s, s].
     free : (B, S, 2) ndarray
         Whether deflection and slope can move.
+    flexibility : (B, S-1, 7) ndarray
+        Residual flexibility of each element, see `element_flexibility` [m/N].
     """
 
     length: Array
@@ -44,6 +53,7 @@ class Beams(NamedTuple):
     mass_coefficient: Array
     stiffness_coefficient: Array
     free: NDArray[np.bool_]
+    flexibility: Array
 
 
 def build_beams(catenary: Catenary, mesh: Mesh) -> Beams:
@@ -65,16 +75,22 @@ def build_beams(catenary: Catenary, mesh: Mesh) -> Beams:
         free[row, first : last + 1] = True
         if wire.kind is not Kind.STITCH_WIRE:  # a stitch wire ends in clamps, not in anchors
             free[row, [first, last], 0] = False
+    flexibility = np.array([element_flexibility(length, *row) for row in zip(tension, bending_stiffness, strict=True)])
+    at_station = np.array([station_flexibility(elements) for elements in flexibility])
+    lumped_mass, lumped_stiffness, lumped_damping = sum_lumped_parts(catenary, mesh)
     rayleigh = [catenary.rayleigh(kind) for kind in mesh.row_kind]
     return Beams(
         length,
         tension,
         bending_stiffness,
         mass_per_length,
-        *sum_lumped_parts(catenary, mesh),
+        lumped_mass,
+        in_series(lumped_stiffness, at_station),
+        damping_in_series(lumped_damping, lumped_stiffness, at_station),
         mass_coefficient=np.array([r.mass_coefficient for r in rayleigh]),
         stiffness_coefficient=np.array([r.stiffness_coefficient for r in rayleigh]),
         free=free,
+        flexibility=flexibility,
     )
 
 

@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 
 from pantocheck.model.arrays import Array, Indices
 from pantocheck.model.catenary import Catenary, Kind, SteadyArm
+from pantocheck.model.fem.beams import Beams
 from pantocheck.model.fem.mesh import Mesh
+from pantocheck.model.fem.residual_flexibility import damping_in_series, in_series, station_flexibility
 from pantocheck.model.statics.initial_state import InitialState
 
 RIGID = 1e8
@@ -61,19 +63,26 @@ class Connectors(NamedTuple):
     unilateral: NDArray[np.bool_]
 
 
-def build_connectors(catenary: Catenary, mesh: Mesh, state: InitialState) -> Connectors:
-    """Build droppers, clamps and, with a lateral field, steady arms of a line."""
+def build_connectors(catenary: Catenary, mesh: Mesh, beams: Beams, state: InitialState) -> Connectors:
+    """Build droppers, clamps and, with a lateral field, steady arms of a line.
+
+    Each is in series with the residual flexibility of the wires at its ends.
+    """
     bars = _droppers(catenary, mesh, state) + _clamps(catenary, mesh, state)
     if catenary.has_lateral_field:
         bars += _transverse_droppers(catenary, mesh, state) + _steady_arms(catenary, mesh, state)
     coefficient = np.zeros((len(bars), mesh.rows))
     for n, bar in enumerate(bars):
         coefficient[n, list(bar.coefficient)] = list(bar.coefficient.values())
+    station = np.array([bar.station for bar in bars], dtype=np.int64)
+    at_station = np.array([station_flexibility(elements) for elements in beams.flexibility])
+    flexibility = (coefficient**2 * at_station[:, station].T).sum(axis=1)
+    stiffness = np.array([bar.stiffness for bar in bars])
     return Connectors(
-        station=np.array([bar.station for bar in bars], dtype=np.int64),
+        station=station,
         coefficient=coefficient,
-        stiffness=np.array([bar.stiffness for bar in bars]),
-        damping=np.array([bar.damping for bar in bars]),
+        stiffness=in_series(stiffness, flexibility),
+        damping=damping_in_series(np.array([bar.damping for bar in bars]), stiffness, flexibility),
         preload=np.array([bar.preload for bar in bars]),
         unilateral=np.array([bar.unilateral for bar in bars], dtype=np.bool_),
     )

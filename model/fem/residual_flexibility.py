@@ -1,72 +1,164 @@
-"""Residual flexibility of an element under a point force, which cubic shape functions cannot represent.
+"""Residual flexibility of a wire under a point force, which cubic shape functions cannot represent.
 
-A wire bends sharply under a pantograph; a cubic polynomial per element does not. The difference is static at all
-frequencies of interest and acts in series with the contact stiffness. It is the deflection of an element with both ends
-clamped under a unit force, by Ritz's method with three bubble functions s^2 (1 - s)^2 (2 s - 1)^i, i = 0, 1, 2, which
-are condensed statically. Without it the contact is too stiff, mostly at mid-element, and the force between 20 and 50 Hz
-converges slowly with the element length. The coupling of bubble and cubic functions through the tension is neglected:
-it vanishes with the square of the element length.
+A wire bends sharply under a pantograph or a dropper; a cubic polynomial per element does not, neither between stations
+nor at one. The missing deflection per force
+
+    R(x) = G_exact(x) - G_elements(x)
+
+is the difference of two static point flexibilities of the same wire. It is local (beyond a few elements both agree) and
+static at all frequencies of interest, so that it acts in series with every part that is connected to the wire at a
+point. G_exact follows from the stiffness of a tensioned beam in closed form.
 """
 
 import numpy as np
 from numba import njit
-from numpy.polynomial import Polynomial
 
 from pantocheck.model.arrays import Array
-from pantocheck.model.fem.beams import Beams
+from pantocheck.model.fem import beam
 
-FUNCTIONS = 3
+NEIGHBOURS = 4
+"""Elements on either side of an element over which the two solutions are compared.
+
+Their outer ends are hinged. A clamped end has a boundary layer of its own, whose error would count as well.
+"""
+
+DEGREE = 6
+"""Degree of the polynomial in an element: the square of cubic shape functions."""
+
+_NODES = np.linspace(0.0, 1.0, DEGREE + 1)
 
 
-def condensed_bubbles(h: float, tension: float, bending_stiffness: float) -> Array:
-    """Flexibility of the bubble functions of one element, (6,): inverse of their stiffness [m/N].
+def element_flexibility(length: Array, tension: Array, bending_stiffness: Array) -> Array:
+    """Residual flexibility along every element of a row.
 
-    The entries are (i, j) = 00, 01, 02, 11, 12, 22; parameters as in `beam.stiffness`.
+    Parameters
+    ----------
+    length : (n,) ndarray
+        Lengths of the elements [m].
+    tension : (n,) ndarray
+        Tension, zero where the row has no wire [N].
+    bending_stiffness : (n,) ndarray
+        Bending stiffness [N m2].
+
+    Returns
+    -------
+    (n, 7) ndarray
+        Coefficients of the polynomial in the share s of the length, constant first [m/N].
     """
-    if bending_stiffness == 0.0:
-        return np.zeros(6)  # a string has a kink under a force, which no smooth function represents
-    s = Polynomial([0, 1])
-    functions = [s**2 * (1 - s) ** 2 * (2 * s - 1) ** i for i in range(FUNCTIONS)]
-    stiffness = np.array(
-        [
-            [
-                bending_stiffness / h**3 * _integral(a.deriv(2) * b.deriv(2))
-                + tension / h * _integral(a.deriv() * b.deriv())
-                for b in functions
-            ]
-            for a in functions
-        ]
-    )
-    return np.asarray(np.linalg.inv(stiffness)[np.triu_indices(FUNCTIONS)])
+    coefficients = np.zeros((length.size, DEGREE + 1))
+    present = np.flatnonzero(tension > 0)
+    if present.size == 0:
+        return coefficients
+    patch = present[:, None] + np.arange(-NEIGHBOURS, NEIGHBOURS + 1)
+    inside = (patch >= 0) & (patch < length.size)
+    inside &= tension[np.where(inside, patch, 0)] > 0
+    # Beyond its ends a wire continues like the element itself.
+    patch = np.where(inside, patch, present[:, None])
+    data = np.stack([length.round(9), tension, bending_stiffness], axis=-1)[patch].reshape(present.size, -1)
+    different, number = np.unique(data, axis=0, return_inverse=True)
+    h, stretched, bending = np.moveaxis(different.reshape(len(different), -1, 3), -1, 0)
+    values = _point_flexibility(h, stretched, bending)
+    coefficients[present] = np.linalg.solve(np.vander(_NODES, increasing=True), values.T).T[number.ravel()]
+    return coefficients
 
 
-def element_bubbles(beams: Beams, row: int) -> Array:
-    """Flexibilities of all elements of one row, (S-1, 6); equal elements are computed once [m/N]."""
-    known: dict[tuple[float, float, float], Array] = {}
-    bubbles = np.zeros((beams.length.size, 6))
-    for e in np.flatnonzero(beams.mass_per_length[row]):
-        data = (float(beams.length[e]), float(beams.tension[row, e]), float(beams.bending_stiffness[row, e]))
-        key = (round(data[0], 9), *data[1:])
-        if key not in known:
-            known[key] = condensed_bubbles(*data)
-        bubbles[e] = known[key]
-    return bubbles
-
-
-def _integral(polynomial: Polynomial) -> float:
-    """Integral of a polynomial from 0 to 1."""
-    antiderivative = polynomial.integ()
-    return float(antiderivative(1.0) - antiderivative(0.0))
+def station_flexibility(elements: Array) -> Array:
+    """Residual flexibility at every station of a row, (n + 1,) [m/N], from `element_flexibility`."""
+    at_start, at_end = np.append(elements[:, 0], 0.0), np.append(0.0, elements.sum(axis=1))
+    known = (at_start != 0).astype(float) + (at_end != 0)
+    return np.asarray((at_start + at_end) / np.maximum(known, 1.0))
 
 
 @njit(cache=True)
-def local_flexibility(bubble: Array, s: float) -> float:
-    """Deflection per force at the share s of the length of an element with clamped ends [m/N].
+def residual_flexibility(coefficients: Array, s: float) -> float:
+    """Residual flexibility at the share s of the length of an element [m/N]; see `element_flexibility`."""
+    value = coefficients[-1]
+    for k in range(coefficients.size - 2, -1, -1):
+        value = value * s + coefficients[k]
+    return float(value)
 
-    `bubble` is the flexibility of its bubble functions, from `condensed_bubbles`.
+
+def in_series(stiffness: Array, flexibility: Array) -> Array:
+    """Stiffness of springs in series with residual flexibilities, elementwise [N/m]."""
+    return np.asarray(stiffness / (1 + stiffness * flexibility))
+
+
+def damping_in_series(damping: Array, stiffness: Array, flexibility: Array) -> Array:
+    """Damping of springs with parallel dampers in series with residual flexibilities, elementwise [N s/m].
+
+    The damper moves with the spring, by its share of the total elongation; it dissipates the square of this share.
     """
-    f = s * s * (1 - s) * (1 - s)
-    t = 2 * s - 1
-    g, h = f * t, f * t * t
-    squares = bubble[0] * f * f + bubble[3] * g * g + bubble[5] * h * h
-    return float(squares + 2 * (bubble[1] * f * g + bubble[2] * f * h + bubble[4] * g * h))
+    return np.asarray(damping / (1 + stiffness * flexibility) ** 2)
+
+
+def _point_flexibility(h: Array, tension: Array, bending_stiffness: Array) -> Array:
+    """Residual flexibility at the nodes of the middle element of U patches of elements, (U, 7) [m/N]."""
+    middle = h.shape[1] // 2
+    of_middle = (h[:, middle], tension[:, middle], bending_stiffness[:, middle])
+    cubic = _end_flexibility(beam.stiffness(h, tension, bending_stiffness))
+    exact = _end_flexibility(exact_stiffness(h, tension, bending_stiffness))
+    values = np.empty((len(h), _NODES.size))
+    for k, s in enumerate(_NODES):
+        n = np.stack([beam.shape(float(s), float(length)) for length in of_middle[0]])
+        shape, clamped = (n, 0.0) if s in (0.0, 1.0) else _exact_shape(s, *of_middle)
+        values[:, k] = clamped + _quadratic_form(exact, shape) - _quadratic_form(cubic, n)
+    return values
+
+
+def _quadratic_form(matrix: Array, vector: Array) -> Array:
+    return np.einsum("ui,uij,uj->u", vector, matrix, vector)
+
+
+def _end_flexibility(elements: Array) -> Array:
+    """Flexibility of the ends of the middle element of U patches with hinged outer ends, (U, 4, 4)."""
+    patches, count = elements.shape[:2]
+    stiffness = np.zeros((patches, 2 * count + 2, 2 * count + 2))
+    for e in range(count):
+        stiffness[:, 2 * e : 2 * e + 4, 2 * e : 2 * e + 4] += elements[:, e]
+    free = np.delete(np.arange(stiffness.shape[1]), [0, -2])
+    ends = slice(count - 2, count + 2)
+    load = np.eye(free.size)[:, ends]
+    inner = stiffness[:, free[:, None], free]
+    return np.linalg.solve(inner, np.broadcast_to(load, (patches, *load.shape)))[:, ends]
+
+
+def _exact_shape(s: float, h: Array, tension: Array, bending_stiffness: Array) -> tuple[Array, Array]:
+    """Exact static shape functions of elements at s, (U, 4), and the flexibility there with clamped ends, (U,)."""
+    left, right = (exact_stiffness(share * h, tension, bending_stiffness) for share in (s, 1 - s))
+    inverse = np.linalg.inv(left[:, 2:, 2:] + right[:, :2, :2])
+    coupling = np.concatenate([left[:, 2:, :2], right[:, :2, 2:]], axis=2)
+    return -(inverse @ coupling)[:, 0], inverse[:, 0, 0]
+
+
+def exact_stiffness(h: Array, tension: Array, bending_stiffness: Array) -> Array:
+    """Exact static stiffness of tensioned beams, (..., 4, 4); parameters as in `beam.stiffness`.
+
+    With the solution w = a + b x + c cosh(kx) + d sinh(kx), k^2 = T / EI. A string has no stiffness against slopes; a
+    unit stiffness there keeps matrices regular and carries no force.
+    """
+    string = np.zeros((*h.shape, 4, 4))
+    string[..., 1, 1] = string[..., 3, 3] = 1.0
+    string[..., 0, 0] = string[..., 2, 2] = tension / h
+    string[..., 0, 2] = string[..., 2, 0] = -tension / h
+    stiff = np.where(bending_stiffness > 0, bending_stiffness, 1.0)
+    k = np.sqrt(tension / stiff)
+    z = k * h
+    # Hyperbolic functions over cosh z, which do not overflow.
+    sinh, one = np.tanh(z), 1 / np.cosh(np.minimum(z, 300.0))
+    denominator = 2 * (one - 1) + z * sinh
+    with np.errstate(divide="ignore", invalid="ignore"):
+        force = stiff * k**3 * sinh / denominator
+        mixed = stiff * k**2 * (1 - one) / denominator
+        near = stiff * k * (z - sinh) / denominator
+        far = stiff * k * (sinh - z * one) / denominator
+    rows = [
+        [force, mixed, -force, mixed],
+        [mixed, near, -mixed, far],
+        [-force, -mixed, force, -mixed],
+        [mixed, far, -mixed, near],
+    ]
+    exact = np.moveaxis(np.array(rows), (0, 1), (-2, -1))
+    # Below this length the cubic functions are exact to 1e-10, and the closed form loses digits.
+    short = (z < 0.05)[..., None, None]
+    exact = np.where(short, beam.stiffness(h, tension, bending_stiffness), exact)
+    return np.where((bending_stiffness > 0)[..., None, None], exact, string)

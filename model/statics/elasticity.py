@@ -5,6 +5,8 @@ import numpy as np
 from pantocheck.model.arrays import Array
 from pantocheck.model.discretised_line import DiscretisedLine
 from pantocheck.model.fem.assembly import point_load
+from pantocheck.model.fem.mesh import find_element
+from pantocheck.model.fem.residual_flexibility import residual_flexibility
 from pantocheck.model.statics.static_solver import StaticSolver
 
 
@@ -32,7 +34,9 @@ def static_uplift(line: DiscretisedLine, position: Array, force: float) -> Array
         loads = [point_load(line, row, float(x)) for row in rows]
         displacement = statics.deflection(force / len(rows) * np.sum(loads, axis=0)).displacement
         flat = displacement.transpose(1, 0, 2).ravel()
-        uplift[i] = np.mean([load @ flat for load in loads])
+        element, _, s = find_element(line.mesh.position, float(x))
+        residual = [residual_flexibility(line.beams.flexibility[row, element], s) for row in rows]
+        uplift[i] = np.mean([load @ flat for load in loads]) + force / len(rows) * np.mean(residual)
     return uplift
 
 
