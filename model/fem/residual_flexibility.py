@@ -16,8 +16,8 @@ from numba import njit
 from pantocheck.model.arrays import Array
 from pantocheck.model.fem import beam
 
-NEIGHBOURS = 4
-"""Elements on either side of an element over which the two solutions are compared.
+NEIGHBOURS = 3
+"""Elements on either side of an element over which the two solutions are compared; more change the result by 1e-6.
 
 Their outer ends are hinged. A clamped end has a boundary layer of its own, whose error would count as well.
 """
