@@ -15,12 +15,7 @@ from pantocheck.model.catenary import Catenary, Kind
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.lumped_parts import sum_lumped_parts
 from pantocheck.model.fem.mesh import Mesh
-from pantocheck.model.fem.residual_flexibility import (
-    damping_in_series,
-    element_flexibility,
-    in_series,
-    station_flexibility,
-)
+from pantocheck.model.fem.residual_flexibility import element_flexibility, series_factor, station_flexibility
 
 
 class Beams(NamedTuple):
@@ -78,6 +73,7 @@ def build_beams(catenary: Catenary, mesh: Mesh) -> Beams:
     flexibility = np.array([element_flexibility(length, *row) for row in zip(tension, bending_stiffness, strict=True)])
     at_station = np.array([station_flexibility(elements) for elements in flexibility])
     lumped_mass, lumped_stiffness, lumped_damping = sum_lumped_parts(catenary, mesh)
+    factor = series_factor(lumped_stiffness, at_station)
     rayleigh = [catenary.rayleigh(kind) for kind in mesh.row_kind]
     return Beams(
         length,
@@ -85,8 +81,8 @@ def build_beams(catenary: Catenary, mesh: Mesh) -> Beams:
         bending_stiffness,
         mass_per_length,
         lumped_mass,
-        in_series(lumped_stiffness, at_station),
-        damping_in_series(lumped_damping, lumped_stiffness, at_station),
+        factor * lumped_stiffness,
+        factor * lumped_damping,
         mass_coefficient=np.array([r.mass_coefficient for r in rayleigh]),
         stiffness_coefficient=np.array([r.stiffness_coefficient for r in rayleigh]),
         free=free,

@@ -78,17 +78,19 @@ def residual_flexibility(coefficients: Array, s: float) -> float:
     return float(value)
 
 
-def in_series(stiffness: Array, flexibility: Array) -> Array:
-    """Stiffness of springs in series with residual flexibilities, elementwise [N/m]."""
-    return np.asarray(stiffness / (1 + stiffness * flexibility))
+def series_factor(stiffness: Array, flexibility: Array) -> Array:
+    """Factor of the stiffness of springs in series with residual flexibilities, elementwise [-].
 
+    The damping in parallel to a spring takes the same factor: the flexibility of the wire has its loss factor.
 
-def damping_in_series(damping: Array, stiffness: Array, flexibility: Array) -> Array:
-    """Damping of springs with parallel dampers in series with residual flexibilities, elementwise [N s/m].
-
-    The damper moves with the spring, by its share of the total elongation; it dissipates the square of this share.
+    Parameters
+    ----------
+    stiffness : ndarray
+        Stiffness of the springs [N/m].
+    flexibility : ndarray
+        Residual flexibility of the wires at their ends [m/N].
     """
-    return np.asarray(damping / (1 + stiffness * flexibility) ** 2)
+    return np.asarray(1 / (1 + stiffness * flexibility))
 
 
 def _point_flexibility(h: Array, tension: Array, bending_stiffness: Array) -> Array:

@@ -6,11 +6,10 @@ from numpy.typing import NDArray
 
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.residual_flexibility import (
-    damping_in_series,
     element_flexibility,
     exact_stiffness,
-    in_series,
     residual_flexibility,
+    series_factor,
     station_flexibility,
 )
 
@@ -63,7 +62,7 @@ def test_string_with_residual_flexibility_is_exact(s: float) -> None:
 
 @pytest.mark.parametrize("h", [0.03, 0.5, 5.0])
 def test_exact_stiffness_equals_a_divided_element(h: float) -> None:
-    """200 elements condensed to their ends; 1e-5 is their error at 5 m, where each spans a quarter of a decay length."""
+    """200 elements condensed to their ends; 1e-5: their error at 5 m, where each spans a quarter of a decay length."""
     count = 200
     stiffness = np.zeros((2 * count + 2,) * 2)
     for e in range(count):
@@ -115,9 +114,6 @@ def test_row_without_a_wire_has_no_residual_flexibility() -> None:
 def test_parts_in_series() -> None:
     """1 / (1 / k + R); a negative transverse stiffness stays negative, a missing one stays missing."""
     stiffness, flexibility = np.array([2e5, 1e8, -300.0, 0.0]), np.full(4, 5e-7)
-    softened = in_series(stiffness, flexibility)
-    assert softened[:3] == pytest.approx(1 / (1 / stiffness[:3] + 5e-7), rel=1e-12)
-    assert softened[3] == 0.0
-    damping = damping_in_series(np.full(4, 10.0), stiffness, flexibility)
-    assert damping[0] == pytest.approx(10 * (softened[0] / 2e5) ** 2, rel=1e-12)
-    assert damping[3] == 10.0
+    factor = series_factor(stiffness, flexibility)
+    assert factor[:3] * stiffness[:3] == pytest.approx(1 / (1 / stiffness[:3] + 5e-7), rel=1e-12)
+    assert factor[3] == 1.0
