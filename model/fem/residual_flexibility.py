@@ -7,7 +7,7 @@ nor at one. The missing deflection per force
 
 is the difference of two static point flexibilities of the same wire. It is local (beyond a few elements both agree) and
 static at all frequencies of interest, so that it acts in series with every part that is connected to the wire at a
-point. G_exact follows from the stiffness of a tensioned beam in closed form.
+point. G_exact follows from the stiffness of a tensioned beam in closed form (`exact_stiffness`).
 """
 
 import numpy as np
@@ -15,8 +15,9 @@ from numba import njit
 
 from pantocheck.model.arrays import Array
 from pantocheck.model.fem import beam
+from pantocheck.model.fem.exact_beam import exact_stiffness
 
-NEIGHBOURS = 3
+PATCH_SIDE = 3
 """Elements on either side of an element over which the two solutions are compared; more change the result by 1e-6.
 
 Their outer ends are hinged. A clamped end has a boundary layer of its own, whose error would count as well.
@@ -49,7 +50,7 @@ def element_flexibility(length: Array, tension: Array, bending_stiffness: Array)
     present = np.flatnonzero(tension > 0)
     if present.size == 0:
         return coefficients
-    patch = present[:, None] + np.arange(-NEIGHBOURS, NEIGHBOURS + 1)
+    patch = present[:, None] + np.arange(-PATCH_SIDE, PATCH_SIDE + 1)
     inside = (patch >= 0) & (patch < length.size)
     inside &= tension[np.where(inside, patch, 0)] > 0
     # Beyond its ends a wire continues like the element itself.
@@ -63,7 +64,18 @@ def element_flexibility(length: Array, tension: Array, bending_stiffness: Array)
 
 
 def station_flexibility(elements: Array) -> Array:
-    """Residual flexibility at every station of a row, (n + 1,) [m/N], from `element_flexibility`."""
+    """Residual flexibility at every station of a row, the mean of the two elements there.
+
+    Parameters
+    ----------
+    elements : (n, 7) ndarray
+        Coefficients of the elements, see `element_flexibility` [m/N].
+
+    Returns
+    -------
+    (n + 1,) ndarray
+        Residual flexibility, zero where the row has no wire [m/N].
+    """
     at_start, at_end = np.append(elements[:, 0], 0.0), np.append(0.0, elements.sum(axis=1))
     known = (at_start != 0).astype(float) + (at_end != 0)
     return np.asarray((at_start + at_end) / np.maximum(known, 1.0))
@@ -79,16 +91,21 @@ def residual_flexibility(coefficients: Array, s: float) -> float:
 
 
 def series_factor(stiffness: Array, flexibility: Array) -> Array:
-    """Factor of the stiffness of springs in series with residual flexibilities, elementwise [-].
+    """Factor of the stiffness of springs in series with residual flexibilities, 1 / (1 + k R).
 
     The damping in parallel to a spring takes the same factor: the flexibility of the wire has its loss factor.
 
     Parameters
     ----------
-    stiffness : ndarray
-        Stiffness of the springs [N/m].
-    flexibility : ndarray
-        Residual flexibility of the wires at their ends [m/N].
+    stiffness : (n,) ndarray
+        Stiffness k of the springs [N/m].
+    flexibility : (n,) ndarray
+        Residual flexibility R of the wires at their ends [m/N].
+
+    Returns
+    -------
+    (n,) ndarray
+        Factor [-].
     """
     return np.asarray(1 / (1 + stiffness * flexibility))
 
@@ -108,7 +125,7 @@ def _point_flexibility(h: Array, tension: Array, bending_stiffness: Array) -> Ar
 
 
 def _quadratic_form(matrix: Array, vector: Array) -> Array:
-    return np.einsum("ui,uij,uj->u", vector, matrix, vector)
+    return np.asarray(np.einsum("ui,uij,uj->u", vector, matrix, vector))
 
 
 def _end_flexibility(elements: Array) -> Array:
@@ -127,40 +144,6 @@ def _end_flexibility(elements: Array) -> Array:
 def _exact_shape(s: float, h: Array, tension: Array, bending_stiffness: Array) -> tuple[Array, Array]:
     """Exact static shape functions of elements at s, (U, 4), and the flexibility there with clamped ends, (U,)."""
     left, right = (exact_stiffness(share * h, tension, bending_stiffness) for share in (s, 1 - s))
-    inverse = np.linalg.inv(left[:, 2:, 2:] + right[:, :2, :2])
+    inverse: Array = np.asarray(np.linalg.inv(left[:, 2:, 2:] + right[:, :2, :2]), dtype=np.float64)
     coupling = np.concatenate([left[:, 2:, :2], right[:, :2, 2:]], axis=2)
     return -(inverse @ coupling)[:, 0], inverse[:, 0, 0]
-
-
-def exact_stiffness(h: Array, tension: Array, bending_stiffness: Array) -> Array:
-    """Exact static stiffness of tensioned beams, (..., 4, 4); parameters as in `beam.stiffness`.
-
-    With the solution w = a + b x + c cosh(kx) + d sinh(kx), k^2 = T / EI. A string has no stiffness against slopes; a
-    unit stiffness there keeps matrices regular and carries no force.
-    """
-    string = np.zeros((*h.shape, 4, 4))
-    string[..., 1, 1] = string[..., 3, 3] = 1.0
-    string[..., 0, 0] = string[..., 2, 2] = tension / h
-    string[..., 0, 2] = string[..., 2, 0] = -tension / h
-    stiff = np.where(bending_stiffness > 0, bending_stiffness, 1.0)
-    k = np.sqrt(tension / stiff)
-    z = k * h
-    # Hyperbolic functions over cosh z, which do not overflow.
-    sinh, one = np.tanh(z), 1 / np.cosh(np.minimum(z, 300.0))
-    denominator = 2 * (one - 1) + z * sinh
-    with np.errstate(divide="ignore", invalid="ignore"):
-        force = stiff * k**3 * sinh / denominator
-        mixed = stiff * k**2 * (1 - one) / denominator
-        near = stiff * k * (z - sinh) / denominator
-        far = stiff * k * (sinh - z * one) / denominator
-    rows = [
-        [force, mixed, -force, mixed],
-        [mixed, near, -mixed, far],
-        [-force, -mixed, force, -mixed],
-        [mixed, far, -mixed, near],
-    ]
-    exact = np.moveaxis(np.array(rows), (0, 1), (-2, -1))
-    # Below this length the cubic functions are exact to 1e-10, and the closed form loses digits.
-    short = (z < 0.05)[..., None, None]
-    exact = np.where(short, beam.stiffness(h, tension, bending_stiffness), exact)
-    return np.where((bending_stiffness > 0)[..., None, None], exact, string)

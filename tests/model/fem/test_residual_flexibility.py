@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.residual_flexibility import (
     element_flexibility,
-    exact_stiffness,
     residual_flexibility,
     series_factor,
     station_flexibility,
@@ -58,29 +57,6 @@ def test_string_with_residual_flexibility_is_exact(s: float) -> None:
     coarse = hinged_flexibility(h, count, np.array([x / length]), TENSION, 0.0)[0]
     exact = x * (length - x) / (TENSION * length)
     assert coarse + residual_flexibility(elements[9], s) == pytest.approx(exact, rel=1e-6)
-
-
-@pytest.mark.parametrize("h", [0.03, 0.5, 5.0])
-def test_exact_stiffness_equals_a_divided_element(h: float) -> None:
-    """200 elements condensed to their ends; 1e-5: their error at 5 m, where each spans a quarter of a decay length."""
-    count = 200
-    stiffness = np.zeros((2 * count + 2,) * 2)
-    for e in range(count):
-        stiffness[2 * e : 2 * e + 4, 2 * e : 2 * e + 4] += beam.stiffness(h / count, TENSION, BENDING_STIFFNESS)
-    ends, inner = np.array([0, 1, -2, -1]), slice(2, -2)
-    coupling = stiffness[inner][:, ends]
-    condensed = stiffness[np.ix_(ends, ends)] - coupling.T @ np.linalg.solve(stiffness[inner, inner], coupling)
-    exact = exact_stiffness(*(np.array(value) for value in (h, TENSION, BENDING_STIFFNESS)))
-    scale = np.sqrt(np.outer(np.diag(exact), np.diag(exact)))
-    assert exact / scale == pytest.approx(condensed / scale, abs=1e-5)
-
-
-def test_exact_stiffness_of_a_long_element_is_that_of_a_shorter_string() -> None:
-    """T / (L - 2 / k): each clamped end shortens the string by a decay length 1 / k; no function overflows."""
-    h = np.array([200.0, 5000.0])
-    decay = np.sqrt(BENDING_STIFFNESS / TENSION)
-    exact = exact_stiffness(h, np.full(2, TENSION), np.full(2, BENDING_STIFFNESS))
-    assert exact[:, 0, 0] == pytest.approx(TENSION / (h - 2 * decay), rel=1e-9)
 
 
 def test_residual_flexibility_is_continuous_on_an_uneven_mesh() -> None:
