@@ -38,8 +38,12 @@ def test_passage_and_explicit_integration_agree_in_every_band() -> None:
     assert np.abs(kernel_force[settled]).max() == pytest.approx(np.abs(explicit_force[settled]).max(), rel=0.01)
 
 
-def test_compute_modes_agrees_with_scikit_fem_on_a_whole_line() -> None:
-    """scikit-fem assembles the same two beams, springs are added by hand: 1e-6 for two eigenvalue solvers."""
+def test_modes_agree_with_fine_elements_of_scikit_fem_on_a_whole_line() -> None:
+    """scikit-fem assembles the same two beams with an eighth of the element length; springs are added by hand.
+
+    With the residual flexibility the elements of 0.5 m agree within 2.3e-5, and without it within 3.7e-3. Both occur at
+    9.2 Hz, where the wires vibrate against each other through the droppers.
+    """
     skfem = pytest.importorskip("skfem", reason="scikit-fem comes with the extra 'peers'")
     from skfem.helpers import d, dd
 
@@ -48,7 +52,7 @@ def test_compute_modes_agrees_with_scikit_fem_on_a_whole_line() -> None:
     blocks = []
     for name in ("contact", "messenger"):
         wire = catenary.wire(name)
-        mesh = skfem.MeshLine(line.mesh.position)
+        mesh = skfem.MeshLine(line.mesh.position).refined(3)
         basis = skfem.Basis(mesh, skfem.ElementLineHermite())
 
         @skfem.BilinearForm
@@ -86,4 +90,4 @@ def test_compute_modes_agrees_with_scikit_fem_on_a_whole_line() -> None:
     keep = np.setdiff1d(np.arange(K.shape[0]), ends)
     reduced = sp.csc_matrix(K)[keep][:, keep]
     w2 = np.sort(eigsh(reduced, 30, M[keep][:, keep], sigma=0.0, return_eigenvectors=False))
-    assert compute_modes(line, 30).frequency == pytest.approx(np.sqrt(w2) / (2 * np.pi), rel=1e-6)
+    assert compute_modes(line, 30).frequency == pytest.approx(np.sqrt(w2) / (2 * np.pi), rel=3e-5)
