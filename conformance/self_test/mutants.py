@@ -139,7 +139,7 @@ MUTANTS: tuple[Mutant, ...] = (
         _replace_channels(support_uplift=lambda _, record: None if (u := record.support_uplift) is None else 1000 * u),
         "limits",
     ),
-    Mutant("coarse mesh", "Elements are 4 m long.", _coarsen_mesh(4.0), "limits"),
+    Mutant("coarse mesh", "An element spans the distance between droppers.", _coarsen_mesh(8.0), "limits"),
     Mutant("truncated record", "The record ends in the middle of the analysis section.", _truncate_record, "coverage"),
     Mutant("truncated file", "The second half of the table of samples is missing.", _truncate_file, "record file"),
 )
@@ -155,6 +155,6 @@ MILD: tuple[Mutant, ...] = (
         _delay_force(0.1, contact_height=lambda *_: None),
         None,
     ),
-    Mutant("mesh of 2 m", "Elements are 2 m long.", _coarsen_mesh(2.0), None),
+    Mutant("mesh of 4 m", "Elements are 4 m long.", _coarsen_mesh(4.0), None),
 )
 """Smaller faults, which show the limit of detection."""

@@ -16,7 +16,7 @@ LIMITS_ALONE_KEY = (
 UNDETECTED_FAULTS = (
     "A gain within 3 % and a shift of a few milliseconds stay below the tolerances of the dynamics check, which allow "
     "for other integration schemes and for rounding. A record of force and position alone cannot be checked for "
-    "dynamics: deliver contact height and uplift. A mesh of 2 m can stay within the limits; the table shows where."
+    "dynamics: deliver contact height and uplift. A mesh of 4 m can stay within the limits; the table shows where."
 )
 
 
