@@ -15,7 +15,7 @@ def values(case: Case) -> dict:
     return evaluate_record(record, case.file.filter.low_pass).values[1]
 
 
-@pytest.mark.parametrize(("speed", "deviation"), [(250, 33.0), (300, 38.4)])
+@pytest.mark.parametrize(("speed", "deviation"), [(250, 32.9), (300, 38.2)])
 def test_arm_without_static_share_increases_the_standard_deviation(speed: int, deviation: float) -> None:
     """Printed to a tenth in the note; above the limit of 31 N at 250 km/h."""
     (case,) = select_cases([f"en50318-2002/{speed}"])
