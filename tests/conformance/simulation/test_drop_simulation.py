@@ -89,9 +89,9 @@ def test_record_is_the_decay_at_the_rate_of_the_record(drop_case: DropCase) -> N
     assert [(c.wire, c.axis, c.position) for c in record.channels][2:] == [("MW", "z", 99.0), ("MW", "z", 18.0)]
     assert record.line.spans == (63.0, 63.0)
     assert record.signals.shape == (1100, 4)
-    # The mass hangs still before the release, up to what the static solve leaves: as little as the noise of a sensor.
-    # The filter rings for half its length, 0.1 s.
-    assert np.abs(record.signals[:480]).max() < 0.005
+    # The mass hangs still before the release: the filter leaves a share of 1e-4 of the later motion, and it rings for
+    # 0.3 s before the release.
+    assert np.abs(record.signals[:470]).max() < 5e-4
     # Below 40 Hz the record is the simulated acceleration; what lies above has gone with the release's first moments.
     # It makes 7e-4 of the RMS at most.
     later = decay.time > 2.0
