@@ -12,8 +12,8 @@ from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
 from pantocheck.conformance.grading.baseline import compare_with_baseline, read_baseline
 from pantocheck.conformance.grading.profile_grading import assess_record
-from pantocheck.conformance.identification.damping.damping_results import select_usable
 from pantocheck.conformance.identification.damping.line_comparison import compare_line
+from pantocheck.conformance.identification.damping.mode_matching import select_usable
 from pantocheck.conformance.identification.mode import read_modes
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records

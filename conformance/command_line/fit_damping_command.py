@@ -8,12 +8,10 @@ import typer
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.command_line.console import console, escape_text
-from pantocheck.conformance.identification.damping.damping_results import (
-    build_damping_results,
-    select_usable,
-    write_damping_toml,
-)
+from pantocheck.conformance.identification.damping.damping_results import build_damping_results
+from pantocheck.conformance.identification.damping.damping_toml import write_damping_toml
 from pantocheck.conformance.identification.damping.line_comparison import compare_line, refuse_other_line
+from pantocheck.conformance.identification.damping.mode_matching import select_usable
 from pantocheck.conformance.identification.mode import read_modes
 from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically

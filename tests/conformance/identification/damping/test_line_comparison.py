@@ -20,7 +20,8 @@ from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.identification.damping.damping_format import Coefficient, Matching, Observability
-from pantocheck.conformance.identification.damping.damping_results import build_damping_results, write_damping_toml
+from pantocheck.conformance.identification.damping.damping_results import build_damping_results
+from pantocheck.conformance.identification.damping.damping_toml import write_damping_toml
 from pantocheck.conformance.identification.damping.line_comparison import compare_line, refuse_other_line
 from pantocheck.conformance.identification.damping.observability import judge_coefficients
 from pantocheck.conformance.identification.mode import MeasuredLine, Mode, ModesFile, SensorShape

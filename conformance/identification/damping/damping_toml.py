@@ -1,0 +1,57 @@
+"""Table `damping` of a line file from a fitted damping model."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import tomli_w
+
+from pantocheck.conformance.identification.damping.damping_format import DampingResults, MeasuredBand
+from pantocheck.conformance.identification.damping.damping_terms import MATRICES, TABLE_OF_KIND
+from pantocheck.model import Kind
+
+MAX_NOTE = 4000
+"""Largest length of a note in a line file [characters]."""
+
+
+def write_damping_toml(results: DampingResults, modal: Sequence[MeasuredBand] = ()) -> str:
+    """Text of the table `damping` of a line file, with the warnings as comments.
+
+    A coefficient that is not determined is also a comment, so that no simulation uses it.
+
+    Parameters
+    ----------
+    results : DampingResults
+        The fit.
+    modal : sequence of MeasuredBand
+        Frequency bands of modal damping: `results.modal`, or none for Rayleigh damping alone.
+
+    Returns
+    -------
+    str
+        Content of damping.toml.
+    """
+    tables: dict[str, Any] = {
+        "trust": "provisional",
+        "source": f"fitted to {results.modes_file} by pantocheck fit-damping"[:500],
+        "note": f"residual {100 * results.residual:.2g} % of the measured damping ratios",
+    }
+    comments = [f"warning: {text}" for text in results.warnings]
+    for c in results.coefficients:
+        table, key = TABLE_OF_KIND[Kind(c.kind)], MATRICES[c.matrix].key
+        if c.determined:
+            tables.setdefault(table, {})[key] = c.value
+        else:
+            comments.append(f"not determined, left out: {table}.{key} = {c.value:g}")
+    if any(not c.determined for c in results.coefficients):
+        comments.append("In a simulation, a coefficient that is left out counts as 0.")
+    if results.warnings:
+        tables["note"] = " ".join((tables["note"] + ".", *results.warnings))[:MAX_NOTE]
+    if modal:
+        tables["modal"] = [band.model_dump() for band in modal]
+    lines = "".join(f"# {_join_lines(text)}\n" for text in comments)
+    return lines + tomli_w.dumps({"damping": tables}, multiline_strings=False)
+
+
+def _join_lines(text: str) -> str:
+    """Text in one line, without characters that are not possible in a TOML comment."""
+    return " ".join("".join(c if c.isprintable() else " " for c in text).split())
