@@ -2,13 +2,18 @@
 
     python benchmarks/frozen.py write DIR [--drops DIR]     run every command of the comparison, results into DIR
     python benchmarks/frozen.py compare DIR                 compare DIR with the frozen files
+    python benchmarks/frozen.py compare DIR --earlier DIR   compare DIR with another folder that `write` has written
 
 `--drops` names the folder of the mass-drop records T1.h5, T2.csv and T3.uff; without it they are not identified. The
 new file must hold every id, number and verdict of the frozen file at the same place. It may hold more keys, and more
 criteria behind the frozen ones. Texts may differ. The lists `warnings` and `notes` are not compared: a remark may move
 to another key, as the near-limit remark moved from `warnings` to `close` of its criterion. The exit code is 1 if a
-number differs by more than 1e-12 of its size, or if an id, a verdict or a missing key differs in another way than
+number differs by more than its tolerance, or if an id, a verdict or a missing key differs in another way than
 `INTENDED_CHANGES` states. Smaller differences are counted, and the largest is printed.
+
+Numbers of records and of identified modes agree with the frozen ones to 1e-12. Results of the reference simulator have
+changed since: `SIMULATED` states the tolerance of each quantity. With `--earlier` every number must agree to 1e-12, and
+no change is intended: this is the comparison for a change of the code that must not change a number.
 """
 
 import argparse
@@ -16,6 +21,7 @@ import json
 import lzma
 import math
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -84,6 +90,40 @@ The verdicts are explained in docs/verdicts.md.
 TOLERANCE = 1e-12
 """Largest relative difference that a reordering of sums by the compiler may cause."""
 
+SIMULATED_FILES = {
+    f"{name}/results.json" for name in ("en50318-2002", "ac-simple", "ac-stitched", "vovan2015", "damping-study")
+} | {"T1-fit/damping.json"}
+"""Files with results of the reference simulator."""
+
+SIMULATED = {
+    "mean_force_N": 0.001,
+    "std_force_N": 0.03,
+    "std_force_50_N": 0.03,
+    "cov_20": 0.03,
+    "cov_50": 0.03,
+    "rms_0_5_N": 0.03,
+    "rms_5_20_N": 0.05,
+    "rms_20_50_N": 0.08,
+    "max_force_N": 0.03,
+    "min_force_N": 0.20,
+    "statistical_max_N": 0.02,
+    "statistical_min_N": 0.20,
+    "max_uplift_at_support_mm": 0.005,
+    "contact_height_range_mm": 0.05,
+    "elasticity": 0.006,
+    "natural_frequency_Hz": 0.002,
+}
+"""Tolerance by quantity, or by the begin of its name, in `SIMULATED_FILES`.
+
+The frozen commit had no residual flexibility of the wires at droppers, supports and arms. At its default mesh it was
+wrong by 2.4 % in the standard deviation, 7 % in 20-50 Hz, 2.1 % in the maximum and 17 % in the minimum of a trailing
+pantograph. The change of each quantity may be as large as this error. Quantities that are not
+listed agree to `TOLERANCE`.
+"""
+
+DERIVED = re.compile(r"\.criteria\[\d+\]\.(value|margin|spread|discretisation_error)|\.(spread|traces|uplift)[.\[]")
+"""Places in `SIMULATED_FILES` that follow from the quantities, or are histories; they are not compared."""
+
 
 def write(folder: Path, drops: Path | None) -> None:
     """Run every command of the comparison."""
@@ -149,18 +189,43 @@ def _remove_intended(
     return [(place, value) for place, value in differing if place not in present], list(missing)
 
 
-def compare(folder: Path) -> bool:
-    """Compare a folder with the frozen files; true if there is no fault."""
-    agreed = True
-    for path in sorted(FROZEN.rglob("*.json.xz")):
-        name = path.relative_to(FROZEN).with_suffix("")
+def tolerance(name: str, place: str) -> float:
+    """Tolerance of the difference at a place of a file; infinite where numbers follow from others or are histories."""
+    if name not in SIMULATED_FILES:
+        return TOLERANCE
+    if DERIVED.search(place):
+        return math.inf
+    quantity = re.search(r"\.quantities\.\d+\.(\w+)", place)
+    start = next((start for start in SIMULATED if quantity is not None and quantity[1].startswith(start)), None)
+    return TOLERANCE if start is None else SIMULATED[start]
+
+
+def _read_pairs(folder: Path, earlier: Path | None) -> Iterator[tuple[str, Any, Any]]:
+    """Name, earlier content and new content of every file; the frozen files are the default of the earlier ones."""
+    root, pattern = (FROZEN, "*.json.xz") if earlier is None else (earlier, "*.json")
+    for path in sorted(root.rglob(pattern)):
+        name = path.relative_to(root).with_name(path.name.removesuffix(".xz"))
         if not (folder / name).is_file():
             print(f"{name}: not written, not compared")
             continue
-        frozen, new = json.loads(lzma.decompress(path.read_bytes())), json.loads((folder / name).read_text())
-        remaining, missing = _remove_intended(list(differences(frozen, new)), INTENDED_CHANGES.get(str(name), {}))
-        numbers = [value for _, value in remaining if isinstance(value, float)]
-        faults = [*missing, *(pair for pair in remaining if isinstance(pair[1], str) or pair[1] > TOLERANCE)]
+        content = path.read_bytes()
+        old = json.loads(lzma.decompress(content) if earlier is None else content)
+        yield str(name), old, json.loads((folder / name).read_text())
+
+
+def compare(folder: Path, earlier: Path | None) -> bool:
+    """Compare a folder with the frozen files, or with an earlier folder; true if there is no fault."""
+    agreed = True
+    for name, old, new in _read_pairs(folder, earlier):
+        intended = INTENDED_CHANGES.get(name, {}) if earlier is None else {}
+        remaining, missing = _remove_intended(list(differences(old, new)), intended)
+        tolerances = [tolerance(name, place) if earlier is None else TOLERANCE for place, _ in remaining]
+        judged = [(*pair, allowed) for pair, allowed in zip(remaining, tolerances, strict=True) if allowed < math.inf]
+        faults = [
+            *missing,
+            *((place, value) for place, value, allowed in judged if isinstance(value, str) or value > allowed),
+        ]
+        numbers = [value for _, value, _ in judged if isinstance(value, float)]
         changed = [value for value in numbers if value > 0]
         print(
             f"{name}: {len(numbers)} numbers, {len(numbers) - len(changed)} bit-identical, "
@@ -178,11 +243,12 @@ def main() -> None:
     parser.add_argument("action", choices=("write", "compare"))
     parser.add_argument("folder", type=Path)
     parser.add_argument("--drops", type=Path)
+    parser.add_argument("--earlier", type=Path)
     options = parser.parse_args()
     if options.action == "write":
         write(options.folder, options.drops)
     else:
-        raise SystemExit(0 if compare(options.folder) else 1)
+        raise SystemExit(0 if compare(options.folder, options.earlier) else 1)
 
 
 if __name__ == "__main__":
