@@ -24,6 +24,8 @@ QUANTITIES = (
     "min_force_N",
     "max_uplift_at_support_mm",
 )
+ALLOWED_PCT = dict(zip(QUANTITIES, (1.0, 1.0, 1.0, 2.0, 1.0, 3.0, 1.0), strict=True))
+"""Target of the error at the default mesh by quantity: 20-50 Hz and the smallest force depend on short waves."""
 UPLIFT_FORCE = 172.7
 """Constant uplift force, which gives a mean contact force of about 169 N [N]."""
 SPACING = 200.0
@@ -101,8 +103,8 @@ def passage(
     )
 
 
-def figures(way: Passage, history: History, evaluated: tuple[float, float]) -> dict[str, float]:
-    """Quantities of a simulation with one pantograph over an analysis section [m]."""
+def figures(way: Passage, history: History, evaluated: tuple[float, float], pantograph: int = 1) -> dict[str, float]:
+    """Quantities of a pantograph (1 leads) and of the line over an analysis section [m]."""
     record = Record(
         time=history.time,
         speed=way.speed,
@@ -114,4 +116,4 @@ def figures(way: Passage, history: History, evaluated: tuple[float, float]) -> d
     )
     supports = tuple(x for _, x in way.watched)
     values = evaluate_record(record, LowPass("butterworth", 6, 20.0, "zero"), supports).values
-    return {name: float({**values[0], **values[1]}[name]) for name in QUANTITIES}
+    return {name: float({**values[0], **values[pantograph]}[name]) for name in QUANTITIES}
