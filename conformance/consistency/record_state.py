@@ -39,4 +39,4 @@ def record_state(
         texts = [finding.text for finding in findings.values() if STATES[finding.kind] == state]
         if texts:
             return state, "; ".join(texts)
-    return "verified", "every consistency check confirms the record"
+    return "verified", "every consistency check that applies confirms the record"

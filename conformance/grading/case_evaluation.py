@@ -88,7 +88,7 @@ class CaseEvaluation:
         """State of the record; None for a case without a record."""
         digests = {"digest": self.delivered.digest, "case_digest": self.delivered.case_digest}
         if self.delivered.summary is not None:
-            reason = "published statistics: there is no record to check"
+            reason = "a summary record has no samples to check"
             return RecordFacts(state="unverified", reason=reason, **digests)
         if self.signals is None:
             return None

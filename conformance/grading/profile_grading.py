@@ -64,7 +64,10 @@ def assess_record(
     criteria = grading.grade_profile(profile, limits)
     records = [record for record in (subject, measured) if record is not None]
     digest = join_digests(subject.digest, measured.digest if measured else "", profile.model_dump_json())
-    reason = "a profile has no case: force against motion needs its pantograph, position against uplift needs its line"
+    reason = (
+        "the checks of force against motion and of position against uplift need the pantograph and the line of a case, "
+        "and a profile has none"
+    )
     record = RecordFacts(
         state="unverified",
         reason=reason,

@@ -181,7 +181,7 @@ def test_session_passes_only_with_the_verdict_pass(pytester: pytest.Pytester, pl
     edit_toml(plan, {"system": PUBLISHED})
     done = session(pytester, "conformance.toml")
     done.assert_outcomes(failed=16)
-    done.stdout.fnmatch_lines(["the record is unverified: published statistics*"])
+    done.stdout.fnmatch_lines(["the record is unverified: a summary record*"])
     edit_toml(plan, {"accept_unverified": [CODE]})
     accepted = session(pytester, "conformance.toml")
     accepted.assert_outcomes(passed=16)
@@ -206,7 +206,7 @@ def test_check_fails_on_uncounted_limits_and_unverified_records(pytester: pytest
 
         def test_check(pantocheck_run):
             graded = pantocheck_run("en50318-2002/250", system="{PUBLISHED}")
-            with pytest.raises(AssertionError, match="the record is unverified: published statistics"):
+            with pytest.raises(AssertionError, match="the record is unverified: a summary record"):
                 graded.check("std_force_N")
             graded.check("std_force_N", accept_unverified=True)
             graded.check(accept_unverified=True)

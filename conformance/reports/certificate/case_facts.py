@@ -53,7 +53,7 @@ def list_case_facts(case: dict[str, Any]) -> Facts:
             ("Superseded by", case["superseded_by"]),
             ("Digest of the inputs", case["input_digest"]),
             ("Digest of the limits", case["limits_digest"]),
-            ("Without the limits file", case["stated_limits_digest"] if changed else None),
+            ("Digest without the limits file", case["stated_limits_digest"] if changed else None),
             ("Digest of the record", record.get("digest")),
             ("Digest of the measured record", record.get("measured_digest")),
         ),

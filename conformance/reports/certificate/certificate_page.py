@@ -42,7 +42,7 @@ def build_certificate(results: dict[str, Any]) -> doc.Document:
     warnings = list_identity_warnings(prepared)
     reasons = list_reasons(prepared) or (doc.Paragraph("Nothing was graded."),)
     trusts = read_words()["trust"].items()
-    levels = doc.BulletList(tuple((doc.TrustMark(name), f" {level['meaning']}") for name, level in trusts))
+    levels = doc.BulletList(tuple((doc.TrustMark(name), f": {level['meaning']}") for name, level in trusts))
     closing = doc.Paragraph(f"This is a {header.statement}. It is not a certification by a third party.")
     return doc.Document(
         title=f"{read_words()['verdict'][header.verdict]['word']} – {HEADING} – {name_system(prepared)}",

@@ -113,7 +113,7 @@ def test_lines_of_a_case_stand_above_its_table(passing: dict[str, Any], capsys: 
     changes = "limits file: std_force_N: the limit 26 to 31 is removed; cov_20: the limit <= 0.3 is removed"
     assert f"  {changes}" in above
     assert any(line.startswith("  warning: The contact force is sampled at 1000 Hz") for line in above)
-    assert any("every consistency check confirms the record" in line for line in above)
+    assert any("every consistency check that applies confirms the record" in line for line in above)
     assert "  mean_force_N: 2 N above the upper limit" in below
     assert "  mean_force_N: lies 1 N from a limit" in below
     assert LEGEND in below

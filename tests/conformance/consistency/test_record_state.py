@@ -5,7 +5,7 @@ from pantocheck.conformance.consistency.record_state import record_state
 
 
 def test_record_without_findings_is_verified() -> None:
-    assert record_state({}) == ("verified", "every consistency check confirms the record")
+    assert record_state({}) == ("verified", "every consistency check that applies confirms the record")
 
 
 def test_missing_channels_and_doubts_leave_a_record_unverified() -> None:

@@ -176,7 +176,7 @@ def test_profile_decides_whether_an_unverified_record_passes(
     record = results.cases[0].record
     assert record is not None
     assert (results.verdict, record.state, record.demanded) == (verdict, "unverified", verification == "demanded")
-    assert "force against motion needs its pantograph, position against uplift needs its line" in record.reason
+    assert "need the pantograph and the line of a case, and a profile has none" in record.reason
     assert {row.verdict for row in results.cases[0].criteria} == {"pass"}
     assert find_discrepancies(results.to_dict()) == []
     test = ElementTree.fromstring(render_junit(results.to_dict())).find(".//testcase[@name='record']")
