@@ -68,9 +68,7 @@ def _view(
     for support in line.catenary.messenger_supports:
         if not start <= support.position <= end:
             continue
-        axes.plot(
-            support.position, _deflection(line, support.wire, field, support.position), "^", color=INK, markersize=4
-        )
+        axes.plot(support.position, _deflection(line, support.wire, field, support.position), "^", color=INK)
     for arm, force in zip(line.catenary.steady_arms, line.state.arm_force, strict=True):
         if not start <= arm.position <= end:
             continue

@@ -91,7 +91,7 @@ def draw_boxes(modes: list[dict[str, Any]]) -> Figure:
         for mode in members:
             marker = "x" if mode["outlier"] else "o"
             ratio = 100 * mode["damping_ratio"]
-            axes.plot(number + 0.36, ratio, marker, color=INK, markersize=4, markerfacecolor="white")
+            axes.plot(number + 0.36, ratio, marker, color=INK, markerfacecolor="white")
     axes.set_xlim(0.4, (groups[-1] if groups else 1) + 0.8)
     axes.set_xticks(groups, [str(number) for number in groups])
     axes.set_ylim(bottom=0)
@@ -118,7 +118,6 @@ def draw_damping(modes: list[dict[str, Any]]) -> Figure:
                 fmt=marker,
                 color=INK,
                 markerfacecolor=face,
-                markersize=4,
                 elinewidth=0.8,
                 capsize=2,
                 label=label,
