@@ -96,5 +96,5 @@ def _project(columns: RealArray, vector: RealArray) -> RealArray:
     """Projection of a vector on the span of the columns."""
     if columns.shape[1] == 0:
         return np.zeros_like(vector)
-    q = np.linalg.qr(columns / np.maximum(np.linalg.norm(columns, axis=0), np.finfo(float).tiny))[0]
+    q = np.linalg.qr(columns)[0]
     return np.asarray(q @ (q.T @ vector))

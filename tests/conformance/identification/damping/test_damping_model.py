@@ -203,6 +203,27 @@ def test_modes_of_different_shapes_are_no_pair(mac: float, paired: bool) -> None
     assert [pair.mac for pair in pairs] == pytest.approx([mac] * paired + [1.0])
 
 
+@pytest.mark.parametrize(
+    ("gap", "mac", "exchanged"),
+    [(0.005, 0.92, True), (0.005, 0.95, False), (0.01, 0.7, True), (0.01, 0.8, False), (0.015, 0.52, False)],
+)
+def test_frequency_gap_of_one_percent_weighs_as_a_mac_lower_by_a_quarter(
+    gap: float, mac: float, exchanged: bool
+) -> None:
+    """Two neighbours whose shapes fit better if they are exchanged: (gap / 1 %)^2 against 4 (1 - MAC).
+
+    Eight other modes, equal in frequency and shape, keep the common factor at 1.
+    """
+    others = np.array([2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0])
+    measured_shapes = [np.array([1.0 + 0j, 0.0]), np.array([np.sqrt(mac), np.sqrt(1 - mac)], dtype=complex)]
+    measured_shapes += [np.array([1.0 + 0j, 1.0])] * others.size
+    frequency = np.array([1.0, np.exp(gap), *others])
+    computed = np.array([measured_shapes[1].real, measured_shapes[0].real, *[np.array([1.0, 1.0])] * others.size])
+    pairs = pair_modes(frequency, measured_shapes, frequency, [computed] * frequency.size)
+    found = {pair.measured: pair.computed for pair in pairs}
+    assert (found[0], found[1]) == ((1, 0) if exchanged else (0, 1))
+
+
 def test_single_sensor_says_nothing_about_the_shape() -> None:
     """One sensor has no shape to compare: its similarity is 1, on a node of the computed mode, too."""
     (pair,) = pair_modes(np.array([1.0]), [np.array([1.0 + 0.0j])], np.array([1.0]), [np.array([[0.0]])])

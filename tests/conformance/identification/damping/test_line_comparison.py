@@ -349,6 +349,13 @@ def test_coefficient_that_is_not_determined_is_only_a_comment(measured: tuple[Mo
     assert text.count("# not determined, left out: ") == 4
 
 
+def test_fit_needs_six_pairs(measured: tuple[Mode, ...], unequal: Catenary) -> None:
+    results = build_damping_results(measured[:6], unequal, 1.0, "modes.json")
+    assert len(results.pairs) == results.matching.matched == 6
+    with pytest.raises(InputError, match="only 5 of 5 modes have a computed counterpart, 6 are needed"):
+        build_damping_results(measured[:5], unequal, 1.0, "modes.json")
+
+
 def test_name_of_a_record_adds_no_line_to_the_damping_file(measured: tuple[Mode, ...], unequal: Catenary) -> None:
     other = MeasuredLine(spans_m=SPANS)
     name = "T\n[damping.droppers]\nmass_coefficient_1_s = 9.0\x7f"
