@@ -126,6 +126,10 @@ class Dropper:
     lower_clamp_mass: float = 0.0
     contact_wire_height: float | None = 0.0
 
+    def taut_stiffness(self, length: float) -> float:
+        """Stiffness along the taut dropper with a length at rest [m]: as given, or EA / length [N/m]."""
+        return (self.axial_stiffness or 0.0) / length if self.stiffness is None else self.stiffness
+
 
 @dataclass(frozen=True)
 class SteadyArm:
@@ -159,6 +163,10 @@ class SteadyArm:
     vertical_damper: float = 0.0
     carries_share: bool = False
     acts: Literal["pull", "push"] = "pull"
+
+    def transverse_stiffness(self, tension: float) -> float:
+        """Stiffness across a hinged bar with a tension [N]: tension / length, 0 beside a vertical stiffness [N/m]."""
+        return 0.0 if self.vertical_stiffness is not None or self.length is None else tension / self.length
 
 
 @dataclass(frozen=True)

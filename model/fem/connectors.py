@@ -115,9 +115,7 @@ def _droppers(catenary: Catenary, mesh: Mesh, state: InitialState) -> list[Bar]:
     damping_time = catenary.rayleigh(Kind.DROPPER).stiffness_coefficient
     bars = []
     for n, dropper in enumerate(catenary.droppers):
-        stiffness = dropper.stiffness
-        if stiffness is None:
-            stiffness = (dropper.axial_stiffness or 0.0) / float(state.dropper_length[n])
+        stiffness = dropper.taut_stiffness(float(state.dropper_length[n]))
         y, z = map(float, state.dropper_direction[n])
         coefficient = _coefficients(mesh, dropper.upper, dropper.lower, (y, z))
         station, preload = mesh.station(dropper.position), float(state.dropper_tension[n])
@@ -160,8 +158,8 @@ def _steady_arms(catenary: Catenary, mesh: Mesh, state: InitialState) -> list[Ba
         y, z, tension = arm_direction(arm, force)
         along = dict(zip(rows, (-y, -z), strict=True))
         bars.append(Bar(station, along, RIGID, preload=tension))
-        if arm.vertical_stiffness is None and arm.length is not None and tension != 0.0:
-            stiffness = tension / arm.length
+        stiffness = arm.transverse_stiffness(tension)
+        if stiffness != 0.0:
             across = dict(zip(rows, (z, -y), strict=True))
             bars.append(Bar(station, across, stiffness, damping_time * abs(stiffness)))
     return bars

@@ -40,6 +40,30 @@ def static_uplift(line: DiscretisedLine, position: Array, force: float) -> Array
     return uplift
 
 
+def height_under_forces(line: DiscretisedLine, position: Array, force: Array) -> Array:
+    """Compute the height of the contact wire at static forces that act together; droppers may slacken.
+
+    Parameters
+    ----------
+    line : DiscretisedLine
+        Discretised line.
+    position : (n,) ndarray
+        Positions of the forces [m].
+    force : (n,) ndarray
+        Forces upwards, each shared by the contact wires [N].
+
+    Returns
+    -------
+    (n,) ndarray
+        Height above the contact wire at the supports, mean over the contact wires [m].
+    """
+    rows = line.contact_rows
+    shapes = [np.mean([point_load(line, row, float(x)) for row in rows], axis=0) for x in position]
+    displacement = StaticSolver(line).deflection(np.sum([f * n for f, n in zip(force, shapes, strict=True)], axis=0))
+    height = (line.state.deflection + displacement.displacement).transpose(1, 0, 2).ravel()
+    return np.array([shape @ height for shape in shapes])
+
+
 def non_uniformity(elasticity: Array) -> float:
     """Non-uniformity of the elasticity along a span: (max - min) / (max + min).
 
