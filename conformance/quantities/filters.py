@@ -90,11 +90,21 @@ class LowPass:
             The cut-off is too high for the rate.
         """
         check_observable(self.cutoff_Hz, rate, f"a filter at {self.cutoff_Hz:g} Hz")
+        order, cutoff = self.single_run(rate)
+        return np.asarray(butter(order, cutoff, fs=rate, output="sos"))
+
+    @property
+    def runs(self) -> int:
+        """Runs of the filter over the signal: 2 for zero phase, forwards and backwards; 1 for a causal filter."""
+        return 2 if self.phase == "zero" else 1
+
+    def single_run(self, rate: float) -> tuple[int, float]:
+        """Order and -3 dB frequency [Hz] of a single run, for a sampling rate [Hz]."""
         if self.phase == "causal":
-            return np.asarray(butter(self.order, self.cutoff_Hz, fs=rate, output="sos"))
+            return self.order, self.cutoff_Hz
         half = self.order // 2
         warped = np.tan(np.pi * self.cutoff_Hz / rate) / (np.sqrt(2) - 1) ** (1 / (2 * half))
-        return np.asarray(butter(half, rate / np.pi * np.arctan(warped), fs=rate, output="sos"))
+        return half, float(rate / np.pi * np.arctan(warped))
 
     def __call__(self, signal: RealArray, rate: float) -> RealArray:
         """Filter a signal; the transients at its ends decay within a few periods of the cut-off.
@@ -121,7 +131,7 @@ class LowPass:
     def gain(self, frequency: RealArray, rate: float) -> RealArray:
         """Gain of the whole filter at frequencies [Hz], for a sampling rate [Hz]."""
         _, response = sosfreqz(self.sections(rate), worN=frequency, fs=rate)
-        return np.asarray(np.abs(response) ** (2 if self.phase == "zero" else 1))
+        return np.asarray(np.abs(response) ** self.runs)
 
 
 def is_same_cutoff(stated_Hz: float, cutoff_Hz: float) -> bool:

@@ -8,6 +8,7 @@ import numpy as np
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import Discretisation
+from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.records.sidecar_tables import RunTable
@@ -65,7 +66,7 @@ def run_passage(
         No uplift force gives the mean contact force that the case requires.
     """
     uses = case.file.pantograph
-    start = uplift_forces or tuple(use.uplift_force_N or use.target_mean_force_N or 0.0 for use in uses)
+    start = uplift_forces or start_forces(case)
     # The computing time must not include the compilation of the kernels.
     simulate_passage(line, replace(build_passage(case, line, discretisation, start), duration=0.0))
     return tune_uplift(
@@ -104,12 +105,10 @@ def build_passage(
     case: Case, line: DiscretisedLine, discretisation: Discretisation, uplift_forces: tuple[float, ...]
 ) -> Passage:
     """Passage of a case on a discretised line, with given uplift forces [N]."""
-    first_span = (case.file.evaluated_spans or (1,))[0]
-    positions = sample_span(*case.line.geometry.span(first_span))
-    pantographs = []
-    for file, force in zip(case.pantographs, uplift_forces, strict=True):
-        height = float(static_uplift(line, positions, force).mean()) + force / file.contact.stiffness_N_m
-        pantographs.append(build_pantograph(file, force, height))
+    pantographs = [
+        build_pantograph(file, force, compute_working_height(case, line, file, force))
+        for file, force in zip(case.pantographs, uplift_forces, strict=True)
+    ]
     duration = (case.end - case.start) / case.speed
     reach = causal_reach(line, case.speed, duration)
     return Passage(
@@ -121,6 +120,36 @@ def build_passage(
         watched=_watched_supports(case, line),
         reach=reach if discretisation.reach_m is None else min(discretisation.reach_m, reach),
     )
+
+
+def working_height_positions(case: Case) -> RealArray:
+    """Positions of the mean uplift for the working height: those of the first span of the analysis section [m]."""
+    return sample_span(*case.line.geometry.span((case.file.evaluated_spans or (1,))[0]))
+
+
+def compute_working_height(case: Case, line: DiscretisedLine, file: PantographFile, uplift_force: float) -> float:
+    """Static height of a head under its uplift force: mean uplift of the wire plus the contact spring [m].
+
+    The height counts from the contact wire at the supports; the pre-sag of the line at rest is left out.
+
+    Parameters
+    ----------
+    case : Case
+        Case with a speed.
+    line : DiscretisedLine
+        Line of the case.
+    file : PantographFile
+        Pantograph.
+    uplift_force : float
+        Its uplift force [N].
+    """
+    uplift = static_uplift(line, working_height_positions(case), uplift_force)
+    return float(uplift.mean()) + uplift_force / file.contact.stiffness_N_m
+
+
+def start_forces(case: Case) -> tuple[float, ...]:
+    """Uplift force of every pantograph, or start value of its tuning [N]."""
+    return tuple(use.uplift_force_N or use.target_mean_force_N or 0.0 for use in case.file.pantograph)
 
 
 def _watched_supports(case: Case, line: DiscretisedLine) -> tuple[tuple[str, float], ...]:

@@ -1,0 +1,167 @@
+"""Derived values of a line at rest, from its fine finite elements; `derived_format` defines them."""
+
+from collections.abc import Iterable, Sequence
+from typing import TypeVar
+
+import numpy as np
+
+from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.simulation.derived_format import (
+    DerivedDroppers,
+    DerivedLine,
+    DerivedMessengerSupports,
+    DerivedSteadyArms,
+    DerivedStitchWires,
+    DerivedWire,
+)
+from pantocheck.model import Catenary, DiscretisedLine, Kind, Wire
+from pantocheck.model.catenary import GRAVITY
+from pantocheck.model.fem.beam import wave_speed
+from pantocheck.model.fem.connectors import arm_direction
+
+Entry = TypeVar("Entry")
+
+DIGITS = 6
+"""Significant digits of derived values; the elements leave an error in the sixth."""
+DECIMALS = 9
+"""Decimals of derived values, so that rounding errors of a zero do not appear."""
+POSITION_DECIMALS = 6
+"""Decimals of positions along the track in metres."""
+
+
+def round_number(value: float) -> float:
+    """Value with `DIGITS` significant digits."""
+    return round(float(f"{value:.{DIGITS}g}"), DECIMALS) + 0.0  # -0.0 becomes 0.0
+
+
+def round_numbers(values: Iterable[float]) -> tuple[float, ...]:
+    """Values with `DIGITS` significant digits."""
+    return tuple(map(round_number, values))
+
+
+def round_positions(positions: Iterable[float]) -> tuple[float, ...]:
+    """Positions along the track with `POSITION_DECIMALS` decimals [m]."""
+    return tuple(round(float(x), POSITION_DECIMALS) for x in positions)
+
+
+def build_derived_line(file: LineFile, line: DiscretisedLine) -> DerivedLine:
+    """Derived values of a line.
+
+    Parameters
+    ----------
+    file : LineFile
+        Content of the line file.
+    line : DiscretisedLine
+        Its finite elements.
+    """
+    return DerivedLine(
+        gravity_m_s2=GRAVITY,
+        span_limits_m=round_positions(file.geometry.span_limits),
+        contact_wire=_wire(file, line, Kind.CONTACT_WIRE),
+        messenger_wire=_wire(file, line, Kind.MESSENGER_WIRE),
+        stitch_wires=_stitch_wires(line.catenary),
+        droppers=_droppers(file, line),
+        steady_arms=_steady_arms(file, line),
+        messenger_supports=_messenger_supports(file, line.catenary),
+    )
+
+
+def _wire(file: LineFile, line: DiscretisedLine, kind: Kind) -> DerivedWire:
+    wires = _wires_of(line.catenary, kind)
+    first, row = wires[0], line.mesh.row_of[wires[0].name, "z"]
+    stations = [line.mesh.station(x) for x in file.geometry.span_limits]
+    staggers = [wire.stagger for wire in wires if wire.stagger is not None]
+    return DerivedWire(
+        start_m=first.start,
+        end_m=first.end,
+        wave_speed_m_s=round_number(wave_speed(first.tension, first.mass_per_length)),
+        height_m=round_numbers(line.state.deflection[row, stations, 0]),
+        lateral_position_m=tuple(round_numbers(y for _, y in stagger) for stagger in staggers) or None,
+    )
+
+
+def _wires_of(catenary: Catenary, kind: Kind) -> list[Wire]:
+    return [wire for wire in catenary.wires if wire.kind is kind]
+
+
+def _stitch_wires(catenary: Catenary) -> DerivedStitchWires | None:
+    wires = _wires_of(catenary, Kind.STITCH_WIRE)
+    if not wires:
+        return None
+    messenger = _wires_of(catenary, Kind.MESSENGER_WIRE)[0]
+    return DerivedStitchWires(
+        start_m=round_positions(wire.start for wire in wires),
+        end_m=round_positions(wire.end for wire in wires),
+        wave_speed_m_s=round_number(wave_speed(wires[0].tension, wires[0].mass_per_length)),
+        messenger_tension_N=messenger.tension + messenger.tension_changes[0].change,
+        clamp_mass_kg=catenary.clamps[0].mass,
+        mass_coefficient_1_s=catenary.rayleigh(Kind.DROPPER).mass_coefficient,
+    )
+
+
+def _droppers(file: LineFile, line: DiscretisedLine) -> DerivedDroppers:
+    catenary, state, droppers = line.catenary, line.state, line.catenary.droppers
+    length, direction = state.dropper_length, state.dropper_direction
+    spans, rayleigh = file.geometry.spans, catenary.rayleigh(Kind.DROPPER)
+    contact = {wire.name: n for n, wire in enumerate(catenary.contact_wires, 1)}
+
+    def by_span(values: Sequence[float] | RealArray) -> tuple[tuple[float, ...], ...]:
+        return _split(round_numbers(values), spans)
+
+    stiffness = [d.taut_stiffness(float(rest)) for d, rest in zip(droppers, length, strict=True)]
+    stitched = [catenary.wire(dropper.upper).kind is Kind.STITCH_WIRE for dropper in droppers]
+    return DerivedDroppers(
+        position_m=_split(round_positions(dropper.position for dropper in droppers), spans),
+        contact_wire=_split([contact[dropper.lower] for dropper in droppers], spans),
+        on_stitch_wire=_split(stitched, spans),
+        contact_wire_height_m=by_span([dropper.contact_wire_height or 0.0 for dropper in droppers]),
+        length_m=by_span(length),
+        height_m=by_span(length * direction[:, 1]),
+        width_m=by_span(length * direction[:, 0]),
+        vertical_force_N=by_span(state.dropper_tension * direction[:, 1]),
+        stiffness_N_m=by_span(stiffness),
+        transverse_stiffness_N_m=by_span(state.dropper_tension / length) if catenary.has_lateral_field else None,
+        mass_kg=by_span([dropper.mass for dropper in droppers]),
+        upper_clamp_kg=droppers[0].upper_clamp_mass,
+        lower_clamp_kg=droppers[0].lower_clamp_mass,
+        mass_coefficient_1_s=rayleigh.mass_coefficient,
+        stiffness_coefficient_s=rayleigh.stiffness_coefficient,
+    )
+
+
+def _split(values: Sequence[Entry], parts: int) -> tuple[tuple[Entry, ...], ...]:
+    """Values in parts of equal length."""
+    count = len(values) // parts
+    return tuple(tuple(values[i * count : (i + 1) * count]) for i in range(parts))
+
+
+def _steady_arms(file: LineFile, line: DiscretisedLine) -> DerivedSteadyArms:
+    catenary, force = line.catenary, line.state.arm_force
+    arms, rayleigh, table = catenary.steady_arms, catenary.rayleigh(Kind.STEADY_ARM), file.steady_arm
+    tensions = [arm_direction(arm, f)[2] for arm, f in zip(arms, force, strict=True)]
+    across = [arm.transverse_stiffness(tension) for arm, tension in zip(arms, tensions, strict=True)]
+    hinged = catenary.has_lateral_field and table.vertical_stiffness_N_m is None
+    return DerivedSteadyArms(
+        position_m=round_positions(arm.position for arm in arms),
+        lateral_force_N=round_numbers(force[:, 0]),
+        vertical_force_N=round_numbers(force[:, 1]),
+        transverse_stiffness_N_m=round_numbers(across) if hinged else None,
+        vertical_stiffness_N_m=None if hinged else table.vertical_stiffness_N_m or 0.0,
+        vertical_damper_N_s_m=table.vertical_damper_N_s_m,
+        mass_kg=round_number(arms[0].mass if arms else 0.0),
+        mass_coefficient_1_s=rayleigh.mass_coefficient,
+        stiffness_coefficient_s=rayleigh.stiffness_coefficient,
+    )
+
+
+def _messenger_supports(file: LineFile, catenary: Catenary) -> DerivedMessengerSupports:
+    table, lateral = file.messenger_support, catenary.has_lateral_field
+    return DerivedMessengerSupports(
+        position_m=round_positions(np.unique([support.position for support in catenary.messenger_supports])),
+        height_m=file.geometry.encumbrance_m,
+        vertical_stiffness_N_m=table.stiffness_N_m,
+        lateral_stiffness_N_m=table.stiffness_N_m if lateral else None,
+        vertical_damper_N_s_m=table.damping_N_s_m,
+        lateral_damper_N_s_m=table.damping_N_s_m if lateral else None,
+    )
