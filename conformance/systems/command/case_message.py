@@ -1,15 +1,21 @@
 """Case in the `run` message of a program: all numbers, without limits."""
 
-from typing import Any
+from typing import Any, cast
 
 from pantocheck.conformance.cases.case import Case, drop_keys
 from pantocheck.conformance.input_files.sourced_table import PROVENANCE
+from pantocheck.conformance.simulation.derived_values import build_derived
 
 
-def build_case_message(case: Case) -> object:
+def build_case_message(case: Case) -> dict[str, Any]:
     """Build the case of a `run` message, see `protocol_messages.RequestedCase`.
 
     Notes and sources are left out, because they mention results.
+
+    Raises
+    ------
+    SimulationError
+        The line has no equilibrium at rest or at the start.
     """
     file = case.file
     content: dict[str, Any] = {
@@ -33,5 +39,6 @@ def build_case_message(case: Case) -> object:
                 file.pantograph, case.pantographs, case.start_positions, case.end_positions, strict=True
             )
         ],
+        "derived": build_derived(case).model_dump(mode="json"),
     }
-    return drop_keys(content, PROVENANCE)
+    return cast(dict[str, Any], drop_keys(content, PROVENANCE))

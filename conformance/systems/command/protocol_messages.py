@@ -10,6 +10,7 @@ from pantocheck.conformance.cases.case_file import Discretisation, Filter
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.pantograph_file import ChainTable, ContactTable, MatricesTable, ModesTable
 from pantocheck.conformance.input_files.sourced_table import PROVENANCE, InputTable
+from pantocheck.conformance.simulation.derived_format import Derived
 
 PROTOCOL: Final = "pantocheck.command/1"
 
@@ -62,6 +63,7 @@ class RequestedCase(InputTable):
     ]
     line: LineFile
     pantographs: tuple[RequestedPantograph, ...]
+    derived: Annotated[Derived, Field(description="values that follow from the inputs by the conventions of the suite")]
 
 
 class RunRequest(InputTable):
