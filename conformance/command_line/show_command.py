@@ -1,5 +1,6 @@
 """`pantocheck show`: content of a case and the provenance of each number."""
 
+import json
 from pathlib import Path
 from typing import Annotated
 
@@ -9,11 +10,13 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.command_line.case_tables import build_case_tables
 from pantocheck.conformance.command_line.console import console, escape_text
+from pantocheck.conformance.command_line.derived_tables import build_derived_tables
 from pantocheck.conformance.command_line.rest_tables import build_rest_tables
 from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.simulation.line_drawing import draw_line
+from pantocheck.conformance.systems.command.case_message import build_case_message
 from pantocheck.model import discretise
 
 DRAWN_SPANS = 6
@@ -26,6 +29,13 @@ def show_command(
         bool,
         typer.Option("--at-rest", help="Also compute the line at rest and the frequency response of the pantographs."),
     ] = False,
+    derived: Annotated[
+        bool,
+        typer.Option("--derived", help="Also compute the values that follow from the inputs by the conventions."),
+    ] = False,
+    request: Annotated[
+        Path | None, typer.Option(help="JSON file for one case, as a program receives it (docs/systems.md).")
+    ] = None,
     drawing: Annotated[
         Path | None, typer.Option(help="SVG file for a drawing of the line to scale, in elevation and in plan.")
     ] = None,
@@ -36,19 +46,25 @@ def show_command(
 
     pantocheck show en50318-2018/ac-simple/275 --at-rest
 
+    pantocheck show en50318-2002/250 --derived --request case.json
+
     pantocheck show en50318-2018/ac-stitched/static --drawing line.svg
     """
     output = console()
     cases = _without_required(case, select_cases([case]))
+    if request is not None:
+        _write_request(cases, request)
     if drawing is not None:
         if any(each.line != cases[0].line for each in cases):
             raise InputError(f"case '{case}'", "the cases have different lines", "Give the id of one case.")
         _draw(cases[0], drawing)
     for each in cases:
-        for part in [*build_case_tables(each), *(build_rest_tables(each) if at_rest else [])]:
+        tables = [*(build_derived_tables(each) if derived else []), *(build_rest_tables(each) if at_rest else [])]
+        for part in [*build_case_tables(each), *tables]:
             output.print(part)
-    if drawing is not None:
-        output.print(escape_text(str(drawing)), soft_wrap=True)
+    for path in (request, drawing):
+        if path is not None:
+            output.print(escape_text(str(path)), soft_wrap=True)
 
 
 def _without_required(pattern: str, cases: list[Case]) -> list[Case]:
@@ -56,6 +72,13 @@ def _without_required(pattern: str, cases: list[Case]) -> list[Case]:
     exact = [case for case in cases if case.id == pattern]
     required = {name for case in cases for name in case.file.requires}
     return exact or [case for case in cases if case.id not in required] or cases
+
+
+def _write_request(cases: list[Case], path: Path) -> None:
+    if len(cases) != 1:
+        raise InputError("option --request", f"the pattern selects {len(cases)} cases", "Give the id of one case.")
+    check_writable(path.parent)
+    write_atomically(path, (json.dumps(build_case_message(cases[0]), indent=1) + "\n").encode())
 
 
 def _draw(case: Case, path: Path) -> None:

@@ -1,11 +1,14 @@
 """`pantocheck show`: the line at rest, and its drawing."""
 
+import json
 from pathlib import Path
 from xml.etree import ElementTree
 
 from typer.testing import CliRunner
 
+from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.command_line.app import app
+from pantocheck.conformance.systems.command.case_message import build_case_message
 
 
 def test_drawing_is_a_valid_svg_and_deterministic(tmp_path: Path) -> None:
@@ -29,6 +32,32 @@ def test_line_at_rest_and_apparent_mass_are_printed() -> None:
     ):
         assert text in result.output
     assert "en50318-2002/300" not in result.output
+
+
+def test_derived_values_are_printed_with_their_meaning() -> None:
+    """Lists by span show the middle span; long lists show their ends."""
+    result = CliRunner().invoke(app, ["show", "en50318-2002/250", "--derived"], terminal_width=250)
+    assert result.exit_code == 0, result.output
+    rows = {line.split()[0]: " ".join(line.split()) for line in result.output.splitlines() if line.strip()}
+    assert rows["contact_wire.wave_speed_m_s"].startswith("contact_wire.wave_speed_m_s 121.716 speed of transverse")
+    assert rows["droppers.position_m"].startswith("droppers.position_m 305.0, 310.5,")
+    assert rows["start.place_m"] == "start.place_m 60.0 position of the last pantograph [m]"
+    assert "242.5, 245.0, ... 24 values ..., 295.0" in rows["working_height_positions_m"]
+    assert rows["evaluation.bands_Hz"].startswith("evaluation.bands_Hz 0.0, 5.0; 5.0, 20.0; 20.0, 50.0 ")
+
+
+def test_request_is_the_case_that_a_program_receives(tmp_path: Path) -> None:
+    file = tmp_path / "case.json"
+    result = CliRunner().invoke(app, ["show", "en50318-2002/250", "--request", str(file)])
+    assert result.exit_code == 0, result.output
+    (case,) = select_cases(["en50318-2002/250"])
+    assert json.loads(file.read_text()) == build_case_message(case)
+
+
+def test_request_is_of_one_case(tmp_path: Path) -> None:
+    result = CliRunner().invoke(app, ["show", "en50318-2002/*", "--request", str(tmp_path / "case.json")])
+    assert result.exit_code == 2
+    assert "the pattern selects 2 cases" in " ".join(result.output.split())
 
 
 def test_required_cases_are_not_shown() -> None:
