@@ -80,7 +80,7 @@ def _arrays(line: Line, strands: Strands, rest: Rest, bars: list[Bar]) -> Lines:
     parts = list(strands.values())
     h = parts[0].spacing
     step = STEP_PER_AREA * h**2
-    mass, damper = lumped_masses(line, strands, rest)
+    mass, damper = lumped_masses(line, strands)
     with np.errstate(divide="ignore", invalid="ignore"):
         half = np.nan_to_num(step * damper / (2 * mass))
         gain = np.where(mass > 0, step / mass / (1 + half), 0.0)

@@ -10,16 +10,20 @@ from difference_rest import Rest
 from difference_statics import Bar, join
 from difference_strands import Floats, Strands
 
+STIFFNESS = {"z": "vertical_stiffness_N_m", "y": "lateral_stiffness_N_m"}
+"""Stiffnesses of a messenger support by direction."""
+
 
 def build_bars(line: Line, strands: Strands, rest: Rest) -> list[Bar]:
     """Droppers, steady arms across their length and messenger supports, linearised about the state of rest."""
-    file, axes = line.file, "yz" if line.staggered else "z"
-    beta, bars = file.damping.droppers.stiffness_coefficient_s, []
+    table, axes = line.inputs["droppers"], "yz" if line.staggered else "z"
+    supports = line.derived["messenger_supports"]
+    beta, bars = line.derived["droppers"]["stiffness_coefficient_s"], []
     length = rest.dropper_length
     for i, dropper in enumerate(line.droppers):
         (y, z), x = rest.dropper_extent[i] / length[i], dropper.position
         tension = rest.dropper_force[i] * length[i] / rest.dropper_extent[i, 1]
-        k = file.droppers.stiffness_N_m or (file.droppers.axial_stiffness_EA_N or 0.0) / length[i]
+        k = table["stiffness_N_m"] or table["axial_stiffness_EA_N"] / length[i]
         k /= 1 - k * (strands[dropper.upper, "z"].excess_at(x) + strands["contact", "z"].excess_at(x))
         for direction, stiffness, taut_only in (((y, z), k, True), ((z, -y), tension / length[i], False)):
             if taut_only or line.staggered:
@@ -34,7 +38,7 @@ def build_bars(line: Line, strands: Strands, rest: Rest) -> list[Bar]:
     bars += _arm_bars(line, strands, rest)
     for x in line.supports:
         for axis in axes:
-            k, strand = file.messenger_support.stiffness_N_m, strands["messenger", axis]
+            k, strand = supports[STIFFNESS[axis]], strands["messenger", axis]
             bars.append(Bar(x, *strand.weights(x), k / (1 - k * strand.excess_at(x))))
     return sorted(bars, key=lambda bar: bar.position)
 
@@ -46,13 +50,13 @@ def arm_directions(rest: Rest) -> Floats:
 
 def _arm_bars(line: Line, strands: Strands, rest: Rest) -> list[Bar]:
     """Stiffness of the arms across their length: axial force over length, or the vertical stiffness of the file."""
-    arm, beta = line.file.steady_arm, line.file.damping.steady_arms.stiffness_coefficient_s
+    arm, beta = line.inputs["steady_arm"], line.derived["steady_arms"]["stiffness_coefficient_s"]
     bars = []
     for i, x in enumerate(line.supports):
-        if arm.vertical_stiffness_N_m is not None:
-            k, parts = arm.vertical_stiffness_N_m, [(1.0, strands["contact", "z"].weights(x))]
-        elif line.staggered and arm.length_m is not None and arm.acts == "pull":
-            k = float(np.hypot(*rest.arm_force[i])) / arm.length_m
+        if arm["vertical_stiffness_N_m"] is not None:
+            k, parts = arm["vertical_stiffness_N_m"], [(1.0, strands["contact", "z"].weights(x))]
+        elif line.staggered and arm["length_m"] is not None and arm["acts"] == "pull":
+            k = float(np.hypot(*rest.arm_force[i])) / arm["length_m"]
             y, z = arm_directions(rest)[i]
             parts = [(z, strands["contact", "y"].weights(x)), (-y, strands["contact", "z"].weights(x))]
         else:

@@ -1,95 +1,113 @@
-"""Line of the second formulation: wires, droppers, arms, supports and clamps from the data of a case."""
+"""Line of the second formulation: wires, droppers, arms, supports and clamps from the case that a program receives.
+
+The case is the JSON object `case` of the message `run`, see docs/systems.md: inputs and the derived values beside them.
+Everything else is solved again, and nothing of the reference simulator is used.
+"""
 
 from dataclasses import dataclass
+from typing import Any
 
 from difference_strands import Wire
 
-from pantocheck.conformance.cases.line_file import LineFile
-
-GRAVITY = 9.81
-"""Acceleration of gravity [m/s2]."""
+CaseData = dict[str, Any]
+"""Case of a message `run`."""
 
 
 @dataclass(frozen=True)
 class Dropper:
-    """Dropper at a position [m] under a wire, and the height of the contact wire there [m]."""
+    """Dropper at a position [m] under a wire, the height of the contact wire there [m], and its mass [kg]."""
 
     position: float
     upper: str
     height: float
+    mass: float
 
 
 @dataclass(frozen=True)
 class Line:
-    """Line of a case: its wires, the places of its parts, and the tables of its file."""
+    """Line of a case: its wires, the places of its parts, and the tables of the inputs and of the derived values."""
 
-    file: LineFile
+    inputs: CaseData
+    derived: CaseData
     wires: tuple[Wire, ...]
     droppers: tuple[Dropper, ...]
     clamps: tuple[tuple[float, str], ...]
-    staggered: bool
+
+    @property
+    def staggered(self) -> bool:
+        """Whether the line moves sideways as well."""
+        return self.derived["contact_wire"]["lateral_position_m"] is not None
+
+    @property
+    def gravity(self) -> float:
+        """Acceleration of gravity [m/s2]."""
+        return float(self.derived["gravity_m_s2"])
+
+    @property
+    def span_limits(self) -> tuple[float, ...]:
+        """Positions of anchors and supports [m]."""
+        return tuple(self.derived["span_limits_m"])
 
     @property
     def supports(self) -> tuple[float, ...]:
         """Positions of the supports [m]."""
-        return self.file.geometry.supports
-
-    @property
-    def arm_mass(self) -> float:
-        """Mass of a hinged bar at its free end, a third, and of its clamp [kg]."""
-        arm = self.file.steady_arm
-        return arm.mass_kg_m * (arm.length_m or 0.0) / 3 + arm.clamp_kg
+        return tuple(self.derived["steady_arms"]["position_m"])
 
     @property
     def staggers(self) -> dict[str, tuple[tuple[float, float], ...]]:
-        """Lateral positions (x, y) at anchors and supports, which alternate in sign, by wire [m]."""
-        geometry = self.file.geometry
-        amplitudes = {"contact": geometry.stagger_contact_wire_m, "messenger": geometry.stagger_messenger_m}
+        """Lateral positions (x, y) at anchors and supports by wire [m]."""
         return {
-            name: tuple((x, a * (-1) ** i) for i, x in enumerate(geometry.span_limits))
-            for name, a in amplitudes.items()
+            name: tuple(zip(self.span_limits, self.derived[f"{name}_wire"]["lateral_position_m"][0], strict=True))
+            for name in ("contact", "messenger")
         }
 
 
-def build_line(file: LineFile) -> Line:
-    """Line of a line file with one contact wire and one messenger wire."""
-    if file.contact_wire.number != 1 or file.messenger_wire.number != 1 or file.damping.modal:
+def build_line(case: CaseData) -> Line:
+    """Line of a case with one contact wire and one messenger wire."""
+    inputs, derived = case["line"], case["derived"]["line"]
+    if inputs["contact_wire"]["number"] != 1 or inputs["messenger_wire"]["number"] != 1 or inputs["damping"]["modal"]:
         raise ValueError("the second formulation has one contact wire, one messenger wire and no modal damping")
-    geometry, stitch = file.geometry, file.stitch_wire
-    half = 0.0 if stitch is None else stitch.length_m / 2
-    relief = () if stitch is None else tuple((x - half, x + half, -stitch.tension_N) for x in geometry.supports)
+    messenger, stitch = inputs["messenger_wire"], derived["stitch_wires"]
+    stretches = [] if stitch is None else list(zip(stitch["start_m"], stitch["end_m"], strict=True))
+    change = 0.0 if stitch is None else stitch["messenger_tension_N"] - messenger["tension_N"]
     wires = [
-        _wire(file, "contact", 0.0, geometry.length),
-        _wire(file, "messenger", 0.0, geometry.length, relief),
+        _wire(inputs, "contact", derived["contact_wire"]["start_m"], derived["contact_wire"]["end_m"]),
+        _wire(
+            inputs,
+            "messenger",
+            derived["messenger_wire"]["start_m"],
+            derived["messenger_wire"]["end_m"],
+            tuple((start, end, change) for start, end in stretches),
+        ),
+        *(_wire(inputs, f"stitch {i}", start, end) for i, (start, end) in enumerate(stretches)),
     ]
-    clamps: list[tuple[float, str]] = []
-    if stitch is not None:
-        for i, x in enumerate(geometry.supports):
-            wires.append(_wire(file, f"stitch {i}", x - half, x + half))
-            clamps += [(x - half, f"stitch {i}"), (x + half, f"stitch {i}")]
+    clamps = [(x, f"stitch {i}") for i, stretch in enumerate(stretches) for x in stretch]
+    return Line(inputs, derived, tuple(wires), tuple(_droppers(derived, wires)), tuple(clamps))
+
+
+def _droppers(derived: CaseData, wires: list[Wire]) -> list[Dropper]:
+    keys = ("position_m", "on_stitch_wire", "contact_wire_height_m", "mass_kg")
+    columns = [[value for span in derived["droppers"][key] for value in span] for key in keys]
     droppers = []
-    for start in geometry.span_limits[:-1]:
-        for x, sag in zip(file.droppers.x_m, file.droppers.presag_m or [0.0] * len(file.droppers.x_m), strict=True):
-            position = start + x
-            above = [wire.name for wire in wires[2:] if wire.start < position < wire.end]
-            droppers.append(Dropper(position, above[0] if above else "messenger", -sag))
-    staggered = geometry.stagger_contact_wire_m != 0 or geometry.stagger_messenger_m != 0
-    return Line(file, tuple(wires), tuple(droppers), tuple(clamps), staggered)
+    for x, stitched, height, mass in zip(*columns, strict=True):
+        name = next(wire.name for wire in wires[2:] if wire.start < x < wire.end) if stitched else "messenger"
+        droppers.append(Dropper(x, name, height, mass))
+    return droppers
 
 
 def _wire(
-    file: LineFile, name: str, start: float, end: float, relief: tuple[tuple[float, float, float], ...] = ()
+    inputs: CaseData, name: str, start: float, end: float, relief: tuple[tuple[float, float, float], ...] = ()
 ) -> Wire:
     key = name.split(maxsplit=1)[0] + "_wire"
-    table, damping = getattr(file, key), getattr(file.damping, key)
+    table, damping = inputs[key], inputs["damping"][key]
     return Wire(
         name,
         start,
         end,
-        table.tension_N,
-        table.bending_stiffness_N_m2,
-        table.mass_kg_m,
-        damping.mass_coefficient_1_s,
-        damping.stiffness_coefficient_s,
+        table["tension_N"],
+        table["bending_stiffness_N_m2"],
+        table["mass_kg_m"],
+        damping["mass_coefficient_1_s"],
+        damping["stiffness_coefficient_s"],
         relief,
     )

@@ -2,14 +2,16 @@
 
 import numpy as np
 from difference_line import Line
-from difference_rest import Rest
 from difference_strands import Floats, Strand, Strands, size
 
+DAMPER = {"z": "vertical_damper_N_s_m", "y": "lateral_damper_N_s_m"}
+"""Dampers of a messenger support by direction."""
 
-def lumped_masses(line: Line, strands: Strands, rest: Rest) -> tuple[Floats, Floats]:
+
+def lumped_masses(line: Line, strands: Strands) -> tuple[Floats, Floats]:
     """Mass [kg] and damper to the ground [N s/m] of every point."""
     mass, damper = np.zeros(size(strands)), np.zeros(size(strands))
-    file, table = line.file, line.file.droppers
+    droppers, arms = line.derived["droppers"], line.derived["steady_arms"]
 
     def add(strand: Strand, x: float, value: float, coefficient: float) -> None:
         s = (x - strand.wire.start) / strand.spacing
@@ -24,19 +26,21 @@ def lumped_masses(line: Line, strands: Strands, rest: Rest) -> tuple[Floats, Flo
         damper[inner] += strand.wire.mass_coefficient * strand.wire.mass_per_length * strand.spacing
         if name == "contact":
             for x in line.supports:
-                add(strand, x, line.arm_mass, file.damping.steady_arms.mass_coefficient_1_s)
-                damper[strand.point(x)] += file.steady_arm.vertical_damper_N_s_m if axis == "z" else 0.0
+                add(strand, x, arms["mass_kg"], arms["mass_coefficient_1_s"])
+                damper[strand.point(x)] += arms["vertical_damper_N_s_m"] if axis == "z" else 0.0
         elif name == "messenger":
             for x in line.supports:
-                damper[strand.point(x)] += file.messenger_support.damping_N_s_m
-    alpha = file.damping.droppers.mass_coefficient_1_s
+                damper[strand.point(x)] += line.derived["messenger_supports"][DAMPER[axis]]
+    alpha = droppers["mass_coefficient_1_s"]
     axes = "zy" if line.staggered else "z"
     for axis in axes:
-        for dropper, weight in zip(line.droppers, rest.dropper_mass, strict=True):
-            add(strands[dropper.upper, axis], dropper.position, weight / 2 + table.clamp_on_messenger_kg, alpha)
-            add(strands["contact", axis], dropper.position, weight / 2 + table.clamp_on_contact_kg, alpha)
+        for dropper in line.droppers:
+            half = dropper.mass / 2
+            add(strands[dropper.upper, axis], dropper.position, half + droppers["upper_clamp_kg"], alpha)
+            add(strands["contact", axis], dropper.position, half + droppers["lower_clamp_kg"], alpha)
         for x, name in line.clamps:
             wire, messenger = strands[name, axis].wire, strands["messenger", axis]
-            add(messenger, x, file.stitch_wire.clamp_kg, alpha)
+            stitch = line.derived["stitch_wires"]
+            add(messenger, x, stitch["clamp_mass_kg"], stitch["mass_coefficient_1_s"])
             add(messenger, x, wire.mass_per_length * messenger.spacing / 2, wire.mass_coefficient)
     return mass, damper

@@ -1,21 +1,18 @@
 """Passage of a case in the second formulation: start at rest under the static force, run, quantities."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from difference_arrays import Model, build_model
 from difference_data import Heads
-from difference_line import build_line
+from difference_line import CaseData, build_line
 from difference_step import march
 from difference_strands import Floats
 
-from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.pantograph_file import ChainTable
 from pantocheck.conformance.quantities.bands import band_rms
 from pantocheck.conformance.quantities.filters import LowPass
 
-HEIGHT_SAMPLES = 24
-"""Positions along a span for the mean working height."""
 RECORDING_STEP = 0.5e-3
 """Largest time between two recorded displacements of the supports [s]."""
 QUANTITIES = (
@@ -42,68 +39,82 @@ class Passage:
     step: float
 
 
-def simulate(case: Case, model: Model, uplift_forces: tuple[float, ...]) -> Passage:
+def simulate(case: CaseData, model: Model, uplift_forces: tuple[float, ...]) -> Passage:
     """Simulate the passage of a case with given uplift forces [N]."""
-    arrays = model.arrays
-    starts = np.array(case.start_positions)
-    steps = int((case.end - case.start) / case.speed / arrays.step) + 1
+    check_conventions(case)
+    arrays, speed, last = model.arrays, case["speed_km_h"] / 3.6, case["pantographs"][-1]
+    starts = np.array([pantograph["start_m"] for pantograph in case["pantographs"]])
+    steps = int((last["end_m"] - last["start_m"]) / speed / arrays.step) + 1
     rest = sum(model.point_load(x, f) for x, f in zip(starts, uplift_forces, strict=True))
     displacement = model.uplift.displacement(rest)
-    heads = _heads(case, model, starts, uplift_forces, displacement)
+    heads = build_heads(case, model, starts, uplift_forces, displacement)
     force = np.zeros((starts.size, steps))
     every = max(1, int(RECORDING_STEP / arrays.step + 1e-9))
-    start, end = case.analysis_section
+    start, end = case["evaluated_m"]
     watched = np.array([model.contact.point(x) for x in model.line.supports if start - 1e-6 <= x <= end + 1e-6])
     uplift = np.zeros((watched.size, (steps - 1) // every + 1))
     march(arrays, heads, displacement, np.zeros_like(displacement), force, uplift, watched, every)
-    position = starts[:, None] + case.speed * arrays.step * np.arange(steps)
+    position = starts[:, None] + speed * arrays.step * np.arange(steps)
     return Passage(force, position, uplift, arrays.step)
 
 
-def working_height(case: Case, model: Model, force: float, contact_stiffness: float) -> float:
-    """Mean height of the head over the first span of the analysis section under a static force, above the line at rest.
+def check_conventions(case: CaseData) -> None:
+    """Require the start and the contact that this formulation computes with."""
+    start = case["derived"]["train"]["start"]
+    if start["state"] != "equilibrium_under_uplift_forces" or start["ramp_m"] or start["line_velocity_m_s"]:
+        raise ValueError("the second formulation starts at rest under the uplift forces, without a ramp")
 
-    This height is counted from the contact wire at rest, as the case library does.
-    """
-    start, end = case.line.geometry.span((case.file.evaluated_spans or (1,))[0])
-    positions = start + (end - start) * np.arange(HEIGHT_SAMPLES) / HEIGHT_SAMPLES
+
+def working_height(case: CaseData, model: Model, force: float, contact_stiffness: float) -> float:
+    """Height of the head under a static force: mean uplift over the positions of the case, and the contact [m]."""
+    positions = case["derived"]["train"]["working_height_positions_m"]
     return float(np.mean([model.static_uplift(x, force) for x in positions])) + force / contact_stiffness
 
 
-def _heads(case: Case, model: Model, starts: Floats, uplift_forces: tuple[float, ...], displacement: Floats) -> Heads:
-    chains = [_chain(file.chain) for file in case.pantographs]
-    stiffness = case.pantographs[0].contact.stiffness_N_m
+def build_heads(
+    case: CaseData, model: Model, starts: Floats, uplift_forces: tuple[float, ...], displacement: Floats
+) -> Heads:
+    """Pantographs at rest on the displaced line."""
+    chains = [_chain(pantograph) for pantograph in case["pantographs"]]
+    stiffness = case["pantographs"][0]["contact"]["stiffness_N_m"]
     unstretched, height, uplift = [], [], []
     cache: dict[float, float] = {}
     for chain, x, force in zip(chains, starts, uplift_forces, strict=True):
-        if chain.base_spring_unstretched == "working_height":
+        if chain["base_spring_unstretched"] == "working_height":
             free = cache.setdefault(force, working_height(case, model, force, stiffness))
         else:
             free = 0.0
-        load = np.zeros(len(chain.masses_kg))
-        load[chain.uplift_mass] = force
+        load = np.zeros(len(chain["masses_kg"]))
+        load[_uplift_mass(chain)] = force
         head = model.lift(x, model.rest.shape + displacement) + force * (1 / stiffness - model.contact.excess_at(x))
         unstretched.append(free)
         uplift.append(load)
-        height.append(_equilibrium(np.array(chain.stiffness_N_m), load, free, head))
+        height.append(_equilibrium(np.array(chain["stiffness_N_m"]), load, free, head))
     return Heads(
         position=starts.copy(),
-        speed=case.speed,
-        mass=np.array([chain.masses_kg for chain in chains]),
-        stiffness=np.array([chain.stiffness_N_m for chain in chains]),
-        damping=np.array([chain.damping_N_s_m for chain in chains]),
+        speed=case["speed_km_h"] / 3.6,
+        mass=np.array([chain["masses_kg"] for chain in chains]),
+        stiffness=np.array([chain["stiffness_N_m"] for chain in chains]),
+        damping=np.array([chain["damping_N_s_m"] for chain in chains]),
         unstretched=np.array(unstretched),
         uplift=np.array(uplift),
         contact_stiffness=stiffness,
         height=np.array(height),
-        velocity=np.zeros((starts.size, len(chains[0].masses_kg))),
+        velocity=np.zeros((starts.size, len(chains[0]["masses_kg"]))),
     )
 
 
-def _chain(chain: ChainTable | None) -> ChainTable:
+def _chain(pantograph: CaseData) -> CaseData:
+    chain: CaseData | None = pantograph["chain"]
     if chain is None:
         raise ValueError("the second formulation has pantographs of lumped masses only")
     return chain
+
+
+def _uplift_mass(chain: CaseData) -> int:
+    """Index of the mass on which the uplift force acts: the case has its name, or its number from 1."""
+    on = chain["uplift_force_on"]
+    return chain["names"].index(on) if isinstance(on, str) else int(on) - 1
 
 
 def _equilibrium(stiffness: Floats, load: Floats, free: float, head: float) -> Floats:
@@ -122,26 +133,33 @@ def _equilibrium(stiffness: Floats, load: Floats, free: float, head: float) -> F
 
 
 def force_quantities(
-    force: Floats, position: Floats, rate: float, section: tuple[float, float], low_pass: LowPass
+    force: Floats,
+    position: Floats,
+    rate: float,
+    section: tuple[float, float],
+    low_pass: LowPass,
+    band_edges: Sequence[tuple[float, float]],
 ) -> dict[str, float]:
     """Quantities of one contact force over an analysis section."""
     inside = (position >= section[0] - 1e-9) & (position < section[1] - 1e-9)
     filtered = low_pass(force, rate)[inside]
     raw = force[inside]
-    bands = [band_rms(raw, rate, *edges) for edges in ((0.0, 5.0), (5.0, 20.0), (20.0, 50.0))]
+    bands = [band_rms(raw, rate, *edges) for edges in band_edges]
     values = (raw.mean(), filtered.std(), *bands, filtered.max(), filtered.min())
     return dict(zip(QUANTITIES, map(float, values), strict=True))
 
 
-def difference_quantities(case: Case, spacing: float, uplift_forces: tuple[float, ...]) -> Quantities:
-    """Quantities of a case in the second formulation."""
-    model = build_model(build_line(case.line), spacing)
+def difference_quantities(case: CaseData, spacing: float, uplift_forces: tuple[float, ...]) -> Quantities:
+    """Quantities of a case, as a program receives it, in the second formulation."""
+    model = build_model(build_line(case), spacing)
     passage = simulate(case, model, uplift_forces)
-    section, low_pass, values = case.analysis_section, case.file.filter.low_pass, Quantities()
+    section, low_pass, values = case["evaluated_m"], LowPass(**case["filter"]), Quantities()
+    bands = case["derived"]["train"]["evaluation"]["bands_Hz"]
     for k, (force, position) in enumerate(zip(passage.force, passage.position, strict=True), 1):
-        quantities = force_quantities(force, position, 1 / passage.step, section, low_pass)
+        quantities = force_quantities(force, position, 1 / passage.step, section, low_pass, bands)
         values |= {(k, name): value for name, value in quantities.items()}
-    start, end = case.line.geometry.span((case.file.evaluated_spans or (1,))[0])
+    start = section[0]
+    end = min(x for x in model.line.span_limits if x > start)
     lifts = [model.static_uplift(x, 1.0) for x in ((start + end) / 2, start)]
     in_mm = [1e3 * value for value in (float(passage.uplift.max()), *lifts)]
     return values | {(0, name): value for name, value in zip(LINE_QUANTITIES, in_mm, strict=True)}

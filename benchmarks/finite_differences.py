@@ -16,6 +16,7 @@ from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.simulation.case_run import run_passage
 from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.systems.command.case_message import build_case_message
 from pantocheck.model import DiscretisedLine, discretise
 from pantocheck.model.statics.elasticity import static_uplift
 
@@ -60,12 +61,12 @@ class Comparison:
 def compare(name: str, coarse: float, fine: float) -> Comparison:
     """Run a case with both formulations and the same uplift forces."""
     case = next(candidate for candidate in select_cases([name]) if candidate.id == name)
-    forces = uplift_forces(case)
+    forces, message = uplift_forces(case), build_case_message(case)
     return Comparison(
         name,
         forces,
-        difference_quantities(case, coarse, forces),
-        difference_quantities(case, fine, forces),
+        difference_quantities(message, coarse, forces),
+        difference_quantities(message, fine, forces),
         reference_quantities(case, *FINE_MESH, forces),
     )
 

@@ -1,5 +1,7 @@
 """The second formulation: its scheme against closed forms, its time step against its statics, one case against ours."""
 
+import ast
+import json
 import sys
 from dataclasses import replace
 from functools import cache
@@ -11,13 +13,14 @@ from scipy.linalg import eigh
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.systems.command.case_message import build_case_message
 
 sys.path.append(str(Path(__file__).parents[2] / "benchmarks"))
 
-from difference_arrays import Model, build_model
+from difference_arrays import NEVER_SLACK, Model, build_model
 from difference_data import Heads
-from difference_line import build_line
-from difference_passage import difference_quantities, force_quantities, simulate
+from difference_line import CaseData, build_line
+from difference_passage import build_heads, difference_quantities, force_quantities, simulate
 from difference_statics import HeldStructure, rows
 from difference_step import march
 from difference_strands import Strand, Wire, lay_out
@@ -37,12 +40,21 @@ def case(name: str, spans: int | None = None) -> Case:
     if spans is None:
         return found
     geometry = found.line.geometry.shorten(spans)
-    return replace(found, line=found.line.model_copy(update={"geometry": geometry}))
+    spacing = (20.0,) * (len(found.pantographs) - 1) or None
+    section = {"evaluated_spans": (2,), "compared_spans": None, "run_out_m": 0.0, "spacing_m": spacing}
+    line = found.line.model_copy(update={"geometry": geometry})
+    return replace(found, line=line, file=found.file.model_copy(update=section))
+
+
+def message(sent: Case) -> CaseData:
+    """Case as a program receives it: nothing but JSON."""
+    received: CaseData = json.loads(json.dumps(build_case_message(sent)))
+    return received
 
 
 @cache
 def model(name: str) -> Model:
-    return build_model(build_line(case(name, 3).line), 0.25)
+    return build_model(build_line(message(case(name, 3))), 0.25)
 
 
 def distant_heads() -> Heads:
@@ -103,6 +115,66 @@ def test_static_uplift_is_an_equilibrium_of_the_time_step(name: str) -> None:
     assert np.abs(velocity[~moving]).max() < 1e-9
 
 
+def test_formulation_reads_the_case_of_a_program_and_nothing_of_the_reference_simulator() -> None:
+    """Its modules import the definitions of filter and bands, and no other part of the project."""
+    allowed = {"pantocheck.conformance.quantities.bands", "pantocheck.conformance.quantities.filters"}
+    for path in sorted((Path(__file__).parents[2] / "benchmarks").glob("difference_*.py")):
+        nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+        imported = {node.module or "" for node in nodes if isinstance(node, ast.ImportFrom)}
+        imported |= {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
+        assert {name for name in imported if name.startswith("pantocheck")} <= allowed, path.name
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_derived_values_are_those_of_the_second_statics(name: str) -> None:
+    """Forces and lengths that both formulations solve on their own; at 0.25 m the points leave 0.4 N and 0.6 mm."""
+    line, values = model(name), message(case(name, 3))["derived"]["line"]
+    droppers, arms = values["droppers"], values["steady_arms"]
+    assert line.rest.dropper_force == pytest.approx(np.ravel(droppers["vertical_force_N"]), abs=0.4)
+    assert line.rest.dropper_length == pytest.approx(np.ravel(droppers["length_m"]), abs=7e-4)
+    assert line.rest.dropper_extent == pytest.approx(
+        np.stack([np.ravel(droppers["width_m"]), np.ravel(droppers["height_m"])], axis=1), abs=7e-4
+    )
+    forces = np.stack([arms["lateral_force_N"], arms["vertical_force_N"]], axis=1)
+    assert line.rest.arm_force == pytest.approx(forces, abs=0.5)
+    supports = [line.lift(x, line.rest.shape) for x in values["span_limits_m"]]
+    assert supports == pytest.approx(values["contact_wire"]["height_m"], abs=1e-4)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_derived_stiffnesses_are_those_of_the_second_bars(name: str) -> None:
+    """Bars are stiffened by the excess flexibility of the points, which is taken off here; lengths leave 0.08 %."""
+    line, values = model(name), message(case(name, 3))["derived"]["line"]
+    droppers = line.arrays.bar_stiffness[line.arrays.bar_preload < NEVER_SLACK]
+    excess = [
+        line.strands[d.upper, "z"].excess_at(d.position) + line.contact.excess_at(d.position)
+        for d in line.line.droppers
+    ]
+    assert droppers / (1 + droppers * excess) == pytest.approx(np.ravel(values["droppers"]["stiffness_N_m"]), rel=1e-3)
+    arms = values["steady_arms"]
+    if line.line.staggered:
+        across = np.hypot(*line.rest.arm_force.T) / line.line.inputs["steady_arm"]["length_m"]
+        assert across == pytest.approx(np.array(arms["transverse_stiffness_N_m"]), rel=2e-3)
+    else:
+        assert arms["vertical_stiffness_N_m"] == line.line.inputs["steady_arm"]["vertical_stiffness_N_m"]
+
+
+@pytest.mark.parametrize("name", [*CASES, "en50318-2018/ac-simple/320-twin"])
+def test_start_of_the_second_formulation_is_that_of_the_derived_values(name: str) -> None:
+    """Working height, constant forces and heights of all masses at the start, solved on points 0.25 m apart."""
+    sent = message(case(name, 5))
+    line, pantographs = build_model(build_line(sent), 0.25), sent["derived"]["train"]["pantographs"]
+    starts = np.array([pantograph["start_m"] for pantograph in pantographs])
+    forces = tuple(pantograph["uplift_force_N"] for pantograph in pantographs)
+    load = sum(line.point_load(x, f) for x, f in zip(starts, forces, strict=True))
+    heads = build_heads(sent, line, starts, forces, line.uplift.displacement(load))
+    for k, pantograph in enumerate(pantographs):
+        assert heads.unstretched[k] == pytest.approx(pantograph["working_height_m"], abs=2e-4)
+        assert heads.height[k] == pytest.approx(np.array(pantograph["start_displacement"]), abs=2e-4)
+        free = heads.stiffness[k] * np.append(heads.unstretched[k], np.zeros(heads.stiffness.shape[1] - 1))
+        assert heads.uplift[k] + free == pytest.approx(np.array(pantograph["constant_force"]), abs=0.05)
+
+
 def test_slack_droppers_carry_nothing() -> None:
     """Under 400 N droppers near the load are slack, and the uplift exceeds 400 times that of 1 N by more than 5 %."""
     line = model("en50318-2002/250")
@@ -124,7 +196,7 @@ def test_pantograph_at_rest_stays_at_rest() -> None:
         pantographs=(pantograph.model_copy(update={"chain": chain}),),
         file=moving.file.model_copy(update=update),
     )
-    force = simulate(still, line, (120.0,)).force
+    force = simulate(message(still), line, (120.0,)).force
     # Rounding: 1e-13 of the elastic forces; the wire is 1e-7 m from the support.
     assert force.size > 400
     assert force == pytest.approx(120.0, abs=1e-4)
@@ -136,7 +208,7 @@ def test_quantities_of_a_known_force() -> None:
     t = np.arange(0, 8, 1 / rate)
     force = 100 + 20 * np.sin(2 * np.pi * 10 * t)
     low_pass = case("en50318-2002/250").file.filter.low_pass
-    values = force_quantities(force, speed * t, rate, (100.0, 300.0), low_pass)
+    values = force_quantities(force, speed * t, rate, (100.0, 300.0), low_pass, [(5.0, 20.0)] * 3)
     assert values["mean_force_N"] == pytest.approx(100)
     assert values["rms_5_20_N"] == pytest.approx(20 / np.sqrt(2))
     assert values["max_force_N"] == pytest.approx(100 + 20 / (1 + 0.5**6 * (np.sqrt(2) - 1)), abs=0.05)
@@ -145,7 +217,7 @@ def test_quantities_of_a_known_force() -> None:
 def test_2002_model_agrees_with_the_reference_simulator() -> None:
     """Spacing 0.25 m and elements of 0.5 m agree within 2 % in every band; the page compares finer meshes."""
     reference_case = case("en50318-2002/250")
-    second = difference_quantities(reference_case, 0.25, (120.0,))
+    second = difference_quantities(message(reference_case), 0.25, (120.0,))
     reference = reference_quantities(reference_case, 0.5, 1e-3, (120.0,))
     assert second.keys() == reference.keys()
     for key, value in second.items():
