@@ -34,9 +34,7 @@ def static_uplift(line: DiscretisedLine, position: Array, force: float) -> Array
         loads = [point_load(line, row, float(x)) for row in rows]
         displacement = statics.deflection(force / len(rows) * np.sum(loads, axis=0)).displacement
         flat = displacement.transpose(1, 0, 2).ravel()
-        element, _, s = find_element(line.mesh.position, float(x))
-        residual = [residual_flexibility(line.beams.flexibility[row, element], s) for row in rows]
-        uplift[i] = np.mean([load @ flat for load in loads]) + force / len(rows) * np.mean(residual)
+        uplift[i] = np.mean([load @ flat for load in loads]) + force / len(rows) * _mean_residual(line, float(x))
     return uplift
 
 
@@ -61,7 +59,14 @@ def height_under_forces(line: DiscretisedLine, position: Array, force: Array) ->
     shapes = [np.mean([point_load(line, row, float(x)) for row in rows], axis=0) for x in position]
     displacement = StaticSolver(line).deflection(np.sum([f * n for f, n in zip(force, shapes, strict=True)], axis=0))
     height = (line.state.deflection + displacement.displacement).transpose(1, 0, 2).ravel()
-    return np.array([shape @ height for shape in shapes])
+    residual = [f / len(rows) * _mean_residual(line, float(x)) for x, f in zip(position, force, strict=True)]
+    return np.asarray(np.array([shape @ height for shape in shapes]) + residual)
+
+
+def _mean_residual(line: DiscretisedLine, position: float) -> float:
+    """Residual flexibility at a position, mean over the contact wires [m/N]."""
+    element, _, s = find_element(line.mesh.position, position)
+    return float(np.mean([residual_flexibility(line.beams.flexibility[r, element], s) for r in line.contact_rows]))
 
 
 def non_uniformity(elasticity: Array) -> float:

@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from pantocheck.model import Catenary, Kind, Wire, discretise
-from pantocheck.model.statics.elasticity import non_uniformity, static_uplift
+from pantocheck.model.statics.elasticity import height_under_forces, non_uniformity, static_uplift
 
 SPAN, FORCE = 60.0, 200.0
 
@@ -22,6 +22,27 @@ def test_uplift_is_the_mean_of_contact_wires_with_equal_shares(tensions: tuple[f
     position = np.array([15.0, 30.0, 40.0])
     flexibility = position * (SPAN - position) / SPAN * np.mean([1 / tension for tension in tensions])
     assert_allclose(static_uplift(line, position, FORCE), FORCE / len(tensions) * flexibility, rtol=0.01)
+
+
+def test_height_under_one_force_is_its_uplift_above_the_wire_at_rest() -> None:
+    """A wire of 60 m, in mid-span: sag m g L^2 / 8 T at rest, less by l^2 m g / T with l = sqrt(EI / T): 1e-5."""
+    line = discretise(Catenary((Wire("contact", Kind.CONTACT_WIRE, 0.0, SPAN, 20e3, 1.35, 195.0),)), 1.0)
+    middle = np.array([SPAN / 2])
+    sag = 1.35 * 9.81 * (SPAN**2 / 8 - 195.0 / 20e3) / 20e3
+    height = height_under_forces(line, middle, np.array([FORCE]))
+    assert_allclose(height, static_uplift(line, middle, FORCE) - sag, rtol=0, atol=1e-9)
+
+
+def test_forces_that_act_together_lift_each_other() -> None:
+    """A string under P at x lifts a point at a > x by P x (L - a) / (T L); the wires share the forces equally."""
+    names = ("left", "right")
+    wires = tuple(Wire(name, Kind.CONTACT_WIRE, 0.0, SPAN, 10e3, 0.7, 100.0) for name in names)
+    line, position, force = discretise(Catenary(wires), 1.0), np.array([40.0, 15.0]), np.array([150.0, 120.0])
+    rest, both = (height_under_forces(line, position, f) for f in (0 * force, force))
+    own = [float(static_uplift(line, position[[k]], float(force[k]))[0]) for k in range(2)]
+    other = 15.0 * (SPAN - 40.0) / (20e3 * SPAN) * force[::-1]
+    # Bending lies within 1e-9 of the string 25 m away from a force.
+    assert_allclose(both - rest, own + other, rtol=0, atol=1e-8)
 
 
 def test_non_uniformity_by_hand() -> None:
