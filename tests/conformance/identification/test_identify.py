@@ -10,10 +10,11 @@ from scipy.optimize import linear_sum_assignment
 from helpers.synthetic_drops import SyntheticDrop, drop, span_modes
 from pantocheck.conformance.array_types import ComplexArray, RealArray
 from pantocheck.conformance.identification.decay_filters import FrequencyBand
-from pantocheck.conformance.identification.decay_preparation import find_linear_decay
+from pantocheck.conformance.identification.decay_preparation import find_linear_decay, prepare_decay
 from pantocheck.conformance.identification.hand_placed_poles import read_poles
 from pantocheck.conformance.identification.identification_analysis import analyse_identification
-from pantocheck.conformance.identification.identify import identify_modes
+from pantocheck.conformance.identification.identify import _find_start_poles, identify_modes
+from pantocheck.conformance.identification.line_fit import share_blocks
 from pantocheck.conformance.identification.mode import Mode
 from pantocheck.conformance.identification.mode_groups import find_group_outliers, number_groups
 from pantocheck.conformance.identification.pole_refinement import refine_poles
@@ -132,6 +133,22 @@ def test_repeats_of_different_length_are_used_together_with_a_warning() -> None:
     poles = complex_poles(identification.modes)
     for pole in true:
         assert np.abs(poles - pole).min() < 0.05 * -pole.real
+
+
+@pytest.mark.parametrize("order", [slice(None), slice(None, None, -1)])
+def test_records_of_different_rates_start_from_the_poles_of_the_longest_decay(order: slice) -> None:
+    """The longest decay separates close modes best; it may be any of the records."""
+    random = np.random.default_rng(44)
+    true = span_modes(random, 6)
+    band = FrequencyBand.up_to(4.0, 25.0)
+    lengths_and_rates = [(40.0, 30.0), (80.0, 25.0)]
+    drops = [drop(random, true, duration=length, rate=rate, weak=0.0) for length, rate in lengths_and_rates[order]]
+    decays = [prepare_decay(build_record(synthetic), band) for synthetic in drops]
+    samples, _ = share_blocks(decays)
+    assert len({dt for _, dt in samples}) == 2
+    start = _find_start_poles(decays, samples, band)
+    assert np.array_equal(start, max(decays, key=lambda decay: decay.linear.end).linear.poles)
+    assert not np.array_equal(start, min(decays, key=lambda decay: decay.linear.end).linear.poles)
 
 
 @pytest.mark.parametrize("sensors", [2, 4])
