@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.grading.record_mismatch import find_record_mismatch
+from pantocheck.conformance.grading.record_mismatch import find_other_case, find_record_mismatch
 from pantocheck.conformance.records.record import Record
 
 
@@ -61,3 +61,30 @@ def test_another_spacing_is_another_train(two_pantograph_case: Case, record: Rec
     )
     assert found is not None
     assert "in the record, 150 m in the case" in found
+
+
+@pytest.mark.parametrize(("shift", "matches"), [(-0.6, False), (-0.4, True), (0.4, True), (0.6, False)])
+@pytest.mark.parametrize("number", [2, 3])
+def test_each_distance_in_a_train_of_three_is_that_of_the_case(
+    two_pantograph_case: Case, record: Record, number: int, shift: float, matches: bool
+) -> None:
+    """Distances of 150 m and 100 m; one pantograph and all behind it run closer or farther, tolerated to 0.5 m."""
+    file = two_pantograph_case.file.model_copy(update={"spacing_m": (150.0, 100.0)})
+    case = replace(two_pantograph_case, file=file, pantographs=two_pantograph_case.pantographs[:1] * 3)
+    assert record.contact_height is not None
+    position = record.position[0] - np.array([[0.0], [150.0], [250.0]])
+    position[number - 1 :] -= shift
+    rows = [0, 1, 1]
+    other = replace(record, position=position, force=record.force[rows], contact_height=record.contact_height[rows])
+    found = find_record_mismatch(case, other)
+    assert (found is None) is matches
+    assert matches or f"pantograph {number} runs" in str(found)
+
+
+def test_record_of_another_version_has_any_other_digest(case_250: Case) -> None:
+    """A digest counts to its last character. A record that states none is not refused here."""
+    digest = case_250.digest
+    other = digest[:-1] + ("0" if digest[-1] != "0" else "1")
+    assert find_other_case(case_250, digest) is None
+    assert find_other_case(case_250, None) is None
+    assert f"its case_digest is {other}, that of the case is {digest}" in str(find_other_case(case_250, other))
