@@ -56,6 +56,15 @@ def test_group_holds_no_more_modes_than_spans() -> None:
     assert list(number_groups(certain, certain, 2)) == [1, 1] + [2] * 6
 
 
+def test_groups_with_a_narrow_gap_between_them_are_told_apart() -> None:
+    """Groups around 1, 2 and 3 Hz; between the second and the third, 0.13 Hz are free of modes, between others 0.4 Hz.
+
+    The modes next to the narrow gap are 0.066 Hz from its middle, just beyond the clearance of 0.06.
+    """
+    certain = np.array([0.822, 1.0, 1.178, 1.566, 2.0, 2.434, 2.566, 3.0, 3.434])
+    assert list(number_groups(certain, certain, 3)) == [1] * 3 + [2] * 3 + [3] * 3
+
+
 def test_modes_beyond_the_last_group_may_be_many() -> None:
     """Twenty modes at 8.3 times the first group: in the eighth group they would be too many, beyond it they are not."""
     certain = np.concatenate([[0.99, 1.0, 1.01], 8.3 + 0.001 * np.arange(20)])
