@@ -83,6 +83,14 @@ def test_inputs_and_notes_of_both_records_are_stated(
     ]
 
 
+def test_note_of_the_profile_follows_those_of_the_records(
+    train: AssessedRecord, measured: AssessedRecord, profile: Profile
+) -> None:
+    for note, stated in (("\nThe tolerances are provisional.\n", ["The tolerances are provisional."]), ("", [])):
+        noted = profile.model_copy(update={"note": note})
+        assert assess_record(train, noted, "provisional", measured).cases[0].notes[2:] == stated
+
+
 def test_limit_of_the_user_replaces_the_rule_of_its_pantograph(
     train: AssessedRecord, measured: AssessedRecord, profile: Profile
 ) -> None:
