@@ -8,7 +8,16 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.records.record_signals import RecordSignals
 
 CheckName = Literal[
-    "coverage", "motion", "support passing", "coincidence", "roll-off", "dynamics", "implied force", "mean force"
+    "coverage",
+    "motion",
+    "support passing",
+    "coincidence",
+    "roll-off",
+    "dynamics",
+    "implied force",
+    "mean force",
+    "content",
+    "copy",
 ]
 
 

@@ -28,11 +28,11 @@ from pantocheck.conformance.consistency.force_dynamics import (
     head_responses,
     remove_free_motion,
 )
+from pantocheck.conformance.consistency.receptance import head_receptance
 from pantocheck.conformance.consistency.rounding import COARSEST_STEP_M, rounding_step
 from pantocheck.conformance.quantities.bands import EXTENDED_BAND
 from pantocheck.conformance.quantities.filters import LowPass, is_observable
 from pantocheck.conformance.records.record_signals import RecordSignals
-from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 
 LARGEST_ERROR = 0.15
 """Largest error of the force, over its standard deviation.
@@ -129,13 +129,10 @@ def _multiply_by_dynamic_stiffness(
     file: PantographFile, difference: RealArray, step: float, compliance: float
 ) -> RealArray:
     """Force that causes a difference of the motion [N]; its mean is not determined."""
-    model = build_pantograph(file, 0.0, 0.0)
-    omega = 2 * np.pi * np.fft.rfftfreq(difference.size, step)[1:, None, None]
-    dynamic = model.stiffness + 1j * omega * model.damping - omega**2 * model.mass
-    receptance = np.linalg.solve(dynamic, model.head.astype(complex)[:, None])[..., 0] @ model.head
+    omega = 2 * np.pi * np.asarray(np.fft.rfftfreq(difference.size, step)[1:], dtype=np.float64)
     spectrum = np.fft.rfft(difference)
     spectrum[0] = 0.0
-    spectrum[1:] /= -(receptance + compliance)
+    spectrum[1:] /= -(head_receptance(file, omega) + compliance)
     return np.asarray(np.fft.irfft(spectrum, difference.size))
 
 

@@ -2,6 +2,8 @@
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.consistency.check import Check, CheckName, Finding
+from pantocheck.conformance.consistency.force_content import CONTENT
+from pantocheck.conformance.consistency.force_copy import COPY
 from pantocheck.conformance.consistency.force_dynamics import DYNAMICS
 from pantocheck.conformance.consistency.implied_force import IMPLIED_FORCE
 from pantocheck.conformance.consistency.mean_force import MEAN_FORCE
@@ -13,6 +15,7 @@ from pantocheck.conformance.records.record_signals import RecordSignals
 
 RECORD_CHECKS: tuple[Check, ...] = (
     COVERAGE, MOTION, SUPPORT_PASSING, COINCIDENCE, ROLL_OFF, DYNAMICS, IMPLIED_FORCE, MEAN_FORCE,
+    CONTENT, COPY,
 )  # fmt: skip
 
 

@@ -66,6 +66,21 @@ def _filter_force(order: int) -> RunMutant:
     return run
 
 
+def _filter_force_and_height(cutoff: float) -> RunMutant:
+    """Force and contact height passed the same zero-phase filter, which the record does not state."""
+
+    def run(case: Case, record: Record) -> Outcome:
+        low_pass = replace(case.file.filter.low_pass, cutoff_Hz=cutoff)
+        changes: dict[str, Any] = {
+            name: np.array([low_pass(channel, record.rate) for channel in channels])
+            for name in ("force", "contact_height")
+            if (channels := getattr(record, name)) is not None
+        }
+        return Delivered(replace(record, **changes))
+
+    return run
+
+
 def _scale_force(factor: float) -> RunMutant:
     return _replace_channels(force=lambda _, record: factor * record.force)
 
@@ -148,6 +163,12 @@ MUTANTS: tuple[Mutant, ...] = (
 MILD: tuple[Mutant, ...] = (
     Mutant("gain 1.02", "The force is 2 % too large.", _scale_force(1.02), None),
     Mutant("filter order 4", "The order of the filter is 4 instead of 6.", _filter_force(4), None),
+    Mutant(
+        "filter at 10 Hz",
+        "Force and contact height passed the same filter at 10 Hz, which is not stated.",
+        _filter_force_and_height(10.0),
+        None,
+    ),
     Mutant("time shift 5 ms", "The force lags by 5 ms.", _delay_force(0.005), None),
     Mutant(
         "time shift, force alone",

@@ -1,4 +1,7 @@
-"""System whose quantities are known by hand: a sine of the contact force in every span."""
+"""System whose quantities are known by hand: a sine of the contact force in every span.
+
+A ripple at 40 Hz gives the force the content above 20 Hz of every contact force. It changes the variance by 2e-6.
+"""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -14,6 +17,7 @@ from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 
 MEAN, SIGMA, UPLIFT_MM = 119.0, 28.0, 50.0
+RIPPLE_N, RIPPLE_HZ = 0.05, 40.0
 
 
 @dataclass(frozen=True)
@@ -43,6 +47,7 @@ class Wave:
         start, end = case.line.geometry.span(1)
         span = end - start
         force = self.mean + np.sqrt(2) * self.sigma * np.sin(2 * np.pi * position / span)
+        force += RIPPLE_N * np.sin(2 * np.pi * RIPPLE_HZ * time)
         supports = np.array(case.line.geometry.span_limits)
         bumps = np.exp(-(((position - supports[:, None, None]) / 5) ** 2))
         uplift = 1e-3 * UPLIFT_MM * bumps.sum(axis=1)

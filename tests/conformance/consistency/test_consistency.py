@@ -82,7 +82,7 @@ def test_shift_in_time_is_found_and_stated(case_250: Case, record: Record, sampl
     drive = np.array([[0.0], [0.0], [0.0], [-1 / chain.masses_kg[1]]])
     system = (state, drive, np.array([[0.0, 1.0, 0.0, 0.0]]), np.zeros((1, 1)))
     slow = LowPass(cutoff_Hz=3.0)(np.random.default_rng(2).normal(0.0, 300.0, time.size), record.rate)
-    force = 119.0 + slow
+    force = 119.0 + slow + 0.5 * np.sin(2 * np.pi * 40.0 * time)  # every contact force has content above 20 Hz
     height = lsim(system, slow, time)[1]
     assert record.support_position is not None
     passing = np.interp(record.support_position, record.position[0], time)

@@ -1,0 +1,150 @@
+"""Copied force: two pantographs of a train have the same contact force only where they meet the same line.
+
+The second pantograph meets the waves of the first. A record in which both have the force and the height of one of them
+obeys the equations of the pantograph all the same. The uplift does not: equal forces in the same part of a span need
+equal uplifts at the supports. Pantographs that a train at low speed or a long distance keeps apart meet this condition.
+"""
+
+from dataclasses import dataclass
+from itertools import permutations
+
+import numpy as np
+from scipy.signal import correlate
+
+from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.consistency.check import Check, Finding, worst_finding
+from pantocheck.conformance.quantities.signals import SUPPORT_TOLERANCE_M
+from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
+from pantocheck.conformance.records.record_signals import RecordSignals
+
+LARGEST_REMAINDER = 0.01
+"""Remainder below which a force is a copy, over its standard deviation.
+
+Forces rounded to 1 N at 200 samples per second leave 0.007. Simulated trains have 0.4 or more at the spacings of the
+library; pantographs 880 m apart on a heavily damped line have 0.015."""
+
+SMALLEST_DIFFERENCE_M = 0.5e-3
+"""Smallest difference of the uplift at equal passages [m]: five steps of 0.1 mm.
+
+Where the forces of simulated trains differ by less than 0.1 of their standard deviation, it is 0.14 mm or less."""
+
+SMALLEST_VARIANCE = 0.01
+"""Smallest variance of a part over the largest variance of all parts: a part that hardly varies has no correlation."""
+
+SMALLEST_SQUARE = 1e-12
+"""Smallest square of a correlation remainder; rounding of the sums."""
+
+
+@dataclass(frozen=True)
+class Likeness:
+    """Part of a force that is most like a part of another force.
+
+    Parameters
+    ----------
+    remainder : float
+        Standard deviation of the difference after a fit of gain and constant, over the standard deviation [-].
+    lag : float
+        Time of the part in the other force less that in the force [samples].
+    """
+
+    remainder: float
+    lag: float
+
+
+def _check_copy(case: Case, signals: RecordSignals) -> Finding | None:
+    findings = []
+    for number, other in permutations(signals.pantographs, 2):
+        pantograph = signals.pantographs[number]
+        try:
+            likeness = find_likeness(pantograph.graded, signals.pantographs[other].force.graded)
+            if likeness is None or likeness.remainder > LARGEST_REMAINDER:
+                continue
+            delay = (likeness.lag - pantograph.inside.start) / signals.record.rate
+            difference = _compare_uplifts(case, signals, (number, other), delay)
+        except QuantityUnavailable:
+            return None  # other checks state which channel is missing
+        if difference > SMALLEST_DIFFERENCE_M:
+            findings.append(_describe(number, other, difference))
+    return worst_finding(findings)
+
+
+def find_likeness(part: RealArray, force: RealArray) -> Likeness | None:
+    """Find the part of a force that is most like a part of another force.
+
+    Parameters
+    ----------
+    part : (n,) ndarray
+        Part of a force [N].
+    force : (m,) ndarray
+        Other force [N].
+
+    Returns
+    -------
+    Likeness or None
+        The best part, between samples by a parabola; None if the force is shorter than the part, or constant.
+    """
+    n = part.size
+    deviation, whole = part - part.mean(), force - force.mean()
+    energy = float(deviation @ deviation)
+    if n < 2 or n > force.size or energy == 0.0:
+        return None
+    products = correlate(whole, deviation, mode="valid", method="fft")
+    sums, squares = (np.cumsum(np.concatenate([[0.0], values])) for values in (whole, whole**2))
+    variance = squares[n:] - squares[:-n] - (sums[n:] - sums[:-n]) ** 2 / n
+    varies = variance > SMALLEST_VARIANCE * variance.max()
+    correlation = np.where(varies, products / np.sqrt(np.where(varies, variance, 1.0) * energy), -1.0)
+    best = int(correlation.argmax())
+    peak, shift = float(correlation[best]), 0.0
+    if 0 < best < correlation.size - 1:
+        before, after = correlation[best - 1], correlation[best + 1]
+        curvature = before - 2 * peak + after
+        if curvature < 0:
+            shift = float((before - after) / (2 * curvature))
+            peak -= float((before - after) ** 2 / (8 * curvature))
+    return Likeness(float(np.sqrt(max(1 - min(peak, 1.0) ** 2, SMALLEST_SQUARE))), best + shift)
+
+
+def _compare_uplifts(case: Case, signals: RecordSignals, pair: tuple[int, int], delay: float) -> float:
+    """Largest difference between the uplifts where both pantographs of a pair have the same force [m].
+
+    Where the first passes a support, the second, later by the delay [s], must pass one too; otherwise the difference is
+    infinite. A support without a recorded uplift is left out.
+    """
+    record = signals.record
+    inside = list(zip(signals.line.supports, signals.line.uplift, strict=True))
+    position, other = (record.position[number - 1] for number in pair)
+    recorded, channels = record.support_position, record.support_uplift
+    assert recorded is not None
+    assert channels is not None
+    supports = np.asarray(case.line.geometry.span_limits)
+    differences = [0.0]
+    for support, uplift in inside:
+        time = float(np.interp(support, position, record.time))
+        place = float(np.interp(time + delay, record.time, other))
+        nearest = int(np.abs(recorded - place).argmin())
+        if abs(recorded[nearest] - place) <= SUPPORT_TOLERANCE_M:
+            passage = float(np.interp(recorded[nearest], other, record.time))
+            at_passage = np.interp(passage, record.time, channels[nearest])
+            differences.append(abs(float(at_passage - np.interp(time, record.time, uplift))))
+        elif np.abs(supports - place).min() > SUPPORT_TOLERANCE_M:
+            return np.inf
+    return max(differences)
+
+
+def _describe(number: int, other: int, difference: float) -> Finding:
+    where = (
+        f"with uplifts at the supports that differ by {1e3 * difference:.2g} mm"
+        if np.isfinite(difference)
+        else "in another part of the span"
+    )
+    return Finding("doubt", f"the force of pantograph {number} is a copy of that of pantograph {other}, {where}")
+
+
+COPY = Check(
+    name="copy",
+    must_hold="pantographs have the same force only in the same part of a span, with the same uplift at the supports",
+    why="force and height of the other pantograph agree with each other",
+    needs="position, contact force and uplift at supports",
+    run=_check_copy,
+)
