@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from helpers.lines import simple_line
 from pantocheck.model import Catenary, Kind, Wire, discretise
 from pantocheck.model.statics.elasticity import height_under_forces, non_uniformity, static_uplift
 
@@ -48,3 +49,10 @@ def test_forces_that_act_together_lift_each_other() -> None:
 def test_non_uniformity_by_hand() -> None:
     assert non_uniformity(np.array([0.4, 0.2, 0.6])) == pytest.approx(0.5)
     assert non_uniformity(np.array([0.3, 0.3])) == 0
+
+
+def test_elasticity_of_coarse_elements_is_that_of_fine_elements() -> None:
+    """A span with droppers, elements of 0.5 m and of an eighth: 2.4e-4; without residual flexibility 4e-3."""
+    position = np.linspace(60.0, 120.0, 41) + 0.13
+    coarse, fine = (static_uplift(discretise(simple_line(3), element), position, 1.0) for element in (0.5, 0.0625))
+    assert_allclose(coarse, fine, rtol=3e-4)
