@@ -15,7 +15,7 @@ from pantocheck.model.catenary import Catenary, Kind
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.lumped_parts import sum_lumped_parts
 from pantocheck.model.fem.mesh import Mesh
-from pantocheck.model.fem.residual_flexibility import element_flexibility, series_factor, station_flexibility
+from pantocheck.model.fem.residual_flexibility import element_flexibility, in_series, station_flexibility
 
 
 class Beams(NamedTuple):
@@ -73,18 +73,18 @@ def build_beams(catenary: Catenary, mesh: Mesh) -> Beams:
     flexibility = np.array([element_flexibility(length, *row) for row in zip(tension, bending_stiffness, strict=True)])
     at_station = np.array([station_flexibility(elements) for elements in flexibility])
     lumped_mass, lumped_stiffness, lumped_damping = sum_lumped_parts(catenary, mesh)
-    factor = series_factor(lumped_stiffness, at_station)
     rayleigh = [catenary.rayleigh(kind) for kind in mesh.row_kind]
+    stiffness_coefficient = np.array([r.stiffness_coefficient for r in rayleigh])
+    lag = stiffness_coefficient[:, None] * at_station
     return Beams(
         length,
         tension,
         bending_stiffness,
         mass_per_length,
         lumped_mass,
-        factor * lumped_stiffness,
-        factor * lumped_damping,
+        *in_series(lumped_stiffness, lumped_damping, at_station, lag),
         mass_coefficient=np.array([r.mass_coefficient for r in rayleigh]),
-        stiffness_coefficient=np.array([r.stiffness_coefficient for r in rayleigh]),
+        stiffness_coefficient=stiffness_coefficient,
         free=free,
         flexibility=flexibility,
     )

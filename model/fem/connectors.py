@@ -16,7 +16,7 @@ from pantocheck.model.arrays import Array, Indices
 from pantocheck.model.catenary import Catenary, Kind, SteadyArm
 from pantocheck.model.fem.beams import Beams
 from pantocheck.model.fem.mesh import Mesh
-from pantocheck.model.fem.residual_flexibility import series_factor, station_flexibility
+from pantocheck.model.fem.residual_flexibility import in_series, station_flexibility
 from pantocheck.model.statics.initial_state import InitialState
 
 RIGID = 1e8
@@ -76,20 +76,25 @@ def build_connectors(catenary: Catenary, mesh: Mesh, beams: Beams, state: Initia
         coefficient[n, list(bar.coefficient)] = list(bar.coefficient.values())
     station = np.array([bar.station for bar in bars], dtype=np.int64)
     unilateral = np.array([bar.unilateral for bar in bars], dtype=np.bool_)
-    stiffness = np.array([bar.stiffness for bar in bars])
-    factor = series_factor(stiffness, _end_flexibility(beams, station, coefficient, unilateral))
+    stiffness, damping = in_series(
+        np.array([bar.stiffness for bar in bars]),
+        np.array([bar.damping for bar in bars]),
+        *_end_flexibility(beams, station, coefficient, unilateral),
+    )
     return Connectors(
         station=station,
         coefficient=coefficient,
-        stiffness=factor * stiffness,
-        damping=factor * np.array([bar.damping for bar in bars]),
+        stiffness=stiffness,
+        damping=damping,
         preload=np.array([bar.preload for bar in bars]),
         unilateral=unilateral,
     )
 
 
-def _end_flexibility(beams: Beams, station: Indices, coefficient: Array, dropper: NDArray[np.bool_]) -> Array:
-    """Residual flexibility of the wires at the ends of N connectors, (N,) [m/N].
+def _end_flexibility(
+    beams: Beams, station: Indices, coefficient: Array, dropper: NDArray[np.bool_]
+) -> tuple[Array, Array]:
+    """Residual flexibility of the wires at the ends of N connectors, and its lag, (N,) each [m/N, m s/N].
 
     Droppers at one point of a wire, such as those of two contact wires, are loaded alike: each feels the sum.
     """
@@ -98,7 +103,8 @@ def _end_flexibility(beams: Beams, station: Indices, coefficient: Array, dropper
     for place in np.unique(station[dropper]):
         together = np.flatnonzero(dropper & (station == place))
         load[together] = coefficient[together].sum(axis=0)
-    return np.asarray((coefficient * load * at_station).sum(axis=1))
+    ends = coefficient * load * at_station
+    return np.asarray(ends.sum(axis=1)), np.asarray(ends @ beams.stiffness_coefficient)
 
 
 def _coefficients(mesh: Mesh, upper: str, lower: str, direction: tuple[float, float]) -> dict[int, float]:

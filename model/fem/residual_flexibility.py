@@ -90,24 +90,26 @@ def residual_flexibility(coefficients: Array, s: float) -> float:
     return float(value)
 
 
-def series_factor(stiffness: Array, flexibility: Array) -> Array:
-    """Factor of the stiffness of springs in series with residual flexibilities, 1 / (1 + k R).
+def in_series(stiffness: Array, damping: Array, flexibility: Array, lag: Array) -> tuple[Array, Array]:
+    """Springs with parallel dampers in series with residual flexibilities, to first order in frequency.
 
-    The damping in parallel to a spring takes the same factor: the flexibility of the wire has its loss factor.
+    A wire with stiffness-proportional damping beta has the flexibility R / (1 + i w beta). With f = 1 / (1 + k R) the
+    series has the stiffness f k and the damping f^2 (c + k^2 R beta). A line with one beta for all its parts keeps it.
 
     Parameters
     ----------
-    stiffness : (n,) ndarray
-        Stiffness k of the springs [N/m].
-    flexibility : (n,) ndarray
-        Residual flexibility R of the wires at their ends [m/N].
+    stiffness, damping : (n,) ndarray
+        Stiffness k and damping c of the parts [N/m, N s/m].
+    flexibility, lag : (n,) ndarray
+        Residual flexibility R of the wires at their ends, and its product with beta [m/N, m s/N].
 
     Returns
     -------
-    (n,) ndarray
-        Factor [-].
+    stiffness, damping : (n,) ndarray
+        Both in series [N/m, N s/m].
     """
-    return np.asarray(1 / (1 + stiffness * flexibility))
+    factor = 1 / (1 + stiffness * flexibility)
+    return np.asarray(factor * stiffness), np.asarray(factor**2 * (damping + stiffness**2 * lag))
 
 
 def _point_flexibility(h: Array, tension: Array, bending_stiffness: Array) -> Array:

@@ -89,7 +89,7 @@ def test_both_laws_are_the_same_while_every_dropper_is_taut() -> None:
     line = simple_line(damping={Kind.DROPPER: Rayleigh(stiffness_coefficient=1e-3)})
     mesh = discretise(line, 2.0)
     kept = keep_viscous_part(mesh)
-    assert kept.connectors.damping.sum() == mesh.connectors.damping.sum()
+    assert kept.connectors.damping.sum() == pytest.approx(mesh.connectors.damping.sum(), rel=1e-12)
     assert not kept.connectors.unilateral[mesh.connectors.station.size :].any()
     # `with_damping` builds new connectors without the law: it must come before the law.
     assert with_damping(kept, line.damping).connectors.station.size == mesh.connectors.station.size
