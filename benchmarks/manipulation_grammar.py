@@ -1,9 +1,9 @@
 """Grammar of the manipulation campaign: each manipulation removes, moves, relabels or mixes information of a run.
 
-No manipulation invents physics: a force and a height that are changed consistently are another record, which no check
-can tell from a real one.
+No manipulation invents physics: it changes or copies channels of a run, but solves no equation of motion.
 """
 
+from manipulation_channels import change_support, copy_pantograph, smooth_one, smooth_together
 from manipulation_dossier import Manipulation
 from manipulation_mixture import merge_records, repeat_pantograph, split_train, swap_pantographs, swap_supports
 from manipulation_notation import convert_unit, relabel_unit, rename_column, reorder_columns, reorder_supports
@@ -42,5 +42,9 @@ MANIPULATIONS: tuple[tuple[str, Manipulation], ...] = (
     ("merge", merge_records),
     ("case", change_case),
     ("limits", add_limits_file),
+    ("channels", change_support),
+    ("channels", smooth_one),
+    ("channels", smooth_together),
+    ("channels", copy_pantograph),
 )
 """Group and function of every manipulation; a trial draws from them by position."""

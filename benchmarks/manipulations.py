@@ -1,12 +1,12 @@
 """Manipulation campaign: no manipulation of a record or case that does not pass may make it pass.
 
-    python benchmarks/manipulations.py OUT [--count 2500] [--seed 20261121] [--only NUMBER]
+    python benchmarks/manipulations.py OUT [--count 2500] [--seed 20261121] [--only NUMBER] [--group GROUP]
 
 The base of each trial is a run of the reference simulator that does not pass, for a stated reason. One to three
 manipulations of the grammar (`manipulation_grammar.py`) change its files. The suite then grades them as
 `pantocheck run` or `pantocheck assess` would. A verdict with exit code 0 is a wrong PASS: its files are kept in
-OUT/wrong, and the exit code is 1. `--only` repeats one trial and keeps its files. OUT/runs keeps the simulated runs for
-the next call.
+OUT/wrong, and the exit code is 1. `--only` repeats one trial and keeps its files. `--group` draws from one group of the
+grammar alone. OUT/runs keeps the simulated runs for the next call.
 """
 
 import argparse
@@ -17,7 +17,7 @@ import tempfile
 from collections import Counter
 from collections.abc import Callable
 from copy import deepcopy
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -212,6 +212,12 @@ def build_bases(runs: Runs) -> tuple[list[tuple[str, Dossier]], list[Base]]:
         assert isinstance(value, float)
         bounds = {"lower": value + 5, "upper": value + 50}
         add(f"min_force_N of pantograph {owner} too small", tightened("min_force_N", owner, **bounds))
+    for quantity in ("std_force_N", "std_force_50_N"):
+        both = [value for owner in (1, 2) if isinstance(value := values[owner][quantity], float)]
+        dossier = twin.copy()
+        upper = {"quantity": quantity, "upper": sum(both) / 2, "trust": "secondary", "source": "campaign"}
+        dossier.case["limit"] = [{**upper, "pantograph": owner} for owner in (1, 2)]
+        add(f"{quantity} of the worse pantograph too large, no other limit", dossier)
     for stem in ("contact_height", "uplift"):
         dossier = twin.copy()
         dossier.columns = {name: column for name, column in twin.columns.items() if not name.startswith(stem)}
@@ -273,9 +279,8 @@ def run_trial(bases: list[Base], number: int, seed: int, folder: Path) -> Trial:
     return Trial(base.name, tuple(kinds), verdict, wrong)
 
 
-def run_campaign(out: Path, count: int, seed: int) -> int:
+def run_campaign(out: Path, passing: list[tuple[str, Dossier]], bases: list[Base], count: int, seed: int) -> int:
     """Run all trials, print a summary and return the number of wrong verdicts."""
-    passing, bases = build_bases(Runs(out / "runs"))
     faults = 0
     for name, dossier in passing:  # otherwise a campaign without a PASS would show nothing
         verdict, _ = grade_trial(Base(name, dossier, frozenset(), grade_run), dossier, out / "sound" / name)
@@ -309,10 +314,14 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=2500)
     parser.add_argument("--seed", type=int, default=20261121)
     parser.add_argument("--only", type=int)
+    parser.add_argument("--group", choices=sorted({group for group, _ in MANIPULATIONS}))
     options = parser.parse_args()
+    passing, bases = build_bases(Runs(options.out / "runs"))
+    if options.group is not None:
+        group = frozenset({options.group})
+        bases = [replace(base, groups=group) for base in bases if options.group in base.groups]
     if options.only is None:
-        sys.exit(bool(run_campaign(options.out, options.count, options.seed)))
-    _, bases = build_bases(Runs(options.out / "runs"))
+        sys.exit(bool(run_campaign(options.out, passing, bases, options.count, options.seed)))
     trial = run_trial(bases, options.only, options.seed, options.out / "trials" / str(options.only))
     print(trial)
     sys.exit(trial.wrong)
