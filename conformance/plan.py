@@ -12,13 +12,14 @@ from pydantic import Field
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import library_folder, overlay_limits, read_limits, select_cases
 from pantocheck.conformance.grading.baseline import compare_with_baseline, read_baseline
+from pantocheck.conformance.grading.case_selection import CaseSelection, VerdictChoice, choose_verdicts
 from pantocheck.conformance.grading.case_verdict import Participation
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.sourced_table import InputTable
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.toml_file import read_model
-from pantocheck.conformance.input_files.trust import Trust, limit_counts
+from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.reports.formats.report_writers import check_formats
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.studies.damping_sensitivity import add_damping_study
@@ -34,7 +35,10 @@ class Plan(InputTable):
 
     cases: Annotated[
         Names,
-        Field(description="ids, globs or paths of cases; default: cases whose limits count"),
+        Field(
+            description="ids, globs or paths of cases; default: cases whose limits count, and with verification cases "
+            "that have converged values"
+        ),
     ] = ()
     system: Annotated[str, Field(description="builtin, record:DIR or command:PROGRAM ARGUMENTS")] = "builtin"
     information: Annotated[
@@ -51,6 +55,10 @@ class Plan(InputTable):
         "md",
     )
     trust: Annotated[Trust, Field(description="lowest trust of the limits that count")] = "secondary"
+    verdicts: Annotated[
+        VerdictChoice | None,
+        Field(description="verdicts that decide; default: criteria for the builtin system, both for any other"),
+    ] = None
     limits: Annotated[str | None, Field(description="file of limits that replace or extend those of the cases")] = None
     baseline: Annotated[str | None, Field(description="earlier results.json; a value that drifts from it fails")] = None
     drift_pct: Annotated[float, Field(gt=0, le=100, description="largest drift of a value from its baseline [%]")] = 1.0
@@ -117,37 +125,33 @@ def prepare_plan(plan: Plan) -> PreparedPlan:
     cases = select_cases(plan.cases or ["*"])
     if plan.limits is not None:
         cases = overlay_limits(cases, read_limits(Path(plan.limits)))
+    requested = choose_verdicts(plan.verdicts, plan.system, [case.id for case in cases])
+    selection = CaseSelection(plan.trust, requested)
     if not plan.cases:
-        cases = _keep_counting(cases, plan.trust)
+        cases = selection.keep_counting(cases)
         if not cases:
             raise InputError("cases", f"no limit counts at trust '{plan.trust}'", "Name a case, or lower the trust.")
     if plan.damping_study:
         cases = [add_damping_study(case) for case in cases]
     formats = check_formats(plan.formats)
     baseline = None if plan.baseline is None else read_baseline(Path(plan.baseline))
-    participation = Participation(_list_information(cases, plan), plan.accept_unverified)
+    participation = Participation(
+        information=_list_information(cases, plan, selection),
+        accepted_unverified=plan.accept_unverified,
+        requested=requested,
+        verification_only=() if plan.cases else selection.list_verification_only(cases),
+    )
     return PreparedPlan(plan, tuple(cases), formats, Path(plan.out), baseline, participation)
 
 
-def _keep_counting(cases: Sequence[Case], trust: Trust) -> list[Case]:
-    """Cases with a limit that counts and without `on_request`, and the cases that they require."""
-    kept = {case.id for case in cases if _has_counting_limit(case, trust) and not case.file.on_request}
-    needed = {required for case in cases if case.id in kept for required in case.file.requires}
-    return [case for case in cases if case.id in kept | needed]
-
-
-def _has_counting_limit(case: Case, trust: Trust) -> bool:
-    return any(limit_counts(limit.trust, trust) for limit in case.limits)
-
-
-def _list_information(cases: Sequence[Case], plan: Plan) -> tuple[str, ...]:
-    """Ids of the cases for information: those of the plan, and required cases of a default run without limits."""
+def _list_information(cases: Sequence[Case], plan: Plan, selection: CaseSelection) -> tuple[str, ...]:
+    """Ids of the cases for information: those of the plan, and required cases of a default run that do not count."""
     for i, pattern in enumerate(plan.information, 1):
         if not any(fnmatchcase(case.id, pattern) for case in cases):
             names = suggest_names(pattern, [case.id for case in cases])
             raise InputError(f"plan, key information[{i}]", f"no case of this run matches {pattern!r}", names)
     listed = [case.id for case in cases if any(fnmatchcase(case.id, pattern) for pattern in plan.information)]
-    required = [case.id for case in cases if not plan.cases and not _has_counting_limit(case, plan.trust)]
+    required = [case.id for case in cases if not plan.cases and not selection.counts(case)]
     return tuple(dict.fromkeys([*listed, *required]))
 
 

@@ -13,6 +13,7 @@ from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import core_schema
 
 from pantocheck.conformance.cases.case_file import CaseFile
+from pantocheck.conformance.cases.converged_file import ConvergedFile
 from pantocheck.conformance.cases.damping_file import DampingFile
 from pantocheck.conformance.cases.limits import LimitsFile
 from pantocheck.conformance.cases.line_file import LineFile
@@ -39,8 +40,9 @@ READ_FORMATS: dict[str, type[BaseModel]] = {
     "mass-drop": MassDropSidecar,
     "summary": RecordSummary,
     "profile": Profile,
+    "converged": ConvergedFile,
 }
-"""TOML files that users write."""
+"""TOML files that users write, and the converged values of the library."""
 
 WRITTEN_FORMATS: dict[str, type[BaseModel]] = {
     "results": Results,

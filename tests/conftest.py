@@ -6,4 +6,9 @@ import os
 for _library in ("OMP", "OPENBLAS", "MKL"):
     os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
 
-pytest_plugins = ["helpers.case_fixtures", "helpers.example_results", "helpers.record_fixtures"]
+pytest_plugins = [
+    "helpers.case_fixtures",
+    "helpers.converged_fixtures",
+    "helpers.example_results",
+    "helpers.record_fixtures",
+]

@@ -5,13 +5,13 @@ from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
-from pantocheck.conformance.grading.case_verdict import Participation, judge_case
+from pantocheck.conformance.grading.case_verdict import judge_case, read_participation
 from pantocheck.conformance.grading.near_limit import ValueErrors, near_limit_remarks
-from pantocheck.conformance.grading.verdicts import judge, margin
+from pantocheck.conformance.grading.verdicts import Verdict, judge, margin
 from pantocheck.conformance.input_files.trust import limit_counts
 from pantocheck.conformance.quantities.bands import BANDS
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, statistical_extremes
-from pantocheck.conformance.results.results_format import RecordFacts
+from pantocheck.conformance.results.results_format import RecordFacts, Results
 
 EXACT, ROUNDED = 1e-9, 2e-5
 """Relative tolerances: numbers of results.json have all their digits, traces are rounded to six digits."""
@@ -31,26 +31,33 @@ def find_discrepancies(results: dict[str, Any]) -> list[str]:
         One line per contradiction.
     """
     discrepancies = [text for case in results["cases"] for text in _check_case(case, results["trust"])]
-    participation = Participation(tuple(results["information"]), tuple(results["accepted_unverified"]))
-    verdicts = ((case["id"], case["verdict"]) for case in results["cases"])
-    verdict = participation.judge_run(verdicts, results["system"]["name"])
-    if results["verdict"] != verdict:
-        discrepancies.append(f"verdict: '{results['verdict']}' stated, '{verdict}' follows from the cases")
-    return discrepancies
+    stated = Results.model_validate(results)
+    decided = read_participation(stated).decide_run(stated)
+    pairs: list[tuple[str, Verdict | None, Verdict | None]] = [
+        (f"{case.id}: ", case.verdict, other.verdict) for case, other in zip(stated.cases, decided.cases, strict=True)
+    ]
+    pairs.append(("", stated.verdict, decided.verdict))
+    pairs.append(("verification: ", stated.verification_verdict, decided.verification_verdict))
+    if stated.criteria_verdict is not None:  # null: made by a version without a second verdict
+        pairs.append(("EN 50318 criteria: ", stated.criteria_verdict, decided.criteria_verdict))
+    return [
+        *discrepancies,
+        *(f"{where}verdict '{old}' stated, '{new}' follows from the cases" for where, old, new in pairs if old != new),
+    ]
 
 
 def _check_case(case: dict[str, Any], trust: Any) -> Iterator[str]:
-    for row in case["criteria"]:
-        where = f"{case['id']}, {row['quantity']} of pantograph {row['pantograph']}"
-        for text in (*_check_value(row, case["quantities"]), *_check_grade(row, trust)):
-            yield f"{where}: {text}"
+    stated, verification = case["criteria_verdict"] or case["verdict"], case["verification"]
     record = None if case["record"] is None else RecordFacts.model_validate(case["record"])
-    ungraded = not case["criteria"] and case["reason"] and case["verdict"] in ("skip", "error")
+    ungraded = not case["criteria"] and case["reason"] and stated in ("skip", "error")
     if record is None and case["run"]["evaluated_m"] is not None and not ungraded:
         yield f"{case['id']}: the state of the record is missing"
+    yield from _check_criteria(case, case["criteria"], trust)
     verdict = judge_case((row["verdict"] for row in case["criteria"]), record)
-    if case["verdict"] != verdict and not ungraded:
-        yield f"{case['id']}: verdict '{case['verdict']}' stated, '{verdict}' follows from the criteria and the record"
+    if stated != verdict and not ungraded:
+        yield f"{case['id']}: verdict '{stated}' stated, '{verdict}' follows from the criteria and the record"
+    if verification is not None:
+        yield from _check_verification(case, verification, record)
     for key, quantities in case["quantities"].items():
         trace = case["traces"].get(key)
         # Statistics delivered as numbers are rounded, and printed tables are not always consistent.
@@ -58,6 +65,24 @@ def _check_case(case: dict[str, Any], trust: Any) -> Iterator[str]:
         statistics = (*_check_order(quantities), *(_check_statistics(quantities) if computed else ()))
         for text in (*statistics, *(_check_trace(quantities, trace) if trace else ())):
             yield f"{case['id']}, pantograph {key}: {text}"
+
+
+def _check_criteria(case: dict[str, Any], criteria: list[dict[str, Any]], trust: Any) -> Iterator[str]:
+    for row in criteria:
+        where = f"{case['id']}, {row['quantity']} of pantograph {row['pantograph']}"
+        for text in (*_check_value(row, case["quantities"]), *_check_grade(row, trust)):
+            yield f"{where}: {text}"
+
+
+def _check_verification(
+    case: dict[str, Any], verification: dict[str, Any], record: RecordFacts | None
+) -> Iterator[str]:
+    """Verification: its verdict must follow from its criteria; without criteria it must not pass."""
+    for text in _check_criteria(case, verification["criteria"], "computed"):
+        yield f"verification: {text}"
+    verdict, stated = judge_case((row["verdict"] for row in verification["criteria"]), record), verification["verdict"]
+    if stated != verdict and (verification["criteria"] or stated not in ("info", "skip", "error")):
+        yield f"{case['id']}: verification '{stated}' stated, '{verdict}' follows from its criteria and the record"
 
 
 def _check_value(row: dict[str, Any], quantities: dict[str, Any]) -> Iterator[str]:

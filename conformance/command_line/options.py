@@ -27,6 +27,13 @@ TrustOption = Annotated[
         help="Lowest trust of limits that count: primary, secondary or provisional.", show_default="secondary"
     ),
 ]
+VerdictsOption = Annotated[
+    str | None,
+    typer.Option(
+        help="Verdicts that decide: criteria (EN 50318), verification (converged solution, up to 50 Hz) or both.",
+        show_default="criteria for builtin, both for any other system",
+    ),
+]
 AcceptUnverifiedOption = Annotated[
     list[str] | None,
     typer.Option(metavar="NAME", help="System whose unverified records may pass; repeat the option for several."),

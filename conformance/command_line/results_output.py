@@ -13,7 +13,7 @@ from pantocheck.conformance.command_line.console import build_table, console, es
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.quantities.limit_text import format_bounds, name_value
 from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline, describe_record
-from pantocheck.conformance.results.results_format import CaseResult, Criterion, Results, name_case
+from pantocheck.conformance.results.results_format import Criterion, Results, name_case
 from pantocheck.conformance.runner import Progress as ResultCallback
 
 EXIT_CODES: dict[Verdict, int] = {"pass": 0, "unverified": 1, "info": 1, "skip": 1, "fail": 1, "error": 2}
@@ -47,11 +47,12 @@ def print_results(results: Results, files: Sequence[Path]) -> None:
             None, [case.reason, record, *changes, *(f"warning: {warning}" for warning in case.warnings)]
         ):
             output.print(escape_text(f"  {line}"))
-        if case.criteria:
-            output.print(_build_criterion_table(case))
-        for item in case.criteria:
-            for remark in filter(None, (item.reason, *item.close)):
-                output.print(escape_text(f"  {_name(item)}: {remark}"))
+        _print_criteria(output, case.criteria)
+        if case.verification is not None:
+            output.print(escape_text("  Verification up to 50 Hz:"), style_verdict(case.verification.verdict))
+            if case.verification.reason and not case.reason:
+                output.print(escape_text(f"  {case.verification.reason}"))
+            _print_criteria(output, case.verification.criteria)
     output.print()
     if any(case.criteria for case in results.cases):
         output.print(Text(LEGEND, "dim"))
@@ -59,14 +60,23 @@ def print_results(results: Results, files: Sequence[Path]) -> None:
         output.print(escape_text(str(path)), soft_wrap=True)
 
 
-def _build_criterion_table(case: CaseResult) -> Table:
+def _print_criteria(output: Console, criteria: Sequence[Criterion]) -> None:
+    """Print criteria as a table, and their remarks."""
+    if criteria:
+        output.print(_build_criterion_table(criteria))
+    for item in criteria:
+        for remark in filter(None, (item.reason, *item.close)):
+            output.print(escape_text(f"  {_name(item)}: {remark}"))
+
+
+def _build_criterion_table(criteria: Sequence[Criterion]) -> Table:
     """Table of the criteria, which fits into 80 columns."""
     numbers = ("value", "+-", "shift", "limits", "margin")
     table = build_table(
         "criterion", *numbers, "verdict", "trust", unbroken=(*numbers, "verdict", "trust"), right=numbers
     )
     table.padding = (0, 1, 0, 0)
-    for item in case.criteria:
+    for item in criteria:
         error = item.discretisation_error if item.uncertainty is None else item.uncertainty
         table.add_row(
             escape_text(_name(item)),

@@ -12,6 +12,7 @@ from pantocheck.conformance.command_line.options import (
     FormatsOption,
     OutOption,
     TrustOption,
+    VerdictsOption,
     build_options,
 )
 from pantocheck.conformance.command_line.results_output import EXIT_CODES, print_results, report_progress
@@ -23,7 +24,7 @@ from pantocheck.conformance.runner import RunInterrupted, run_cases
 def run_command(
     case: Annotated[
         list[str] | None,
-        typer.Argument(help="Ids, globs or paths of cases; default: those whose limits count."),
+        typer.Argument(help="Ids, globs or paths of cases; default: those that count for the verdicts."),
     ] = None,
     plan: Annotated[
         Path | None, typer.Option(help="TOML file with the options of a run; see `pantocheck schema plan`.")
@@ -35,6 +36,7 @@ def run_command(
     out: OutOption = None,
     formats: FormatsOption = None,
     trust: TrustOption = None,
+    verdicts: VerdictsOption = None,
     limits: Annotated[
         Path | None, typer.Option(help="TOML file of your own limits, which replace those of the cases.")
     ] = None,
@@ -71,6 +73,7 @@ def run_command(
         out=out,
         formats=formats,
         trust=trust,
+        verdicts=verdicts,
         limits=limits,
         accept_unverified=tuple(accept_unverified) if accept_unverified else None,
         baseline=baseline,

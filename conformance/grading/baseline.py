@@ -1,16 +1,16 @@
 """Baseline: a value that drifts from earlier results fails, independent of its limits."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from pantocheck.conformance.grading.case_verdict import Participation, judge_case
+from pantocheck.conformance.grading.case_verdict import judge_case, read_participation
 from pantocheck.conformance.grading.criterion_grading import Requirement, build_criterion
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.quantities.registry import QUANTITIES
-from pantocheck.conformance.results.results_format import CaseResult, Criterion, Results
+from pantocheck.conformance.results.results_format import BASELINE, CaseResult, Criterion, Results
 from pantocheck.conformance.results.results_reading import read_results
 
 SMALLEST_SCALE = 1.0
@@ -75,10 +75,7 @@ def compare_with_baseline(results: Results, baseline: Results, drift_pct: float,
     """
     earlier = {case.id: case for case in baseline.cases}
     cases = [_compare_case(case, earlier.get(case.id), drift_pct, name) for case in results.cases]
-    verdicts = ((case.id, case.verdict) for case in cases)
-    participation = Participation(tuple(results.information), tuple(results.accepted_unverified))
-    verdict = participation.judge_run(verdicts, results.system.name)
-    return results.model_copy(update={"cases": cases, "verdict": verdict})
+    return read_participation(results).decide_run(results.model_copy(update={"cases": cases}))
 
 
 def _compare_case(case: CaseResult, earlier: CaseResult | None, drift_pct: float, name: str) -> CaseResult:
@@ -98,13 +95,7 @@ def _compare_case(case: CaseResult, earlier: CaseResult | None, drift_pct: float
     )
     if changes := _list_changes(case, earlier):
         drifted.append(_skipped_comparison(f"baseline {name} has other {' and '.join(changes)}; renew the baseline"))
-    return case.model_copy(
-        update={
-            "criteria": [*case.criteria, *drifted],
-            "notes": [*case.notes, note],
-            "verdict": judge_case((criterion.verdict for criterion in (*case.criteria, *drifted)), case.record),
-        }
-    )
+    return _add_criteria(case, drifted).model_copy(update={"notes": [*case.notes, note]})
 
 
 def _list_changes(case: CaseResult, earlier: CaseResult) -> list[str]:
@@ -112,22 +103,32 @@ def _list_changes(case: CaseResult, earlier: CaseResult) -> list[str]:
     parts = {
         "inputs": case.profile is None and case.input_digest != earlier.input_digest,
         "limits": case.limits_digest != earlier.limits_digest,
+        "converged values": _verification_digest(earlier) not in {None, _verification_digest(case)},
         "texts or sources": case.library != earlier.library,
     }
     return [name for name, differs in parts.items() if differs]
 
 
+def _verification_digest(case: CaseResult) -> str | None:
+    return None if case.verification is None else case.verification.digest
+
+
 def _skipped_comparison(reason: str) -> Criterion:
     """Skipped criterion, without which a case could pass by the baseline of another one."""
-    requirement = Requirement("baseline", LINE, None, None, None, "primary", "baseline")
+    requirement = Requirement(BASELINE, LINE, None, None, None, "primary", "baseline")
     return build_criterion(requirement, None, reason, "primary")
 
 
 def _skip_comparison(case: CaseResult, reason: str) -> CaseResult:
     """Case with a skipped criterion in place of the comparison."""
-    criteria = [*case.criteria, _skipped_comparison(reason)]
+    return _add_criteria(case, [_skipped_comparison(reason)])
+
+
+def _add_criteria(case: CaseResult, added: Sequence[Criterion]) -> CaseResult:
+    """Case with further criteria and the verdict that follows from all of them."""
+    criteria = [*case.criteria, *added]
     verdict = judge_case((criterion.verdict for criterion in criteria), case.record)
-    return case.model_copy(update={"criteria": criteria, "verdict": verdict})
+    return case.model_copy(update={"criteria": criteria, "criteria_verdict": verdict})
 
 
 def _numbers(case: CaseResult) -> Iterator[tuple[_Key, float]]:

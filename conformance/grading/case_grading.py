@@ -8,6 +8,7 @@ from pantocheck.conformance.cases.study_tables import DampingSensitivity
 from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
 from pantocheck.conformance.grading.case_identity import compare_with_library, limits_digest, list_limit_changes
 from pantocheck.conformance.grading.case_verdict import judge_case
+from pantocheck.conformance.grading.case_verification import verify_evaluation, verify_ungraded
 from pantocheck.conformance.grading.extended_band import extended_band_warnings
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.trust import Trust
@@ -67,10 +68,13 @@ def grade_evaluation(evaluation: CaseEvaluation, lowest_trust: Trust) -> CaseRes
     criteria = evaluation.grade_limits(lowest_trust) if contradiction is None else []
     supports = case.line.geometry.span_limits
     record = evaluation.record_facts
+    verdict = judge_case((criterion.verdict for criterion in criteria), record)
     return _build_result(
         case,
         delivered,
-        verdict=judge_case((criterion.verdict for criterion in criteria), record),
+        verdict=verdict,
+        criteria_verdict=verdict,
+        verification=verify_evaluation(evaluation),
         reason=contradiction,
         warnings=[
             *delivered.warnings,
@@ -93,7 +97,16 @@ def grade_evaluation(evaluation: CaseEvaluation, lowest_trust: Trust) -> CaseRes
 
 def build_ungraded(case: Case, verdict: Verdict, reason: str, delivered: Delivered | None = None) -> CaseResult:
     """Result of a case that was not graded."""
-    return _build_result(case, delivered or Delivered(), notes=[], verdict=verdict, reason=" ".join(reason.split()))
+    text = " ".join(reason.split())
+    return _build_result(
+        case,
+        delivered or Delivered(),
+        notes=[],
+        verdict=verdict,
+        criteria_verdict=verdict,
+        verification=verify_ungraded(case, verdict, text),
+        reason=text,
+    )
 
 
 def _build_result(case: Case, delivered: Delivered, notes: Sequence[str], **parts: object) -> CaseResult:

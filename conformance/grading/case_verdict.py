@@ -1,10 +1,11 @@
 """Verdict of a case, and of a run, from the grades of criteria and the state of records."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import get_args
 
 from pantocheck.conformance.grading.verdicts import Verdict, worst_verdict
-from pantocheck.conformance.results.results_format import RecordFacts
+from pantocheck.conformance.results.results_format import CaseResult, RecordFacts, Results, VerdictName
 
 
 def judge_case(criteria: Iterable[Verdict], record: RecordFacts | None) -> Verdict:
@@ -32,7 +33,7 @@ def judge_case(criteria: Iterable[Verdict], record: RecordFacts | None) -> Verdi
 
 @dataclass(frozen=True)
 class Participation:
-    """Cases that do not take part in the verdict of a run, and records that need no verification.
+    """Cases and verdicts that decide the verdict of a run, and records that need no verification.
 
     Parameters
     ----------
@@ -40,10 +41,16 @@ class Participation:
         Ids of the cases that are shown for information.
     accepted_unverified : tuple of str
         Names of systems whose unverified records count as a pass.
+    requested : tuple of {"criteria", "verification"}
+        Verdicts that decide; the worst of them is the verdict of the run.
+    verification_only : tuple of str
+        Ids of the cases that take part in the verification only.
     """
 
     information: tuple[str, ...] = ()
     accepted_unverified: tuple[str, ...] = ()
+    requested: tuple[VerdictName, ...] = ("criteria",)
+    verification_only: tuple[str, ...] = ()
 
     def judge_run(self, cases: Iterable[tuple[str, Verdict]], system: str) -> Verdict:
         """Verdict of a run: the worst case that takes part; `info` if none does.
@@ -62,6 +69,59 @@ class Participation:
             if case not in self.information
         )
 
+    def judge_name(self, name: VerdictName, cases: Sequence[CaseResult], system: str) -> Verdict | None:
+        """One of the two verdicts of a run; None if no case takes part in it."""
+        verdicts = [(case.id, verdict) for case in cases if (verdict := self._case_verdict(name, case)) is not None]
+        return self.judge_run(verdicts, system) if verdicts else None
+
+    def decide_case(self, case: CaseResult) -> CaseResult:
+        """Case with the worst of the requested verdicts in which it takes part.
+
+        A drift from a baseline, and an error, count whichever verdicts are requested.
+        """
+        verdicts = [self._case_verdict(name, case) for name in self.requested]
+        drift = [criterion.verdict for criterion in case.criteria if criterion.is_drift]
+        errors = [verdict for verdict in (case.criteria_verdict, case.verdict) if verdict == "error"]
+        verdict = worst_verdict(verdict for verdict in (*verdicts, *drift, *errors) if verdict is not None)
+        return case.model_copy(update={"verdict": verdict})
+
+    def decide_run(self, results: Results) -> Results:
+        """Results with the verdicts of their cases and of the run.
+
+        A requested verdict in which no case takes part is `info`.
+        """
+        cases, system = [self.decide_case(case) for case in results.cases], results.system.name
+        by_name = {name: self.judge_name(name, cases, system) for name in get_args(VerdictName)}
+        overall = self.judge_run([(case.id, case.verdict) for case in cases], system)
+        return results.model_copy(
+            update={
+                "cases": cases,
+                "verdict": worst_verdict([overall, *(by_name[name] or "info" for name in self.requested)]),
+                "criteria_verdict": by_name["criteria"],
+                "verification_verdict": by_name["verification"],
+                "requested": list(self.requested),
+                "information": list(self.information),
+                "accepted_unverified": list(self.accepted_unverified),
+                "verification_only": list(self.verification_only),
+            }
+        )
+
+    def _case_verdict(self, name: VerdictName, case: CaseResult) -> Verdict | None:
+        """Verdict of a case; None if the case does not take part in it."""
+        if name == "verification":
+            return None if case.verification is None else case.verification.verdict
+        return None if case.id in self.verification_only else case.criteria_verdict or case.verdict
+
+
+def read_participation(results: Results) -> Participation:
+    """Participation that results state."""
+    return Participation(
+        information=tuple(results.information),
+        accepted_unverified=tuple(results.accepted_unverified),
+        requested=tuple(results.requested),
+        verification_only=tuple(results.verification_only),
+    )
+
 
 EVERY_CASE = Participation()
-"""Every case takes part, and unverified records are not accepted."""
+"""Every case takes part in the EN 50318 criteria, and unverified records are not accepted."""

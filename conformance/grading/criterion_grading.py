@@ -8,7 +8,7 @@ from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.grading.near_limit import NO_ERRORS, ValueErrors, near_limit_remarks
 from pantocheck.conformance.grading.verdicts import Verdict, judge, margin
-from pantocheck.conformance.input_files.trust import Trust, limit_counts
+from pantocheck.conformance.input_files.trust import Computed, Trust, limit_counts
 from pantocheck.conformance.quantities.evaluation import Evaluation, Value
 from pantocheck.conformance.quantities.limit_text import name_value
 from pantocheck.conformance.quantities.registry import QUANTITIES
@@ -43,7 +43,7 @@ class Requirement:
     item: int | None
     lower: float | None
     upper: float | None
-    trust: Trust
+    trust: Trust | Computed
     source: str
 
 
@@ -83,13 +83,22 @@ def grade_limit(limit: Limit, values: GradedValues, lowest_trust: Trust, limit_u
     limit_uncertainty : float
         Uncertainty of the limit itself, if it comes from a measured record.
     """
-    owner, name = limit.owner, limit.quantity
-    requirement = Requirement(name, owner, limit.item, limit.lower, limit.upper, limit.trust, source_text(limit.source))
-    value = find_value(limit, values.evaluation.values)
+    requirement = Requirement(
+        limit.quantity, limit.owner, limit.item, limit.lower, limit.upper, limit.trust, source_text(limit.source)
+    )
+    return grade_requirement(requirement, values, lowest_trust, limit_uncertainty)
+
+
+def grade_requirement(
+    requirement: Requirement, values: GradedValues, lowest_trust: Trust | Computed, limit_uncertainty: float = 0.0
+) -> Criterion:
+    """Grade a quantity by a requirement; parameters as in `grade_limit`."""
+    owner, name = requirement.owner, requirement.quantity
+    value = find_value(requirement, values.evaluation.values)
     if value is None:
         missing = values.evaluation.skipped.get(owner, {}).get(name, "the system does not deliver this quantity")
         return build_criterion(requirement, None, missing, lowest_trust)
-    refined = None if values.refined is None else find_value(limit, values.refined.values)
+    refined = None if values.refined is None else find_value(requirement, values.refined.values)
     errors = ValueErrors(
         discretisation=None if refined is None else abs(value - refined),
         spread=values.spread.get(owner, {}).get(name),
@@ -103,7 +112,7 @@ def build_criterion(
     requirement: Requirement,
     value: float | None,
     missing: str | None,
-    lowest_trust: Trust,
+    lowest_trust: Trust | Computed,
     errors: ValueErrors = NO_ERRORS,
 ) -> Criterion:
     """Grade a value by its limits.
@@ -158,19 +167,19 @@ def criterion_name(criterion: Criterion) -> str:
     return f"{name} of pantograph {criterion.pantograph}" if criterion.pantograph else f"{name} of the line"
 
 
-def find_value(limit: Limit, values: Mapping[int, Mapping[str, Value]]) -> float | None:
-    """Value that a limit applies to; None if there is none, or no finite one.
+def find_value(requirement: Requirement | Limit, values: Mapping[int, Mapping[str, Value]]) -> float | None:
+    """Value that limits apply to; None if there is none, or no finite one.
 
     Parameters
     ----------
-    limit : Limit
-        Limit of one quantity, or of one item of it.
+    requirement : Requirement or Limit
+        Limits of one quantity, or of one item of it.
     values : mapping of int to mapping of str to Value
         Quantities by pantograph (0: the line) and name.
     """
-    value = values.get(limit.owner, {}).get(limit.quantity)
+    value = values.get(requirement.owner, {}).get(requirement.quantity)
     if isinstance(value, tuple):
-        index = (limit.item or 1) - 1
+        index = (requirement.item or 1) - 1
         value = value[index] if index < len(value) else None
     return value if value is not None and math.isfinite(value) else None
 

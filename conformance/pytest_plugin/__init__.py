@@ -27,6 +27,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         choices=("primary", "secondary", "provisional"),
         help="lowest trust of limits that count; replaces that of the plan",
     )
+    group.addoption(
+        "--pantocheck-verdicts",
+        choices=("criteria", "verification", "both"),
+        help="verdicts that decide; replaces those of the plan",
+    )
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
@@ -86,7 +91,7 @@ def pantocheck_run(pytestconfig: pytest.Config) -> "Callable[..., GradedCase]":
 
     from pantocheck.conformance.pytest_plugin.user_fixtures import run_and_grade
 
-    return partial(run_and_grade, trust=pytestconfig.getoption("pantocheck_trust") or "secondary")
+    return partial(run_and_grade, **_options(pytestconfig))
 
 
 @pytest.fixture(scope="session")
@@ -96,4 +101,10 @@ def pantocheck_assess(pytestconfig: pytest.Config) -> "Callable[..., GradedCase]
 
     from pantocheck.conformance.pytest_plugin.user_fixtures import grade_arrays
 
-    return partial(grade_arrays, trust=pytestconfig.getoption("pantocheck_trust") or "secondary")
+    return partial(grade_arrays, **_options(pytestconfig))
+
+
+def _options(config: pytest.Config) -> dict[str, Any]:
+    """Options of the session for the grading of a case."""
+    trust = config.getoption("pantocheck_trust") or "secondary"
+    return {"trust": trust, "verdicts": config.getoption("pantocheck_verdicts")}

@@ -1,22 +1,32 @@
 """Plan in pytest: file, cases, pantographs, criteria. A case runs with the first of its criteria."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
 import pytest
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.cases.converged_file import find_converged
+from pantocheck.conformance.grading.case_verification import find_obstacle
+from pantocheck.conformance.grading.verification_limits import build_requirements
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.plan import prepare_plan, read_plan
 from pantocheck.conformance.pytest_plugin.campaign import PlanSession, list_registered
 from pantocheck.conformance.pytest_plugin.session import shared_folder
-from pantocheck.conformance.pytest_plugin.user_fixtures import criterion_line, is_unverified, unverified_line
+from pantocheck.conformance.pytest_plugin.user_fixtures import (
+    criterion_line,
+    is_unverified,
+    list_verdict_criteria,
+    unverified_line,
+)
 from pantocheck.conformance.quantities.limit_text import name_value
 from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline
 from pantocheck.conformance.reports.formats.report_writers import FILES, write_all
-from pantocheck.conformance.results.results_format import CaseResult
+from pantocheck.conformance.results.results_format import CaseResult, VerdictName
+
+Target = tuple[str, int, int | None]
+"""Quantity, pantograph (0: the line) and item of a criterion."""
 
 
 class CriterionNotMet(Exception):
@@ -32,6 +42,8 @@ def _open_session(config: pytest.Config, path: Path, folder: Path) -> PlanSessio
         options["formats"] = tuple(name.strip() for name in formats.split(",") if name.strip())
     if (trust := config.getoption("pantocheck_trust")) is not None:
         options["trust"] = trust
+    if (verdicts := config.getoption("pantocheck_verdicts")) is not None:
+        options["verdicts"] = verdicts
     return PlanSession(path, prepare_plan(read_plan(path).model_copy(update=options)), folder)
 
 
@@ -58,11 +70,18 @@ class CaseNode(pytest.Collector):
             # With --dist loadgroup one worker takes all criteria of a case, so no worker waits for another.
             self.add_marker(pytest.mark.xdist_group(case.id))
 
-    def collect(self) -> "Iterator[PantographNode | CaseItem]":
-        """Pantographs of the case, and the line if a quantity of the line has a limit."""
-        for number in dict.fromkeys(limit.owner for limit in self.case.limits):
-            yield PantographNode.from_parent(self, name=str(number) if number else "line", number=number)
-        if not self.case.limits:
+    def collect(self) -> "Iterator[VerdictNode | PantographNode | CaseItem]":
+        """Pantographs of the criteria, and the line if a quantity of the line has a limit; then the verification."""
+        targets: dict[VerdictName, list[Target]] = {
+            "criteria": [limit.target for limit in self.case.limits],
+            "verification": list_targets(self.case),
+        }
+        requested = [name for name in self.campaign.prepared.participation.requested if targets[name]]
+        if "criteria" in requested:
+            yield from group_by_owner(self, "criteria", targets["criteria"])
+        if "verification" in requested:
+            yield VerdictNode.from_parent(self, name="verification", targets=targets["verification"])
+        if not requested:
             yield CaseItem.from_parent(self, name="run")
 
     def result(self) -> CaseResult:
@@ -87,21 +106,52 @@ class CaseNode(pytest.Collector):
         raise CriterionNotMet(reason)
 
 
+class VerdictNode(pytest.Collector):
+    """Verification of a case."""
+
+    def __init__(self, targets: list[Target], **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.targets = targets
+
+    def collect(self) -> "Iterator[PantographNode]":
+        """Pantographs of the case, and the line."""
+        return group_by_owner(self, "verification", self.targets)
+
+
 class PantographNode(pytest.Collector):
     """Pantograph of a case, or its line (number 0)."""
 
-    def __init__(self, number: int, **kwargs: Any) -> None:
+    def __init__(self, verdict_name: VerdictName, targets: list[Target], **kwargs: Any) -> None:
         super().__init__(**kwargs)
-        self.number = number
+        self.verdict_name, self.targets = verdict_name, targets
 
     def collect(self) -> "Iterator[CriterionItem]":
         """Criteria of the pantograph."""
-        if not isinstance(self.parent, CaseNode):
+        if (case_node := self.getparent(CaseNode)) is None:
             raise TypeError("a pantograph belongs to a case")
-        for limit in self.parent.case.limits:
-            if limit.owner == self.number:
-                name = name_value(limit.quantity, limit.item)
-                yield CriterionItem.from_parent(self, name=name, case_node=self.parent, limit=limit)
+        for target in self.targets:
+            quantity, _, item = target
+            name = name_value(quantity, item)
+            yield CriterionItem.from_parent(
+                self, name=name, case_node=case_node, verdict_name=self.verdict_name, target=target
+            )
+
+
+def group_by_owner(parent: pytest.Collector, name: VerdictName, targets: Sequence[Target]) -> Iterator[PantographNode]:
+    """Targets by pantograph."""
+    for number in dict.fromkeys(owner for _, owner, _ in targets):
+        owned = [target for target in targets if target[1] == number]
+        yield PantographNode.from_parent(
+            parent, name=str(number) if number else "line", verdict_name=name, targets=owned
+        )
+
+
+def list_targets(case: Case) -> list[Target]:
+    """Quantities of a case that are verified."""
+    converged = find_converged(case.id)
+    if converged is None or find_obstacle(case, converged) is not None:
+        return []
+    return [(entry.quantity, entry.owner, entry.item) for entry in build_requirements(converged, case.is_static)]
 
 
 class OneLineItem(pytest.Item):
@@ -130,14 +180,15 @@ class CaseItem(OneLineItem):
 class CriterionItem(OneLineItem):
     """Test of one criterion of a case."""
 
-    def __init__(self, case_node: CaseNode, limit: Limit, **kwargs: Any) -> None:
+    def __init__(self, case_node: CaseNode, verdict_name: VerdictName, target: Target, **kwargs: Any) -> None:
         super().__init__(**kwargs)
-        self.case_node, self.limit = case_node, limit
+        self.case_node, self.verdict_name, self.target = case_node, verdict_name, target
 
     def runtest(self) -> None:
         """Run the case if necessary and report the verdict of the criterion."""
         campaign, result = self.case_node.campaign, self.case_node.result()
-        criterion = next(c for c in result.criteria if (c.quantity, c.pantograph, c.item) == self.limit.target)
+        criteria = list_verdict_criteria(result, self.verdict_name)
+        criterion = next(c for c in criteria if (c.quantity, c.pantograph, c.item) == self.target)
         if criterion.verdict in {"skip", "info"}:
             pytest.skip(criterion.reason or criterion.verdict)
         if criterion.verdict == "fail":

@@ -1,5 +1,6 @@
 """Grading in the tests of a user: functions of the fixtures `pantocheck_run` and `pantocheck_assess`."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,6 +10,8 @@ from numpy.typing import ArrayLike
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.grading.case_grading import grade_case
+from pantocheck.conformance.grading.case_selection import VerdictChoice, choose_verdicts
+from pantocheck.conformance.grading.case_verdict import Participation
 from pantocheck.conformance.grading.criterion_grading import criterion_name
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.input_error import InputError
@@ -16,7 +19,7 @@ from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.records.record import Record, RecordInvalid
 from pantocheck.conformance.records.record_reading import read_record
 from pantocheck.conformance.results.outcome import Delivered
-from pantocheck.conformance.results.results_format import CaseResult, Criterion
+from pantocheck.conformance.results.results_format import CaseResult, Criterion, VerdictName
 from pantocheck.conformance.runner import run_case
 from pantocheck.conformance.systems.system import System
 from pantocheck.conformance.systems.system_choice import TIMEOUT_S, choose_system
@@ -30,9 +33,12 @@ class GradedCase:
     ----------
     result : CaseResult
         Result of the case, as in results.json.
+    requested : tuple of {"criteria", "verification"}
+        Verdicts that decide.
     """
 
     result: CaseResult
+    requested: tuple[VerdictName, ...] = ("criteria",)
 
     @property
     def verdict(self) -> Verdict:
@@ -42,7 +48,12 @@ class GradedCase:
     @property
     def reasons(self) -> tuple[str, ...]:
         """Lines for the case and its record, and for every criterion that is not met; none if the case passes."""
-        return tuple(_list_reasons(self.result))
+        return tuple(_list_reasons(self.result, self._criteria))
+
+    @property
+    def _criteria(self) -> list[Criterion]:
+        """Criteria of the requested verdicts."""
+        return [criterion for name in self.requested for criterion in list_verdict_criteria(self.result, name)]
 
     def value(self, quantity: str, pantograph: int = 1) -> float | list[float]:
         """Value of a quantity of a pantograph (0: line), with or without limits."""
@@ -64,8 +75,8 @@ class GradedCase:
             A criterion is not met or does not count, a quantity has no limits, or the record is not verified.
         """
         __tracebackhide__ = True
-        criteria = [c for c in self.result.criteria if not quantities or c.quantity in quantities]
-        reasons = _list_reasons(self.result.model_copy(update={"criteria": criteria}), accept_unverified)
+        criteria = [c for c in self._criteria if not quantities or c.quantity in quantities]
+        reasons = _list_reasons(self.result, criteria, accept_unverified)
         reasons += [criterion_line(c) for c in criteria if quantities and c.verdict == "info"]
         limited = {criterion.quantity for criterion in criteria}
         reasons += [f"{name} has no limits" for name in quantities if name not in limited]
@@ -73,16 +84,23 @@ class GradedCase:
             raise AssertionError(f"{self.result.id}: " + "\n".join(reasons))
 
 
-def _list_reasons(result: CaseResult, accept_unverified: bool = False) -> list[str]:
-    """Reasons why a case does not pass."""
+def _list_reasons(result: CaseResult, criteria: Sequence[Criterion], accept_unverified: bool = False) -> list[str]:
+    """Reasons why some criteria of a case do not pass."""
     if result.reason:
         return [f"{result.verdict}: {result.reason}"]
-    reasons = [criterion_line(c) for c in result.criteria if c.verdict not in {"pass", "info"}]
-    if all(criterion.verdict == "info" for criterion in result.criteria):
+    reasons = [criterion_line(c) for c in criteria if c.verdict not in {"pass", "info"}]
+    if all(criterion.verdict == "info" for criterion in criteria):
         reasons.append("no limit counts")
     if is_unverified(result) and not accept_unverified:
         reasons.append(unverified_line(result))
     return reasons
+
+
+def list_verdict_criteria(result: CaseResult, name: VerdictName) -> list[Criterion]:
+    """Criteria of one of the two verdicts of a case."""
+    if name == "criteria":
+        return result.criteria
+    return [] if result.verification is None else result.verification.criteria
 
 
 def is_unverified(result: CaseResult) -> bool:
@@ -106,7 +124,12 @@ def criterion_line(criterion: Criterion) -> str:
 
 
 def run_and_grade(
-    case: str, system: str | System = "builtin", *, trust: Trust = "secondary", timeout_s: float = TIMEOUT_S
+    case: str,
+    system: str | System = "builtin",
+    *,
+    trust: Trust = "secondary",
+    verdicts: VerdictChoice | None = None,
+    timeout_s: float = TIMEOUT_S,
 ) -> GradedCase:
     """Run a case on a system and grade it.
 
@@ -118,6 +141,8 @@ def run_and_grade(
         Value as for `--system`, or an object with `name`, `version`, `kind` and `run(case)`.
     trust : Trust
         Lowest trust of limits that count.
+    verdicts : {"criteria", "verification", "both"}, optional
+        Verdicts that decide; default: the criteria for the built-in simulator, both for any other system.
     timeout_s : float
         Time limit of a program [s].
 
@@ -132,7 +157,8 @@ def run_and_grade(
         There is no such case or system.
     """
     tested = choose_system(system, timeout_s) if isinstance(system, str) else system
-    return GradedCase(run_case(_select_case(case), tested, trust))
+    selected = _select_case(case)
+    return _decide(run_case(selected, tested, trust), choose_verdicts(verdicts, tested.kind, [selected.id]))
 
 
 def grade_arrays(
@@ -147,6 +173,7 @@ def grade_arrays(
     support_uplift_m: ArrayLike | None = None,
     filter_applied_Hz: float | None = None,
     trust: Trust = "secondary",
+    verdicts: VerdictChoice | None = None,
 ) -> GradedCase:
     """Grade a record as a run of a case.
 
@@ -170,6 +197,8 @@ def grade_arrays(
         Cut-off frequency of a low-pass that was applied to the force [Hz].
     trust : Trust
         Lowest trust of limits that count.
+    verdicts : {"criteria", "verification", "both"}, optional
+        Verdicts that decide; default: the criteria for the built-in simulator, both for any other system.
 
     Returns
     -------
@@ -203,7 +232,12 @@ def grade_arrays(
             )
         except RecordInvalid as error:
             raise InputError(f"pantocheck_assess, {error.channel}", error.found, "Correct this argument.") from None
-    return GradedCase(grade_case(graded_case, Delivered(record), trust))
+    result = grade_case(graded_case, Delivered(record), trust)
+    return _decide(result, choose_verdicts(verdicts, "record", [graded_case.id]))
+
+
+def _decide(result: CaseResult, requested: tuple[VerdictName, ...]) -> GradedCase:
+    return GradedCase(Participation(requested=requested).decide_case(result), requested)
 
 
 def _select_case(name: str) -> Case:

@@ -9,13 +9,19 @@ from typing import Annotated, Any, Literal, get_args
 from pydantic import BaseModel, ConfigDict, Field
 
 from pantocheck.conformance.grading.verdicts import Verdict
-from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.input_files.trust import Computed, Trust
 
 RESULTS_SCHEMA = "pantocheck.results/1"
 STATEMENT = "self-declared conformance report, in the style of EN 50318"
 
+VerdictName = Literal["criteria", "verification"]
+"""One of two verdicts: by the EN 50318 criteria, or by verification against the converged solution up to 50 Hz."""
+
 RecordState = Literal["verified", "unverified", "contradicted"]
 """Result of the consistency checks of a record: confirmed, not all of them possible, or refuted."""
+
+BASELINE = "baseline"
+"""Quantity of a criterion that states why a comparison with a baseline is impossible."""
 
 LARGEST_RESULT = 1e15
 """Largest absolute value of a number in results.json."""
@@ -86,7 +92,7 @@ class Criterion(ResultsPart):
     lower: FiniteNumber | None
     upper: FiniteNumber | None
     verdict: Verdict
-    trust: Trust
+    trust: Trust | Computed
     source: str
     margin: float | None
     discretisation_error: float | None
@@ -96,6 +102,11 @@ class Criterion(ResultsPart):
     limit_uncertainty: float = 0.0
     close: list[str] = []
     baseline: float | None = None
+
+    @property
+    def is_drift(self) -> bool:
+        """Whether the criterion compares with a baseline, or states that a comparison is impossible."""
+        return self.baseline is not None or self.quantity == BASELINE
 
 
 class FilterFacts(ResultsPart):
@@ -241,12 +252,35 @@ class RecordFacts(ResultsPart):
     measured_digest: str | None = None
 
 
+class CaseVerification(ResultsPart):
+    """Comparison with the converged solution of the same equations, up to 50 Hz.
+
+    The limits of its criteria are computed: they never decide the verdict by the EN 50318 criteria.
+    """
+
+    verdict: Verdict
+    reason: Annotated[str | None, Field(description="reason why there are no criteria")]
+    confirmed_by: Annotated[str, Field(description="second formulation that confirms the converged values")]
+    digest: Annotated[str, Field(description="SHA-256 of the converged values and of the tolerances")]
+    omitted: Annotated[list[str], Field(description="quantities without a confirmed value, with the reason")]
+    criteria: list[Criterion]
+
+
 class CaseResult(ResultsPart):
-    """Result of one case. Keys of `quantities`, `skipped` and `traces` are the pantographs; `0` is the line."""
+    """Result of one case. Keys of `quantities`, `skipped` and `traces` are the pantographs; `0` is the line.
+
+    `verdict` is the worst of the requested verdicts in which the case takes part.
+    """
 
     id: str
     title: str
     verdict: Verdict
+    criteria_verdict: Annotated[
+        Verdict | None, Field(description="verdict by the EN 50318 criteria; null: made by an older version")
+    ] = None
+    verification: Annotated[
+        CaseVerification | None, Field(description="verification; null: the case has no converged values")
+    ] = None
     reason: str | None
     notes: list[str]
     warnings: list[str]
@@ -299,6 +333,19 @@ class Results(ResultsPart):
     system: SystemIdentity
     statement: str = STATEMENT
     verdict: Verdict
+    criteria_verdict: Annotated[
+        Verdict | None, Field(description="verdict by the EN 50318 criteria; null: made by an older version")
+    ] = None
+    verification_verdict: Annotated[
+        Verdict | None, Field(description="verdict by verification; null: no case has converged values")
+    ] = None
+    requested: Annotated[list[VerdictName], Field(description="verdicts that decide `verdict`, the worst of them")] = [
+        "criteria"
+    ]
+    verification_only: Annotated[
+        list[str],
+        Field(description="ids of the cases without limits that count, which take part in the verification only"),
+    ] = []
     trust: Trust
     started: str | None
     platform: Platform

@@ -25,6 +25,7 @@ from pantocheck.conformance.grading import (
     case_evaluation,
     extended_band,
     record_mismatch,
+    verification_limits,
 )
 from pantocheck.conformance.quantities import bands, filters, signals
 from pantocheck.conformance.records import record
@@ -40,7 +41,7 @@ ROWS = re.findall(
 MODULES: list[ModuleType] = [
     attachment, recomputation, force_content, force_copy, force_dynamics, implied_force, mean_force, roll_off, rounding,
     support_coincidence, support_passing, assessed_record, baseline, case_evaluation, extended_band, record_mismatch,
-    bands, filters, signals, record, block_bootstrap, force_checks, usable_sections, results_format, results_reading,
+    verification_limits, bands, filters, signals, record, block_bootstrap, force_checks, usable_sections, results_format, results_reading,
     traces,
 ]  # fmt: skip
 BY_FILE = {"/".join(module.__name__.split(".")[2:]) + ".py": module for module in MODULES}

@@ -22,6 +22,11 @@ from pantocheck.conformance.reports.certificate.scope_page import (
     list_identity_warnings,
     prepare_results,
 )
+from pantocheck.conformance.reports.certificate.two_verdicts import (
+    build_verdict_section,
+    case_verdict,
+    verification_blocks,
+)
 from pantocheck.conformance.reports.certificate.verdict_reasons import (
     build_headline,
     describe_record,
@@ -49,6 +54,7 @@ def build_certificate(results: dict[str, Any]) -> doc.Document:
         header=header,
         blocks=(
             *((doc.WarningBox(warnings),) if warnings else ()),
+            *build_verdict_section(prepared),
             *build_scope_section(prepared, dict(zip((case["id"] for case in cases), anchors, strict=True))),
             doc.Section("Reasons", reasons, anchor="reasons"),
             doc.Section("Cases", (_case_index(cases, anchors),), anchor="cases"),
@@ -79,12 +85,25 @@ def build_header(results: dict[str, Any]) -> doc.VerdictHeader:
 
 
 def _case_index(cases: list[dict[str, Any]], anchors: list[str]) -> doc.Table:
-    rows = tuple(
-        (doc.Link(case["id"], anchor), describe_origin(case), doc.VerdictMark(case["verdict"]), summarise_case(case))
+    shares = {"Case": 2.0, "Origin": 2.0, "Verdict": 0.0, "Criteria": 3.0}
+    rows: tuple[tuple[doc.RichText, ...], ...] = tuple(
+        (
+            doc.Link(case["id"], anchor),
+            describe_origin(case),
+            doc.VerdictMark(case_verdict(case, "criteria") or ""),
+            summarise_case(case),
+        )
         for case, anchor in zip(cases, anchors, strict=True)
     )
-    shares = {"Case": 2, "Origin": 2, "Verdict": 0, "Criteria": 3}
+    if any(case["verification"] for case in cases):
+        shares["Verification"] = 0.0
+        rows = tuple((*row, _verification_mark(case)) for row, case in zip(rows, cases, strict=True))
     return doc.Table(tuple(doc.Column(heading, share) for heading, share in shares.items()), rows)
+
+
+def _verification_mark(case: dict[str, Any]) -> doc.RichText:
+    verdict = case_verdict(case, "verification")
+    return "–" if verdict is None else doc.VerdictMark(verdict)
 
 
 def _case_section(case: dict[str, Any], anchor: str) -> doc.Section:
@@ -99,6 +118,7 @@ def _case_section(case: dict[str, Any], anchor: str) -> doc.Section:
         blocks.append(doc.WarningBox(warnings))
     if case["criteria"]:
         blocks.append(doc.Section("Criteria", criteria_blocks(case, anchor)))
+    blocks += verification_blocks(case, anchor)
     blocks += [doc.Section(table["caption"], (_study_table(table),)) for table in case["tables"]]
     bands, quantities = build_band_table(case), build_quantity_table(case)
     if bands.rows:

@@ -22,8 +22,8 @@ def prepare_results(results: dict[str, Any]) -> dict[str, Any]:
         for case in cleaned["cases"]
     ]
     scope = [step | {"cases": [names[case] for case in step["cases"]]} for step in cleaned["scope"]]
-    information = [names.get(case, case) for case in cleaned.get("information", ())]
-    return cleaned | {"cases": cases, "scope": scope, "information": information}
+    renamed = {key: [names.get(case, case) for case in cleaned[key]] for key in ("information", "verification_only")}
+    return cleaned | {"cases": cases, "scope": scope} | renamed
 
 
 def list_identity_warnings(results: dict[str, Any]) -> tuple[str, ...]:
@@ -78,7 +78,7 @@ def build_scope_section(results: dict[str, Any], anchors: dict[str, str]) -> tup
     """
     if not results["scope"]:
         return ()
-    verdicts = {case["id"]: case["verdict"] for case in results["cases"]}
+    verdicts = {case["id"]: case["criteria_verdict"] or case["verdict"] for case in results["cases"]}
     words = read_words()
     rows: list[tuple[doc.RichText, ...]] = []
     for step in results["scope"]:

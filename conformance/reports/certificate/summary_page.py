@@ -10,6 +10,7 @@ from pantocheck.conformance.reports.certificate.scope_page import (
     list_identity_warnings,
     prepare_results,
 )
+from pantocheck.conformance.reports.certificate.two_verdicts import NAMES, build_verdict_section
 from pantocheck.conformance.reports.certificate.verdict_reasons import describe_record, list_reasons
 from pantocheck.conformance.reports.words import read_words
 
@@ -19,7 +20,7 @@ def build_summary(results: dict[str, Any]) -> doc.Document:
     results = prepare_results(results)
     header = build_header(results)
     warnings = list_identity_warnings(results)
-    scope = build_scope_section(results, {})
+    scope = (*build_verdict_section(results), *build_scope_section(results, {}))
     first = (*((doc.WarningBox(warnings),) if warnings else ()), *scope, *list_reasons(results))
     return doc.Document(header.heading, header, (*first, *map(_case_section, results["cases"])))
 
@@ -32,6 +33,10 @@ def _case_section(case: dict[str, Any]) -> doc.Section:
         blocks.append(doc.WarningBox(tuple(case["warnings"])))
     if case["criteria"]:
         blocks.append(_criteria(case))
+    if (verification := case["verification"]) is not None:
+        blocks.append(doc.Paragraph((f"{NAMES['verification']}: ", doc.VerdictMark(verification["verdict"]))))
+        if verification["criteria"]:
+            blocks.append(_criteria(case | {"criteria": verification["criteria"]}))
     word = read_words()["verdict"][case["verdict"]]["word"]
     return doc.Section(f"{word}: {case['title']}", tuple(blocks))
 

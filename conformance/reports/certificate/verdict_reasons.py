@@ -6,6 +6,7 @@ from typing import Any
 
 from pantocheck.conformance.reports.certificate.criteria_table import criterion_title, format_signed, is_close
 from pantocheck.conformance.reports.certificate.scope_page import summarise_identity
+from pantocheck.conformance.reports.certificate.two_verdicts import select_criteria, verdict_sentences
 from pantocheck.conformance.reports.document import BulletList, Section
 from pantocheck.conformance.reports.page_text import format_beside_limits, format_limits
 from pantocheck.conformance.reports.words import name_owner, read_words
@@ -33,12 +34,12 @@ def build_headline(results: dict[str, Any]) -> str:
     verdicts = Counter(case["verdict"] for case in cases)
     accepted = verdicts["unverified"] if results["system"]["name"] in results["accepted_unverified"] else 0
     passed, verdicts["unverified"] = verdicts["pass"] + accepted, verdicts["unverified"] - accepted
-    grades = Counter(criterion["verdict"] for case in cases for criterion in case["criteria"])
+    grades = Counter(criterion["verdict"] for case in cases for criterion in select_criteria(results, case))
     counted = sum(grades[verdict] for verdict in ("pass", "fail", "skip", "error"))
     total = f"{len(cases)} {'case' if len(cases) == 1 else 'cases'}"
     if not cases:
         sentences = ["No case takes part in the verdict."]
-    elif passed == len(cases):
+    elif passed == len(cases) and results["verdict"] in ("pass", "unverified"):
         sentences = [f"All {counted} counted criteria in {total} lie inside their limits."]
     else:
         parts = [f"{passed} of {total} {'passes' if passed == 1 else 'pass'}"]
@@ -52,7 +53,7 @@ def build_headline(results: dict[str, Any]) -> str:
     if shown := results["information"]:
         more = f" and {len(shown) - NAMES_SHOWN} more" if len(shown) > NAMES_SHOWN else ""
         sentences.append(f"For information, not part of the verdict: {', '.join(shown[:NAMES_SHOWN])}{more}.")
-    return " ".join([*sentences, *summarise_identity(results)])
+    return " ".join([*sentences, *verdict_sentences(results), *summarise_identity(results)])
 
 
 def describe_record(case: dict[str, Any]) -> str | None:
@@ -101,7 +102,7 @@ CaseCriterion = tuple[dict[str, Any], dict[str, Any]]
 
 
 def _criteria(results: dict[str, Any]) -> Iterator[CaseCriterion]:
-    return ((case, criterion) for case in results["cases"] for criterion in case["criteria"])
+    return ((case, criterion) for case in results["cases"] for criterion in select_criteria(results, case))
 
 
 def _select(results: dict[str, Any], verdict: str) -> list[CaseCriterion]:
@@ -135,4 +136,5 @@ def _reason(pair: CaseCriterion) -> str:
 
 
 def _subject(case: dict[str, Any], criterion: dict[str, Any]) -> str:
-    return f"{case['id']}, {name_owner(criterion)}, {criterion_title(criterion)}"
+    verification = ", verification" if criterion["trust"] == "computed" else ""
+    return f"{case['id']}, {name_owner(criterion)}, {criterion_title(criterion)}{verification}"

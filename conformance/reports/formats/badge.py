@@ -4,6 +4,7 @@ from collections import Counter
 from typing import Any
 from xml.sax.saxutils import escape
 
+from pantocheck.conformance.reports.certificate.two_verdicts import select_criteria
 from pantocheck.conformance.reports.words import read_words
 
 LABEL = "EN 50318 style"
@@ -21,7 +22,7 @@ LETTER, MARGIN = 6.6, 8
 
 def summarise_verdict(results: dict[str, Any]) -> str:
     """Verdict with the numbers of passed and of counted criteria; a modified copy of a library case is named."""
-    verdicts = Counter(row["verdict"] for case in results["cases"] for row in case["criteria"])
+    verdicts = Counter(row["verdict"] for case in results["cases"] for row in select_criteria(results, case))
     counted = sum(count for verdict, count in verdicts.items() if verdict != "info")
     word = read_words()["verdict"][results["verdict"]]["word"].lower()
     text = f"{word} {verdicts['pass']}/{counted}" if counted else word

@@ -1,11 +1,13 @@
 """JUnit XML: one test suite per case, one test case per criterion, so that any CI server shows the verdicts."""
 
 from collections import Counter
+from collections.abc import Iterator
 from typing import Any
 from xml.etree import ElementTree
 
 from pantocheck.conformance.reports.certificate.case_facts import name_system
 from pantocheck.conformance.reports.certificate.scope_page import describe_origin, prepare_results
+from pantocheck.conformance.reports.certificate.two_verdicts import NAMES, list_criteria, select_criteria
 from pantocheck.conformance.reports.words import name_owner
 
 ELEMENTS = {"fail": "failure", "error": "error", "skip": "skipped", "info": "skipped", "unverified": "failure"}
@@ -28,10 +30,9 @@ def render_junit(results: dict[str, Any]) -> bytes:
 
 def _suite(case: dict[str, Any], results: dict[str, Any]) -> ElementTree.Element:
     # A case without criteria counts as one test, or the count would omit it.
-    tests = [_criterion_test(case["id"], row) for row in case["criteria"]] or [
-        _test(case["id"], "case", case["verdict"], case["reason"] or "no criteria")
-    ]
-    if case["criteria"] and case["record"]:
+    graded = [test for name in NAMES for test in _list_tests(case, results, name)]
+    tests = graded or [_test(case["id"], "case", case["verdict"], case["reason"] or "no criteria")]
+    if graded and case["record"]:
         tests.append(_record_test(case, results))
     if case["id"] in results["information"]:
         tests = [test if test[0].tag == "system-out" else _skip_test(test) for test in tests]
@@ -62,8 +63,16 @@ def _suite(case: dict[str, Any], results: dict[str, Any]) -> ElementTree.Element
     return suite
 
 
+def _list_tests(case: dict[str, Any], results: dict[str, Any], name: str) -> Iterator[ElementTree.Element]:
+    """Tests of one of the two verdicts of a case; skipped if this verdict does not decide."""
+    decisive = list(select_criteria(results, case))
+    for row in list_criteria(case, name):
+        test = _criterion_test(case["id"], row)
+        yield test if row in decisive else _skip_test(test)
+
+
 def _criterion_test(case: str, row: dict[str, Any]) -> ElementTree.Element:
-    kind = "" if row["baseline"] is None else "drift of "
+    kind = "verification: " if row["trust"] == "computed" else "" if row["baseline"] is None else "drift of "
     value = "no value" if row["value"] is None else f"{row['value']:.8g} {row['unit']}".rstrip()
     bounds = f"limits {_bound(row['lower'])} to {_bound(row['upper'])}"
     margin = "" if row["margin"] is None else f", margin {row['margin']:.4g}"

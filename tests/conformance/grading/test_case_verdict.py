@@ -9,16 +9,24 @@ from hypothesis import given
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
+from helpers.example_results import example, passing_case
 from pantocheck.conformance.authenticity.recomputation import find_discrepancies
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.command_line.results_output import EXIT_CODES
-from pantocheck.conformance.grading.case_verdict import Participation, judge_case
+from pantocheck.conformance.grading.case_verdict import Participation, judge_case, read_participation
 from pantocheck.conformance.grading.verdicts import WORST_FIRST, Verdict
 from pantocheck.conformance.plan import Plan, prepare_plan
 from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline
 from pantocheck.conformance.reports.formats.junit import render_junit
-from pantocheck.conformance.results.results_format import RecordFacts, RecordState
+from pantocheck.conformance.results.results_format import (
+    CaseResult,
+    CaseVerification,
+    RecordFacts,
+    RecordState,
+    Results,
+    VerdictName,
+)
 from pantocheck.conformance.runner import run_cases
 
 CODE = "published passing code (Wang et al.)"
@@ -133,3 +141,97 @@ def test_default_run_takes_the_cases_whose_limits_count() -> None:
     assert not ids & {"en50318-2018/ac-simple/320", "vovan2015/contact-force"}
     assert "en50318-2018/ac-simple/320" in {case.id for case in provisional.cases}
     assert secondary.participation.information == ()
+
+
+VERDICTS = st.sampled_from(WORST_FIRST)
+REQUESTS = st.sampled_from([("criteria",), ("verification",), ("criteria", "verification")])
+
+
+def case_result(
+    case_id: str, criteria: Verdict, verification: Verdict | None, drift: Verdict | None = None
+) -> CaseResult:
+    """Result of a case with two verdicts and, if stated, a criterion of its drift from a baseline."""
+    other = None
+    if verification is not None:
+        other = CaseVerification(
+            verdict=verification, reason=None, confirmed_by="another code", digest="", omitted=[], criteria=[]
+        )
+    template = CaseResult.model_validate(passing_case())
+    row = template.criteria[0].model_copy(update={"verdict": drift, "baseline": 1.0})
+    changes = {"id": case_id, "verdict": criteria, "criteria_verdict": criteria, "verification": other}
+    return template.model_copy(update=changes | {"criteria": [] if drift is None else [row]})
+
+
+def decide(participation: Participation, *cases: CaseResult) -> Results:
+    return participation.decide_run(Results.model_validate(example()).model_copy(update={"cases": list(cases)}))
+
+
+def rank(verdict: Verdict | None) -> int:
+    """Place of a verdict, the worst at 0; no verdict is none."""
+    return len(WORST_FIRST) if verdict is None else WORST_FIRST.index(verdict)
+
+
+@given(VERDICTS, st.none() | VERDICTS, REQUESTS)
+def test_case_is_as_good_as_the_worst_requested_verdict(
+    criteria: Verdict, verification: Verdict | None, requested: tuple[VerdictName, ...]
+) -> None:
+    """An error of the criteria is an error of the case, whichever verdict is requested."""
+    decided = Participation(requested=requested).decide_case(case_result("a", criteria, verification))
+    chosen = [criteria] if "criteria" in requested or criteria == "error" else []
+    chosen += [verification] if "verification" in requested and verification is not None else []
+    assert decided.verdict == (min(chosen, key=rank) if chosen else "info")
+
+
+@given(VERDICTS, st.none() | VERDICTS, st.none() | VERDICTS, REQUESTS)
+def test_verification_never_lifts_the_criteria(
+    criteria: Verdict, verification: Verdict | None, other: Verdict | None, requested: tuple[VerdictName, ...]
+) -> None:
+    results, without = (
+        decide(Participation(requested=requested), case_result("a", criteria, entry)) for entry in (verification, other)
+    )
+    assert results.criteria_verdict == without.criteria_verdict == criteria
+    if "criteria" in requested:
+        assert rank(results.verdict) <= rank(criteria)
+    if "verification" in requested:
+        assert rank(results.verdict) <= rank(verification or "info")
+    if requested == ("criteria",):
+        assert results.verdict == criteria
+
+
+@given(st.lists(st.tuples(VERDICTS, st.none() | VERDICTS), min_size=1, max_size=4), REQUESTS)
+def test_decision_is_stable(pairs: list[tuple[Verdict, Verdict | None]], requested: tuple[VerdictName, ...]) -> None:
+    """A certificate is verified by the same decision on its stated results."""
+    cases = [case_result(str(number), *pair) for number, pair in enumerate(pairs)]
+    results = decide(Participation(requested=requested, verification_only=("0",)), *cases)
+    assert read_participation(results).decide_run(results) == results
+
+
+def test_requested_verdict_without_a_case_is_informative() -> None:
+    alone = decide(Participation(requested=("verification",)), case_result("a", "pass", None))
+    assert (alone.verdict, alone.verification_verdict, alone.criteria_verdict) == ("info", None, "pass")
+    both = decide(Participation(requested=("criteria", "verification")), case_result("a", "pass", None))
+    assert (both.verdict, both.cases[0].verdict) == ("info", "pass")
+
+
+def test_case_without_a_limit_that_counts_is_judged_by_its_verification() -> None:
+    cases = case_result("a", "pass", "pass"), case_result("b", "info", "pass")
+    both = ("criteria", "verification")
+    assert decide(Participation(requested=both), *cases).verdict == "info"
+    only = decide(Participation(requested=both, verification_only=("b",)), *cases)
+    assert (only.verdict, only.criteria_verdict, only.verification_verdict) == ("pass", "pass", "pass")
+    shown = decide(Participation(requested=both, information=("b",)), cases[0], case_result("b", "fail", "fail"))
+    assert (shown.verdict, shown.criteria_verdict, shown.verification_verdict) == ("pass", "pass", "pass")
+
+
+def test_drift_from_a_baseline_counts_whichever_verdict_is_requested() -> None:
+    drifted = case_result("a", "fail", "pass", drift="fail")
+    assert decide(Participation(requested=("verification",)), drifted).verdict == "fail"
+    failed = case_result("a", "fail", "pass")
+    assert decide(Participation(requested=("verification",)), failed).verdict == "pass"
+
+
+def test_accepted_unverified_record_passes_both_verdicts() -> None:
+    both, name = ("criteria", "verification"), example()["system"]["name"]
+    case = case_result("a", "unverified", "unverified")
+    assert decide(Participation(requested=both), case).verdict == "unverified"
+    assert decide(Participation(requested=both, accepted_unverified=(name,)), case).verdict == "pass"

@@ -1,0 +1,113 @@
+"""Converged values of a case: quantities on which two formulations of the same equations agree."""
+
+from functools import cache
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from pantocheck.conformance.cases.library import library_folder
+from pantocheck.conformance.cases.limits import FiniteBound, QuantityName
+from pantocheck.conformance.input_files.sourced_table import InputTable, NonNegative, PositiveList, validation_problem
+from pantocheck.conformance.input_files.toml_file import read_model
+from pantocheck.conformance.input_files.trust import Computed
+from pantocheck.conformance.quantities.registry import QUANTITIES
+
+FOLDER = "converged"
+"""Folder of these files in the library; the path below it is the id of the case."""
+
+
+class OwnedQuantity(InputTable):
+    """Quantity of a pantograph or of the line."""
+
+    quantity: QuantityName
+    pantograph: Annotated[
+        int | None,
+        Field(ge=1, le=20, description="number of the pantograph in running order; none for a quantity of the line"),
+    ] = None
+
+    @model_validator(mode="after")
+    def _owned(self) -> "OwnedQuantity":
+        if (QUANTITIES[self.quantity].scope == "pantograph") != (self.pantograph is not None):
+            raise validation_problem(
+                "pantograph",
+                f"{self.quantity} has {'a' if self.pantograph else 'no'} pantograph",
+                "Quantities of a pantograph have its number, those of the line and of a static check have none.",
+            )
+        return self
+
+    @property
+    def owner(self) -> int:
+        """Number of the pantograph, from 1; 0 for the line."""
+        return self.pantograph or 0
+
+
+class ConvergedValue(OwnedQuantity):
+    """Converged value with its interval, and the value of the second formulation."""
+
+    value: Annotated[FiniteBound, Field(description="extrapolated value, in the unit of the quantity")]
+    half_width: Annotated[NonNegative, Field(description="half-width of the interval of the value")]
+    order: Annotated[
+        float | None, Field(description="observed order of convergence; none where it is not observed")
+    ] = None
+    second_value: Annotated[FiniteBound, Field(description="value of the second formulation")]
+    difference_pct: Annotated[
+        FiniteBound, Field(description="second value minus value, relative to the value or the dynamic part [%]")
+    ]
+
+
+class OmittedValue(OwnedQuantity):
+    """Quantity without a converged value."""
+
+    reason: Annotated[str, Field(min_length=1, max_length=1000)]
+
+
+class Formulation(InputTable):
+    """Formulation of the equations of a case, with the meshes from which its values are extrapolated."""
+
+    name: Annotated[str, Field(min_length=1, max_length=1000)]
+    spacing_m: Annotated[PositiveList, Field(description="element lengths or distances of points, the coarsest first")]
+    time_step_s: Annotated[PositiveList, Field(description="time steps, the coarsest first")]
+
+
+class ConvergedFile(InputTable):
+    """Content of a file of converged values."""
+
+    schema_: Annotated[Literal["pantocheck.converged/1"], Field(alias="schema")]
+    case: Annotated[str, Field(description="id of the case", max_length=200)]
+    case_digest: Annotated[str, Field(description="digest of the inputs of the case", max_length=100)]
+    trust: Computed
+    uplift_force_N: Annotated[
+        tuple[float, ...], Field(strict=False, max_length=20, description="uplift force of each pantograph [N]")
+    ] = ()
+    reference: Formulation
+    second: Formulation
+    value: Annotated[tuple[ConvergedValue, ...], Field(strict=False, max_length=1000)] = ()
+    omitted: Annotated[tuple[OmittedValue, ...], Field(strict=False, max_length=1000)] = ()
+
+    @model_validator(mode="after")
+    def _distinct(self) -> "ConvergedFile":
+        seen = set()
+        for entry in (*self.value, *self.omitted):
+            if (entry.owner, entry.quantity) in seen:
+                raise validation_problem("value", f"{entry.quantity} occurs twice", "Give each quantity once.")
+            seen.add((entry.owner, entry.quantity))
+        return self
+
+
+def find_converged(case_id: str) -> ConvergedFile | None:
+    """Converged values of a library case; None if there are none."""
+    return _read_library().get(case_id)
+
+
+def converged_path(case_id: str) -> Path:
+    """File of the converged values of a library case."""
+    return library_folder() / FOLDER / f"{case_id}.toml"
+
+
+@cache
+def _read_library() -> dict[str, ConvergedFile]:
+    """Converged values of all library cases, by id of the case."""
+    paths = sorted((library_folder() / FOLDER).rglob("*.toml"))
+    files = (read_model(path, ConvergedFile, "converged values") for path in paths)
+    return {file.case: file for file in files}
