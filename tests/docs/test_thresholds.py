@@ -41,8 +41,8 @@ ROWS = re.findall(
 MODULES: list[ModuleType] = [
     attachment, recomputation, force_content, force_copy, force_dynamics, implied_force, mean_force, roll_off, rounding,
     support_coincidence, support_passing, assessed_record, baseline, case_evaluation, extended_band, record_mismatch,
-    verification_limits, bands, filters, signals, record, block_bootstrap, force_checks, usable_sections, results_format, results_reading,
-    traces,
+    verification_limits, bands, filters, signals, record, block_bootstrap, force_checks, usable_sections,
+    results_format, results_reading, traces,
 ]  # fmt: skip
 BY_FILE = {"/".join(module.__name__.split(".")[2:]) + ".py": module for module in MODULES}
 FOLDERS = ("quantities", "consistency", "grading", "records", "results", "authenticity")
