@@ -117,7 +117,7 @@ SIMULATED = {
     "largest_damping_ratio": 0.005,
     "damping_decrease_pct": 0.005,
     "damping_rise_pct": 0.005,
-    "dropper_transition": 0.05,
+    "dropper_transition": 0.12,
     "contact_loss_pct": 0.2,
     "change_": math.inf,
     "rear_over_front": math.inf,
