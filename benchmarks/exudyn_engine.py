@@ -6,7 +6,6 @@ object, with its tangent. Method (average acceleration), time step and elements 
 solver, Newton's method and its tolerances are those of Exudyn.
 """
 
-import math
 import time
 from itertools import pairwise
 
@@ -44,7 +43,7 @@ class DroppersAndContact:
 
     def __init__(self, line: DiscretisedLine, passage: Passage) -> None:
         """Line and pantographs at rest, and the matrices of both."""
-        stepping = build_kernel_arrays(line, passage.time_step, math.inf)
+        stepping = build_kernel_arrays(line, passage.time_step)
         motion, train = start_motion(line, stepping, passage)
         matrices = assemble_matrices(line)
         self.line, self.passage, self.free = line, passage, matrices.free

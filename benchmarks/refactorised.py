@@ -1,6 +1,5 @@
 """Independent time integration: sparse matrices of scipy, factored for every set of slack droppers."""
 
-import math
 import time
 from itertools import pairwise
 
@@ -29,7 +28,7 @@ def run_refactorised(line: DiscretisedLine, passage: Passage) -> tuple[np.ndarra
     tuple of ((T, P) ndarray, float)
         Contact force [N], process time of the steps [s].
     """
-    motion, train = start_motion(line, build_kernel_arrays(line, passage.time_step, math.inf), passage)
+    motion, train = start_motion(line, build_kernel_arrays(line, passage.time_step), passage)
     matrices, connectors, dt = assemble_matrices(line), line.connectors, passage.time_step
     n, sizes = matrices.free.size, [p.head.size for p in passage.pantographs]
     at = n + np.concatenate([[0], np.cumsum(sizes)])

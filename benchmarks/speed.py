@@ -22,12 +22,13 @@ import numpy as np
 from lines import ac_simple, passage, staggered, vertical
 
 from pantocheck.model import DiscretisedLine, Passage, discretise, simulate_passage
-from pantocheck.model.dynamics.active_window import causal_reach
 
 STEP, ELEMENT = 1e-3, 0.5
 SPANS = (10, 20, 30, 40, 60)
 RUN_SPANS = 4
 """Simulated spans, for any length of the line."""
+KEPT_BEHIND = 82.5
+"""Distance behind the train with known motion [m]: 1.5 spans, as in `pantocheck run`."""
 WHOLE_RUN = 14
 """Simulated spans on a line of 20 spans, with the second pantograph 200 m behind the first."""
 
@@ -51,8 +52,8 @@ def measure_kernel(
     built = staggered(case)
     line = discretise(vertical(case, discretise(built, ELEMENT).state) if plane else built, ELEMENT)
     way = passage(case, line, STEP, pantographs, 55.0 * (1 + run_spans), math.inf)
-    causal = causal_reach(line, way.speed, way.duration)
-    ratio, force = measure(line, replace(way, reach=causal if reach is None else reach))
+    window = {"kept_behind": KEPT_BEHIND} if reach is None else {"reach": reach}
+    ratio, force = measure(line, replace(way, **window))
     return ratio, float(force[0].std())
 
 

@@ -72,8 +72,9 @@ class Discretisation(InputTable):
         float | None,
         Field(
             ge=20,
-            description="half-width of the active window around a pantograph [m]; default: wide enough for every wave "
-            "that returns to a pantograph before the end of the run",
+            description="largest half-width of the active window around the train [m]; default: wide enough for every "
+            "wave that returns to a pantograph before the end of the run. Uplift that waves from a narrower window can "
+            "have reached is missing in the record",
         ),
     ] = None
 

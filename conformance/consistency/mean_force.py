@@ -30,7 +30,7 @@ LIFTS = 2.0
 
 def _check_mean_force(case: Case, signals: RecordSignals) -> Finding | None:
     try:
-        uplift = float(signals.line.uplift.max())
+        uplift = signals.line.largest_uplift
         parts = zip(signals.pantographs.items(), case.pantographs, case.file.pantograph, strict=True)
         return worst_finding(
             finding

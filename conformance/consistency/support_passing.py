@@ -114,7 +114,8 @@ class _Passages:
     def kinks(self, number: int) -> tuple[RealArray, RealArray]:
         """Kink of the uplift over F L / T, positive in the expected direction, and sum of F^2 [N2], for every shift.
 
-        Passages outside the record, or while another pantograph passes the same support, do not count.
+        Passages outside the record, without a known uplift, or while another pantograph passes the same support, do not
+        count.
         """
         record, wire = self._signals.record, self._case.line.contact_wire
         time, delay = record.time, self.length / record.speed
@@ -126,8 +127,10 @@ class _Passages:
             counted = (moment >= time[0] + delay) & (moment <= time[-1] - delay)
             for other in np.delete(record.position, number - 1, axis=0):
                 counted &= np.abs(np.interp(moment, time, other) - support) > PASSING_TOLERANCE_M
+            bend = before - 2 * passing + after
+            counted &= np.isfinite(bend)
             load = np.where(counted, np.interp(moment, time, force), 0.0)
-            products += np.where(counted, before - 2 * passing + after, 0.0) * load
+            products += np.where(counted, bend, 0.0) * load
             squares += load**2
         expected = -np.sign(wire.tension_N - wire.mass_kg_m * record.speed**2) * self.length
         scale = wire.number * wire.tension_N / (expected or np.inf)

@@ -159,11 +159,11 @@ LINE_QUANTITIES: tuple[LineQuantity, ...] = (
         name="max_uplift_at_support_mm",
         label="Maximum uplift at a support",
         unit="mm",
-        definition="largest unfiltered uplift of the contact wire at any support of the analysis section, "
-        "over the whole record",
+        definition="largest unfiltered uplift of the contact wire at any support of the analysis section, until the "
+        "last pantograph is 60 m past that support",
         needs=ALL_SUPPORTS,
         source=EN50318,
         tables=("damping models",),
-        compute=lambda signals: float(1e3 * signals.uplift.max()),
+        compute=lambda signals: 1e3 * signals.largest_uplift,
     ),
 )

@@ -57,7 +57,7 @@ class Record:
     support_position : (s,) ndarray or None
         Positions of the supports [m].
     support_uplift : (s, n) ndarray or None
-        Uplift of the contact wire at the supports [m].
+        Uplift of the contact wire at the supports [m]; NaN where it is not known.
 
     Raises
     ------
@@ -118,13 +118,15 @@ class Record:
 
 
 _ARRAYS = frozenset({"time", "position", "force", "contact_height", "support_position", "support_uplift"})
+_WITH_GAPS = frozenset({"support_uplift"})
+"""Arrays that may hold NaN: a simulation that moves only a part of the line does not know the motion far behind it."""
 
 
 def _check_array(name: str, value: ArrayLike) -> RealArray:
     array = np.array(value, dtype=np.float64)
     if array.size > MAX_SAMPLES:
         raise RecordInvalid(name, f"has {array.size} values, accepted are {MAX_SAMPLES}")
-    bad = np.flatnonzero(~np.isfinite(array))
+    bad = np.flatnonzero(np.isinf(array) if name in _WITH_GAPS else ~np.isfinite(array))
     if bad.size:
         raise RecordInvalid(
             name, f"{bad.size} values are not finite, the first at sample {bad[0] % array.shape[-1] + 1}"

@@ -50,7 +50,7 @@ class RecordSignals:
             record.support_position,
             record.support_uplift,
             self.line_supports,
-            float(record.position[:, -1].min()),
+            record.position.min(axis=0),
         )
 
     @cached_property

@@ -135,7 +135,7 @@ def build_record(
     """
     for name in _SAMPLED:
         value = getattr(samples, name)
-        if value is not None and not np.isfinite(value).all():
+        if name != "uplift" and value is not None and not np.isfinite(value).all():
             bad = np.argwhere(~np.isfinite(value.T))[:, 0]
             raise RecordInvalid(name, f"{bad.size} values are not finite, the first at sample {bad[0] + 1}")
     time, position = complete_samples(samples, sidecar)

@@ -50,14 +50,18 @@ def build_pantograph_traces(
 
 
 def build_uplift_traces(signals: RecordSignals) -> list[UpliftTrace]:
-    """Uplift at every support of the analysis section, over the whole record."""
+    """Uplift at every support of the analysis section, over the whole record where it is known."""
     try:
         supports, uplift = signals.line.supports, signals.line.uplift
     except QuantityUnavailable:
         return []
     return [
-        UpliftTrace(support_m=float(x), time_s=thin_series(signals.record.time), uplift_mm=thin_series(1e3 * trace))
-        for x, trace in zip(supports, uplift, strict=True)
+        UpliftTrace(
+            support_m=float(x),
+            time_s=thin_series(signals.record.time[known]),
+            uplift_mm=thin_series(1e3 * trace[known]),
+        )
+        for x, trace, known in zip(supports, uplift, np.isfinite(uplift), strict=True)
     ]
 
 

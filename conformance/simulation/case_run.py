@@ -1,5 +1,6 @@
 """Run of a case on the reference simulator: passage, simulation and record."""
 
+import math
 import time
 from dataclasses import dataclass, replace
 
@@ -9,6 +10,7 @@ from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import Discretisation
 from pantocheck.conformance.cases.pantograph_file import PantographFile
+from pantocheck.conformance.quantities.signals import UPLIFT_STRETCH_M
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.records.sidecar_tables import RunTable
@@ -16,8 +18,11 @@ from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 from pantocheck.conformance.simulation.static_quantities import sample_span
 from pantocheck.conformance.simulation.uplift_tuning import tune_uplift
 from pantocheck.model import DiscretisedLine, History, Passage, simulate_passage
-from pantocheck.model.dynamics.active_window import causal_reach
 from pantocheck.model.statics.elasticity import static_uplift
+
+KEPT_SPANS = 1.5
+"""Smallest distance behind the train with known uplift at the end of a run [spans]: the check of the support passing
+shifts the pantographs by 1.2 spans."""
 
 
 @dataclass(frozen=True)
@@ -110,7 +115,6 @@ def build_passage(
         for file, force in zip(case.pantographs, uplift_forces, strict=True)
     ]
     duration = (case.end - case.start) / case.speed
-    reach = causal_reach(line, case.speed, duration)
     return Passage(
         pantographs=tuple(pantographs),
         start=case.start_positions,
@@ -118,7 +122,8 @@ def build_passage(
         duration=duration,
         time_step=discretisation.time_step_s,
         watched=_watched_supports(case, line),
-        reach=reach if discretisation.reach_m is None else min(discretisation.reach_m, reach),
+        kept_behind=max(KEPT_SPANS * case.line.geometry.span_m, UPLIFT_STRETCH_M),
+        reach=math.inf if discretisation.reach_m is None else discretisation.reach_m,
     )
 
 

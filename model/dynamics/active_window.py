@@ -1,11 +1,15 @@
-"""Active window: stations that no wave can have reached yet, or from which none can return in time, are held at rest.
+"""Active window: stations that no wave can have reached yet, or that are not needed any more, are held at rest.
 
 time ^                           With wave speed c and speed v of the pantograph, a disturbance from the pantograph
-     |  \\      /pantograph       travels along the characteristics x = x0 +- c t. Outside this cone the line is
-     |   \\    / /                still at rest. The domain of dependence of the contact force is narrower: a wave
-     |    \\  / /                 must also return to the pantograph before the end of the simulation.
-     |     \\//
+ end +......./--x--\\             travels along the characteristics x = x0 +- c t: the domain of influence. Outside of
+     |     /   /     \\           it, the line is still at rest. The result at the end depends on a second cone: from
+     |   /    /    /             the stations outside of it no wave returns in time. The window is the intersection of
+     |    \\  /   /               both, a rhombus around the path of the pantograph.
+     |     \\/ /
      +------x0-------> x
+
+A station that has left the window is cut off from the line. Its motion, and that of every station which a wave from the
+cut can have reached, is unknown: a recording holds NaN there.
 """
 
 import math
@@ -13,15 +17,17 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from pantocheck.model.arrays import Array
 from pantocheck.model.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.motion import Motion
+from pantocheck.model.dynamics.passage import Passage
 from pantocheck.model.dynamics.train import Train
 
 MIN_HALF_WIDTH = 30.0
-"""Half-width that is active around a pantograph from the first step [m]: covers the influence of one step and fast
-short waves."""
+"""Half-width that is active around a pantograph from the first step, and distance from a cut at which motion counts as
+known [m]: covers the influence of one step and fast short waves. At 10 m they are below 1e-9 m."""
 
 
 class WindowArrays(NamedTuple):
@@ -31,15 +37,25 @@ class WindowArrays(NamedTuple):
     ----------
     position : (S,) ndarray
         Positions of the stations [m].
-    reach : float
-        Largest half-width around the pantographs; infinite: the whole line is active [m].
-    wave_front_speed : float
+    wave_speed : float
         Upper bound of the wave speed, which moves the edges of the window [m/s].
+    duration : float
+        Simulated time [s].
+    kept_behind, kept_ahead : float
+        Distances behind the last and ahead of the first pantograph within which the motion is known until the end [m].
+    reach : float
+        Largest half-width around the pantographs [m].
+    whole_line : bool
+        Whether the whole line is active at all times.
     """
 
     position: Array
+    wave_speed: float
+    duration: float
+    kept_behind: float
+    kept_ahead: float
     reach: float
-    wave_front_speed: float
+    whole_line: bool
 
 
 class Window(NamedTuple):
@@ -49,10 +65,21 @@ class Window(NamedTuple):
     last: int
 
 
-def build_window_arrays(line: DiscretisedLine, reach: float) -> WindowArrays:
-    """Limits of the active window of a line; with an infinite reach the whole line is active."""
-    front = max_wave_speed(line) if math.isfinite(reach) else math.inf
-    return WindowArrays(line.mesh.position, reach, front)
+def build_window_arrays(line: DiscretisedLine, passage: Passage) -> WindowArrays:
+    """Limits of the active window of a passage.
+
+    Without finite limits the whole line is active, as it is for a train faster than the waves and an infinite reach.
+    """
+    c = max_wave_speed(line)
+    kept = passage.kept_behind if passage.speed < c else math.inf
+    ahead = math.inf if math.isinf(kept) else 0.0
+    whole = math.isinf(min(kept, passage.reach))
+    return WindowArrays(line.mesh.position, c, passage.duration, kept, ahead, passage.reach, whole)
+
+
+def whole_line(line: DiscretisedLine) -> WindowArrays:
+    """Active window that is the whole line at all times."""
+    return WindowArrays(line.mesh.position, max_wave_speed(line), math.inf, math.inf, math.inf, math.inf, True)
 
 
 def max_wave_speed(line: DiscretisedLine) -> float:
@@ -63,39 +90,32 @@ def max_wave_speed(line: DiscretisedLine) -> float:
     return 1.1 * math.sqrt(max(wire.tension / wire.mass_per_length for wire in line.catenary.wires))
 
 
-def causal_reach(line: DiscretisedLine, speed: float, duration: float) -> float:
-    """Half-width of the active window outside which the line cannot influence the contact forces.
+@njit(cache=True)
+def influence(limits: WindowArrays, speed: float, elapsed: float) -> tuple[float, float]:
+    """Largest distances behind the last and ahead of the first pantograph that waves can have reached [m]."""
+    front = MIN_HALF_WIDTH + limits.wave_speed * elapsed
+    return front + speed * elapsed, max(front - speed * elapsed, MIN_HALF_WIDTH)
 
-    A wave of speed c needs the time R / (c - v) to get R ahead of a pantograph of speed v, and R / (c + v) to return
-    from there; behind the pantograph the two are exchanged. It returns after the end if R > duration (c^2 - v^2) / 2c.
 
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Discretised line.
-    speed : float
-        Speed of the pantographs [m/s].
-    duration : float
-        Simulated time [s].
+@njit(cache=True)
+def half_widths(limits: WindowArrays, speed: float, elapsed: float) -> tuple[float, float]:
+    """Half-widths of the window behind the last and ahead of the first pantograph at a time after the start [m].
 
-    Returns
-    -------
-    float
-        Half-width; infinite for a train faster than the waves [m].
+    A wave needs the time d / (c - v) to catch up a distance d behind a pantograph, and d / (c + v) from ahead.
     """
-    c = max_wave_speed(line)
-    return duration * (c * c - speed * speed) / (2 * c) if speed < c else math.inf
+    behind, ahead = influence(limits, speed, elapsed)
+    left = max(limits.duration - elapsed, 0.0)
+    behind = min(behind, MIN_HALF_WIDTH + limits.kept_behind + max(limits.wave_speed - speed, 0.0) * left)
+    ahead = min(ahead, MIN_HALF_WIDTH + limits.kept_ahead + (limits.wave_speed + speed) * left)
+    return min(behind, limits.reach), min(ahead, limits.reach)
 
 
 @njit(cache=True)
 def active_window(limits: WindowArrays, train: Train) -> Window:
-    """Stations within reach of a pantograph and behind its wave fronts; the whole line without a pantograph."""
+    """Stations inside the window; the whole line without a pantograph."""
     first, last = 0, limits.position.size - 1
-    if train.position.size > 0:
-        front = MIN_HALF_WIDTH + limits.wave_front_speed * train.elapsed[0]
-        travelled = train.speed[0] * train.elapsed[0]
-        behind = min(limits.reach, front + travelled)
-        ahead = min(limits.reach, max(front - travelled, MIN_HALF_WIDTH))
+    if train.position.size > 0 and not limits.whole_line:
+        behind, ahead = half_widths(limits, train.speed[0], train.elapsed[0])
         first = max(first, np.searchsorted(limits.position, train.position.min() - behind))
         last = min(last, np.searchsorted(limits.position, train.position.max() + ahead))
     return Window(first, last)
@@ -110,3 +130,50 @@ def pin_neighbours(motion: Motion, window: Window) -> None:
                 for i in range(1, 3):
                     motion.w[i, b, s] = 0.0
                     motion.r[i, b, s] = 0.0
+
+
+def find_unknown(limits: WindowArrays, passage: Passage, time: Array) -> NDArray[np.bool_]:
+    """Find the times at which the motion of each watched station is unknown: a wave from a cut can have reached it.
+
+    Parameters
+    ----------
+    limits : WindowArrays
+        Limits of the active window.
+    passage : Passage
+        Train, its speed and the U watched stations.
+    time : (T,) ndarray
+        Times at the ends of the steps [s].
+
+    Returns
+    -------
+    (U, T) ndarray of bool
+        True where the motion is unknown.
+    """
+    unknown = np.zeros((len(passage.watched), time.size), dtype=np.bool_)
+    if limits.whole_line:
+        return unknown
+    position = np.array([position for _, position in passage.watched])[:, None]
+    widths = _half_widths_and_influence(limits, passage.speed, time)
+    for side, start, end_of_line, direction in (
+        (0, min(passage.start), limits.position[0], -1),
+        (1, max(passage.start), limits.position[-1], 1),
+    ):
+        edge = start + passage.speed * time + direction * widths[0, side]
+        cut = np.flatnonzero((widths[0, side] < widths[1, side]) & (direction * edge < direction * end_of_line))
+        if cut.size:
+            # No edge moves faster than the waves, so that no wave of a later cut overtakes that of the first.
+            first = cut[0]
+            travelled = MIN_HALF_WIDTH + limits.wave_speed * (time[first:] - time[first])
+            wave = edge[first] - direction * travelled
+            unknown[:, first:] |= direction * (position - wave) >= 0
+    return unknown
+
+
+@njit(cache=True)
+def _half_widths_and_influence(limits: WindowArrays, speed: float, time: Array) -> Array:
+    """Half-widths and influence at each time, (2, 2, T): behind and ahead [m]."""
+    widths = np.empty((2, 2, time.size))
+    for n in range(time.size):
+        widths[0, 0, n], widths[0, 1, n] = half_widths(limits, speed, time[n])
+        widths[1, 0, n], widths[1, 1, n] = influence(limits, speed, time[n])
+    return widths

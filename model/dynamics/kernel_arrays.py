@@ -1,13 +1,12 @@
 """Kernel arrays: everything of a line that the time step needs and that does not change during a simulation."""
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
 from pantocheck.model.arrays import Array
 from pantocheck.model.discretised_line import DiscretisedLine
-from pantocheck.model.dynamics.active_window import WindowArrays, build_window_arrays
+from pantocheck.model.dynamics.active_window import WindowArrays, whole_line
 from pantocheck.model.dynamics.block_tridiagonal import Factor
 from pantocheck.model.dynamics.connector_step import ConnectorArrays, build_connector_arrays, connector_ends
 from pantocheck.model.dynamics.contact_step import (
@@ -86,7 +85,7 @@ class Workspace(NamedTuple):
 
 
 def build_kernel_arrays(
-    line: DiscretisedLine, time_step: float, reach: float = math.inf, load: Load | None = None
+    line: DiscretisedLine, time_step: float, window: WindowArrays | None = None, load: Load | None = None
 ) -> KernelArrays:
     """Build the arrays of the time step.
 
@@ -96,8 +95,9 @@ def build_kernel_arrays(
         Discretised line.
     time_step : float
         Time step [s].
-    reach : float
-        Half-width of the active window as in `Passage` [m].
+    window : WindowArrays or None
+        Limits of the active window; None: the whole line is active. Modal damping makes the whole line active, too: a
+        mode moves all of it.
     load : Load or None
         Position of an external load.
 
@@ -108,15 +108,13 @@ def build_kernel_arrays(
     """
     factor = factorise(line.beams, time_step)
     terms = build_modal_terms(line)
-    if terms.damping.size:
-        reach = math.inf  # a mode moves the whole line
     stations = line.mesh.position.size
     contact_loads = [(row, s) for row in line.contact_rows for s in range(stations)]
     sample = contact_loads[:: max(1, stations // 200)]
     half_width = column_half_width(factor, connector_ends(line.connectors) + sample)
     return KernelArrays(
         time_step=time_step,
-        window=build_window_arrays(line, reach),
+        window=whole_line(line) if window is None or terms.damping.size else window,
         factor=factor,
         wires=build_wire_arrays(line.beams),
         connectors=build_connector_arrays(line.connectors, factor, time_step, half_width),

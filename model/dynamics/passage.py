@@ -25,9 +25,13 @@ class Passage:
         Time step [s].
     watched : tuple of (str, float)
         Wire and position of the stations whose vertical motion is recorded [-, m].
+    kept_behind : float
+        Distance behind the last pantograph within which the motion is known until the end of the simulation [m].
+        Stations from which no wave returns there, or to a pantograph, in time are held at rest. Infinite: the whole
+        line is active.
     reach : float
-        Half-width of the active window around the pantographs [m]: stations farther away, or ahead of the wave front,
-        are held at rest. Infinite: the whole line is active.
+        Largest half-width of the active window around the pantographs [m]: stations farther away are held at rest,
+        although waves may return from there. Infinite: no limit.
     """
 
     pantographs: tuple[Pantograph, ...]
@@ -36,6 +40,7 @@ class Passage:
     duration: float
     time_step: float
     watched: tuple[tuple[str, float], ...] = ()
+    kept_behind: float = math.inf
     reach: float = math.inf
 
 
@@ -54,7 +59,8 @@ class History:
     height : (P, T) ndarray
         Height of the head above the contact wire at the supports [m].
     motion : (U, T, 3) ndarray
-        Vertical displacement, velocity and acceleration at the watched stations [m, m/s, m/s2].
+        Vertical displacement, velocity and acceleration at the watched stations [m, m/s, m/s2]; NaN while it is
+        unknown, see `active_window`.
     """
 
     time: Array

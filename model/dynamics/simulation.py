@@ -6,6 +6,7 @@ import numpy as np
 
 from pantocheck.model.arrays import Array
 from pantocheck.model.discretised_line import DiscretisedLine
+from pantocheck.model.dynamics.active_window import build_window_arrays, find_unknown
 from pantocheck.model.dynamics.contact_step import ContactArrays
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, build_kernel_arrays
 from pantocheck.model.dynamics.motion import Motion, motion_at_rest
@@ -47,7 +48,7 @@ def simulate_passage(
         The forces of a time step did not converge.
     """
     _check_passage(line, passage)
-    kernel = build_kernel_arrays(line, passage.time_step, passage.reach)
+    kernel = build_kernel_arrays(line, passage.time_step, build_window_arrays(line, passage))
     motion, train = start_motion(line, kernel, passage)
     steps = round(passage.duration / passage.time_step)
     recording = allocate_recording(line, passage.watched, steps, len(passage.pantographs))
@@ -55,7 +56,9 @@ def simulate_passage(
     time: Array = passage.time_step * np.arange(1, steps + 1).astype(np.float64)
     position: Array = np.array(passage.start)[:, None] + passage.speed * time
     force, height = recording.contact.T.copy(), recording.height.T.copy()
-    return History(time, position, force, height, recording.motion.transpose(1, 0, 2).copy())
+    watched = recording.motion.transpose(1, 0, 2).copy()
+    watched[find_unknown(kernel.window, passage, time)] = np.nan
+    return History(time, position, force, height, watched)
 
 
 def _check_passage(line: DiscretisedLine, passage: Passage) -> None:

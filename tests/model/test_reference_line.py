@@ -9,7 +9,6 @@ from scipy.signal import butter, sosfiltfilt
 from helpers.lines import PANTOGRAPH_2002, Array, simple_line
 from pantocheck.model import History, Kind, Passage, Rayleigh, chain, simulate_passage
 from pantocheck.model.discretised_line import discretise
-from pantocheck.model.dynamics.active_window import causal_reach
 
 # Damping and limits: published_values.toml, en50318_2002.
 DAMPING = {kind: Rayleigh(0.0125, 1e-4) for kind in Kind}
@@ -59,17 +58,6 @@ def test_active_window_of_four_spans_changes_no_printed_digit() -> None:
     whole, near = passage(250.0), passage(250.0, reach=240.0)
     assert filtered_force(near).std() == pytest.approx(filtered_force(whole).std(), rel=1e-4)
     np.testing.assert_allclose(near.force, whole.force, rtol=0, atol=0.1)
-
-
-def test_causal_reach_changes_the_forces_by_rounding_only() -> None:
-    """1e-9 N of 100 N, and the same share of the largest uplift at the supports, caused by the pantograph."""
-    line = discretise(simple_line(spans=10, damping=DAMPING), 0.5)
-    reach = causal_reach(line, 250.0 / 3.6, 400.0 / (250.0 / 3.6))
-    assert 200.0 < reach < 500.0  # otherwise the whole line of 600 m is active, and nothing is tested
-    whole, near = passage(250.0), passage(250.0, reach=reach)
-    np.testing.assert_allclose(near.force, whole.force, rtol=0, atol=1e-9)
-    largest, expected = (history.motion[:, :, 0].max(axis=1) for history in (near, whole))
-    np.testing.assert_allclose(largest, expected, rtol=0, atol=1e-12)
 
 
 def test_simulate_passage_is_reproducible_to_the_last_bit() -> None:

@@ -7,7 +7,13 @@ from numpy.typing import NDArray
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.filters import LowPass
-from pantocheck.conformance.quantities.signals import ForceChannel, LineSignals, PantographSignals, edge_warnings
+from pantocheck.conformance.quantities.signals import (
+    ForceChannel,
+    LineSignals,
+    PantographSignals,
+    edge_warnings,
+    has_gaps,
+)
 from pantocheck.conformance.quantities.unavailable import SectionNotCovered
 from pantocheck.conformance.records.measured.force_checks import detect_filtered, find_outliers
 from pantocheck.conformance.records.measured.sample_positions import PlacedSamples, missing_share, place_samples
@@ -118,7 +124,7 @@ def prepare_record(
     for row in range(samples.force.shape[0]):
         pantographs[row + 1], remarks = _prepare_pantograph(placed, row, settings)
         warnings += remarks
-    line, remarks = _prepare_line(samples, section, float(position[:, -1].min()))
+    line, remarks = _prepare_line(samples, section, position.min(axis=0))
     mean_speed = float(recorded[-1][steady].mean())
     seconds = _duration(pantographs[1])
     length = f"Evaluated: {seconds:.4g} s, about {seconds * nominal / 1000:.3g} km of line."
@@ -188,8 +194,10 @@ def _outlier_warnings(force: RealArray, position: RealArray, name: str) -> list[
     ]
 
 
-def _prepare_line(samples: RecordSamples, section: tuple[float, float], end: float) -> tuple[LineSignals, list[str]]:
-    """Uplift of the supports without missing values, and warnings; a missing value may be the largest uplift."""
+def _prepare_line(
+    samples: RecordSamples, section: tuple[float, float], last_position: RealArray
+) -> tuple[LineSignals, list[str]]:
+    """Uplift of the supports where no value that counts is missing, and warnings."""
     uplift = samples.uplift
     if uplift is None or samples.support_position is None:
         return LineSignals(section), []
@@ -197,10 +205,12 @@ def _prepare_line(samples: RecordSamples, section: tuple[float, float], end: flo
     warnings = []
     if missing.any():
         warnings.append(
-            f"{missing_share(missing)} of the uplift is missing; supports with missing values are not evaluated"
+            f"{missing_share(missing)} of the uplift is missing; supports with missing values that count are not "
+            "evaluated"
         )
-    complete = ~missing.any(axis=1)
-    return LineSignals(section, samples.support_position[complete], uplift[complete], end=end), warnings
+    complete = ~has_gaps(samples.support_position, uplift, last_position)
+    supports = samples.support_position[complete]
+    return LineSignals(section, supports, uplift[complete], last_position=last_position), warnings
 
 
 def _resampling_notes(placed: PlacedSamples, rate: float) -> list[str]:

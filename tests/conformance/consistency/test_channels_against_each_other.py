@@ -145,10 +145,15 @@ UPLIFTS: dict[str, Callable[[Record], Record]] = {
     ),
     "90 % at all supports": lambda record: replace(record, support_uplift=0.9 * record.support_uplift),
     "clipped at 90 %": lambda record: replace(
-        record, support_uplift=np.minimum(record.support_uplift, 0.9 * record.support_uplift.max())
+        record, support_uplift=np.minimum(record.support_uplift, 0.9 * np.nanmax(record.support_uplift))
     ),
     "filtered at 5 Hz": lambda record: replace(
-        record, support_uplift=np.array([LowPass(cutoff_Hz=5.0)(u, record.rate) for u in record.support_uplift])
+        record,
+        support_uplift=np.where(
+            np.isfinite(record.support_uplift),
+            [LowPass(cutoff_Hz=5.0)(np.nan_to_num(u), record.rate) for u in record.support_uplift],
+            np.nan,
+        ),
     ),
 }
 

@@ -155,7 +155,7 @@ def ramp(seconds: float) -> Callable[[DiscretisedLine, Passage], History]:
             )
             for pantograph in passage.pantographs
         )
-        kernel = build_kernel_arrays(line, passage.time_step, passage.reach)
+        kernel = build_kernel_arrays(line, passage.time_step)
         motion, train = start_motion(line, kernel, replace(passage, pantographs=gentle))
         steps, block, histories = round(passage.duration / passage.time_step), 10, []
         for first in range(0, steps, block):

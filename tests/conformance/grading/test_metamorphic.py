@@ -5,6 +5,7 @@ force of pantograph 2 varies too much, or one support is lifted too far. Order a
 change nothing.
 """
 
+import json
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
@@ -21,6 +22,7 @@ from pantocheck.conformance.cases.library import library_folder, load_case
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
 from pantocheck.conformance.input_files.toml_file import read_toml
+from pantocheck.conformance.quantities.signals import UPLIFT_STRETCH_M
 from pantocheck.conformance.records.record import Record, RecordInvalid
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.results.outcome import Delivered
@@ -125,6 +127,39 @@ def test_cutting_samples_out_gives_no_pass(subject: Subject, first: float, lengt
     kept = np.r_[0 : int(first * n), min(n, int((first + length) * n)) : n]
     assume(kept.size > 100)
     assert_no_pass(subject, lambda record: replace(_select(record, kept), time=record.time[: kept.size]))
+
+
+@RULE
+@given(kept=st.tuples(st.floats(0, 1), st.floats(0, 1)), support=st.integers(-1, 10))
+def test_missing_uplift_gives_no_pass(subject: Subject, kept: tuple[float, float], support: int) -> None:
+    """Uplift of one support, or of all (-1), outside a part of the record, is missing."""
+    first, last = (int(part * subject.sound.time.size) for part in sorted(kept))
+
+    def lose(record: Record) -> Record:
+        assert record.support_uplift is not None
+        uplift = record.support_uplift.copy()
+        rows = slice(None) if support < 0 else slice(support, support + 1)
+        uplift[rows, :first] = uplift[rows, last:] = np.nan
+        return replace(record, support_uplift=uplift)
+
+    assert_no_pass(subject, lose)
+
+
+def test_uplift_that_does_not_count_may_be_missing(subject: Subject) -> None:
+    """From 60 m behind the last pantograph on: the same verdicts and values, and no NaN in the result."""
+    position = subject.sound.support_position
+    assert position is not None
+    behind = subject.sound.position.min(axis=0) > position[:, None] + UPLIFT_STRETCH_M
+    assert behind.any(axis=1).sum() > 5
+    for record, verdict in ((subject.sound, "pass"), *((record, "fail") for record in subject.failing.values())):
+        whole, known = (
+            subject.grade(replace(record, support_uplift=np.where(lost, np.nan, record.support_uplift)))
+            for lost in (False, behind)
+        )
+        assert known.verdict == whole.verdict == verdict
+        assert known.quantities == whole.quantities
+        assert "NaN" not in known.model_dump_json()
+        json.dumps(known.model_dump(mode="json"), allow_nan=False)
 
 
 @pytest.mark.parametrize("dropped", ["height", "pantograph 1", "pantograph 2"])

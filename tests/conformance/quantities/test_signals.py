@@ -110,11 +110,16 @@ def test_supports_within_half_a_metre_belong_to_the_section() -> None:
     assert supports_inside(supports, (200.0, 400.0)).tolist() == [False, True, True, True, True, False]
 
 
+def passing(end: float) -> np.ndarray:
+    """Positions of the last pantograph in the three samples of `line`."""
+    return np.array([170.0, 240.0, end])
+
+
 def line(**changes: Any) -> LineSignals:
     """Supports every 60 m, each with an uplift."""
     position = changes.pop("support_position", np.array([180.0, 240.0, 300.0, 360.0, 420.0]))
     uplift = changes.pop("support_uplift", np.outer(np.arange(1.0, position.size + 1) / 100, [0.0, 1.0, 0.5]))
-    known = {"line_supports": (180.0, 240.0, 300.0, 360.0, 420.0), "end": 500.0}
+    known = {"line_supports": (180.0, 240.0, 300.0, 360.0, 420.0), "last_position": passing(500.0)}
     return LineSignals((240.0, 360.0), position, uplift, **(known | changes))
 
 
@@ -153,7 +158,7 @@ def test_support_is_recognised_within_half_a_metre(shift: float, found: bool) ->
 def test_first_five_missing_supports_are_named(missing: int, places: str) -> None:
     """Uplift at the last support only."""
     supports = tuple(60.0 * n for n in range(missing + 1))
-    signals = LineSignals((0.0, supports[-1]), np.array([supports[-1]]), np.array([[0.0, 0.05]]), supports, 1e4)
+    signals = LineSignals((0.0, supports[-1]), np.array([supports[-1]]), np.array([[0.0, 0.05]]), supports)
     with pytest.raises(SupportsMissing) as caught:
         signals.check_supports()
     assert str(caught.value) == (
@@ -164,10 +169,34 @@ def test_first_five_missing_supports_are_named(missing: int, places: str) -> Non
 @pytest.mark.parametrize(("end", "complete"), [(365.0, True), (364.9, False), (np.nan, False)])
 def test_uplift_is_complete_five_metres_behind_the_last_support(end: float, complete: bool) -> None:
     if complete:
-        line(end=end).check_supports()
+        line(last_position=passing(end)).check_supports()
     else:
         with pytest.raises(SupportsMissing, match="uplift of the support at 360 m it must extend to 365 m"):
-            line(end=end).check_supports()
+            line(last_position=passing(end)).check_supports()
+
+
+@pytest.mark.parametrize(("reached", "largest"), [(420.0, 0.09), (420.1, 0.04)])
+def test_uplift_counts_until_the_last_pantograph_is_60_m_past_the_support(reached: float, largest: float) -> None:
+    """A larger uplift of 0.09 m in the last sample, at the support at 360 m."""
+    uplift = np.outer(np.arange(1.0, 6.0) / 100, [0.0, 1.0, 0.5])
+    uplift[3, 2] = 0.09
+    assert line(support_uplift=uplift, last_position=passing(reached)).largest_uplift == largest
+
+
+@pytest.mark.parametrize("support", [0, 1, 2])
+def test_missing_uplift_counts_as_missing_up_to_that_distance(support: int) -> None:
+    uplift = np.outer(np.arange(1.0, 6.0) / 100, [0.0, 1.0, 0.5])
+    uplift[1 + support, 2] = np.nan
+    place = 240.0 + 60.0 * support
+    complete = line(support_uplift=uplift, last_position=passing(place + 60.1))
+    assert complete.largest_uplift == 0.04
+    with pytest.raises(
+        SupportsMissing, match=f"incomplete at 1 of 3 supports of the analysis section: {place:g} m; it"
+    ):
+        _ = line(support_uplift=uplift, last_position=passing(place + 60.0)).largest_uplift
+    uplift[1 + support] = np.nan
+    with pytest.raises(SupportsMissing, match=f"no uplift at 1 of 3 supports of the analysis section: {place:g} m"):
+        line(support_uplift=uplift).check_supports()
 
 
 def test_line_without_known_or_measured_supports_states_the_reason() -> None:

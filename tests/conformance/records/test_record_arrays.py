@@ -224,7 +224,7 @@ def test_speed_channel_is_compared_inside_the_section_of_any_pantograph(section:
             build_record(samples, described)
 
 
-@pytest.mark.parametrize("name", ["time", "speed", "position", "contact_height", "uplift"])
+@pytest.mark.parametrize("name", ["time", "speed", "position", "contact_height"])
 def test_missing_value_is_named_by_its_first_sample(name: str) -> None:
     """The first sample in time counts, in whichever row."""
     channels = {
@@ -232,12 +232,11 @@ def test_missing_value_is_named_by_its_first_sample(name: str) -> None:
         "speed": np.full(401, 50.0),
         "position": 50 * TIME - np.array([[0.0], [100.0]]),
         "contact_height": np.zeros((2, 401)),
-        "uplift": np.zeros((2, 401)),
     }
     values = np.array(channels[name])
     values[..., 30] = math.nan
     values[(0, 90) if values.ndim == 2 else 90] = math.nan
     count = 3 if values.ndim == 2 else 2
-    samples = RecordSamples(FORCE, support_position=np.array([0.0, 50.0]), **(channels | {name: values}))
+    samples = RecordSamples(FORCE, **(channels | {name: values}))
     with pytest.raises(RecordInvalid, match=f"{name}: {count} values are not finite, the first at sample 31"):
         build_record(samples, sidecar())

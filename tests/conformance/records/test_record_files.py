@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,7 @@ from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
 from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.records.record import Record, RecordInvalid
 from pantocheck.conformance.records.record_reading import read_record, read_samples
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.records.samples import complete_samples
@@ -89,6 +90,20 @@ def test_speed_in_kilometres_per_hour_is_integrated_to_positions(tmp_path: Path)
     _, position = complete_samples(samples, described)
     assert_allclose(position[:, -1], [59.4, -40.6], rtol=1e-12)
     assert_allclose(samples.force[:, 0], [120.0, 110.0])
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".h5"])
+def test_missing_uplift_is_written_and_read_as_nan(tmp_path: Path, two_pantograph_record: Record, suffix: str) -> None:
+    """Twelve digits in a CSV file; an infinite uplift is refused, as is a missing value of any other channel."""
+    uplift = np.array(two_pantograph_record.support_uplift)
+    uplift[1, 300:] = np.nan
+    record = replace(two_pantograph_record, support_uplift=uplift)
+    write_record(tmp_path / f"a{suffix}", record)
+    back, _ = read_record(tmp_path / f"a{suffix}")
+    assert_allclose(back.support_uplift, uplift, rtol=1e-11, atol=1e-15, equal_nan=True)
+    uplift[1, 300] = np.inf
+    with pytest.raises(RecordInvalid, match="support_uplift: 1 values are not finite, the first at sample 301"):
+        replace(two_pantograph_record, support_uplift=uplift)
 
 
 @pytest.mark.parametrize("seed", range(4))

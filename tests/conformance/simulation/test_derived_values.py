@@ -112,7 +112,7 @@ def test_start_is_that_of_the_reference_simulator(name: str) -> None:
     values, forces = train(build_derived(case)), start_forces(case)
     line = discretise(build_catenary(case.line), 0.5)
     passage = build_passage(case, line, case.file.discretisation, forces)
-    _, start = start_motion(line, build_kernel_arrays(line, passage.time_step, passage.reach), passage)
+    _, start = start_motion(line, build_kernel_arrays(line, passage.time_step), passage)
     for k, pantograph in enumerate(values.pantographs):
         count = len(pantograph.start_displacement)
         assert start.z[0, k, :count] == pytest.approx(np.array(pantograph.start_displacement), abs=2e-4)

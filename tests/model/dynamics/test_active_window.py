@@ -1,12 +1,26 @@
-"""Active window: stations ahead of the wave fronts are held at rest."""
+"""Active window: stations ahead of the wave fronts, and those that are not needed any more, are held at rest."""
 
+import math
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
+import pytest
 
 from helpers.lines import DAMPED, PANTOGRAPH_2002, simple_line
-from pantocheck.model import Passage, simulate_passage
+from pantocheck.model import History, Passage, simulate_passage
 from pantocheck.model.discretised_line import discretise
+from pantocheck.model.dynamics.active_window import MIN_HALF_WIDTH, build_window_arrays, half_widths, max_wave_speed
+
+LINE = discretise(simple_line(spans=16, damping=DAMPED), 1.0)
+SUPPORTS = tuple(("contact", float(x)) for x in np.arange(60.0, 960.0, 60.0))
+PASSAGE = Passage((PANTOGRAPH_2002, PANTOGRAPH_2002), (130.0, 70.0), 70.0, 10.0, 2e-3, SUPPORTS)
+"""Two pantographs, from 70 m to 770 m on a line of 960 m; waves travel 1345 m in this time."""
+
+
+@cache
+def whole() -> History:
+    return simulate_passage(LINE, PASSAGE)
 
 
 def test_growing_active_window_changes_forces_and_motion_by_rounding_only() -> None:
@@ -19,3 +33,56 @@ def test_growing_active_window_changes_forces_and_motion_by_rounding_only() -> N
     np.testing.assert_allclose(growing.motion[..., 0], whole.motion[..., 0], rtol=0, atol=1e-12)
     moved = np.ptp(whole.motion[:, :, 0], axis=1) > 1e-3
     assert 4 < moved.sum() < 9  # the waves have reached some supports, not all
+
+
+@pytest.mark.parametrize("limit", [{"kept_behind": 60.0}, {"kept_behind": 0.0}, {"reach": 150.0}, {"reach": 400.0}])
+def test_recorded_motion_is_right_or_missing(limit: dict[str, float]) -> None:
+    """Every finite displacement equals that of the run with the whole line to 1e-9 m; it moves by up to 50 mm.
+
+    The window cuts off the first supports within the run. A record that keeps the last motion before the cut, or that
+    holds the waves which return from it, is wrong by millimetres.
+    """
+    near = simulate_passage(LINE, replace(PASSAGE, **limit))
+    known = np.isfinite(near.motion).all(axis=2)
+    difference = np.abs(near.motion - whole().motion)[..., 0]
+    assert not known[0].all()
+    assert known[:, 0].all()
+    assert difference[known].max() < 1e-9
+    moving = np.ptp(whole().motion[:, :, 0], axis=1) > 1e-3
+    for series in known[moving]:  # nothing is known again after it was unknown
+        assert (np.diff(series.astype(int)) <= 0).all()
+
+
+@pytest.mark.parametrize("kept", [0.0, 60.0])
+def test_window_without_reach_keeps_forces_and_the_motion_behind_the_train(kept: float) -> None:
+    """Forces to the tolerance of a step, 1e-9 N; the motion is known at least to the stated distance behind the train.
+
+    At the end the window is narrower than the line, otherwise nothing is tested.
+    """
+    passage = replace(PASSAGE, kept_behind=kept)
+    near = simulate_passage(LINE, passage)
+    np.testing.assert_allclose(near.force, whole().force, rtol=0, atol=1e-8)
+    passed = [position for _, position in SUPPORTS if position <= near.position[0, -1]]
+    assert len(passed) == 13
+    for position, motion in zip(passed, near.motion[..., 0], strict=False):
+        assert np.isfinite(motion[near.position[-1] <= position + kept]).all()
+    behind, ahead = half_widths(build_window_arrays(LINE, passage), passage.speed, passage.duration)
+    assert (behind, ahead) == (MIN_HALF_WIDTH + kept, MIN_HALF_WIDTH)
+
+
+def test_half_widths_are_the_intersection_of_influence_and_dependence() -> None:
+    """Behind: (c + v) t until it meets (c - v) (T - t); ahead: (c - v) t until it meets (c + v) (T - t)."""
+    limits, c, v = build_window_arrays(LINE, replace(PASSAGE, kept_behind=0.0)), max_wave_speed(LINE), PASSAGE.speed
+    for elapsed in np.linspace(0.0, 10.0, 21):
+        left = PASSAGE.duration - elapsed
+        behind, ahead = (value - MIN_HALF_WIDTH for value in half_widths(limits, v, elapsed))
+        assert behind == pytest.approx(min((c + v) * elapsed, (c - v) * left), abs=1e-9)
+        assert ahead == pytest.approx(min((c - v) * elapsed, (c + v) * left), abs=1e-9)
+
+
+@pytest.mark.parametrize(("speed", "active"), [(0.99, False), (1.01, True)])
+def test_whole_line_is_active_for_a_train_faster_than_the_waves(speed: float, active: bool) -> None:
+    passage = replace(PASSAGE, speed=speed * max_wave_speed(LINE), kept_behind=0.0)
+    assert build_window_arrays(LINE, passage).whole_line is active
+    assert build_window_arrays(LINE, replace(passage, kept_behind=math.inf)).whole_line
+    assert not build_window_arrays(LINE, replace(passage, reach=100.0)).whole_line

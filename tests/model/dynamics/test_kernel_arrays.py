@@ -1,18 +1,19 @@
 """Kernel arrays: nested arrays of the time step of a line."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from helpers.lines import DAMPED, Array, bare_wire, simple_line
-from pantocheck.model import Kind, ModalBand, discretise
-from pantocheck.model.dynamics.active_window import max_wave_speed
+from helpers.lines import DAMPED, PANTOGRAPH_2002, Array, bare_wire, simple_line
+from pantocheck.model import Kind, ModalBand, Passage, discretise
+from pantocheck.model.dynamics.active_window import build_window_arrays, max_wave_speed
 from pantocheck.model.dynamics.block_tridiagonal import solve_line
 from pantocheck.model.dynamics.inverse_columns import column_half_width
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, build_kernel_arrays, build_workspace
 from pantocheck.model.dynamics.train import build_empty_train
+
+PASSAGE = Passage((PANTOGRAPH_2002,), (70.0,), 50.0, 1.0, 1e-3, kept_behind=60.0, reach=50.0)
 
 
 def leaves(arrays: tuple[object, ...]) -> list[Array]:
@@ -23,7 +24,8 @@ def leaves(arrays: tuple[object, ...]) -> list[Array]:
 
 def test_kernel_arrays_are_contiguous_and_finite() -> None:
     """The compiled step is specialised for contiguous arrays; another layout would compile it a second time."""
-    kernel = build_kernel_arrays(discretise(simple_line(damping=DAMPED), 1.0), 1e-3, reach=100.0)
+    line = discretise(simple_line(damping=DAMPED), 1.0)
+    kernel = build_kernel_arrays(line, 1e-3, build_window_arrays(line, PASSAGE))
     for array in leaves(kernel):
         assert array.flags.c_contiguous
         assert array.dtype == np.bool_ or np.isfinite(array).all()
@@ -62,9 +64,10 @@ def test_modal_damping_makes_the_whole_line_active() -> None:
     """A mode moves every station, so the active window must not be limited; without modes it is."""
     line = discretise(simple_line(damping=dict.fromkeys(Kind, DAMPED[Kind.DROPPER])), 2.0)
     modal = replace(line, catenary=replace(line.catenary, modal_damping=(ModalBand(0.8, 1.5, 0.02),)))
-    limited, whole = (build_kernel_arrays(variant, 1e-3, reach=50.0).window for variant in (line, modal))
-    assert (limited.reach, limited.wave_front_speed) == (50.0, max_wave_speed(line))
-    assert (whole.reach, whole.wave_front_speed) == (math.inf, math.inf)
+    limits = build_window_arrays(line, PASSAGE)
+    limited, whole = (build_kernel_arrays(variant, 1e-3, limits).window for variant in (line, modal))
+    assert (limited.reach, limited.wave_speed, limited.whole_line) == (50.0, max_wave_speed(line), False)
+    assert whole.whole_line
 
 
 def test_workspace_fits_the_kernel_arrays() -> None:

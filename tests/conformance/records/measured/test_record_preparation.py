@@ -369,7 +369,7 @@ def test_missing_force_and_uplift_are_reported_with_their_shares() -> None:
     found = ready(lines, support_position_m=[300.0, 360.0], evaluated_m=[100.0, 964.0])
     assert found.warnings == (
         "0.02 % of the force of pantograph 1 is missing, first at 694.4 m",
-        "5 % of the uplift is missing; supports with missing values are not evaluated",
+        "5 % of the uplift is missing; supports with missing values that count are not evaluated",
     )
     assert list(found.line.support_position) == [300.0]
 
