@@ -92,8 +92,11 @@ TOLERANCE = 1e-12
 
 SIMULATED_FILES = {
     f"{name}/results.json" for name in ("en50318-2002", "ac-simple", "ac-stitched", "vovan2015", "damping-study")
-} | {"T1-fit/damping.json"}
+}
 """Files with results of the reference simulator."""
+
+FITTED = {"T1-fit/damping.json": 0.03}
+"""Tolerance of files with a fit to modes of the reference simulator; a variance inflation changes most, by 1.8 %."""
 
 SIMULATED = {
     "mean_force_N": 0.001,
@@ -204,7 +207,7 @@ def _remove_intended(
 def tolerance(name: str, place: str) -> float:
     """Tolerance of the difference at a place of a file; infinite where numbers follow from others or are histories."""
     if name not in SIMULATED_FILES:
-        return TOLERANCE
+        return FITTED.get(name, TOLERANCE)
     if DERIVED.search(place):
         return math.inf
     quantity = re.search(r"\.quantities\.\d+\.(\w+)", place)
