@@ -14,6 +14,7 @@ from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.cases.study_tables import DampingSensitivity
 from pantocheck.conformance.input_files.sourced_table import PROVENANCE, InputTable, SourcedTable
 from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.records.sidecar_tables import StartTable
 
 
 @dataclass(frozen=True)
@@ -125,6 +126,11 @@ class Case:
         # The first pantograph stops half a span before the end of the line.
         furthest = geometry.mid_span(geometry.spans) - self.offsets[-1]
         return max(section_end, min(section_end + last_end - last_start, furthest))
+
+    @property
+    def start_table(self) -> StartTable:
+        """Start of the run: static equilibrium under the uplift forces, then full speed without a ramp."""
+        return StartTable(place_m=self.start, ramp_m=0.0, state="equilibrium_under_uplift_forces")
 
     @property
     def start_positions(self) -> tuple[float, ...]:

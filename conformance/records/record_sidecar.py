@@ -11,6 +11,7 @@ from pantocheck.conformance.records.sidecar_tables import (
     LineTable,
     RunTable,
     Speed,
+    StartTable,
     SystemTable,
     check_section,
 )
@@ -62,6 +63,9 @@ class RecordSidecar(InputTable):
     line: LineTable = LineTable()
     system: SystemTable | None = None
     run: RunTable = RunTable()
+    start: Annotated[StartTable | None, Field(description="start of the simulation, for cases with a short run-in")] = (
+        None
+    )
 
     @model_validator(mode="after")
     def _check_consistency(self) -> "RecordSidecar":

@@ -17,6 +17,7 @@ from pantocheck.conformance.records.sidecar_tables import (
     LineTable,
     RunTable,
     Speed,
+    StartTable,
     SystemTable,
     check_section,
 )
@@ -51,6 +52,9 @@ class RecordSummary(SourcedTable):
     line: LineTable = LineTable()
     system: SystemTable | None = None
     run: RunTable = RunTable()
+    start: Annotated[StartTable | None, Field(description="start of the simulation, for cases with a short run-in")] = (
+        None
+    )
 
     @model_validator(mode="after")
     def _check_values(self) -> "RecordSummary":

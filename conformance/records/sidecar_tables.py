@@ -1,6 +1,6 @@
 """Common tables of sidecars and summaries: system, run and line."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field
 
@@ -33,6 +33,31 @@ class RunTable(InputTable):
     wall_s: Annotated[float | None, Field(ge=0, description="computing time [s]")] = None
     dt_s: Annotated[float | None, Field(gt=0, description="time step [s]")] = None
     element_m: Annotated[float | None, Field(gt=0, description="element length [m]")] = None
+
+
+StartCondition = Literal["equilibrium_under_uplift_forces", "line_at_rest", "other"]
+"""State of line and pantographs at the start of a run.
+
+`equilibrium_under_uplift_forces`: static equilibrium with every pantograph pressing with its uplift force;
+`line_at_rest`: the line carries its weight only, the contact forces begin at zero.
+"""
+
+
+class StartTable(InputTable):
+    """Start of a simulation."""
+
+    place_m: Annotated[float, Field(description="position of the last pantograph at the start of the run [m]")]
+    ramp_m: Annotated[
+        NonNegative,
+        Field(description="distance over which speed or force reaches its full value [m]; 0: full from the start"),
+    ] = 0.0
+    state: Annotated[
+        StartCondition,
+        Field(
+            description="state of line and pantographs; equilibrium_under_uplift_forces: static equilibrium with every "
+            "pantograph pressing with its uplift force; line_at_rest: contact forces begin at zero"
+        ),
+    ]
 
 
 class LineTable(InputTable):

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 from pantocheck.conformance.quantities.evaluation import Evaluation, Value
 from pantocheck.conformance.records.record import Record
-from pantocheck.conformance.records.sidecar_tables import RunTable
+from pantocheck.conformance.records.sidecar_tables import RunTable, StartTable
 from pantocheck.conformance.results.results_format import Chart, TextTable
 
 
@@ -51,6 +51,8 @@ class Delivered:
         Digest of the case that the record was made for, as the record states it.
     digest : str or None
         SHA-256 of the files of the record; None for a record that was never in a file.
+    start : StartTable or None
+        Start of the run, as the system states it.
     refined : Delivered or None
         The same case with element length and time step halved, for the discretisation error.
     """
@@ -64,6 +66,7 @@ class Delivered:
     study: StudyResult = field(default_factory=StudyResult)
     case_digest: str | None = None
     digest: str | None = None
+    start: StartTable | None = None
     refined: "Delivered | None" = None
 
 
