@@ -46,6 +46,7 @@ def simulate_command(
         run=outcome.run.model_dump(),
         further={
             "case_digest": outcome.case_digest if simulator.kind == "record" else chosen.digest,
+            "start": None if outcome.start is None else outcome.start.model_dump(),
             "line": {"span_m": max(chosen.line.geometry.span_lengths)},
         },
     )

@@ -10,6 +10,7 @@ from pantocheck.conformance.consistency.record_checks import check_record
 from pantocheck.conformance.consistency.record_state import record_state
 from pantocheck.conformance.grading.criterion_grading import GradedValues, grade_limit
 from pantocheck.conformance.grading.record_mismatch import find_other_case, find_record_mismatch
+from pantocheck.conformance.grading.start_agreement import StartAgreement, compare_starts
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation
 from pantocheck.conformance.quantities.registry import QUANTITIES
@@ -84,16 +85,22 @@ class CaseEvaluation:
         return next((finding.text for finding in self.findings.values() if finding.kind == "contradiction"), None)
 
     @cached_property
+    def start_agreement(self) -> StartAgreement:
+        """Agreement of the stated start with that of the case."""
+        return compare_starts(self.case, self.delivered.start)
+
+    @cached_property
     def record_facts(self) -> RecordFacts | None:
         """State of the record; None for a case without a record."""
         digests = {"digest": self.delivered.digest, "case_digest": self.delivered.case_digest}
+        start = {"start": self.start_agreement.state, "start_text": self.start_agreement.text}
         if self.delivered.summary is not None:
             reason = "a summary record has no samples to check"
-            return RecordFacts(state="unverified", reason=reason, **digests)
+            return RecordFacts(state="unverified", reason=reason, **digests, **start)
         if self.signals is None:
             return None
         state, reason = record_state(self.findings)
-        return RecordFacts(state=state, reason=reason, **digests)
+        return RecordFacts(state=state, reason=reason, **digests, **start)
 
     def grade_limits(self, lowest_trust: Trust) -> list[Criterion]:
         """Grade the delivery by every limit of the case."""

@@ -67,7 +67,7 @@ def grade_evaluation(evaluation: CaseEvaluation, lowest_trust: Trust) -> CaseRes
     # Quantities of a contradicted record are shown but not graded: some would pass.
     criteria = evaluation.grade_limits(lowest_trust) if contradiction is None else []
     supports = case.line.geometry.span_limits
-    record = evaluation.record_facts
+    record, start = evaluation.record_facts, evaluation.start_agreement
     verdict = judge_case((criterion.verdict for criterion in criteria), record)
     return _build_result(
         case,
@@ -79,10 +79,14 @@ def grade_evaluation(evaluation: CaseEvaluation, lowest_trust: Trust) -> CaseRes
         warnings=[
             *delivered.warnings,
             *(finding.text for finding in findings if finding.kind == "doubt"),
+            *([start.text] if record is not None and start.state == "differs" else []),
             *evaluation.edge_warnings(),
             *extended_band_warnings(values.evaluation, values.refined, delivered.run.dt_s),
         ],
-        notes=[finding.text for finding in findings if finding.kind == "unchecked"],
+        notes=[
+            *(finding.text for finding in findings if finding.kind == "unchecked"),
+            *([start.text] if record is not None and start.state == "not stated" else []),
+        ],
         criteria=criteria,
         record=record,
         quantities=key_by_owner(select_finite(values.evaluation.values)),

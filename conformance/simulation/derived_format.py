@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from pantocheck.conformance.input_files.sourced_table import InputTable
+from pantocheck.conformance.records.sidecar_tables import StartTable
 
 Numbers = Annotated[tuple[float, ...], Field(strict=False)]
 BySpan = Annotated[tuple[Numbers, ...], Field(strict=False)]
@@ -18,12 +19,6 @@ MassCoefficient = Annotated[
     float, Field(description="damper to the ground over mass, of every lumped mass of this table [1/s]")
 ]
 StiffnessCoefficient = Annotated[float, Field(description="damper over stiffness, of the springs of this table [s]")]
-StartState = Literal["equilibrium_under_uplift_forces", "line_at_rest", "other"]
-"""State of line and pantographs at the start of a run.
-
-`equilibrium_under_uplift_forces`: static equilibrium with every pantograph pressing with its uplift force;
-`line_at_rest`: the line carries its weight only, the contact forces begin at zero.
-"""
 
 
 class DerivedWire(InputTable):
@@ -205,15 +200,9 @@ class DerivedPantograph(InputTable):
     start_displacement: Annotated[Numbers, Field(description="z of every unknown at the start [m; modes: m kg^1/2]")]
 
 
-class DerivedStart(InputTable):
-    """Start of the run: state of line and train at the time 0."""
+class DerivedStart(StartTable):
+    """Start of the run, and its motion from the time 0 on."""
 
-    state: Annotated[StartState, Field(description="state of line and pantographs")] = "equilibrium_under_uplift_forces"
-    place_m: Annotated[float, Field(description="position of the last pantograph [m]")]
-    ramp_m: Annotated[
-        float,
-        Field(description="distance over which speed or force reaches its full value [m]; 0: full from the start"),
-    ] = 0.0
     speed_m_s: Annotated[float, Field(description="speed of the train from the time 0 on [m/s]")]
     line_velocity_m_s: Annotated[float, Field(description="velocity of every point of line and pantographs [m/s]")] = (
         0.0

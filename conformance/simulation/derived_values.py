@@ -58,7 +58,7 @@ def build_derived(case: Case) -> Derived:
 def build_derived_start(case: Case) -> DerivedStart:
     """Start of the run of a case with a speed."""
     return DerivedStart(
-        place_m=case.start,
+        **case.start_table.model_dump(),
         speed_m_s=round_number(case.speed),
         duration_s=round_number((case.end - case.start) / case.speed),
     )

@@ -43,6 +43,7 @@ class RecordFolder:
         return Delivered(
             record,
             run=sidecar.run,
+            start=sidecar.start,
             notes=note_case_version(sidecar.case_digest),
             case_digest=sidecar.case_digest,
             digest=record_digest(path, path.parent / sidecar.file),
@@ -55,6 +56,7 @@ def _deliver_summary(summary: RecordSummary, case: Case, digest: str) -> Outcome
     source = (summary.source,) if isinstance(summary.source, str) else tuple(summary.source)
     return Delivered(
         run=summary.run,
+        start=summary.start,
         notes=(
             f"The values are a summary record, graded as given ({summary.trust}): {source_text(source)}",
             *((summary.note.strip(),) if summary.note else ()),

@@ -45,4 +45,4 @@ def _deliver(
             static=static, run=RunTable(dt_s=discretisation.time_step_s, element_m=discretisation.element_m)
         ), None
     passage = run_passage(case, line, discretisation, uplift_forces)
-    return Delivered(passage.record, static, passage.run), passage.uplift_forces
+    return Delivered(passage.record, static, passage.run, start=case.start_table), passage.uplift_forces

@@ -63,6 +63,9 @@ def run(case):
         for key, value in sidecar.items():
             print(key, "=", json.dumps(value), file=file)  # these values look the same in JSON and TOML
         print(f"[system]\nname = {json.dumps(NAME)}\nversion = {json.dumps(VERSION)}", file=file)
+        # The line starts in equilibrium under the uplift force, and the train at full speed.
+        print(f"[start]\nplace_m = {case['pantographs'][-1]['start_m']}\nramp_m = 0.0", file=file)
+        print('state = "equilibrium_under_uplift_forces"', file=file)
         print(f"[run]\nwall_s = {wall:.3f}\nsimulated_s = {history[-1, 0]:.9g}", file=file)
         print(f"dt_s = {case['discretisation']['time_step_s']}", file=file)
         print(f"element_m = {case['discretisation']['element_m']}", file=file)

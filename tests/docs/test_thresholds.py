@@ -25,6 +25,7 @@ from pantocheck.conformance.grading import (
     case_evaluation,
     extended_band,
     record_mismatch,
+    start_agreement,
     verification_limits,
 )
 from pantocheck.conformance.quantities import bands, filters, signals
@@ -39,10 +40,10 @@ ROWS = re.findall(
     re.MULTILINE,
 )
 MODULES: list[ModuleType] = [
-    attachment, recomputation, force_content, force_copy, force_dynamics, implied_force, mean_force, roll_off, rounding,
-    support_coincidence, support_passing, assessed_record, baseline, case_evaluation, extended_band, record_mismatch,
-    verification_limits, bands, filters, signals, record, block_bootstrap, force_checks, usable_sections,
-    results_format, results_reading, traces,
+    attachment, recomputation, force_content, force_copy, force_dynamics, implied_force, mean_force, roll_off,
+    rounding, support_coincidence, support_passing, assessed_record, baseline, case_evaluation, extended_band,
+    record_mismatch, start_agreement, verification_limits, bands, filters, signals, record, block_bootstrap,
+    force_checks, usable_sections, results_format, results_reading, traces,
 ]  # fmt: skip
 BY_FILE = {"/".join(module.__name__.split(".")[2:]) + ".py": module for module in MODULES}
 FOLDERS = ("quantities", "consistency", "grading", "records", "results", "authenticity")

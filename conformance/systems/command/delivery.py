@@ -52,8 +52,15 @@ def read_delivery(case: Case, answer: DeliveredAnswer, folder: Path, wall: float
     if run.wall_s is None:
         run = run.model_copy(update={"wall_s": wall})
     notes = (*answer.notes, *note_case_version(sidecar.case_digest))
-    digest = record_digest(sidecar_path, table_path)
-    return Delivered(record, dict(answer.static), run, notes, case_digest=sidecar.case_digest, digest=digest)
+    return Delivered(
+        record,
+        dict(answer.static),
+        run,
+        notes,
+        case_digest=sidecar.case_digest,
+        digest=record_digest(sidecar_path, table_path),
+        start=sidecar.start,
+    )
 
 
 def _check_file(file: File, folder: Path) -> Path:

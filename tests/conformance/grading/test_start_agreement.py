@@ -1,0 +1,86 @@
+"""Start that a record states against the start of its case."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from helpers.wave_system import Wave
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.grading.case_grading import grade_case
+from pantocheck.conformance.grading.start_agreement import compare_starts
+from pantocheck.conformance.records.record_reading import read_record
+from pantocheck.conformance.records.record_writing import write_record
+from pantocheck.conformance.records.sidecar_tables import StartTable
+from pantocheck.conformance.results.outcome import Delivered
+from pantocheck.conformance.systems.record_folder import open_record_folder
+
+START: dict[str, Any] = {"place_m": 60.0, "ramp_m": 0.0, "state": "equilibrium_under_uplift_forces"}
+
+
+def delivered(case: Case, start: StartTable | None) -> Delivered:
+    outcome = Wave().run(case)
+    assert isinstance(outcome, Delivered)
+    return replace(outcome, start=start)
+
+
+@pytest.mark.parametrize(
+    ("changes", "text"),
+    [
+        ({"place_m": 60.2}, "its last pantograph starts at 60.2 m, that of the case at 60 m"),
+        ({"ramp_m": 30.0}, "its ramp is 30 m long, that of the case 0 m"),
+        ({"state": "line_at_rest"}, "its state is 'line_at_rest', that of the case 'equilibrium_under_uplift_forces'"),
+    ],
+)
+def test_every_difference_is_named(case_250: Case, changes: dict[str, Any], text: str) -> None:
+    agreement = compare_starts(case_250, StartTable(**(START | changes)))
+    assert (agreement.state, agreement.widens_tolerance) == ("differs", True)
+    assert agreement.text == f"The start of the record differs: {text}."
+
+
+def test_same_start_within_a_decimetre(case_250: Case) -> None:
+    """0.05 m lie inside the tolerance of 0.1 m."""
+    agreement = compare_starts(case_250, StartTable(**(START | {"place_m": 60.05, "ramp_m": 0.05})))
+    assert (agreement.state, agreement.widens_tolerance) == ("as in the case", False)
+
+
+def test_start_of_a_train_is_that_of_its_last_pantograph(two_pantograph_case: Case) -> None:
+    assert compare_starts(two_pantograph_case, StartTable(**START)).state == "as in the case"
+    first = StartTable(**(START | {"place_m": two_pantograph_case.start_positions[0]}))
+    assert "starts at 210 m, that of the case at 60 m" in compare_starts(two_pantograph_case, first).text
+
+
+def test_silence_never_widens_the_tolerance(case_250: Case) -> None:
+    agreement = compare_starts(case_250, None)
+    assert (agreement.state, agreement.widens_tolerance) == ("not stated", False)
+
+
+@pytest.mark.parametrize(
+    ("start", "state", "place"),
+    [
+        (StartTable(**START), "as in the case", None),
+        (StartTable(**(START | {"ramp_m": 30.0})), "differs", "warnings"),
+        (None, "not stated", "notes"),
+    ],
+)
+def test_result_shows_the_start(case_250: Case, start: StartTable | None, state: str, place: str | None) -> None:
+    """A difference is a warning, silence is a note, and the verdict depends on neither."""
+    result = grade_case(case_250, delivered(case_250, start), "secondary")
+    assert result.record is not None
+    assert result.record.start == state
+    shown = {name for name in ("warnings", "notes") if result.record.start_text in getattr(result, name)}
+    assert shown == ({place} if place else set())
+    assert result.verdict == grade_case(case_250, delivered(case_250, None), "secondary").verdict
+
+
+@pytest.mark.parametrize("start", [START, START | {"state": "other", "ramp_m": 12.5}, None])
+def test_start_of_a_sidecar_reaches_the_system(case_250: Case, tmp_path: Path, start: dict[str, Any] | None) -> None:
+    record = delivered(case_250, None).record
+    assert record is not None
+    write_record(tmp_path / "250.csv", record, case=case_250.id, further={"start": start})
+    expected = None if start is None else StartTable(**start)
+    assert read_record(tmp_path / "250.csv")[1].start == expected
+    outcome = open_record_folder(tmp_path).run(case_250)
+    assert isinstance(outcome, Delivered)
+    assert outcome.start == expected
