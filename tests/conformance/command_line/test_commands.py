@@ -174,14 +174,16 @@ def test_self_test_prints_no_control_characters_of_a_path(tmp_path: Path, monkey
     assert "[red]page?.md" in result.output
 
 
-@pytest.mark.parametrize("command", [("show", "--at-rest"), ("show", "--drawing"), ("simulate", "--out")])
+@pytest.mark.parametrize(
+    "command", [("show", "--at-rest"), ("show", "--derived"), ("show", "--drawing"), ("simulate", "--out")]
+)
 def test_line_without_an_equilibrium_ends_with_one_message_and_exit_code_2(
     command: tuple[str, str], edited_case: EditedCase, tmp_path: Path
 ) -> None:
     """A pre-sag of 2 m in every span requires droppers in compression: there is no equilibrium."""
     path = edited_case("line.toml", {"droppers.presag_m": [2.0] * 9})
     name, option = command
-    file = () if option == "--at-rest" else (tmp_path / ("line.svg" if name == "show" else "out.csv"),)
+    file = () if option in {"--at-rest", "--derived"} else (tmp_path / ("line.svg" if name == "show" else "out.csv"),)
     result = pantocheck(name, path, option, *file)
     assert result.exit_code == 2
     assert "Check the data of the line" in result.output
@@ -273,6 +275,7 @@ def test_simulate_writes_a_record_that_can_be_graded(records: Path, tmp_path: Pa
     record, sidecar = read_record(tmp_path / "again" / "a.h5")
     assert (sidecar.case, record.pantographs) == ("en50318-2002/250", 1)
     assert sidecar.case_digest is None  # a record of unknown origin does not become one of this version of the case
+    assert sidecar.start is None  # nor does it get a start that its simulator has not stated
     assert sidecar.line.span_m == 60
 
 

@@ -15,6 +15,7 @@ from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.records.sidecar_tables import StartTable
 from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.systems.record_folder import open_record_folder
+from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
 
 START: dict[str, Any] = {"place_m": 60.0, "ramp_m": 0.0, "state": "equilibrium_under_uplift_forces"}
 
@@ -72,6 +73,12 @@ def test_result_shows_the_start(case_250: Case, start: StartTable | None, state:
     shown = {name for name in ("warnings", "notes") if result.record.start_text in getattr(result, name)}
     assert shown == ({place} if place else set())
     assert result.verdict == grade_case(case_250, delivered(case_250, None), "secondary").verdict
+
+
+def test_reference_simulator_states_the_start_of_the_case(case_250: Case) -> None:
+    mesh = case_250.file.discretisation.model_copy(update={"element_m": 5.0, "time_step_s": 0.005})
+    coarse = replace(case_250, file=case_250.file.model_copy(update={"discretisation": mesh}))
+    assert ReferenceSimulator().run_unrefined(coarse).start == StartTable(**START)
 
 
 @pytest.mark.parametrize("start", [START, START | {"state": "other", "ramp_m": 12.5}, None])
