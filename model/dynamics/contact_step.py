@@ -8,6 +8,7 @@ in series (`residual_flexibility`). With the predicted overlap d of head and wir
 A change of F changes a by -(compliance) F, and F is solved exactly with all other forces held.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -107,6 +108,10 @@ def predict_train(contact: ContactArrays, motion: Motion, train: Train, work: Co
     dt = contact.time_step
     unknowns = train.z.shape[2]
     train.elapsed[0] += dt
+    # Share of the static force that still holds the heads down: a half-cosine from 1 to 0.
+    holding = 0.0
+    if train.elapsed[0] < train.ramp[0]:
+        holding = (1 + math.cos(math.pi * train.elapsed[0] / train.ramp[0])) / 2
     for p in range(train.position.size):
         train.position[p] += dt * train.speed[0]
         for i in range(unknowns):
@@ -115,6 +120,7 @@ def predict_train(contact: ContactArrays, motion: Motion, train: Train, work: Co
         contact_force = 0.0
         for wire in range(train.contact.shape[1]):
             contact_force += train.contact[p, wire]
+        contact_force += holding * train.held[p]
         head, compliance = 0.0, 0.0
         for i in range(unknowns):
             acceleration = 0.0

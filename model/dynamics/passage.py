@@ -32,6 +32,9 @@ class Passage:
     reach : float
         Largest half-width of the active window around the pantographs [m]: stations farther away are held at rest,
         although waves may return from there. Infinite: no limit.
+    ramp : float
+        Time over which every pantograph rises from zero contact force to its static force [s]. Zero: it presses with
+        its static force from the start.
     """
 
     pantographs: tuple[Pantograph, ...]
@@ -42,6 +45,7 @@ class Passage:
     watched: tuple[tuple[str, float], ...] = ()
     kept_behind: float = math.inf
     reach: float = math.inf
+    ramp: float = 0.0
 
 
 @dataclass(frozen=True)

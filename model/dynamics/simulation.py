@@ -74,12 +74,12 @@ def _check_passage(line: DiscretisedLine, passage: Passage) -> None:
 
 
 def start_motion(line: DiscretisedLine, kernel: KernelArrays, passage: Passage) -> tuple[Motion, Train]:
-    """Compute line and pantographs at rest, each pantograph pressing with its static force."""
-    share = 1 / len(line.contact_rows)
+    """Compute line and pantographs at rest, each pressing with its static force; before a ramp, with none."""
+    share, pressed = 1 / len(line.contact_rows), float(passage.ramp == 0)
     load = np.zeros(line.beams.free.size)
     for pantograph, x in zip(passage.pantographs, passage.start, strict=True):
         for row in line.contact_rows:
-            load += share * pantograph.static_force * point_load(line, row, x)
+            load += share * pressed * pantograph.static_force * point_load(line, row, x)
     deflection = StaticSolver(line).deflection(load)
     profile = kernel.contact.rest + deflection.displacement[line.contact_rows]
     contacts = np.array(

@@ -20,6 +20,10 @@ class Train(NamedTuple):
         Speed of the train [m/s].
     elapsed : (1,) ndarray
         Time since the start [s].
+    ramp : (1,) ndarray
+        Time over which the heads are released [s].
+    held : (P,) ndarray
+        Force that holds each head down at the start of the ramp [N].
     inverse : (P, n, n) ndarray
         Inverse of the effective matrix M + dt/2 C + dt^2/4 K of each pantograph [1/kg].
     damping, stiffness : (P, n, n) ndarray
@@ -39,6 +43,8 @@ class Train(NamedTuple):
     position: Array
     speed: Array
     elapsed: Array
+    ramp: Array
+    held: Array
     inverse: Array
     damping: Array
     stiffness: Array
@@ -55,14 +61,14 @@ def build_empty_train(contact_wires: int) -> Train:
 
 
 def build_train(passage: Passage, wire_height: Array, flexibility: Array) -> Train:
-    """Build the pantographs at rest, each pressing with its static force.
+    """Build the pantographs at rest, each pressing with its static force, or held down if the passage has a ramp.
 
     Parameters
     ----------
     passage : Passage
-        Pantographs, positions, speed and time step.
+        Pantographs, positions, speed, time step and ramp.
     wire_height : (P, W) ndarray
-        Height of each contact wire above each head under the static forces [m].
+        Height of each contact wire above each head in the state at the start [m].
     flexibility : (P, W) ndarray
         Residual flexibility of each contact wire there [m/N].
 
@@ -73,7 +79,7 @@ def build_train(passage: Passage, wire_height: Array, flexibility: Array) -> Tra
     """
     wires = wire_height.shape[1]
     train = _allocate(len(passage.pantographs), max(p.head.size for p in passage.pantographs), wires)
-    train.position[:], train.speed[0] = passage.start, passage.speed
+    train.position[:], train.speed[0], train.ramp[0] = passage.start, passage.speed, passage.ramp
     half, quarter = passage.time_step / 2, passage.time_step**2 / 4
     for p, pantograph in enumerate(passage.pantographs):
         n = pantograph.head.size
@@ -82,9 +88,11 @@ def build_train(passage: Passage, wire_height: Array, flexibility: Array) -> Tra
         train.damping[p, :n, :n], train.stiffness[p, :n, :n] = pantograph.damping, pantograph.stiffness
         train.head[p, :n], train.force[p, :n] = pantograph.head, pantograph.force
         train.contact_stiffness[p] = pantograph.contact_stiffness
-        train.contact[p] = pantograph.static_force / wires
+        if passage.ramp == 0:
+            train.contact[p] = pantograph.static_force / wires
         overlap = train.contact[p, 0] * (1 / pantograph.contact_stiffness + float(flexibility[p].mean()))
-        train.z[0, p, :n], _ = equilibrium(pantograph, float(wire_height[p].mean()) + overlap)
+        train.z[0, p, :n], force_down = equilibrium(pantograph, float(wire_height[p].mean()) + overlap)
+        train.held[p] = force_down if passage.ramp > 0 else 0.0
     return train
 
 
@@ -94,6 +102,8 @@ def _allocate(pantographs: int, unknowns: int, contact_wires: int) -> Train:
         position=np.zeros(pantographs),
         speed=np.zeros(1),
         elapsed=np.zeros(1),
+        ramp=np.zeros(1),
+        held=np.zeros(pantographs),
         inverse=np.zeros((pantographs, unknowns, unknowns)),
         damping=np.zeros((pantographs, unknowns, unknowns)),
         stiffness=np.zeros((pantographs, unknowns, unknowns)),
