@@ -75,6 +75,28 @@ def band_rms(force: RealArray, rate: float, low: float, high: float, filter_appl
     return float(np.sqrt(power[(frequency > low) & (frequency <= high)].sum()))
 
 
+def band_part(force: RealArray, rate: float, low: float, high: float) -> RealArray:
+    """Part of the force inside a frequency band; its root mean square is `band_rms`.
+
+    Parameters
+    ----------
+    force : (n,) ndarray
+        Contact force over the analysis section [N].
+    rate : float
+        Sampling rate [Hz].
+    low, high : float
+        Edges of the band ]low, high] [Hz].
+
+    Returns
+    -------
+    (n,) ndarray
+        Force inside the band [N].
+    """
+    frequency, lines = np.fft.rfftfreq(force.size, 1 / rate), np.fft.rfft(force)
+    lines[(frequency <= low) | (frequency > high)] = 0
+    return np.asarray(np.fft.irfft(lines, force.size))
+
+
 def amplitude_spectrum(force: RealArray, rate: float, highest: float) -> tuple[RealArray, RealArray]:
     """Single-sided amplitude spectrum of the force about its mean.
 

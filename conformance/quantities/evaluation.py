@@ -1,11 +1,12 @@
 """Evaluation of signals: available quantities, and the reasons why other quantities are not available."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Protocol
 
 from pantocheck.conformance.quantities.force_quantities import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES
 from pantocheck.conformance.quantities.sampling import WHOLE_RECORD
-from pantocheck.conformance.quantities.signals import ForceSignals, LineSignals
+from pantocheck.conformance.quantities.signals import ForceSignals, LineSignals, PantographSignals
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 
 Value = float | tuple[float, ...]
@@ -32,6 +33,17 @@ class Evaluation:
 
     values: dict[int, dict[str, Value]]
     skipped: dict[int, dict[str, str]]
+
+
+class SectionedSignals(Protocol):
+    """Signals of a record, whose quantities can be computed over any section."""
+
+    @property
+    def evaluation(self) -> Evaluation:
+        """Quantities over the analysis section."""
+
+    def evaluate_section(self, section: tuple[float, float]) -> Evaluation:
+        """Evaluate the quantities over another section [m, m]; the force is not filtered again."""
 
 
 def skip_record(reason: str, pantographs: Iterable[int]) -> Evaluation:
@@ -73,3 +85,11 @@ def evaluate_signals(pantographs: Mapping[int, ForceSignals], line: LineSignals)
         except QuantityUnavailable as reason:
             skipped[LINE][line_quantity.name] = str(reason)
     return Evaluation(values, skipped)
+
+
+def evaluate_section(
+    pantographs: Mapping[int, PantographSignals], line: LineSignals, section: tuple[float, float]
+) -> Evaluation:
+    """Evaluate all quantities over another section [m, m]; the force is not filtered again."""
+    moved = {number: replace(signals, section=section) for number, signals in pantographs.items()}
+    return evaluate_signals(moved, replace(line, section=section))

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.quantities.bands import EXTENDED_BAND, band_rms
+from pantocheck.conformance.quantities.bands import EXTENDED_BAND, band_part, band_rms
 from pantocheck.conformance.quantities.filters import LowPass, needs_filter
 from pantocheck.conformance.quantities.unavailable import (
     BandNotObservable,
@@ -70,6 +70,9 @@ class ForceSignals(Protocol):
 
     def band(self, low: float, high: float) -> float:
         """RMS of the contact force in the band ]low, high] Hz [N]."""
+
+    def band_part(self, low: float, high: float) -> RealArray:
+        """Contact force in the band ]low, high] Hz [N]."""
 
 
 @dataclass(frozen=True)
@@ -175,6 +178,10 @@ class PantographSignals:
     def band(self, low: float, high: float) -> float:
         """RMS of the contact force in the band ]low, high] Hz, over the analysis section [N]."""
         return band_rms(self.delivered, self.force.rate, low, high, self.filter_applied_Hz)
+
+    def band_part(self, low: float, high: float) -> RealArray:
+        """Contact force in the band ]low, high] Hz, over the analysis section [N]."""
+        return band_part(self.delivered, self.force.rate, low, high)
 
     def _check_duration(self, cutoff_Hz: float) -> None:
         duration, shortest = self.delivered.size / self.force.rate, SHORTEST_PERIODS / cutoff_Hz

@@ -27,7 +27,3 @@ class SupportsMissing(ChannelMissing):
 
 class NoMeanForce(QuantityUnavailable):
     """Mean force not positive: a ratio to it would be negative, and so lower than that of every good record."""
-
-
-class NotResampled(QuantityUnavailable):
-    """Quantity without bootstrap replicates, and therefore without uncertainty from the length of the record."""
