@@ -64,7 +64,7 @@ class Filter(InputTable):
 
 
 class Discretisation(InputTable):
-    """Mesh and time step of the reference simulator; its refined run uses half of both."""
+    """Mesh and time step of the reference simulator; its refined run uses half of both, its coarse run twice both."""
 
     element_m: Annotated[float, Field(ge=0.02, le=5, description="largest element length [m]")] = 0.5
     time_step_s: Annotated[float, Field(ge=1e-5, le=0.01, description="time step [s]")] = 0.001
@@ -78,9 +78,10 @@ class Discretisation(InputTable):
         ),
     ] = None
 
-    def halve(self) -> "Discretisation":
-        """Discretisation with half the element length and half the time step."""
-        return self.model_copy(update={"element_m": self.element_m / 2, "time_step_s": self.time_step_s / 2})
+    def scale(self, factor: float) -> "Discretisation":
+        """Discretisation with element length and time step multiplied by a factor."""
+        steps = {"element_m": factor * self.element_m, "time_step_s": factor * self.time_step_s}
+        return self.model_copy(update=steps)
 
 
 class ApparentMass(InputTable):

@@ -290,7 +290,7 @@ def test_defaults_of_a_case(edited_case: EditedCase) -> None:
     low_pass = case.file.filter.low_pass
     assert (low_pass.kind, low_pass.order, low_pass.cutoff_Hz, low_pass.phase) == ("butterworth", 6, 20.0, "zero")
     assert (case.file.discretisation.element_m, case.file.discretisation.time_step_s) == (0.5, 0.001)
-    halved = case.file.discretisation.halve()
+    halved = case.file.discretisation.scale(0.5)
     assert (halved.element_m, halved.time_step_s) == (0.25, 0.0005)
     assert (case.start, case.end, case.recorded_section) == (60.0, 420.0, (240.0, 360.0))
 

@@ -1,0 +1,84 @@
+"""Other starts and sections with which the uncertainty of a case is determined."""
+
+from dataclasses import replace
+
+import pytest
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.cases.start_and_section import (
+    has_short_run_in,
+    list_earlier_sections,
+    list_other_starts,
+    run_in_spans,
+    shift_section,
+    span_length,
+)
+
+
+def with_keys(case: Case, **keys: object) -> Case:
+    return replace(case, file=case.file.model_copy(update=keys))
+
+
+def case_named(name: str) -> Case:
+    (case,) = (case for case in select_cases([name]) if case.id == name)
+    return case
+
+
+def test_run_in_counts_from_the_first_pantograph() -> None:
+    """The 2002 model starts at 60 m, its section at 240 m; the first of two pantographs starts 200 m ahead."""
+    assert run_in_spans(case_named("en50318-2002/250")) == pytest.approx(3.0)
+    assert run_in_spans(case_named("en50318-2018/ac-simple/320")) == pytest.approx(29.0)
+    assert run_in_spans(case_named("en50318-2018/ac-simple/320-twin")) == pytest.approx(29.0 - 200 / 55)
+
+
+def test_other_starts_of_a_short_run_in(case_250: Case) -> None:
+    starts = list_other_starts(case_250)
+    assert [start.case.start for start in starts] == pytest.approx([20.0, 40.0, 80.0, 100.0, 120.0, 60.0, 60.0])
+    run_in_s = 180.0 / case_250.speed
+    assert [start.ramp_s for start in starts] == pytest.approx([0.0] * 5 + [run_in_s / 4, run_in_s / 2])
+    assert all(start.case.analysis_section == case_250.analysis_section for start in starts)
+    assert all(start.case.end == case_250.end for start in starts)
+
+
+@pytest.mark.parametrize(
+    ("start", "places"),
+    [
+        (30.0, [10.0, 50.0, 70.0, 90.0]),  # 10 m before the line is left out
+        (190.0, [150.0, 170.0, 210.0, 230.0]),  # 250 m lies inside the section
+        (240.0, [200.0, 220.0]),  # no run-in, hence no ramp
+    ],
+)
+def test_other_starts_lie_on_the_line_before_the_section(case_250: Case, start: float, places: list[float]) -> None:
+    shifted = [other.case.start for other in list_other_starts(with_keys(case_250, start_m=start)) if not other.ramp_s]
+    assert shifted == pytest.approx(places)
+
+
+def test_long_run_in_needs_no_other_start_but_has_earlier_sections() -> None:
+    """320 km/h: run-in of 29 spans, so that sections of span 30-39 down to 17-26 keep at least half of it."""
+    case = case_named("en50318-2018/ac-simple/320")
+    assert list_other_starts(case) == ()
+    sections = list_earlier_sections(case)
+    assert len(sections) == 14
+    assert sections[0] == (29 * 55.0, 39 * 55.0)
+    assert sections[-1] == (16 * 55.0, 26 * 55.0)
+    assert (sections[-1][0] - case.start_positions[0]) / 55 >= run_in_spans(case) / 2
+
+
+@pytest.mark.parametrize(("start", "short"), [(0.5, True), (20.0, True), (-0.0, False)])
+def test_run_in_of_ten_spans_is_long(start: float, short: bool) -> None:
+    """Sections that begin at span 11; the start lies at 0 m or later."""
+    case = with_keys(case_named("en50318-2018/ac-simple/275"), evaluated_spans=(11, 20), start_m=start)
+    assert has_short_run_in(case) is short
+
+
+def test_short_run_in_has_only_the_sections_that_the_case_compares(case_250: Case) -> None:
+    assert list_earlier_sections(case_250) == ()
+    compared = with_keys(case_250, compared_spans=(3, 8))
+    assert list_earlier_sections(compared) == compared.shifted_sections
+
+
+def test_section_is_shifted_by_quarters_of_a_span(case_250: Case) -> None:
+    shifted = shift_section(case_250.analysis_section, span_length(case_250))
+    assert [start for start, _ in shifted] == pytest.approx([195.0, 210.0, 225.0, 255.0, 270.0, 285.0])
+    assert {end - start for start, end in shifted} == {120.0}
