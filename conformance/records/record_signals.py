@@ -1,9 +1,9 @@
 """Signals of a record, filtered once and shared by quantities, traces, section spread and consistency checks."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
-from pantocheck.conformance.quantities.evaluation import Evaluation, evaluate_signals
+from pantocheck.conformance.quantities.evaluation import Evaluation, evaluate_section, evaluate_signals
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.quantities.signals import ForceChannel, LineSignals, PantographSignals
 from pantocheck.conformance.records.record import Record
@@ -60,8 +60,7 @@ class RecordSignals:
 
     def evaluate_section(self, section: tuple[float, float]) -> Evaluation:
         """Evaluate the quantities over another analysis section [m, m]; the force is not filtered again."""
-        pantographs = {number: replace(signals, section=section) for number, signals in self.pantographs.items()}
-        return evaluate_signals(pantographs, replace(self.line, section=section))
+        return evaluate_section(self.pantographs, self.line, section)
 
 
 def evaluate_record(record: Record, low_pass: LowPass, line_supports: tuple[float, ...] | None = None) -> Evaluation:

@@ -1,11 +1,13 @@
 """Preparation of a measured record: from samples to signals, with a note on each cut."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.quantities.evaluation import Evaluation, evaluate_section, evaluate_signals
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.quantities.signals import (
     ForceChannel,
@@ -61,6 +63,15 @@ class PreparedRecord:
     seconds: float
     notes: tuple[str, ...]
     warnings: tuple[str, ...]
+
+    @cached_property
+    def evaluation(self) -> Evaluation:
+        """Quantities over the analysis section."""
+        return evaluate_signals(self.pantographs, self.line)
+
+    def evaluate_section(self, section: tuple[float, float]) -> Evaluation:
+        """Evaluate the quantities over another section [m, m]; the force is not filtered again."""
+        return evaluate_section(self.pantographs, self.line, section)
 
 
 @dataclass(frozen=True)

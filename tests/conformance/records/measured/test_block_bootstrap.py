@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.quantities.bands import EXTENDED_BAND
+from pantocheck.conformance.quantities.bands import BANDS
 from pantocheck.conformance.quantities.filters import LowPass
-from pantocheck.conformance.quantities.sampling import Sampling
+from pantocheck.conformance.quantities.sampling import WHOLE_RECORD, Sampling
 from pantocheck.conformance.quantities.signals import ForceChannel, PantographSignals
-from pantocheck.conformance.quantities.unavailable import NotResampled
+from pantocheck.conformance.quantities.unavailable import AlreadyFiltered
 from pantocheck.conformance.records.measured.block_bootstrap import BlockReplicates, bootstrap_uncertainties
 
 RATE, SPEED, SPAN = 100.0, 60.0, 60.0  # a span a second
@@ -101,11 +101,30 @@ def test_statistics_of_a_replicate_are_those_of_its_blocks(length: int) -> None:
     assert replicates.percentage(series > 120) == pytest.approx(100 * (written > 120).mean(axis=1), rel=1e-12)
 
 
-def test_band_has_no_replicates() -> None:
-    signals = force_signals(spans(np.random.default_rng(6), 50))
-    with pytest.raises(NotResampled, match="the RMS in 20-50 Hz has no bootstrap uncertainty"):
-        BlockReplicates(STARTS, 2).band_rms(signals, EXTENDED_BAND)
-    assert not {"rms_0_5_N", "rms_5_20_N", "rms_20_50_N"} & set(bootstrap_uncertainties(signals, 1.0, DIGEST))
+def test_replicates_of_a_band_are_those_of_its_part_of_the_force() -> None:
+    """Two lines of 3 Hz and 12 Hz, both of whole periods; the second grows tenfold in the second half.
+
+    Blocks of whole periods see the first with 6 N in every replicate. The second has 3 N or 30 N in a block.
+    """
+    time = np.arange(1000) / RATE
+    growth = np.where(time < 5, 1.0, 10.0)
+    force = 120 + 6 * np.sqrt(2) * np.sin(2 * np.pi * 3 * time)
+    signals = force_signals(np.append(force, 120.0))
+    starts = np.array([[100, 200, 300], [600, 700, 800]])
+    replicates = BlockReplicates(starts, 100)
+    assert replicates.band_rms(signals, BANDS[0]) == pytest.approx([6.0, 6.0], rel=1e-9)
+    assert WHOLE_RECORD.band_rms(signals, BANDS[0]) == pytest.approx(6.0, rel=1e-9)
+    bursts = force_signals(np.append(force + 3 * np.sqrt(2) * growth * np.sin(2 * np.pi * 12 * time), 120.0))
+    # Near the steps of the amplitude, at 0 s and 5 s, the band would hold a part of the larger line.
+    assert replicates.band_rms(bursts, BANDS[1]) == pytest.approx([3.0, 30.0], rel=0.02)
+    assert {"rms_0_5_N", "rms_5_20_N"} <= set(bootstrap_uncertainties(signals, 1.0, DIGEST))
+
+
+def test_band_that_the_record_does_not_support_has_no_uncertainty() -> None:
+    signals = force_signals(spans(np.random.default_rng(6), 50), filter_applied_Hz=10.0)
+    with pytest.raises(AlreadyFiltered):
+        BlockReplicates(STARTS, 2).band_rms(signals, BANDS[1])
+    assert "rms_5_20_N" not in bootstrap_uncertainties(signals, 1.0, DIGEST)
 
 
 @pytest.mark.parametrize("block_s", [1.0, 0.997, 1.003, 2.5])
