@@ -55,6 +55,10 @@ class Delivered:
         Start of the run, as the system states it.
     refined : Delivered or None
         The same case with element length and time step halved, for the discretisation error.
+    coarse : Delivered or None
+        The same case with element length and time step doubled, for the observed order of convergence.
+    starts : tuple of Delivered
+        The same case with other starts, for the uncertainty of a short run-in.
     """
 
     record: Record | None = None
@@ -68,6 +72,8 @@ class Delivered:
     digest: str | None = None
     start: StartTable | None = None
     refined: "Delivered | None" = None
+    coarse: "Delivered | None" = None
+    starts: "tuple[Delivered, ...]" = ()
 
 
 @dataclass(frozen=True)

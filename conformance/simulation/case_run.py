@@ -2,6 +2,7 @@
 
 import math
 import time
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,6 +11,7 @@ from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import Discretisation
 from pantocheck.conformance.cases.pantograph_file import PantographFile
+from pantocheck.conformance.cases.start_and_section import RunStart
 from pantocheck.conformance.quantities.signals import UPLIFT_STRETCH_M
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
@@ -17,7 +19,7 @@ from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 from pantocheck.conformance.simulation.static_quantities import sample_span
 from pantocheck.conformance.simulation.uplift_tuning import tune_uplift
-from pantocheck.model import DiscretisedLine, History, Passage, simulate_passage
+from pantocheck.model import DiscretisedLine, History, Pantograph, Passage, simulate_passage
 from pantocheck.model.statics.elasticity import static_uplift
 
 KEPT_SPANS = 1.5
@@ -82,6 +84,20 @@ def run_passage(
     )
 
 
+def run_starts(
+    starts: Iterable[RunStart],
+    case: Case,
+    line: DiscretisedLine,
+    discretisation: Discretisation,
+    uplift_forces: tuple[float, ...],
+) -> Iterator[Record]:
+    """Simulate the passage of a case from other starts; parameters as in `run_passage`."""
+    pantographs = _build_pantographs(case, line, uplift_forces)
+    for start in starts:
+        passage = replace(_place_train(start.case, line, discretisation, pantographs), ramp=start.ramp_s)
+        yield record_passage(start.case, passage, simulate_passage(line, passage))
+
+
 def _run_once(
     case: Case, line: DiscretisedLine, discretisation: Discretisation, uplift_forces: tuple[float, ...]
 ) -> PassageRun:
@@ -110,13 +126,24 @@ def build_passage(
     case: Case, line: DiscretisedLine, discretisation: Discretisation, uplift_forces: tuple[float, ...]
 ) -> Passage:
     """Passage of a case on a discretised line, with given uplift forces [N]."""
-    pantographs = [
+    return _place_train(case, line, discretisation, _build_pantographs(case, line, uplift_forces))
+
+
+def _build_pantographs(case: Case, line: DiscretisedLine, uplift_forces: tuple[float, ...]) -> tuple[Pantograph, ...]:
+    """Pantographs of a case, each with its working height under its uplift force."""
+    return tuple(
         build_pantograph(file, force, compute_working_height(case, line, file, force))
         for file, force in zip(case.pantographs, uplift_forces, strict=True)
-    ]
+    )
+
+
+def _place_train(
+    case: Case, line: DiscretisedLine, discretisation: Discretisation, pantographs: tuple[Pantograph, ...]
+) -> Passage:
+    """Passage of given pantographs from the start of a case to its end."""
     duration = (case.end - case.start) / case.speed
     return Passage(
-        pantographs=tuple(pantographs),
+        pantographs=pantographs,
         start=case.start_positions,
         speed=case.speed,
         duration=duration,

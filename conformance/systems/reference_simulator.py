@@ -6,32 +6,50 @@ from typing import Literal
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import Discretisation
+from pantocheck.conformance.cases.start_and_section import list_other_starts
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.outcome import Delivered
-from pantocheck.conformance.simulation.case_run import run_passage
+from pantocheck.conformance.simulation.case_run import run_passage, run_starts
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.simulation.static_quantities import compute_static_quantities
 from pantocheck.model import discretise
+from pantocheck.model.failures import SimulationError
 
 
 @dataclass(frozen=True)
 class ReferenceSimulator:
-    """System that runs a case with its discretisation and, for the discretisation error, with half of both steps."""
+    """System that runs a case and, for its uncertainty, the case on two other meshes and from other starts."""
 
     name: str = "Pantocheck reference simulator"
     version: str = version("pantocheck")
     kind: Literal["builtin"] = "builtin"
 
     def run(self, case: Case) -> Delivered:
-        """Run a case and its refinement."""
+        """Run a case, with element length and time step halved and doubled, and from other starts."""
         discretisation = case.file.discretisation
         delivered, uplift_forces = _deliver(case, discretisation)
-        refined, _ = _deliver(case, discretisation.halve(), uplift_forces)
-        return replace(delivered, refined=refined)
+        refined, _ = _deliver(case, discretisation.scale(1 / 2), uplift_forces)
+        try:
+            coarse, _ = _deliver(case, discretisation.scale(2), uplift_forces)
+        except SimulationError:  # too coarse to converge: the uncertainty follows from two meshes
+            coarse = None
+        starts = () if uplift_forces is None else _run_other_starts(case, discretisation, uplift_forces)
+        return replace(delivered, refined=refined, coarse=coarse, starts=starts)
 
     def run_unrefined(self, case: Case) -> Delivered:
         """Run a case once, with the discretisation of the case."""
         return _deliver(case, case.file.discretisation)[0]
+
+
+def _run_other_starts(
+    case: Case, discretisation: Discretisation, uplift_forces: tuple[float, ...]
+) -> tuple[Delivered, ...]:
+    """Simulate a case from other starts, if its run-in is short."""
+    starts = list_other_starts(case)
+    if not starts:
+        return ()
+    line = discretise(build_catenary(case.line), discretisation.element_m)
+    return tuple(map(Delivered, run_starts(starts, case, line, discretisation, uplift_forces)))
 
 
 def _deliver(

@@ -57,17 +57,15 @@ def run_damping_change(case: Case, study: DampingChange, system: System) -> Outc
     before, after = runs.values()
     values = {model: _evaluate(case, record) for model, record in records.items()}
     findings = band_changes(*values.values())
-    refined = after.refined
-    if refined is not None and before.refined is not None:
-        refined_values = (_evaluate(case, before.refined.record), _evaluate(case, refined.record))
-        refined = replace(refined, study=StudyResult(band_changes(*refined_values)))
     printed = {(table.model, table.pantograph): table.values for table in study.printed}
     printed_changes = band_changes(
         *({p: dict(table) for (model, p), table in printed.items() if model == run} for run in runs)
     )
     return replace(
         after,
-        refined=refined,
+        refined=_compare_runs(case, before.refined, after.refined),
+        coarse=_compare_runs(case, before.coarse, after.coarse),
+        starts=tuple(_add_changes(case, *pair) for pair in zip(before.starts, after.starts, strict=True)),
         study=StudyResult(
             findings=findings,
             charts=(*draw_band_bars(values, printed, BAND_QUANTITIES), *_draw_rear_force(case, study.span, records)),
@@ -78,6 +76,17 @@ def run_damping_change(case: Case, study: DampingChange, system: System) -> Outc
             ),
         ),
     )
+
+
+def _compare_runs(case: Case, before: Delivered | None, after: Delivered | None) -> Delivered | None:
+    """Run after the change with the changes of the bands; None if one of the runs is missing."""
+    return None if before is None or after is None else _add_changes(case, before, after)
+
+
+def _add_changes(case: Case, before: Delivered, after: Delivered) -> Delivered:
+    """Run after the change with the changes of the bands."""
+    changes = band_changes(_evaluate(case, before.record), _evaluate(case, after.record))
+    return replace(after, study=StudyResult(changes))
 
 
 def band_changes(before: ValuesByOwner, after: ValuesByOwner) -> dict[int, dict[str, Value]]:
