@@ -5,16 +5,15 @@ from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
+from pantocheck.conformance.authenticity.reported_numbers import EXACT, ROUNDED, same_number, select_item
+from pantocheck.conformance.authenticity.uncertainty_check import check_combination, check_components
 from pantocheck.conformance.grading.case_verdict import judge_case, read_participation
 from pantocheck.conformance.grading.near_limit import ValueErrors, near_limit_remarks
 from pantocheck.conformance.grading.verdicts import Verdict, judge, margin
 from pantocheck.conformance.input_files.trust import limit_counts
 from pantocheck.conformance.quantities.bands import BANDS
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, statistical_extremes
-from pantocheck.conformance.results.results_format import RecordFacts, Results
-
-EXACT, ROUNDED = 1e-9, 2e-5
-"""Relative tolerances: numbers of results.json have all their digits, traces are rounded to six digits."""
+from pantocheck.conformance.results.results_format import COMPONENT_NAMES, VERIFICATION_COMPONENTS, RecordFacts, Results
 
 
 def find_discrepancies(results: dict[str, Any]) -> list[str]:
@@ -48,6 +47,7 @@ def find_discrepancies(results: dict[str, Any]) -> list[str]:
 
 def _check_case(case: dict[str, Any], trust: Any) -> Iterator[str]:
     stated, verification = case["criteria_verdict"] or case["verdict"], case["verification"]
+    yield from (f"{case['id']}, {text}" for text in check_combination(case))
     record = None if case["record"] is None else RecordFacts.model_validate(case["record"])
     ungraded = not case["criteria"] and case["reason"] and stated in ("skip", "error")
     if record is None and case["run"]["evaluated_m"] is not None and not ungraded:
@@ -68,9 +68,11 @@ def _check_case(case: dict[str, Any], trust: Any) -> Iterator[str]:
 
 
 def _check_criteria(case: dict[str, Any], criteria: list[dict[str, Any]], trust: Any) -> Iterator[str]:
+    names = VERIFICATION_COMPONENTS if trust == "computed" else COMPONENT_NAMES
     for row in criteria:
         where = f"{case['id']}, {row['quantity']} of pantograph {row['pantograph']}"
-        for text in (*_check_value(row, case["quantities"]), *_check_grade(row, trust)):
+        components = check_components(row, case["uncertainty_components"], names)
+        for text in (*_check_value(row, case["quantities"]), *components, *_check_grade(row, trust)):
             yield f"{where}: {text}"
 
 
@@ -87,10 +89,7 @@ def _check_verification(
 
 def _check_value(row: dict[str, Any], quantities: dict[str, Any]) -> Iterator[str]:
     """The graded value must be the reported quantity."""
-    reported = quantities.get(str(row["pantograph"]), {}).get(row["quantity"])
-    if isinstance(reported, list):
-        index = (row["item"] or 1) - 1
-        reported = reported[index] if 0 <= index < len(reported) else None
+    reported = select_item(quantities.get(str(row["pantograph"]), {}).get(row["quantity"]), row["item"])
     if row["value"] != reported:
         yield f"value {_format(row['value'])} graded, {_format(reported)} reported among the quantities"
 
@@ -112,9 +111,12 @@ def _check_grade(row: dict[str, Any], trust: Any) -> Iterator[str]:
     if row["verdict"] != verdict:
         yield f"verdict '{row['verdict']}' stated, '{verdict}' follows from value, limits and trust"
     expected = None if value is None else margin(value, lower, upper)
-    if not _same(row["margin"], expected, EXACT):
+    if not same_number(row["margin"], expected, EXACT):
         yield f"margin {_format(row['margin'])} stated, {_format(expected)} follows from value and limits"
-    errors = ValueErrors(row["discretisation_error"], row["spread"], row["uncertainty"], row["limit_uncertainty"])
+    errors = ValueErrors(row["discretisation_error"], row["spread"], row["components"], row["limit_uncertainty"])
+    if row["components"] and not same_number(row["uncertainty"], errors.uncertainty, EXACT):
+        printed, combined = _format(row["uncertainty"]), _format(errors.uncertainty)
+        yield f"uncertainty {printed} stated, {combined} follows from its components"
     remarks = near_limit_remarks(value, (lower, upper), row["unit"], errors)
     if row["close"] != remarks:
         stated = len(row["close"])
@@ -131,7 +133,7 @@ def _check_statistics(quantities: dict[str, Any]) -> Iterator[str]:
         ratios = {"cov_20": std, "cov_50": std_50}
         expected |= {k: coefficient_of_variation(mean, v) for k, v in ratios.items() if v is not None}
     for name, value in expected.items():
-        if name in quantities and not _same(quantities[name], value, EXACT):
+        if name in quantities and not same_number(quantities[name], value, EXACT):
             stated = _format(quantities[name])
             yield f"{name} {stated} stated, {_format(value)} follows from mean and standard deviation"
 
@@ -146,7 +148,7 @@ def _check_order(quantities: dict[str, Any]) -> Iterator[str]:
 def _check_trace(quantities: dict[str, Any], trace: dict[str, Any]) -> Iterator[str]:
     """Drawn curves must agree with the stated quantities."""
     for key, name in (("mean_N", "mean_force_N"), ("std_N", "std_force_N")):
-        if name in quantities and trace[key] is not None and not _same(trace[key], quantities[name], ROUNDED):
+        if name in quantities and trace[key] is not None and not same_number(trace[key], quantities[name], ROUNDED):
             yield f"{name} {_format(quantities[name])} stated, {_format(trace[key])} drawn"
     force = trace["force_20_N"]
     if force:
@@ -171,14 +173,8 @@ def _check_bands(quantities: dict[str, Any], frequency: list[float], amplitude: 
         if name not in quantities or doubtful:
             continue
         power = sum(a * a / 2 for f, a in zip(frequency, amplitude, strict=True) if low < f <= high)
-        if not _same(quantities[name], math.sqrt(power), ROUNDED):
+        if not same_number(quantities[name], math.sqrt(power), ROUNDED):
             yield f"{name} {_format(quantities[name])} stated, {_format(math.sqrt(power))} follows from the spectrum"
-
-
-def _same(a: float | None, b: float | None, tolerance: float) -> bool:
-    if a is None or b is None:
-        return a is b
-    return math.isclose(a, b, rel_tol=tolerance, abs_tol=tolerance)
 
 
 def _format(value: float | None) -> str:

@@ -8,12 +8,13 @@ import numpy as np
 
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.profile_file import Profile
+from pantocheck.conformance.grading.record_uncertainty import assess_uncertainty
+from pantocheck.conformance.grading.uncertainty import Uncertainty
 from pantocheck.conformance.input_files.bounded_file import file_digest
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value, evaluate_signals, skip_record
+from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value, skip_record
 from pantocheck.conformance.quantities.filters import is_same_cutoff
 from pantocheck.conformance.quantities.registry import QUANTITIES
-from pantocheck.conformance.records.measured.block_bootstrap import FEWEST_BLOCKS, bootstrap_uncertainties
 from pantocheck.conformance.records.measured.line_supports import list_line_supports
 from pantocheck.conformance.records.measured.record_preparation import PreparedRecord, prepare_record
 from pantocheck.conformance.records.record import RecordInvalid
@@ -57,8 +58,8 @@ class AssessedRecord:
         SHA-256 of the samples of the force, in any format of file; None for a summary.
     values : Evaluation
         Quantities, including those that follow from the line.
-    uncertainty : dict of int to dict of str to float
-        Half-widths of the 95 % intervals, by pantograph and name.
+    uncertainty : Uncertainty
+        Half-widths of the 95 % intervals by component.
     prepared : PreparedRecord or None
         Signals of the quantities; None for a summary.
     notes : tuple of str
@@ -74,7 +75,7 @@ class AssessedRecord:
     record_digest: str
     force_digest: str | None
     values: Evaluation
-    uncertainty: dict[int, dict[str, float]]
+    uncertainty: Uncertainty
     prepared: PreparedRecord | None
     notes: tuple[str, ...]
     warnings: tuple[str, ...]
@@ -125,25 +126,10 @@ def load_assessed_record(path: Path, profile: Profile, line: LineTable) -> Asses
     except RecordInvalid as error:
         raise build_record_error(table, error) from None
     supports = list_line_supports(sidecar.support_position_m or (), known_line.span_m, prepared.section)
-    line_signals = replace(prepared.line, line_supports=supports)
+    prepared = replace(prepared, line=replace(prepared.line, line_supports=supports))
     digest = join_digests(file_digest(path.with_suffix(".toml")), file_digest(table), known_line.model_dump_json())
-    block = _block_length(known_line, sidecar)
-    uncertainty = {
-        number: bootstrap_uncertainties(signals, block / prepared.speed, digest)
-        for number, signals in prepared.pantographs.items()
-    }
-    uncertainty_note = (
-        "Uncertainties are half-widths of 95 % intervals from the length of the record (moving-block bootstrap, "
-        f"blocks of {block:g} m)."
-        if any(uncertainty.values())
-        else f"The record is shorter than {FEWEST_BLOCKS} spans: the uncertainty of its statistics is unknown."
-    )
     missing = _missing_statement(samples, sidecar)
-    evaluation = (
-        evaluate_signals(prepared.pantographs, line_signals)
-        if missing is None
-        else skip_record(missing, prepared.pantographs)
-    )
+    evaluation = prepared.evaluation if missing is None else skip_record(missing, prepared.pantographs)
     return AssessedRecord(
         name=path.stem,
         header=sidecar,
@@ -152,9 +138,9 @@ def load_assessed_record(path: Path, profile: Profile, line: LineTable) -> Asses
         record_digest=record_digest(path, table),
         force_digest=_force_digest(samples),
         values=_add_line_quantities(evaluation, known_line, sidecar.speed_km_h),
-        uncertainty={number: values for number, values in uncertainty.items() if values},
+        uncertainty=assess_uncertainty(prepared, _block_length(known_line, sidecar), digest),
         prepared=prepared,
-        notes=(*prepared.notes, uncertainty_note),
+        notes=prepared.notes,
         warnings=prepared.warnings,
     )
 
@@ -187,7 +173,7 @@ def _assess_summary(path: Path, summary: RecordSummary, profile: Profile, line: 
         record_digest=record_digest(path),
         force_digest=None,
         values=_add_line_quantities(summary.evaluation, line, summary.speed_km_h),
-        uncertainty={},
+        uncertainty=Uncertainty(),
         prepared=None,
         notes=(f"{path.stem} is a summary record: its values are graded as given.",),
         warnings=summary.contradictions,

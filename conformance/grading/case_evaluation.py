@@ -1,16 +1,22 @@
 """Evaluation of a delivery: signals, quantities, errors and consistency findings, each computed once."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.start_and_section import shift_section, span_length
 from pantocheck.conformance.consistency.check import CheckName, Finding
 from pantocheck.conformance.consistency.record_checks import check_record
 from pantocheck.conformance.consistency.record_state import record_state
+from pantocheck.conformance.grading.case_uncertainty import (
+    discretisation_component,
+    start_component,
+)
 from pantocheck.conformance.grading.criterion_grading import GradedValues, grade_limit
 from pantocheck.conformance.grading.record_mismatch import find_other_case, find_record_mismatch
+from pantocheck.conformance.grading.record_uncertainty import length_component, section_spread, shift_component
 from pantocheck.conformance.grading.start_agreement import StartAgreement, compare_starts
+from pantocheck.conformance.grading.uncertainty import Component, Uncertainty
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation
 from pantocheck.conformance.quantities.registry import QUANTITIES
@@ -18,10 +24,10 @@ from pantocheck.conformance.quantities.signals import edge_warnings
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.results.outcome import Delivered
-from pantocheck.conformance.results.results_format import Criterion, RecordFacts
+from pantocheck.conformance.results.results_format import ComponentName, Criterion, RecordFacts
 
-MIN_SECTIONS = 3
-"""Smallest number of shifted sections that give a spread."""
+AT_REST = Component("does not apply: the line is at rest")
+NO_RECORD = Component("not known: there is no record of one passage")
 
 
 @dataclass(frozen=True)
@@ -64,14 +70,36 @@ class CaseEvaluation:
 
     @cached_property
     def values(self) -> GradedValues:
-        """Quantities with discretisation error and section spread."""
+        """Quantities with their uncertainty, discretisation error and section spread."""
         refined = self.delivered.refined
         return GradedValues(
-            evaluation=_complete(self.delivered, None if self.signals is None else self.signals.evaluation),
-            refined=None
-            if refined is None
-            else _complete(refined, None if refined.record is None else self._signals(refined.record).evaluation),
+            evaluation=self._evaluate(self.delivered),
+            refined=None if refined is None else self._evaluate(refined),
             spread={} if self.signals is None else section_spread(self.signals, self.case.shifted_sections),
+            uncertainty=self.uncertainty,
+        )
+
+    @cached_property
+    def uncertainty(self) -> Uncertainty:
+        """Uncertainty of the quantities by component."""
+        delivered, case, signals = self.delivered, self.case, self.signals
+        coarse, fine = (None if run is None else self._evaluate(run) for run in (delivered.coarse, delivered.refined))
+        components: dict[ComponentName, Component] = {
+            "discretisation": discretisation_component(coarse, self._evaluate(delivered), fine)
+        }
+        if signals is None:
+            absent = AT_REST if case.is_static else NO_RECORD
+            return Uncertainty({**components, "start": absent, "section": absent, "length": absent})
+        others = [self._evaluate(start) for start in delivered.starts]
+        return Uncertainty(
+            {
+                **components,
+                "start": start_component(case, signals, others),
+                "section": shift_component(signals, shift_section(case.analysis_section, span_length(case))),
+                "length": length_component(
+                    signals.pantographs, span_length(case), case.speed, case.digest.removeprefix("sha256:")
+                ),
+            }
         )
 
     @cached_property
@@ -110,6 +138,12 @@ class CaseEvaluation:
         """Warnings on filter transients inside the analysis section."""
         return [] if self.signals is None else edge_warnings(self.signals.pantographs, self.signals.record.speed)
 
+    def _evaluate(self, run: Delivered) -> Evaluation:
+        """Quantities of one of the delivered runs."""
+        if run is self.delivered:
+            return _complete(run, None if self.signals is None else self.signals.evaluation)
+        return _complete(run, None if run.record is None else self._signals(run.record).evaluation)
+
     def _signals(self, record: Record) -> RecordSignals:
         return RecordSignals(record, self.case.file.filter.low_pass, self.case.line.geometry.supports)
 
@@ -121,33 +155,3 @@ def _complete(delivered: Delivered, evaluation: Evaluation | None) -> Evaluation
     for owner, extra in ((LINE, delivered.static), *delivered.study.findings.items()):
         values[owner] = {**values.get(owner, {}), **{name: extra[name] for name in QUANTITIES if name in extra}}
     return Evaluation(values, evaluation.skipped)
-
-
-def section_spread(signals: RecordSignals, sections: Sequence[tuple[float, float]]) -> dict[int, dict[str, float]]:
-    """Largest difference of each quantity from its value when the analysis section is shifted.
-
-    At constant speed on equal spans, the quantities settle. At speeds near the wave speed this takes tens of spans;
-    until then they depend on the analysis section. Mesh refinement does not reduce this uncertainty.
-
-    Parameters
-    ----------
-    signals : RecordSignals
-        Signals of the run.
-    sections : sequence of tuple of float
-        Start and end of every section of the same length [m, m].
-
-    Returns
-    -------
-    dict of int to dict of str to float
-        Spread in the units of the quantities, by pantograph and name; quantities available in fewer than
-        `MIN_SECTIONS` sections are left out.
-    """
-    shifted = [signals.evaluate_section(section).values for section in sections]
-    spread: dict[int, dict[str, float]] = {}
-    for owner, quantities in signals.evaluation.values.items():
-        for name, value in quantities.items():
-            others = [values.get(owner, {}).get(name) for values in shifted]
-            numbers = [other for other in others if isinstance(other, float | int)]
-            if isinstance(value, float | int) and len(numbers) >= MIN_SECTIONS:
-                spread.setdefault(owner, {})[name] = float(max(abs(other - value) for other in numbers))
-    return spread

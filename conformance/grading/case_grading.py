@@ -13,7 +13,7 @@ from pantocheck.conformance.grading.extended_band import extended_band_warnings
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.results.outcome import Delivered, Errored, Outcome, Skipped
-from pantocheck.conformance.results.results_building import key_by_owner, select_finite
+from pantocheck.conformance.results.results_building import describe_uncertainty, key_by_owner, select_finite
 from pantocheck.conformance.results.results_format import (
     CaseResult,
     FilterFacts,
@@ -92,6 +92,7 @@ def grade_evaluation(evaluation: CaseEvaluation, lowest_trust: Trust) -> CaseRes
         quantities=key_by_owner(select_finite(values.evaluation.values)),
         skipped=key_by_owner(values.evaluation.skipped),
         spread=key_by_owner(values.spread),
+        **describe_uncertainty(values.uncertainty),
         traces={} if signals is None else build_pantograph_traces(signals.pantographs, supports),
         uplift=[] if signals is None else build_uplift_traces(signals),
         charts=list(delivered.study.charts),

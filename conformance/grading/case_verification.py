@@ -15,7 +15,7 @@ from pantocheck.conformance.grading.case_verdict import judge_case
 from pantocheck.conformance.grading.criterion_grading import grade_requirement
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.grading.verification_limits import build_requirements
-from pantocheck.conformance.results.results_format import CaseVerification
+from pantocheck.conformance.results.results_format import VERIFICATION_COMPONENTS, CaseVerification
 
 
 def verify_evaluation(evaluation: CaseEvaluation) -> CaseVerification | None:
@@ -31,7 +31,7 @@ def verify_evaluation(evaluation: CaseEvaluation) -> CaseVerification | None:
         return build_unverified(converged, "info", reason)
     if evaluation.contradiction is not None:
         return build_unverified(converged, "error", evaluation.contradiction)
-    values = replace(evaluation.values, spread={}, uncertainty={})
+    values = replace(evaluation.values, spread={}, uncertainty=evaluation.uncertainty.select(VERIFICATION_COMPONENTS))
     criteria = [
         grade_requirement(requirement, values, "computed")
         for requirement in build_requirements(converged, case.is_static)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.grading.near_limit import NO_ERRORS, ValueErrors, near_limit_remarks
+from pantocheck.conformance.grading.uncertainty import Uncertainty
 from pantocheck.conformance.grading.verdicts import Verdict, judge, margin
 from pantocheck.conformance.input_files.trust import Computed, Trust, limit_counts
 from pantocheck.conformance.quantities.evaluation import Evaluation, Value
@@ -49,7 +50,7 @@ class Requirement:
 
 @dataclass(frozen=True)
 class GradedValues:
-    """Quantities of a run, with their errors.
+    """Quantities of a run, with their uncertainty.
 
     Parameters
     ----------
@@ -59,14 +60,14 @@ class GradedValues:
         Quantities of the same case with element length and time step halved.
     spread : mapping
         Largest change when the analysis section is shifted.
-    uncertainty : mapping
-        Half-widths of the 95 % intervals from the length of the record.
+    uncertainty : Uncertainty
+        Half-widths of the 95 % intervals by component.
     """
 
     evaluation: Evaluation
     refined: Evaluation | None = None
     spread: ErrorsByQuantity = field(default_factory=dict)
-    uncertainty: ErrorsByQuantity = field(default_factory=dict)
+    uncertainty: Uncertainty = field(default_factory=Uncertainty)
 
 
 def grade_limit(limit: Limit, values: GradedValues, lowest_trust: Trust, limit_uncertainty: float = 0.0) -> Criterion:
@@ -95,6 +96,7 @@ def grade_requirement(
     """Grade a quantity by a requirement; parameters as in `grade_limit`."""
     owner, name = requirement.owner, requirement.quantity
     value = find_value(requirement, values.evaluation.values)
+    components = values.uncertainty.list_components(owner, name)
     if value is None:
         missing = values.evaluation.skipped.get(owner, {}).get(name, "the system does not deliver this quantity")
         return build_criterion(requirement, None, missing, lowest_trust)
@@ -102,7 +104,11 @@ def grade_requirement(
     errors = ValueErrors(
         discretisation=None if refined is None else abs(value - refined),
         spread=values.spread.get(owner, {}).get(name),
-        uncertainty=values.uncertainty.get(owner, {}).get(name),
+        components={
+            part: item
+            for part, width in components.items()
+            if (item := _select_item(width, requirement.item)) is not None
+        },
         limit_uncertainty=limit_uncertainty,
     )
     return build_criterion(requirement, value, None, lowest_trust, errors)
@@ -156,6 +162,7 @@ def build_criterion(
         spread=errors.spread,
         reason=reason,
         uncertainty=errors.uncertainty,
+        components=dict(errors.components),
         limit_uncertainty=errors.limit_uncertainty,
         close=near_limit_remarks(value, (lower, upper), unit, errors),
     )
@@ -178,10 +185,16 @@ def find_value(requirement: Requirement | Limit, values: Mapping[int, Mapping[st
         Quantities by pantograph (0: the line) and name.
     """
     value = values.get(requirement.owner, {}).get(requirement.quantity)
-    if isinstance(value, tuple):
-        index = (requirement.item or 1) - 1
-        value = value[index] if index < len(value) else None
-    return value if value is not None and math.isfinite(value) else None
+    number = None if value is None else _select_item(value, requirement.item)
+    return number if number is not None and math.isfinite(number) else None
+
+
+def _select_item(value: Value, item: int | None) -> float | None:
+    """Item of a value with several items, by default the first; None if there is none."""
+    if not isinstance(value, tuple):
+        return value
+    index = (item or 1) - 1
+    return value[index] if index < len(value) else None
 
 
 def _distance_outside(value: float, requirement: Requirement, unit: str) -> str:

@@ -1,29 +1,49 @@
-"""Near-limit rule: a value closer to a limit than one of its errors is marked, as its verdict could be reversed."""
+"""Near-limit rule: a value closer to a limit than its uncertainty is marked, as its verdict could be reversed."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+
+from pantocheck.conformance.results.results_format import ComponentName
+
+REMEDIES: Mapping[str, str] = MappingProxyType(
+    {
+        "discretisation": "a finer mesh and time step",
+        "start": "another start or run-in",
+        "section": "another analysis section",
+        "length": "a longer record",
+        "limit": "another record behind the limit",
+    }
+)
+"""Change that could reverse the verdict, by the largest component of the uncertainty."""
 
 
 @dataclass(frozen=True)
 class ValueErrors:
-    """Errors of a value, in its unit; None if an error is not known.
+    """Errors of a value, in its unit.
 
     Parameters
     ----------
     discretisation : float or None
-        Change when element length and time step are halved.
+        Change when element length and time step are halved; None: not known.
     spread : float or None
-        Largest change when the analysis section is shifted.
-    uncertainty : float or None
-        Half-width of the 95 % interval from the length of the record.
+        Largest change when the analysis section is shifted; None: not known.
+    components : mapping of ComponentName to float
+        Half-widths of the 95 % interval by component; unknown components are left out.
     limit_uncertainty : float
         Half-width of the 95 % interval of the limit itself, if it comes from a measured record.
     """
 
     discretisation: float | None = None
     spread: float | None = None
-    uncertainty: float | None = None
+    components: Mapping[ComponentName, float] = field(default_factory=dict)
     limit_uncertainty: float = 0.0
+
+    @property
+    def uncertainty(self) -> float | None:
+        """Combined half-width of the 95 % interval of the value; None if no component is known."""
+        return math.hypot(*self.components.values()) if self.components else None
 
 
 NO_ERRORS = ValueErrors()
@@ -32,7 +52,7 @@ NO_ERRORS = ValueErrors()
 def near_limit_remarks(
     value: float | None, limits: tuple[float | None, float | None], unit: str, errors: ValueErrors
 ) -> list[str]:
-    """Remarks on every error of a value that is larger than its distance from the nearer limit.
+    """Remark on a value whose uncertainty, combined with that of its limit, exceeds its distance from the nearer limit.
 
     Parameters
     ----------
@@ -44,21 +64,24 @@ def near_limit_remarks(
         Unit of the value.
     errors : ValueErrors
         Errors of the value.
+
+    Returns
+    -------
+    list of str
+        One remark, or none.
     """
     lower, upper = limits
     if value is None or lower == upper:
         return []
     distance = min(abs(value - limit) for limit in limits if limit is not None)
-    record_length = math.hypot(errors.uncertainty or 0.0, errors.limit_uncertainty)
+    parts: dict[str, float] = {"limit": errors.limit_uncertainty} | {str(k): v for k, v in errors.components.items()}
+    combined = math.hypot(*parts.values())
+    if not distance < combined:
+        return []
+    largest = max(parts, key=lambda name: parts[name])
     return [
-        f"lies {_format(distance, unit)} from a limit, less than its {name} of {_format(error, unit)}: "
-        f"{remedy} could reverse the verdict"
-        for error, name, remedy in (
-            (errors.discretisation, "discretisation error", "mesh refinement"),
-            (errors.spread, "spread over analysis sections", "another analysis section"),
-            (record_length, "uncertainty", "a longer record"),
-        )
-        if error is not None and distance < error
+        f"lies {_format(distance, unit)} from a limit, less than its uncertainty of {_format(combined, unit)} "
+        f"(mostly {largest}): {REMEDIES[largest]} could reverse the verdict"
     ]
 
 

@@ -17,7 +17,13 @@ from pantocheck.conformance.grading.extended_band import find_unvalidated
 from pantocheck.conformance.grading.rule_grading import RuleGrading
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.trust import Trust
-from pantocheck.conformance.results.results_building import build_results, key_by_owner, select_finite, utc_now
+from pantocheck.conformance.results.results_building import (
+    build_results,
+    describe_uncertainty,
+    key_by_owner,
+    select_finite,
+    utc_now,
+)
 from pantocheck.conformance.results.results_format import (
     CaseResult,
     FilterFacts,
@@ -95,7 +101,7 @@ def assess_record(
         quantities=key_by_owner(select_finite(subject.values.values)),
         skipped=key_by_owner(subject.values.skipped),
         spread={},
-        uncertainty=key_by_owner(subject.uncertainty),
+        **describe_uncertainty(subject.uncertainty),
         record=record,
         run=_run_facts(subject, profile),
         traces={}

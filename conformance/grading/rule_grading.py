@@ -11,6 +11,7 @@ from pantocheck.conformance.cases.profile_file import BoundMissing, Profile, Rul
 from pantocheck.conformance.grading.assessed_record import AssessedRecord
 from pantocheck.conformance.grading.case_identity import describe_limit_change
 from pantocheck.conformance.grading.criterion_grading import GradedValues, Requirement, build_criterion, grade_limit
+from pantocheck.conformance.grading.uncertainty import combine_half_widths
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.quantities.registry import QUANTITIES
@@ -94,8 +95,11 @@ class RuleGrading:
         )
 
     def _limit_uncertainty(self, limit: Limit) -> float:
-        uncertainty = {} if self.measured is None else self.measured.uncertainty.get(limit.owner, {})
-        return uncertainty.get(limit.quantity, 0.0)
+        components = (
+            {} if self.measured is None else self.measured.uncertainty.list_components(limit.owner, limit.quantity)
+        )
+        combined = combine_half_widths(components)
+        return combined if isinstance(combined, float) else 0.0
 
     def _source(self, rule: Rule, compared: float | None) -> str:
         source = source_text(rule.source)

@@ -5,9 +5,10 @@ import platform as host
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from importlib.metadata import version
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from pantocheck.conformance.grading.case_verdict import EVERY_CASE, Participation
+from pantocheck.conformance.grading.uncertainty import Uncertainty
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.evaluation import Value
 from pantocheck.conformance.results.results_format import CaseResult, Number, Platform, Results, Suite, SystemIdentity
@@ -36,6 +37,22 @@ def select_finite(values: Mapping[int, Mapping[str, Value]]) -> dict[int, dict[s
             if all(map(math.isfinite, value if isinstance(value, tuple) else (value,)))
         }
         for owner, quantities in values.items()
+    }
+
+
+def describe_uncertainty(uncertainty: Uncertainty) -> dict[str, Any]:
+    """Keys of a result that hold the uncertainty of its quantities."""
+    components = {
+        owner: {
+            name: {part: list(width) if isinstance(width, tuple) else width for part, width in parts.items()}
+            for name, parts in quantities.items()
+        }
+        for owner, quantities in uncertainty.by_quantity.items()
+    }
+    return {
+        "uncertainty": key_by_owner(select_finite(uncertainty.combined)),
+        "uncertainty_components": key_by_owner(components),
+        "uncertainty_basis": {name: component.basis for name, component in uncertainty.components.items()},
     }
 
 

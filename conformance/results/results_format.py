@@ -23,6 +23,14 @@ RecordState = Literal["verified", "unverified", "contradicted"]
 BASELINE = "baseline"
 """Quantity of a criterion that states why a comparison with a baseline is impossible."""
 
+ComponentName = Literal["discretisation", "start", "section", "length"]
+"""Component of an uncertainty: mesh and time step; start and run-in; place of the analysis section; record length."""
+
+COMPONENT_NAMES: tuple[ComponentName, ...] = get_args(ComponentName)
+
+VERIFICATION_COMPONENTS: tuple[ComponentName, ...] = ("discretisation",)
+"""Components that count against converged values, which have the start and the analysis section of the case."""
+
 LARGEST_RESULT = 1e15
 """Largest absolute value of a number in results.json."""
 
@@ -78,9 +86,10 @@ class Criterion(ResultsPart):
     """A value against its limits. `pantograph` is 0 for the line; `item` counts droppers or modes from 1.
 
     `discretisation_error` is the change when element length and time step are halved. `spread` is the largest change
-    when the analysis section is shifted along the line. `uncertainty` is the half-width of the 95 % interval from the
-    length of the record, `limit_uncertainty` that of a limit from a measured record. `close` has a remark on each of
-    these errors that exceeds the distance from the nearer limit.
+    when the analysis section is shifted along the line. `uncertainty` is the half-width of the 95 % interval, the root
+    of the sum of squares of `components`; before `components` existed, it was that from the length of the record.
+    `limit_uncertainty` is that of a limit from a measured record. `close` has a remark if both combined exceed the
+    distance from the nearer limit.
     `baseline` is the value of earlier results, if the limits bound the drift from it.
     """
 
@@ -99,6 +108,7 @@ class Criterion(ResultsPart):
     spread: float | None = None
     reason: str | None
     uncertainty: float | None = None
+    components: dict[ComponentName, float] = {}
     limit_uncertainty: float = 0.0
     close: list[str] = []
     baseline: float | None = None
@@ -320,8 +330,22 @@ class CaseResult(ResultsPart):
         ),
     ]
     uncertainty: Annotated[
-        dict[Owner, dict[str, float]],
-        Field(default_factory=dict, description="half-width of the 95 % interval, as in `quantities`"),
+        dict[Owner, dict[str, Number]],
+        Field(
+            default_factory=dict,
+            description="half-width of the 95 % interval, as in `quantities`: root of the sum of squares of the "
+            "components; without `uncertainty_components`: from the length of the record alone",
+        ),
+    ]
+    uncertainty_components: Annotated[
+        dict[Owner, dict[str, dict[ComponentName, Number]]],
+        Field(
+            default_factory=dict, description="half-widths by component, as in `quantities`; unknown ones are missing"
+        ),
+    ]
+    uncertainty_basis: Annotated[
+        dict[ComponentName, str],
+        Field(default_factory=dict, description="how each component was determined, or why it is not known"),
     ]
     record: RecordFacts | None = None
     """Null without a record: line at rest, mass drop, or a study of several runs."""

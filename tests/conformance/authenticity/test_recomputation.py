@@ -188,7 +188,7 @@ def test_item_of_a_list_is_compared_with_its_own_value(passing: Results) -> None
     case["quantities"]["0"]["dropper_length_m"] = [1.017, 0.896]
     row = case["criteria"][0]
     row |= {"quantity": "dropper_length_m", "pantograph": 0, "unit": "m", "lower": 0.5, "upper": 1.5, "spread": None}
-    row |= {"discretisation_error": None}
+    row |= {"discretisation_error": None, "uncertainty": None, "components": {}}
     for item, value, consistent in ((2, 0.896, True), (None, 1.017, True), (1, 1.017, True), (2, 1.017, False),
                                     (3, 0.896, False), (None, 0.896, False)):  # fmt: skip
         row |= {"item": item, "value": value, "margin": 2 * min(value - 0.5, 1.5 - value)}

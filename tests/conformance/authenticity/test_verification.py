@@ -51,6 +51,15 @@ def row(results: dict[str, Any], case: int = 0, number: int = 0) -> dict[str, An
     return criterion
 
 
+def widen(results: dict[str, Any]) -> None:
+    """Give the first criterion an uncertainty of 1 kN, combined as it should be, but without its remark."""
+    criterion = row(results)
+    key, name = str(criterion["pantograph"]), criterion["quantity"]
+    results["cases"][0]["uncertainty_components"].setdefault(key, {})[name] = {"start": 1e3}
+    results["cases"][0]["uncertainty"].setdefault(key, {})[name] = 1e3
+    criterion.update(components={"start": 1e3}, uncertainty=1e3)
+
+
 TAMPERINGS = {
     "value": (lambda r: row(r, 1, 1).update(value=33.0), "reported among the quantities"),
     "verdict": (lambda r: row(r, 1, 1).update(verdict="pass"), "verdict 'pass' stated, 'fail' follows"),
@@ -64,10 +73,23 @@ TAMPERINGS = {
         "1 remarks on a close limit stated, 0 follow",
     ),
     "another remark on a close limit": (
-        lambda r: row(r).update(spread=1e3, close=["lies far from every limit"]),
+        lambda r: (widen(r), row(r).update(close=["lies far from every limit"])),
         "1 remarks on a close limit stated, 1 follow",
     ),
-    "spread beyond the limit without a remark": (lambda r: row(r).update(spread=1e3), "follow from value, limits and"),
+    "component beyond the limit without a remark": (widen, "0 remarks on a close limit stated, 1 follow"),
+    "component of another quantity": (
+        lambda r: row(r)["components"].update(start=1.0),
+        "components of the uncertainty differ from those reported",
+    ),
+    "component that is not combined": (
+        lambda r: r["cases"][0]["uncertainty_components"]["2"]["std_force_N"].update(start=9.0),
+        "pantograph 2: uncertainty of std_force_N does not follow from its components",
+    ),
+    "combined uncertainty gone": (
+        lambda r: r["cases"][0]["uncertainty"]["2"].pop("std_force_N"),
+        "pantograph 2: uncertainty of std_force_N does not follow from its components",
+    ),
+    "smaller uncertainty of a criterion": (lambda r: row(r).update(uncertainty=1e-3), "uncertainty 0.001 stated"),
     "uncertain limit without a remark": (lambda r: row(r).update(limit_uncertainty=1e3), "0 remarks on a close limit"),
     "limits crossed": (lambda r: row(r).update(lower=130.0), "above upper limit"),
     "limits gone": (lambda r: row(r).update(lower=None, upper=None), "no limit"),

@@ -68,11 +68,12 @@ def test_bootstrap_block_is_a_span(load: Load, line: LineTable, keys: dict[str, 
     The uncertainties are the same numbers as with blocks of that length: the digest seeds the bootstrap.
     """
     record = load(keys, line)
-    assert f"blocks of {length:g} m" in record.notes[-1]
     assert record.prepared is not None
+    component = record.uncertainty.components["length"]
+    assert component.basis.endswith(f"blocks of {length:g} m")
     for number, pooled in record.prepared.pantographs.items():
-        assert record.uncertainty[number] == bootstrap_uncertainties(pooled, length / SPEED, record.digest)
-    assert record.uncertainty[1] != record.uncertainty[2]
+        assert component.half_widths[number] == bootstrap_uncertainties(pooled, length / SPEED, record.digest)
+    assert component.half_widths[1] != component.half_widths[2]
 
 
 def test_fact_of_the_user_replaces_that_of_the_record(load: Load) -> None:

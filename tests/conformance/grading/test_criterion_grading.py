@@ -14,6 +14,7 @@ from pantocheck.conformance.grading.criterion_grading import (
     find_value,
     grade_limit,
 )
+from pantocheck.conformance.grading.uncertainty import Component, Uncertainty
 from pantocheck.conformance.quantities.evaluation import Evaluation, Value
 
 LENGTHS = (1.017, 0.896, math.nan)
@@ -93,22 +94,30 @@ def test_quantity_without_a_unit_has_no_double_space() -> None:
 
 
 def test_errors_belong_to_the_quantity_and_pantograph_of_the_limit() -> None:
-    """The rear has its own discretisation error, spread and uncertainty; without them there is none."""
+    """The rear has its own discretisation error, spread and components; without them there is no uncertainty."""
     values = GradedValues(
         Evaluation({2: {"std_force_N": 28.0}}, {}),
         refined=Evaluation({1: {"std_force_N": 20.0}, 2: {"std_force_N": 28.5}}, {}),
         spread={1: {"std_force_N": 9.0}, 2: {"std_force_N": 0.25, "mean_force_N": 8.0}},
-        uncertainty={1: {"std_force_N": 9.0}, 2: {"std_force_N": 0.125}},
+        uncertainty=Uncertainty(
+            {
+                "start": Component("other starts", {1: {"std_force_N": 9.0}, 2: {"std_force_N": 0.3}}),
+                "section": Component("not known: one section", {1: {"std_force_N": 9.0}}),
+                "length": Component("bootstrap", {2: {"std_force_N": 0.4, "mean_force_N": 7.0}}),
+            }
+        ),
     )
     found = grade_limit(limit(pantograph=2), values, "secondary", 0.75)
     assert (found.discretisation_error, found.spread, found.uncertainty, found.limit_uncertainty) == (
         0.5,
         0.25,
-        0.125,
+        pytest.approx(0.5, rel=1e-12),  # 0.3, 0.4, 0.5
         0.75,
     )
+    assert found.components == {"start": 0.3, "length": 0.4}
     bare = grade_limit(limit(pantograph=2), GradedValues(values.evaluation), "secondary")
     assert (bare.discretisation_error, bare.spread, bare.uncertainty, bare.limit_uncertainty) == (None, None, None, 0.0)
+    assert bare.components == {}
 
 
 def test_missing_value_has_the_reason_of_its_evaluation() -> None:

@@ -15,6 +15,7 @@ from pantocheck.conformance.consistency.check import CheckName
 from pantocheck.conformance.consistency.record_checks import check_record
 from pantocheck.conformance.grading.assessed_record import AssessedRecord, load_assessed_record
 from pantocheck.conformance.grading.profile_grading import assess_record
+from pantocheck.conformance.grading.uncertainty import Component, Uncertainty
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals, evaluate_record
@@ -148,7 +149,10 @@ def test_uncertainty_of_the_measured_record_counts_for_its_own_pantograph(
     The smaller uncertainties of pantograph 1, 0.3 N and 0.4 N, leave its 28.5 N far from both limits.
     """
     profile = load_profile("line-test")
-    uncertainty = [{1: {"std_force_N": 0.1 * half}, 2: {"std_force_N": half}} for half in (3.0, 4.0)]
+    uncertainty = [
+        Uncertainty({"length": Component("bootstrap", {1: {"std_force_N": 0.1 * half}, 2: {"std_force_N": half}})})
+        for half in (3.0, 4.0)
+    ]
     subject = replace(assessed(28.5, sigma, profile="line-test"), uncertainty=uncertainty[0])
     measured = replace(assessed(28.0, 38.0, profile="line-test"), uncertainty=uncertainty[1])
     (case,) = assess_record(subject, profile, "provisional", measured).cases

@@ -8,8 +8,8 @@ import pytest
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.limits import Limit
-from pantocheck.conformance.grading.case_evaluation import section_spread
 from pantocheck.conformance.grading.case_grading import grade_case
+from pantocheck.conformance.grading.record_uncertainty import section_spread
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals, evaluate_record
 from pantocheck.conformance.reports.certificate.criteria_table import remark_shift
@@ -55,7 +55,7 @@ def test_record_that_covers_too_few_sections_has_no_spread(growing: tuple[Case, 
     assert section_spread(RecordSignals(short, case.file.filter.low_pass), case.shifted_sections) == {}
 
 
-def test_value_closer_to_a_limit_than_its_spread_is_marked(growing: tuple[Case, Record]) -> None:
+def test_value_closer_to_a_limit_than_the_change_between_sections_is_marked(growing: tuple[Case, Record]) -> None:
     case, record = growing
     value = evaluate_record(record, case.file.filter.low_pass).values[1]["mean_force_N"]
     assert isinstance(value, float)
@@ -63,7 +63,9 @@ def test_value_closer_to_a_limit_than_its_spread_is_marked(growing: tuple[Case, 
     result = grade_case(replace(case, limits=(limit,)), Delivered(record), "secondary")
     (row,) = result.criteria
     assert row.spread == result.spread["1"]["mean_force_N"]
-    assert any("less than its spread over analysis sections of 2 N" in remark for remark in row.close)
+    # 2 N from the sections that the case compares, after a short run-in; 1.25 times 0.75 N from parts of a span.
+    assert row.components == pytest.approx({"start": 2.0, "section": 1.25 * 0.75}, abs=5e-3)
+    assert any("less than its uncertainty of 2.2 N (mostly start)" in remark for remark in row.close)
     remark = remark_shift(row.model_dump())
     assert remark is not None
     assert remark.startswith("changes by up to 2.0 N when the analysis section")

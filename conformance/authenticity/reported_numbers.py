@@ -1,0 +1,22 @@
+"""Numbers of results.json: their items, and their comparison."""
+
+import math
+from typing import Any
+
+EXACT, ROUNDED = 1e-9, 2e-5
+"""Relative tolerances: numbers of results.json have all their digits, traces are rounded to six digits."""
+
+
+def select_item(reported: Any, item: int | None) -> Any:
+    """Item of a quantity with several values, by default the first; None if there is none."""
+    if not isinstance(reported, list):
+        return reported
+    index = (item or 1) - 1
+    return reported[index] if 0 <= index < len(reported) else None
+
+
+def same_number(a: float | None, b: float | None, tolerance: float = EXACT) -> bool:
+    """Whether two numbers agree within a relative and absolute tolerance, or both are missing."""
+    if a is None or b is None:
+        return a is b
+    return math.isclose(a, b, rel_tol=tolerance, abs_tol=tolerance)

@@ -1,0 +1,127 @@
+"""Uncertainty that follows from a record alone: position of the analysis section, and length of the record."""
+
+from collections.abc import Mapping, Sequence
+
+from pantocheck.conformance.cases.start_and_section import shift_section
+from pantocheck.conformance.grading.uncertainty import Component, Uncertainty
+from pantocheck.conformance.quantities.evaluation import SectionedSignals, ValuesByOwner
+from pantocheck.conformance.quantities.signals import PantographSignals
+from pantocheck.conformance.records.measured.block_bootstrap import FEWEST_BLOCKS, bootstrap_uncertainties
+from pantocheck.conformance.records.measured.record_preparation import PreparedRecord
+
+SAMPLE_SAFETY_FACTOR = 1.25
+"""Safety factor on the largest change of a few shifted sections or starts, which are a sample of all of them."""
+
+MIN_SECTIONS = 3
+"""Smallest number of shifted sections that give a largest change."""
+
+ONE_RUN = Component("not known: the record holds one run")
+
+
+def assess_uncertainty(record: PreparedRecord, span_m: float, digest: str) -> Uncertainty:
+    """Uncertainty of the quantities of a record without a case.
+
+    Parameters
+    ----------
+    record : PreparedRecord
+        Signals of the record.
+    span_m : float
+        Length of a span [m].
+    digest : str
+        SHA-256 of the record in hexadecimal, the seed of the bootstrap.
+    """
+    return Uncertainty(
+        {
+            "discretisation": ONE_RUN,
+            "start": ONE_RUN,
+            "section": shift_component(record, shift_section(record.section, span_m)),
+            "length": length_component(record.pantographs, span_m, record.speed, digest),
+        }
+    )
+
+
+def shift_component(signals: SectionedSignals, sections: Sequence[tuple[float, float]]) -> Component:
+    """Uncertainty from the position of the analysis section: the largest change when it is shifted, widened.
+
+    Parameters
+    ----------
+    signals : SectionedSignals
+        Signals of the record.
+    sections : sequence of tuple of float
+        Shifted sections [m, m].
+    """
+    widths = section_spread(signals, sections)
+    if not widths:
+        return Component("not known: the record does not extend beyond the analysis section")
+    return Component("analysis section shifted by up to three quarters of a span either way", widen_changes(widths))
+
+
+def length_component(
+    pantographs: Mapping[int, PantographSignals], span_m: float, speed: float, digest: str
+) -> Component:
+    """Uncertainty from the length of the record, by a moving-block bootstrap with blocks of one span.
+
+    Parameters
+    ----------
+    pantographs : mapping of int to PantographSignals
+        Signals by number from 1.
+    span_m : float
+        Length of a span [m].
+    speed : float
+        Speed of the train [m/s].
+    digest : str
+        SHA-256 in hexadecimal, the seed of the random numbers.
+    """
+    widths = {
+        number: bootstrap_uncertainties(signals, span_m / speed, digest) for number, signals in pantographs.items()
+    }
+    if not any(widths.values()):
+        return Component(f"not known: the analysis section is shorter than {FEWEST_BLOCKS} spans")
+    return Component(f"moving-block bootstrap, blocks of {span_m:g} m", widths)
+
+
+def section_spread(signals: SectionedSignals, sections: Sequence[tuple[float, float]]) -> dict[int, dict[str, float]]:
+    """Largest difference of each quantity from its value when the analysis section is shifted.
+
+    Parameters
+    ----------
+    signals : SectionedSignals
+        Signals of the run.
+    sections : sequence of tuple of float
+        Start and end of every section of the same length [m, m].
+
+    Returns
+    -------
+    dict of int to dict of str to float
+        Spread in the units of the quantities, by pantograph and name; quantities available in fewer than
+        `MIN_SECTIONS` sections are left out.
+    """
+    shifted = [signals.evaluate_section(section).values for section in sections]
+    return largest_changes(signals.evaluation.values, shifted, MIN_SECTIONS)
+
+
+def widen_changes(changes: Mapping[int, Mapping[str, float]]) -> dict[int, dict[str, float]]:
+    """Half-widths from the largest changes of a sample, by pantograph and name."""
+    return {owner: {name: SAMPLE_SAFETY_FACTOR * x for name, x in part.items()} for owner, part in changes.items()}
+
+
+def largest_changes(values: ValuesByOwner, others: Sequence[ValuesByOwner], fewest: int) -> dict[int, dict[str, float]]:
+    """Largest difference of each quantity from its value in other evaluations.
+
+    Parameters
+    ----------
+    values : mapping of int to mapping of str to Value
+        Quantities by pantograph and name.
+    others : sequence of mapping
+        The same quantities of other runs or sections.
+    fewest : int
+        Smallest number of evaluations with a quantity; a quantity with fewer is left out.
+    """
+    changes: dict[int, dict[str, float]] = {}
+    for owner, quantities in values.items():
+        for name, value in quantities.items():
+            found = [other.get(owner, {}).get(name) for other in others]
+            numbers = [number for number in found if isinstance(number, float | int)]
+            if isinstance(value, float | int) and len(numbers) >= fewest:
+                changes.setdefault(owner, {})[name] = float(max(abs(number - value) for number in numbers))
+    return changes
