@@ -17,7 +17,7 @@ OutOption = Annotated[Path | None, typer.Option(help="Folder for the results.", 
 FormatsOption = Annotated[
     str | None,
     typer.Option(
-        help="Formats to write, separated by commas: html, pdf, json, junit, md, badge.",
+        help="Formats to write, separated by commas: html, pdf, json, csv, junit, md, badge.",
         show_default="html,pdf,json,junit,md",
     ),
 ]

@@ -27,6 +27,7 @@ from pantocheck.conformance.reports.certificate.two_verdicts import (
     case_verdict,
     verification_blocks,
 )
+from pantocheck.conformance.reports.certificate.uncertainty_table import uncertainty_blocks
 from pantocheck.conformance.reports.certificate.verdict_reasons import (
     build_headline,
     describe_record,
@@ -128,6 +129,8 @@ def _case_section(case: dict[str, Any], anchor: str) -> doc.Section:
         blocks.append(doc.Section("Figures", (doc.Figures(figures),)))
     if quantities.rows:
         blocks.append(doc.Section("All quantities", (quantities,)))
+    if case["uncertainty_basis"]:
+        blocks.append(doc.Section("Uncertainty by component", uncertainty_blocks(case)))
     for heading, sentences in (("Skipped", list_skipped(case)), ("Notes", tuple(case["notes"]))):
         if sentences:
             blocks.append(doc.Section(heading, (doc.BulletList(sentences),)))

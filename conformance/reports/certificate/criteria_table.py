@@ -121,7 +121,7 @@ def format_signed(margin: float) -> str:
 
 
 def is_close(criterion: dict[str, Any]) -> bool:
-    """Whether a counted value is closer to a limit than one of its errors, so that its verdict could be reversed."""
+    """Whether a counted value is closer to a limit than its uncertainty, so that its verdict could be reversed."""
     return bool(criterion["close"]) and criterion["verdict"] in ("pass", "fail")
 
 

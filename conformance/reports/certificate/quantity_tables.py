@@ -52,7 +52,7 @@ def build_quantity_table(case: dict[str, Any]) -> Table:
             return "skipped" if quantity in case["skipped"].get(key, {}) else "–"
         error = case["uncertainty"].get(key, {}).get(quantity)
         text = ", ".join(format_value(number, 5) for number in (value if isinstance(value, list) else [value]))
-        return text if error is None else f"{text} ± {format_value(error, 2)}"
+        return text if error is None or isinstance(error, list) else f"{text} ± {format_value(error, 2)}"
 
     return _table(ordered, keys, cell)
 

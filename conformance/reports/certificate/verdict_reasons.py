@@ -74,7 +74,7 @@ def list_reasons(results: dict[str, Any]) -> tuple[Section, ...]:
         "Failed": [*_case_reasons(results, "fail"), *map(_value, _select(results, "fail"))],
         "Not evaluated": [*_case_reasons(results, "skip"), *map(_reason, _select(results, "skip"))],
         "Not verified": _record_reasons(results),
-        "Closer to a limit than an error": [_value(pair) for pair in _criteria(results) if is_close(pair[1])],
+        "Closer to a limit than the uncertainty": [_value(pair) for pair in _criteria(results) if is_close(pair[1])],
         # Between two equal limits a margin is 0 at best and says nothing about closeness.
         "Smallest margins": [_value(pair) for pair in bounded[:MARGINS_SHOWN]],
     }

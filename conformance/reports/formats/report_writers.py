@@ -19,6 +19,7 @@ FILES = {
     "html": "certificate.html",
     "pdf": "certificate.pdf",
     "json": "results.json",
+    "csv": "quantities.csv",
     "junit": "junit.xml",
     "md": "summary.md",
     "badge": "badge.svg",
@@ -98,5 +99,9 @@ def write_pages(results: dict[str, Any], folder: Path, formats: Sequence[str]) -
         write_report(build_summary(results), folder / FILES["md"])
     if "junit" in formats:
         write_atomically(folder / FILES["junit"], render_junit(results))
+    if "csv" in formats:
+        from pantocheck.conformance.reports.formats.quantity_list import render_quantity_list
+
+        write_atomically(folder / FILES["csv"], render_quantity_list(results).encode("utf-8"))
     if "badge" in formats:
         write_atomically(folder / FILES["badge"], render_badge(results).encode("utf-8"))

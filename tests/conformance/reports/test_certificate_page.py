@@ -48,7 +48,7 @@ def test_every_quantity_has_a_label() -> None:
 
 def test_criterion_shows_all_its_values(passing: dict[str, Any]) -> None:
     case = passing["cases"][0]
-    row = case["criteria"][0] | {"value": 118.2, "margin": 0.36, "discretisation_error": 0.1234}
+    row = case["criteria"][0] | {"value": 118.2, "margin": 0.36, "uncertainty": 0.1234}
     case["criteria"] = [row | {"source": "another"}, row]
     texts = describe_criterion(row)
     assert (texts.value, texts.error, texts.limits) == ("118.2 N", "± 0.12", "110 to 120")
@@ -57,23 +57,23 @@ def test_criterion_shows_all_its_values(passing: dict[str, Any]) -> None:
     assert isinstance(table, Table)
     assert table.rows[1][-3:] == (VerdictMark("pass"), TrustMark("secondary"), Link("[2]", "case-1-source-2"))
     assert sources == NumberedList("Sources of the limits", ("another", row["source"]), "case-1-source")
-    line = describe_criterion(row | {"pantograph": 0, "item": 3, "discretisation_error": None})
+    line = describe_criterion(row | {"pantograph": 0, "item": 3, "discretisation_error": None, "uncertainty": None})
     assert (line.pantograph, line.error) == ("line, no. 3", "–")
 
 
 def test_criterion_close_to_its_limit_is_marked_in_row_and_reasons(passing: dict[str, Any]) -> None:
-    remark = "lies 0.1 N from a limit, less than its discretisation error of 0.2 N"
+    remark = "lies 0.1 N from a limit, less than its uncertainty of 0.2 N"
     row = passing["cases"][0]["criteria"][0]
-    row |= {"value": 119.9, "discretisation_error": 0.2, "margin": 0.02, "close": [remark]}
+    row |= {"value": 119.9, "uncertainty": 0.2, "margin": 0.02, "close": [remark]}
     assert describe_criterion(row).remarks == (remark,)
     headings = [section.heading for section in list_reasons(passing)]
-    assert headings == ["Closer to a limit than an error", "Smallest margins"]
+    assert headings == ["Closer to a limit than the uncertainty", "Smallest margins"]
     assert describe_criterion(row | {"verdict": "info"}).remarks == ()
 
 
 def test_certificate_states_a_close_criterion_once_per_place(passing: dict[str, Any]) -> None:
     """Once in the row of the criterion and once among the reasons."""
-    remark = "lies 0.1 N from a limit, less than its discretisation error of 0.2 N"
+    remark = "lies 0.1 N from a limit, less than its uncertainty of 0.2 N"
     passing["cases"][0]["criteria"][0] |= {"value": 119.91, "margin": 0.018, "close": [remark]}
     text = render_html(build_certificate(passing))
     assert text.count(remark) == 1

@@ -1,5 +1,6 @@
-"""JUnit, Markdown summary and badge."""
+"""JUnit, Markdown summary, list of quantities and badge."""
 
+import csv
 import re
 from pathlib import Path
 from typing import Any
@@ -28,6 +29,7 @@ from pantocheck.conformance.reports.document import (
 from pantocheck.conformance.reports.formats.badge import render_badge
 from pantocheck.conformance.reports.formats.junit import render_junit
 from pantocheck.conformance.reports.formats.markdown import render_markdown
+from pantocheck.conformance.reports.formats.quantity_list import render_quantity_list
 from pantocheck.conformance.reports.formats.report_writers import FILES, write_pages
 
 
@@ -84,6 +86,44 @@ def test_summary_begins_with_the_verdict_and_escapes(results: dict[str, Any], ho
     assert "https://" not in render_markdown(
         build_summary(results | {"system": {"name": "see https://example.org", "version": "", "kind": "record"}})
     )
+
+
+def read_rows(results: dict[str, Any]) -> dict[tuple[str, ...], dict[str, str]]:
+    """Rows of the list of quantities by case, pantograph, quantity and item."""
+    rows = csv.DictReader(render_quantity_list(results).splitlines())
+    return {(row["case"], row["pantograph"], row["quantity"], row["item"]): row for row in rows}
+
+
+def test_list_of_quantities_has_every_value_with_its_components(results: dict[str, Any]) -> None:
+    """A component that is not known is NA, not zero; numbers have all their digits."""
+    rows = read_rows(results)
+    values = {
+        (case["id"], owner, name, ""): value
+        for case in results["cases"]
+        for owner, quantities in case["quantities"].items()
+        for name, value in quantities.items()
+    }
+    assert {key: float(row["value"]) for key, row in rows.items()} == values
+    rear = rows["en50318-2002/250", "2", "std_force_N", ""]
+    value = float(rear["value"])
+    assert (float(rear["discretisation"]), float(rear["start"])) == (0.0015 * value, 0.002 * value)
+    assert (rear["section"], rear["length"], rear["unit"]) == ("NA", "NA", "N")
+    assert (rear["lower"], rear["upper"], rear["verdict"]) == ("22.0", "31.0", "pass")
+    speed = rows["en50318-2002/250", "0", "wave_speed_m_s", ""]
+    assert (speed["uncertainty"], speed["discretisation"], speed["verdict"]) == ("NA", "NA", "")
+
+
+def test_list_of_quantities_has_a_row_for_each_item(passing: dict[str, Any]) -> None:
+    case = passing["cases"][0]
+    case["quantities"]["0"]["presag_mm"] = [20.0, 55.0]
+    case["uncertainty"]["0"] = {"presag_mm": [0.5, 0.25]}
+    case["uncertainty_components"]["0"] = {"presag_mm": {"discretisation": [0.5, 0.25]}}
+    rows = read_rows(passing)
+    found = [rows["en50318-2002/250", "0", "presag_mm", item] for item in ("1", "2")]
+    assert [(row["value"], row["uncertainty"], row["discretisation"]) for row in found] == [
+        ("20.0", "0.5", "0.5"),
+        ("55.0", "0.25", "0.25"),
+    ]
 
 
 def test_badge(results: dict[str, Any]) -> None:

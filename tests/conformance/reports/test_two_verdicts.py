@@ -31,7 +31,8 @@ def add_verification(results: dict[str, Any], upper: float) -> Results:
         "quantity": BAND, "value": value, "unit": "N", "lower": 1.0, "upper": upper, "trust": "computed",
         "source": "converged solution", "verdict": "pass" if inside else "fail", "close": [],
         "reason": None if inside else "above", "margin": min(value - 1, upper - value) / half,
-        "discretisation_error": None, "spread": None,
+        "discretisation_error": None, "spread": None, "uncertainty": 0.0015 * value,
+        "components": {"discretisation": 0.0015 * value},
     }  # fmt: skip
     case |= {
         "criteria_verdict": case["verdict"],

@@ -1,0 +1,55 @@
+"""Table of the uncertainty of every quantity by component."""
+
+from typing import Any
+
+from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.reports import document as doc
+from pantocheck.conformance.reports.certificate.quantity_tables import list_owners
+from pantocheck.conformance.reports.page_text import format_value
+from pantocheck.conformance.reports.words import name_pantograph, quantity_label, quantity_unit
+
+KEY = (
+    "Half-widths of 95 % intervals. The combined one is the root of the sum of the squares of the components. A dash: "
+    "the component does not apply to the quantity, or is not known. A quantity with several values has the largest of "
+    "its half-widths."
+)
+
+
+def uncertainty_blocks(case: dict[str, Any]) -> tuple[doc.Block, ...]:
+    """Basis of each component, and the half-widths of all quantities of a case."""
+    names = list(case["uncertainty_basis"])
+    basis = tuple(f"{name.capitalize()}: {text}." for name, text in case["uncertainty_basis"].items())
+    rows = tuple(_row(case, key, name, names) for key in list_owners(case) for name in _quantities(case, key))
+    if not rows:
+        return (doc.BulletList(basis),)
+    numbers = ("Combined", *(name.capitalize() for name in names))
+    columns = (
+        doc.Column("Quantity", share=1),
+        doc.Column("Of"),
+        doc.Column("Unit"),
+        *(doc.Column(heading, number=True, short=SHORT_COMPONENTS.get(heading, "")) for heading in numbers),
+    )
+    return (doc.BulletList(basis), doc.Table(columns, rows), doc.SmallPrint(KEY))
+
+
+SHORT_COMPONENTS = {"Discretisation": "Discr."}
+"""Headings of components on paper."""
+
+
+def _quantities(case: dict[str, Any], key: str) -> list[str]:
+    """Quantities of an owner with a known component, in the order of the registry."""
+    order = list(QUANTITIES)
+    known = case["uncertainty_components"].get(key, {})
+    return sorted(known, key=lambda name: (order.index(name) if name in order else len(order), name))
+
+
+def _row(case: dict[str, Any], key: str, quantity: str, names: list[str]) -> tuple[doc.RichText, ...]:
+    components = case["uncertainty_components"][key][quantity]
+    widths = (case["uncertainty"][key][quantity], *(components.get(name) for name in names))
+    label = (f"{quantity_label(quantity)} ", doc.Code(quantity))
+    return (label, name_pantograph(key), quantity_unit(quantity) or "–", *map(_format_largest, widths))
+
+
+def _format_largest(width: float | list[float] | None) -> str:
+    """Largest half-width of the items of a quantity; a dash without one."""
+    return format_value(max(width, default=None) if isinstance(width, list) else width, 2)

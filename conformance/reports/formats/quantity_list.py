@@ -1,0 +1,52 @@
+"""List of all quantities as a table of comma-separated values: value, uncertainty by component, limits and verdict."""
+
+import csv
+import io
+from collections.abc import Iterator
+from typing import Any
+
+from pantocheck.conformance.reports.words import quantity_unit
+from pantocheck.conformance.results.results_format import COMPONENT_NAMES
+
+COLUMNS = (
+    *("case", "pantograph", "quantity", "item", "value", "unit", "uncertainty"),
+    *COMPONENT_NAMES,
+    *("lower", "upper", "verdict"),
+)
+NOT_KNOWN = "NA"
+"""Cell of a value that is not known: it is not zero."""
+
+
+def render_quantity_list(results: dict[str, Any]) -> str:
+    """Table of all quantities of results.json as a dictionary; numbers have all their digits."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    writer.writerows(row for case in results["cases"] for row in _list_rows(case))
+    return text.getvalue()
+
+
+def _list_rows(case: dict[str, Any]) -> Iterator[list[Any]]:
+    """One row per quantity, or per item of a quantity with several values."""
+    graded = {(str(row["pantograph"]), row["quantity"], row["item"]): row for row in case["criteria"]}
+    for key, quantities in case["quantities"].items():
+        for name, value in quantities.items():
+            for item, number in enumerate(value, 1) if isinstance(value, list) else ((None, value),):
+                components = case["uncertainty_components"].get(key, {}).get(name, {})
+                widths = (case["uncertainty"].get(key, {}).get(name), *map(components.get, COMPONENT_NAMES))
+                criterion = graded.get((key, name, item), {})
+                yield [
+                    *(case["id"], key, name, "" if item is None else item, number, quantity_unit(name)),
+                    *(_select_item(width, item) for width in widths),
+                    *(_blank(criterion.get(part)) for part in ("lower", "upper", "verdict")),
+                ]
+
+
+def _select_item(width: float | list[float] | None, item: int | None) -> float | str:
+    if isinstance(width, list):
+        return width[item - 1] if item is not None and item <= len(width) else NOT_KNOWN
+    return NOT_KNOWN if width is None else width
+
+
+def _blank(value: object) -> object:
+    return "" if value is None else value

@@ -1,0 +1,50 @@
+"""Table of the uncertainty by component in the certificate."""
+
+from typing import Any
+
+from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
+from pantocheck.conformance.reports.certificate.quantity_tables import build_quantity_table
+from pantocheck.conformance.reports.certificate.uncertainty_table import uncertainty_blocks
+from pantocheck.conformance.reports.document import BulletList, Code, Section, Table
+from pantocheck.conformance.reports.formats.html import render_html
+from pantocheck.conformance.reports.page_text import format_value
+
+
+def test_table_has_every_component_of_every_quantity(passing: dict[str, Any]) -> None:
+    """Both pantographs; an unknown component is a dash, and its reason stands above the table."""
+    case = passing["cases"][0]
+    basis, table, _ = uncertainty_blocks(case)
+    assert isinstance(table, Table)
+    assert isinstance(basis, BulletList)
+    assert basis.items[1].startswith("Start: 7 runs with other starts and ramps")
+    assert basis.items[3] == "Length: not known: the analysis section is shorter than 5 spans."
+    headings = [column.heading for column in table.columns]
+    assert headings[3:] == ["Combined", "Discretisation", "Start", "Section", "Length"]
+    rows = {(row[1], row[0][1]): row for row in table.rows}
+    assert len(rows) == sum(len(case["quantities"][key]) for key in "12")
+    for pantograph in ("1", "2"):
+        value = case["quantities"][pantograph]["std_force_N"]
+        widths = [format_value(share * value, 2) for share in (0.0025, 0.0015, 0.002)]
+        assert rows[f"pantograph {pantograph}", Code("std_force_N")][2:] == ("N", *widths, "–", "–")
+
+
+def test_several_values_have_the_largest_of_their_half_widths(passing: dict[str, Any]) -> None:
+    case = passing["cases"][0]
+    case["quantities"]["0"]["presag_mm"] = [20.0, 55.0]
+    case["uncertainty"]["0"] = {"presag_mm": [0.5, 0.25]}
+    case["uncertainty_components"]["0"] = {"presag_mm": {"discretisation": [0.5, 0.25]}}
+    _, table, _ = uncertainty_blocks(case)
+    assert isinstance(table, Table)
+    assert table.rows[-1][1:] == ("line", "mm", "0.50", "0.50", "–", "–", "–")
+    cells = {row[0][1]: row for row in build_quantity_table(case).rows}
+    assert cells[Code("presag_mm")][-1] == "20.000, 55.000"
+
+
+def test_certificate_shows_the_components_only_where_there_are_results(results: dict[str, Any]) -> None:
+    sections = [block for block in build_certificate(results).blocks if isinstance(block, Section)]
+    found = {
+        section.heading: [part.heading for part in section.blocks if isinstance(part, Section)] for section in sections
+    }
+    named = [heading for heading, parts in found.items() if "Uncertainty by component" in parts]
+    assert len(named) == 2
+    assert "is not known. A quantity with several values" in render_html(build_certificate(results))
