@@ -1,0 +1,59 @@
+"""Calibration of the uncertainty: how often each component contains the true change (docs/uncertainty.md).
+
+python benchmarks/uncertainty.py start            other starts and ramps of the 2002 model
+python benchmarks/uncertainty.py run-in           sections after a longer run-in on AC simple
+python benchmarks/uncertainty.py section          shifts of the analysis section by any part of a span
+python benchmarks/uncertainty.py discretisation [CASE ...]   elements and time steps of a quarter, extrapolated
+"""
+
+import argparse
+import time
+from collections.abc import Callable, Sequence
+
+from calibration import Calibration
+from uncertainty_of_mesh import calibrate_discretisation
+from uncertainty_of_section import calibrate_run_in, calibrate_section
+from uncertainty_of_start import calibrate_start
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.library import select_cases
+
+CASES = (
+    "en50318-2002/250",
+    "en50318-2002/300",
+    "en50318-2018/ac-simple/275",
+    "en50318-2018/ac-simple/320",
+    "en50318-2018/ac-simple/275-twin",
+    "en50318-2018/ac-simple/320-twin",
+    "en50318-2018/ac-stitched/275",
+    "en50318-2018/ac-stitched/320",
+)
+SHORT, LONG = CASES[:2], CASES[2:4]
+CALIBRATIONS: dict[str, tuple[Callable[[Case], Calibration], Sequence[str]]] = {
+    "start": (calibrate_start, SHORT),
+    "run-in": (calibrate_run_in, LONG),
+    "section": (calibrate_section, LONG),
+    "discretisation": (calibrate_discretisation, CASES),
+}
+"""Calibration of each component, and its cases."""
+
+
+def main() -> None:
+    """Run and print."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("component", choices=CALIBRATIONS)
+    parser.add_argument("cases", nargs="*", metavar="CASE", help="default: all cases of the component")
+    options = parser.parse_args()
+    calibrate, default = CALIBRATIONS[options.component]
+    begin, total = time.process_time(), Calibration({})
+    for name in options.cases or default:
+        (case,) = (case for case in select_cases([name]) if case.id == name)
+        found = calibrate(case)
+        found.print_table(name)
+        total = total.join(found)
+    total.print_summary()
+    print(f"\n{time.process_time() - begin:.0f} s of process time.")
+
+
+if __name__ == "__main__":
+    main()
