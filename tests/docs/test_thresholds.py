@@ -7,7 +7,8 @@ from types import ModuleType
 
 import pytest
 
-from pantocheck.conformance.authenticity import attachment, recomputation
+from pantocheck.conformance.authenticity import attachment, reported_numbers
+from pantocheck.conformance.cases import start_and_section
 from pantocheck.conformance.consistency import (
     force_content,
     force_copy,
@@ -22,9 +23,10 @@ from pantocheck.conformance.consistency import (
 from pantocheck.conformance.grading import (
     assessed_record,
     baseline,
-    case_evaluation,
+    discretisation,
     extended_band,
     record_mismatch,
+    record_uncertainty,
     start_agreement,
     verification_limits,
 )
@@ -40,10 +42,11 @@ ROWS = re.findall(
     re.MULTILINE,
 )
 MODULES: list[ModuleType] = [
-    attachment, recomputation, force_content, force_copy, force_dynamics, implied_force, mean_force, roll_off,
-    rounding, support_coincidence, support_passing, assessed_record, baseline, case_evaluation, extended_band,
-    record_mismatch, start_agreement, verification_limits, bands, filters, signals, record, block_bootstrap,
-    force_checks, usable_sections, results_format, results_reading, traces,
+    attachment, reported_numbers, force_content, force_copy, force_dynamics, implied_force, mean_force, roll_off,
+    rounding, support_coincidence, support_passing, assessed_record, baseline, discretisation,
+    extended_band, record_mismatch, record_uncertainty, start_agreement, start_and_section, verification_limits,
+    bands, filters, signals, record, block_bootstrap, force_checks, usable_sections, results_format,
+    results_reading, traces,
 ]  # fmt: skip
 BY_FILE = {"/".join(module.__name__.split(".")[2:]) + ".py": module for module in MODULES}
 FOLDERS = ("quantities", "consistency", "grading", "records", "results", "authenticity")
