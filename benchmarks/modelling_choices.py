@@ -18,10 +18,11 @@ from pantocheck.conformance.grading.verification_limits import EXTREMES, RELATIV
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import evaluate_record
+from pantocheck.conformance.self_test.faulty_lines import without_residual_flexibility
 from pantocheck.conformance.simulation.case_run import run_passage
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.model import Catenary, DiscretisedLine, discretise
-from pantocheck.model.discretised_line import keep_viscous_part, without_residual_flexibility
+from pantocheck.model.discretised_line import keep_viscous_part
 
 CASES = ("en50318-2002/250", "en50318-2002/300", "en50318-2018/ac-simple/320-twin")
 SHOWN = [name for name in (*RELATIVE, *EXTREMES) if not name.startswith(("elasticity", "statistical"))]

@@ -84,12 +84,6 @@ def make_droppers_bilateral(line: DiscretisedLine) -> DiscretisedLine:
     return replace(line, connectors=connectors)
 
 
-def without_residual_flexibility(line: DiscretisedLine) -> DiscretisedLine:
-    """Leave out the residual flexibility at contacts, droppers, arms and clamps: the difference is its effect."""
-    beams = line.beams._replace(flexibility=np.zeros_like(line.beams.flexibility))
-    return replace(line, beams=beams, connectors=build_connectors(line.catenary, line.mesh, beams, line.state))
-
-
 def keep_viscous_part(line: DiscretisedLine) -> DiscretisedLine:
     """Let the dashpots of slack droppers act as well: only the elastic force is unilateral.
 

@@ -115,7 +115,7 @@ def unverified_line(result: CaseResult) -> str:
 
 def criterion_line(criterion: Criterion) -> str:
     """Line of a criterion that does not pass: name, value, limits and reason."""
-    name = criterion_name(criterion)
+    name = f"{'verification of ' if criterion.trust == 'computed' else ''}{criterion_name(criterion)}"
     if criterion.value is None:
         return f"{name}: {criterion.verdict}, {criterion.reason}"
     bounds = " to ".join("any" if bound is None else f"{bound:g}" for bound in (criterion.lower, criterion.upper))

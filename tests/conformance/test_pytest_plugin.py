@@ -57,7 +57,7 @@ def plan(pytester: pytest.Pytester, wave: type[Wave]) -> Path:
     for case in select_cases(["en50318-2002/*"]):
         write_record(pytester.path / "records" / f"{case.file.speed_km_h:g}.csv", wave().record(case), case.id)
     cases = ["en50318-2002/250", "en50318-2002/300"]
-    content = {"cases": cases, "system": "record:records", "formats": ["json", "junit"]}
+    content = {"cases": cases, "system": "record:records", "verdicts": "criteria", "formats": ["json", "junit"]}
     return write_toml(pytester.path / "conformance.toml", content)
 
 
@@ -219,7 +219,37 @@ def test_check_fails_on_uncounted_limits_and_unverified_records(pytester: pytest
                     graded.check(*quantities, accept_unverified=True)
         """
     )
-    session(pytester).assert_outcomes(passed=2)
+    session(pytester, "--pantocheck-verdicts", "criteria").assert_outcomes(passed=2)
+
+
+def test_verification_adds_a_test_for_every_converged_value(pytester: pytest.Pytester, plan: Path) -> None:
+    """A sine of one wave per span has nothing in 20-50 Hz; its mean is right, and lies within the limits of both."""
+    done = session(pytester, "-v", "--pantocheck-verdicts", "verification", "conformance.toml")
+    names = {"rms_20_50_N": "FAILED", "mean_force_N": "PASSED"}
+    done.stdout.fnmatch_lines(outcomes_250({f"verification::1::{name}": names[name] for name in sorted(names)}))
+    done.stdout.no_fnmatch_line("*250::1::*")
+    both = session(pytester, "--co", "-q", "--pantocheck-verdicts", "both", "conformance.toml")
+    both.stdout.fnmatch_lines(["*250::1::mean_force_N", "*250::verification::1::mean_force_N"])
+
+
+def test_fixture_checks_both_verdicts_of_another_system(pytester: pytest.Pytester, plan: Path) -> None:
+    pytester.makepyfile(
+        """
+        import pytest
+
+        def test_default(pantocheck_assess):
+            graded = pantocheck_assess("en50318-2002/250", "records/250.csv")
+            with pytest.raises(AssertionError, match="verification of rms_20_50_N of pantograph 1 = "):
+                graded.check("rms_20_50_N")
+
+        def test_criteria(pantocheck_assess):
+            pantocheck_assess("en50318-2002/250", "records/250.csv", verdicts="criteria").check("mean_force_N")
+
+        def test_builtin(pantocheck_run):
+            assert pantocheck_run("en50318-2002/250").requested == ("criteria",)
+        """
+    )
+    session(pytester).assert_outcomes(passed=3)
 
 
 def test_criteria_of_a_case_are_one_group_of_xdist(pytester: pytest.Pytester, plan: Path) -> None:
@@ -328,7 +358,7 @@ def test_fixtures_grade_records_and_arrays(pytester: pytest.Pytester, plan: Path
             pantocheck_run("en50318-2002/250", "record:records").check("max_force_N")
         """
     )
-    done = session(pytester)
+    done = session(pytester, "--pantocheck-verdicts", "criteria")
     done.assert_outcomes(passed=3, failed=1)
     done.stdout.fnmatch_lines(["E*en50318-2002/250: max_force_N of pantograph 1 = 158.6 N, limits 175 to 210: 16.4 N*"])
 

@@ -32,7 +32,8 @@ def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     script.chmod(0o755)
     plan = tmp_path / "conformance.toml"
     formats = ["json", "junit", "md", "badge"]  # the certificate is tested elsewhere
-    edit_toml(plan, {"accept_unverified": ["published passing code (Wang et al.)"], "formats": formats})
+    accepted = {"accept_unverified": ["published passing code (Wang et al.)"], "verdicts": "criteria"}
+    edit_toml(plan, accepted | {"formats": formats})
     gated = plan.read_text()
     edit_toml(plan, {"baseline": None, "drift_pct": None})
     monkeypatch.chdir(tmp_path)

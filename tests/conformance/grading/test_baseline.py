@@ -23,6 +23,7 @@ from pantocheck.conformance.runner import run_cases
 from pantocheck.conformance.systems.system_choice import choose_system
 
 PASSING = "record:en50318-2002/known-passing-code"
+CRITERIA = ("--verdicts", "criteria")
 
 
 @pytest.fixture
@@ -143,7 +144,17 @@ def test_limits_of_the_user_are_not_those_of_the_baseline(results: Results, tmp_
     base.write_bytes(results.to_json())
     wide = {"quantity": "std_force_N", "pantograph": 1, "upper": 40.0, "trust": "primary", "source": "own"}
     write_toml(limits, {"limit": [wide]})
-    command = ["run", "en50318-2002/250", "--system", PASSING, "--out", tmp_path / "out", "--formats", "json"]
+    command = [
+        "run",
+        "en50318-2002/250",
+        "--system",
+        PASSING,
+        *CRITERIA,
+        "--out",
+        tmp_path / "out",
+        "--formats",
+        "json",
+    ]
     command += ["--accept-unverified", results.system.name, "--baseline", base]
     assert pantocheck(*command).exit_code == 0
     result = pantocheck(*command, "--limits", limits)
@@ -175,7 +186,17 @@ def pantocheck(*arguments: str | Path) -> Result:
 def test_baseline_on_the_command_line_and_in_a_plan(results: Results, tmp_path: Path) -> None:
     base = tmp_path / "baseline.json"
     base.write_bytes(changed(results, "std_force_N", 27.0).to_json())
-    command = ["run", "en50318-2002/*", "--system", PASSING, "--out", tmp_path / "out", "--formats", "json,badge"]
+    command = [
+        "run",
+        "en50318-2002/*",
+        "--system",
+        PASSING,
+        *CRITERIA,
+        "--out",
+        tmp_path / "out",
+        "--formats",
+        "json,badge",
+    ]
     command += ["--accept-unverified", results.system.name]
     assert pantocheck(*command).exit_code == 0
     result = pantocheck(*command, "--baseline", base)
@@ -188,6 +209,7 @@ def test_baseline_on_the_command_line_and_in_a_plan(results: Results, tmp_path: 
         plan,
         {
             "system": PASSING,
+            "verdicts": "criteria",
             "cases": ["en50318-2002/*"],
             "baseline": "baseline.json",
             "formats": ["json"],
@@ -251,7 +273,7 @@ def test_baseline_of_extreme_values_is_refused_before_the_run(
     """A limit above 1e15 is no valid result, and 200 000 criteria take minutes."""
     path, out = tmp_path / "b.json", tmp_path / "out"
     path.write_bytes(changed(results, "std_force_N", value).to_json())
-    result = pantocheck("run", "en50318-2002/*", "--system", PASSING, "--out", out, "--baseline", path)
+    result = pantocheck("run", "en50318-2002/*", "--system", PASSING, *CRITERIA, "--out", out, "--baseline", path)
     assert result.exit_code == 2
     assert "baseline 'b.json', case en50318-2002/250: " in result.output
     assert not out.exists()
@@ -267,7 +289,7 @@ def test_results_are_kept_if_the_comparison_fails(
 
     monkeypatch.setattr("pantocheck.conformance.plan.compare_with_baseline", fail)
     out = tmp_path / "out"
-    command = ("run", "en50318-2002/*", "--system", PASSING, "--out", out, "--baseline", tmp_path / "b.json")
+    command = ("run", "en50318-2002/*", "--system", PASSING, *CRITERIA, "--out", out, "--baseline", tmp_path / "b.json")
     assert pantocheck(*command).exit_code == 2
     assert [case.quantities for case in read_results(out / "results.json").cases] == [
         case.quantities for case in results.cases

@@ -27,10 +27,14 @@ from pantocheck.conformance.results.results_format import (
     Results,
     VerdictName,
 )
+from pantocheck.conformance.results.results_reading import read_results
 from pantocheck.conformance.runner import run_cases
 
 CODE = "published passing code (Wang et al.)"
-PUBLISHED = ("run", "en50318-2002/*", "--system", "record:en50318-2002/known-passing-code", "--formats", "json,junit")
+PUBLISHED = (
+    *("run", "en50318-2002/*", "--system", "record:en50318-2002/known-passing-code"),
+    *("--verdicts", "criteria", "--formats", "json,junit"),
+)
 
 grades = st.lists(st.sampled_from(["pass", "fail", "skip", "error", "info"]), max_size=5)
 
@@ -105,7 +109,16 @@ def test_published_statistics_are_unverified_unless_accepted_by_name(tmp_path: P
     assert exit_code("--accept-unverified", "another code") == 1
     assert exit_code("--trust", "primary") == 1  # no limit counts
     assert exit_code("--accept-unverified", CODE) == 0
-    assert (junit().get("failures"), junit().get("skipped")) == ("0", "2")
+    # Ten quantities of each case are verified for information; the records are accepted.
+    assert (junit().get("failures"), junit().get("skipped")) == ("0", "22")
+
+
+def test_published_statistics_do_not_meet_the_converged_solution(tmp_path: Path) -> None:
+    """Verification is requested by default of another system; its result is shown as it comes out."""
+    arguments = [*PUBLISHED[:4], "--accept-unverified", CODE, "--formats", "json", "--out", str(tmp_path)]
+    assert CliRunner().invoke(app, arguments).exit_code == 1
+    results = read_results(tmp_path / "results.json")
+    assert (results.verdict, results.criteria_verdict, results.verification_verdict) == ("fail", "pass", "fail")
 
 
 def test_headline_names_what_keeps_the_result_from_being_better(passing: dict[str, Any]) -> None:

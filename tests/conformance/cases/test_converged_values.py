@@ -1,0 +1,121 @@
+"""Converged values of the library: complete, current, confirmed, and usable as limits."""
+
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.converged_file import FOLDER, ConvergedFile, converged_path, find_converged
+from pantocheck.conformance.cases.library import library_folder, list_library, load_case
+from pantocheck.conformance.grading.verification_limits import EXTREMES, VERIFIED_QUANTITIES, build_requirements
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.toml_file import read_model
+from pantocheck.conformance.quantities.registry import QUANTITIES
+
+PATHS = sorted((library_folder() / FOLDER).rglob("*.toml"))
+IDS = [path.relative_to(library_folder() / FOLDER).with_suffix("").as_posix() for path in PATHS]
+AGREEMENT_PCT = 1.0
+"""Condition for a stored value."""
+
+
+@pytest.fixture(params=IDS)
+def case(request: pytest.FixtureRequest) -> Case:
+    return load_case(list_library(library_folder())[request.param])
+
+
+@pytest.fixture
+def converged(case: Case) -> ConvergedFile:
+    found = find_converged(case.id)
+    assert found is not None
+    return found
+
+
+def test_values_belong_to_the_current_case(case: Case, converged: ConvergedFile) -> None:
+    assert converged_path(case.id).is_file()
+    assert (converged.case, converged.case_digest) == (case.id, case.digest)
+    assert len(converged.uplift_force_N) == len(case.pantographs)
+
+
+def test_every_verified_quantity_is_stored_or_omitted_with_a_reason(case: Case, converged: ConvergedFile) -> None:
+    stated = {(entry.owner, entry.quantity) for entry in (*converged.value, *converged.omitted)}
+    scopes = {"static"} if case.is_static else {"static", "line", "pantograph"}
+    assert stated == {
+        (owner, name)
+        for name in VERIFIED_QUANTITIES
+        if QUANTITIES[name].scope in scopes
+        for owner in (range(1, len(case.pantographs) + 1) if QUANTITIES[name].scope == "pantograph" else (0,))
+    }
+
+
+def test_second_formulation_confirms_every_value(converged: ConvergedFile) -> None:
+    """Within 1 %, extremes of their distance from the mean; the interval contains both values."""
+    means = {entry.owner: entry.value for entry in converged.value if entry.quantity == "mean_force_N"}
+    for entry in converged.value:
+        difference, scale = entry.second_value - entry.value, abs(entry.value)
+        if entry.quantity in EXTREMES:
+            scale = abs(entry.value - means[entry.owner])
+        assert abs(entry.difference_pct) <= AGREEMENT_PCT
+        # Both values have six digits.
+        assert 100 * difference / scale == pytest.approx(entry.difference_pct, abs=0.002), entry
+        assert abs(difference) <= entry.half_width + 2e-5 * abs(entry.value), entry
+
+
+def test_limits_follow_from_the_values(case: Case, converged: ConvergedFile) -> None:
+    """The narrowest tolerance, 1 % of the mean, exceeds the widest interval of a tolerance: the values are sharp."""
+    requirements = build_requirements(converged, case.is_static)
+    assert requirements
+    half_widths = {(entry.owner, entry.quantity): entry.half_width for entry in converged.value}
+    for requirement in requirements:
+        assert requirement.lower is not None
+        assert requirement.upper is not None
+        half = (requirement.upper - requirement.lower) / 2
+        assert half_widths[requirement.owner, requirement.quantity] < 0.25 * half, requirement
+
+
+def test_case_file_is_not_mistaken_for_values() -> None:
+    assert find_converged("en50318-2002/none") is None
+    assert find_converged("../en50318-2002/250") is None
+    assert not set(list_library(library_folder())) & {f"{FOLDER}/{name}" for name in IDS}
+
+
+@pytest.mark.parametrize(
+    ("changes", "found"),
+    [
+        ({"trust": "primary"}, "computed"),
+        ({"value": [{"quantity": "std_force_N", "value": 1.0, "half_width": 0.1}]}, "pantograph"),
+        ({"value": [{"quantity": "elasticity_mm_N", "pantograph": 1, "value": 1.0, "half_width": 0.1}]}, "pantograph"),
+        ({"value": [{"quantity": "elasticity_mm_N", "value": 1.0, "half_width": -0.1}]}, "half_width"),
+    ],
+)
+def test_wrong_file_is_refused(tmp_path: Path, changes: dict[str, object], found: str) -> None:
+    content = tomllib.loads(PATHS[0].read_text(encoding="utf-8")) | changes
+    for entry in changes.get("value", []):  # type: ignore[attr-defined]
+        entry |= {"second_value": 1.0, "difference_pct": 0.0}
+    path = tmp_path / "250.toml"
+    path.write_text(_format(content), encoding="utf-8")
+    with pytest.raises(InputError, match=found):
+        read_model(path, ConvergedFile, "converged values")
+
+
+def test_quantity_occurs_once(tmp_path: Path) -> None:
+    content = tomllib.loads(PATHS[0].read_text(encoding="utf-8"))
+    path = tmp_path / "250.toml"
+    path.write_text(_format(content | {"value": content["value"][:1] * 2}), encoding="utf-8")
+    with pytest.raises(InputError, match="occurs twice"):
+        read_model(path, ConvergedFile, "converged values")
+
+
+def _format(value: object) -> str:
+    """TOML of the content of a file: keys, then one inline table or array per line."""
+    if not isinstance(value, dict):
+        raise TypeError("the content is a table")
+    return "\n".join(f"{key} = {_inline(entry)}" for key, entry in value.items())
+
+
+def _inline(value: object) -> str:
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{key} = {_inline(entry)}" for key, entry in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_inline, value)) + "]"
+    return f'"{value}"' if isinstance(value, str) else str(value)
