@@ -81,6 +81,8 @@ class Wire:
         Stretches with a different tension.
     stagger : tuple of (float, float) or None
         Prescribed lateral positions (x, y) at supports and steady arms [m, m]; None: no lateral field.
+    axial_stiffness : float or None
+        Axial stiffness EA, needed if a support is fixed along the track [N].
     """
 
     name: str
@@ -92,6 +94,7 @@ class Wire:
     bending_stiffness: float
     tension_changes: tuple[TensionChange, ...] = ()
     stagger: tuple[tuple[float, float], ...] | None = None
+    axial_stiffness: float | None = None
 
 
 @dataclass(frozen=True)
@@ -185,6 +188,9 @@ class MessengerSupport:
         Vertical stiffness [N/m].
     damping : float
         Vertical damping [N s/m].
+    along_track : {"free", "fixed"}
+        Whether the messenger wire can move along the track: free, as on a swivelling cantilever, its tension is
+        constant; fixed, its tension changes with the elongation of the stretches between fixed points.
     """
 
     position: float
@@ -192,6 +198,7 @@ class MessengerSupport:
     height: float
     stiffness: float
     damping: float = 0.0
+    along_track: Literal["free", "fixed"] = "free"
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ import numpy as np
 from pantocheck.model.catenary import Catenary, Kind, Rayleigh
 from pantocheck.model.fem.beams import Beams, build_beams
 from pantocheck.model.fem.connectors import Connectors, build_connectors
+from pantocheck.model.fem.held_stretches import HeldStretches, build_held_stretches
 from pantocheck.model.fem.mesh import Mesh, build_mesh
 from pantocheck.model.statics.initial_state import InitialState, compute_initial_state
 
@@ -28,6 +29,8 @@ class DiscretisedLine:
         Droppers and clamps.
     state : InitialState
         Line at rest.
+    stretches : HeldStretches
+        Stretches of wires that are held along the track.
     """
 
     catenary: Catenary
@@ -35,6 +38,7 @@ class DiscretisedLine:
     beams: Beams
     connectors: Connectors
     state: InitialState
+    stretches: HeldStretches
 
     @property
     def contact_rows(self) -> list[int]:
@@ -67,7 +71,9 @@ def discretise(catenary: Catenary, element_length: float, places: tuple[float, .
     mesh = build_mesh(catenary, element_length, places)
     beams = build_beams(catenary, mesh)
     state = compute_initial_state(catenary, mesh, beams)
-    return DiscretisedLine(catenary, mesh, beams, build_connectors(catenary, mesh, beams, state), state)
+    connectors = build_connectors(catenary, mesh, beams, state)
+    stretches = build_held_stretches(catenary, mesh, state.deflection)
+    return DiscretisedLine(catenary, mesh, beams, connectors, state, stretches)
 
 
 def with_damping(line: DiscretisedLine, damping: Mapping[Kind, Rayleigh]) -> DiscretisedLine:

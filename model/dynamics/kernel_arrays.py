@@ -18,6 +18,7 @@ from pantocheck.model.dynamics.contact_step import (
 from pantocheck.model.dynamics.effective_matrix import factorise
 from pantocheck.model.dynamics.inverse_columns import column_half_width
 from pantocheck.model.dynamics.modal_step import ModalArrays, build_modal_arrays
+from pantocheck.model.dynamics.stretch_step import StretchArrays, build_stretch_arrays
 from pantocheck.model.dynamics.train import Train
 from pantocheck.model.dynamics.wire_step import WireArrays, WireWorkspace, allocate_wire_workspace, build_wire_arrays
 from pantocheck.model.modal.modal_damping import build_modal_terms
@@ -47,6 +48,8 @@ class KernelArrays(NamedTuple):
         Droppers and other connectors.
     contact : ContactArrays
         Contact wires under the pantographs.
+    stretches : StretchArrays
+        Held stretches.
     modal : ModalArrays
         Modes with modal damping.
     load : Load
@@ -59,6 +62,7 @@ class KernelArrays(NamedTuple):
     wires: WireArrays
     connectors: ConnectorArrays
     contact: ContactArrays
+    stretches: StretchArrays
     modal: ModalArrays
     load: Load
 
@@ -74,6 +78,8 @@ class Workspace(NamedTuple):
         Predicted tensions of the connectors, without the condition that a dropper cannot push [N].
     contact : ContactWorkspace
         Predictors of the contacts.
+    elongation : (K,) ndarray
+        Predicted elongations of the held stretches [m].
     modal_velocity : (J,) ndarray
         Predicted velocities of the modes with modal damping [m kg^1/2 / s].
     """
@@ -81,6 +87,7 @@ class Workspace(NamedTuple):
     wires: WireWorkspace
     tension: Array
     contact: ContactWorkspace
+    elongation: Array
     modal_velocity: Array
 
 
@@ -96,8 +103,8 @@ def build_kernel_arrays(
     time_step : float
         Time step [s].
     window : WindowArrays or None
-        Limits of the active window; None: the whole line is active. Modal damping makes the whole line active, too: a
-        mode moves all of it.
+        Limits of the active window; None: the whole line is active. It is also with modal damping, because a mode moves
+        all of it, and with held stretches: one moves as a whole and starts its neighbour at once.
     load : Load or None
         Position of an external load.
 
@@ -108,17 +115,19 @@ def build_kernel_arrays(
     """
     factor = factorise(line.beams, time_step)
     terms = build_modal_terms(line)
+    moves_as_a_whole = terms.damping.size > 0 or line.stretches.stiffness.size > 0
     stations = line.mesh.position.size
     contact_loads = [(row, s) for row in line.contact_rows for s in range(stations)]
     sample = contact_loads[:: max(1, stations // 200)]
     half_width = column_half_width(factor, connector_ends(line.connectors) + sample)
     return KernelArrays(
         time_step=time_step,
-        window=whole_line(line) if window is None or terms.damping.size else window,
+        window=whole_line(line) if window is None or moves_as_a_whole else window,
         factor=factor,
         wires=build_wire_arrays(line.beams),
         connectors=build_connector_arrays(line.connectors, factor, time_step, half_width),
         contact=build_contact_arrays(line, factor, time_step, half_width),
+        stretches=build_stretch_arrays(line.stretches, factor, time_step, half_width),
         modal=build_modal_arrays(terms, factor, time_step),
         load=load or Load(0, 0),
     )
@@ -126,5 +135,10 @@ def build_kernel_arrays(
 
 def build_workspace(kernel: KernelArrays, train: Train) -> Workspace:
     """Allocate the scratch arrays for one simulation."""
-    tension, modal_velocity = np.zeros(kernel.connectors.station.size), np.zeros(kernel.modal.damping.size)
-    return Workspace(allocate_wire_workspace(), tension, allocate_contact_workspace(train), modal_velocity)
+    return Workspace(
+        wires=allocate_wire_workspace(),
+        tension=np.zeros(kernel.connectors.station.size),
+        contact=allocate_contact_workspace(train),
+        elongation=np.zeros(kernel.stretches.stiffness.size),
+        modal_velocity=np.zeros(kernel.modal.damping.size),
+    )

@@ -106,7 +106,8 @@ def simulate_mass_drop(
     kernel = build_kernel_arrays(line, test.time_step, load=load)
     weight = -test.mass * GRAVITY
     hanging = StaticSolver(line).deflection(weight * point_load(line, load.row, test.position))
-    motion, train = motion_at_rest(hanging, kernel.modal.damping.size), build_empty_train(len(line.contact_rows))
+    motion = motion_at_rest(hanging, kernel.modal.damping.size, kernel.stretches.stiffness.size)
+    train = build_empty_train(len(line.contact_rows))
     before, after = (round(duration / test.time_step) for duration in (test.hanging, test.duration))
     time: Array = test.time_step * np.arange(1 - before, after + 1).astype(np.float64)
     recording = allocate_recording(line, test.sensors, time.size, pantographs=0)

@@ -13,7 +13,7 @@ from numba import njit
 from pantocheck.model.arrays import Array
 from pantocheck.model.dynamics.block_tridiagonal import Factor, solve_rows
 from pantocheck.model.dynamics.motion import Motion
-from pantocheck.model.dynamics.sweeps import NEGLIGIBLE_FORCE, maximum
+from pantocheck.model.dynamics.sweeps import NEGLIGIBLE_FORCE, inner_product, maximum
 from pantocheck.model.modal.modal_damping import ModalTerms
 
 
@@ -90,17 +90,7 @@ def _participation(weight: Array, w: Array, r: Array) -> float:
     """Participation of a mode in a field of deflections and slopes."""
     total = 0.0
     for b in range(w.shape[0]):
-        total += _product(weight[0, b], w[b]) + _product(weight[1, b], r[b])
-    return total
-
-
-# The order of the sum is free, so that it compiles to vector instructions.
-@njit(cache=True, fastmath={"reassoc"})
-def _product(a: Array, b: Array) -> float:
-    """Inner product of two arrays."""
-    total = 0.0
-    for s in range(a.size):
-        total += a[s] * b[s]
+        total += inner_product(weight[0, b], w[b]) + inner_product(weight[1, b], r[b])
     return total
 
 

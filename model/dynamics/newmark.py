@@ -4,7 +4,7 @@ The method is the average acceleration (gamma = 1/2, beta = 1/4) with a correcte
 which is Newmark with gamma = 1/2, beta = 1/12 (Fox-Goodwin) on the string part. One step
 
 1. predicts displacement and velocity,   q* = q + dt v + dt^2/4 a,   v* = v + dt/2 a
-2. applies all forces in the predicted state, the scalar forces (tensions, contact forces, modal damping) as before,
+2. applies all forces in the predicted state, the scalar forces (`sweeps`) as before,
 3. solves for the accelerations, A a = f, with the factors of A = M + dt/2 C + dt^2/4 K without the scalar forces,
 4. sweeps over the scalar forces until none of them changes (`sweeps`),
 5. corrects displacement and velocity,   q = q* + dt^2/4 a,   v = v* + dt/2 a
@@ -19,6 +19,7 @@ from pantocheck.model.dynamics.contact_step import correct_train, predict_train,
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, Workspace
 from pantocheck.model.dynamics.modal_step import predict_modes, sweep_modes
 from pantocheck.model.dynamics.motion import Motion
+from pantocheck.model.dynamics.stretch_step import predict_stretches, sweep_stretches
 from pantocheck.model.dynamics.sweeps import FORCE_TOLERANCE, MAX_SWEEPS, maximum
 from pantocheck.model.dynamics.train import Train
 from pantocheck.model.dynamics.wire_step import apply_wire_forces, correct_wires, predict_wires
@@ -52,6 +53,7 @@ def step(kernel: KernelArrays, motion: Motion, train: Train, work: Workspace) ->
     predict_connectors(kernel.connectors, motion, work.tension, window)
     predict_train(kernel.contact, motion, train, work.contact)
     motion.w[2, kernel.load.row, kernel.load.station] += motion.load[0]
+    predict_stretches(kernel.stretches, motion, work.elongation)
     predict_modes(kernel.modal, motion, work.modal_velocity)
     solve_line(kernel.factor, window.first, window.last, motion.w[2], motion.r[2])
     sweeps = 0
@@ -59,6 +61,7 @@ def step(kernel: KernelArrays, motion: Motion, train: Train, work: Workspace) ->
         sweeps += 1
         largest = sweep_contacts(kernel.contact, motion, train, work.contact, window)
         largest = maximum(largest, sweep_connectors(kernel.connectors, motion, work.tension, window))
+        largest = maximum(largest, sweep_stretches(kernel.stretches, motion, work.elongation))
         largest = maximum(largest, sweep_modes(kernel.modal, motion, work.modal_velocity))
         if largest < FORCE_TOLERANCE:
             break

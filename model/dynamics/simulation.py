@@ -86,7 +86,7 @@ def start_motion(line: DiscretisedLine, kernel: KernelArrays, passage: Passage) 
         [[_contact_point(kernel.contact, wire, k, x) for k, wire in enumerate(profile)] for x in passage.start]
     )
     train = build_train(passage, contacts[..., 0], contacts[..., 1])
-    return motion_at_rest(deflection, kernel.modal.damping.size), train
+    return motion_at_rest(deflection, kernel.modal.damping.size, kernel.stretches.stiffness.size), train
 
 
 def _contact_point(contact: ContactArrays, profile: Array, wire: int, position: float) -> tuple[float, float]:

@@ -1,4 +1,4 @@
-"""Gauss-Seidel sweeps over the scalar forces of a time step: terms that connectors, contacts and modes share.
+"""Gauss-Seidel sweeps over the scalar forces of a time step: terms that all of these forces share.
 
 Within one step, each of these forces X changes its own closing acceleration linearly, by the compliance c:
 
@@ -12,6 +12,8 @@ import math
 
 from numba import njit
 
+from pantocheck.model.arrays import Array
+
 FORCE_TOLERANCE = 1e-9
 """A step has converged when no force changes by more than this in a sweep [N]; forces are of the order of 100 N."""
 NEGLIGIBLE_FORCE = 1e-11
@@ -24,3 +26,13 @@ MAX_SWEEPS = 200
 def maximum(a: float, b: float) -> float:
     """Larger of two numbers, or NaN if either is NaN: `max` would drop it, and a diverged step would look converged."""
     return a if a >= b or math.isnan(a) else b
+
+
+# The order of the sum is free, so that it compiles to vector instructions.
+@njit(cache=True, fastmath={"reassoc"})
+def inner_product(a: Array, b: Array) -> float:
+    """Inner product of two arrays; the second can be shorter."""
+    total = 0.0
+    for s in range(b.size):
+        total += a[s] * b[s]
+    return total

@@ -3,12 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse.linalg import eigsh
+from scipy.sparse.linalg import LinearOperator, eigsh
 
 from pantocheck.model.arrays import Array
 from pantocheck.model.catenary import Kind, Rayleigh
 from pantocheck.model.discretised_line import DiscretisedLine, with_damping
-from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, free_unknowns
+from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, factorise_stiffness, free_unknowns
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class ComponentEnergies:
     kinds : tuple of Kind
         Kinds in the order of the columns.
     stiffness : (n, kinds) ndarray
-        phi' K_e phi; the sum over the kinds is (2 pi f)^2 [1/s2].
+        phi' K_e phi; the sum over the kinds is (2 pi f)^2, without the share of held stretches [1/s2].
     mass : (n, kinds) ndarray
         phi' M_e phi; the sum over the kinds is 1 [-].
     """
@@ -64,7 +64,8 @@ def compute_modes(line: DiscretisedLine, count: int) -> Modes:
     matrices = assemble_matrices(line)
     # A fixed start vector makes the result reproducible to the last digit.
     start = np.ones(matrices.free.size)
-    w2, vectors = eigsh(matrices.stiffness, count, matrices.mass, sigma=0.0, v0=start)
+    inverse = LinearOperator(matrices.stiffness.shape, matvec=factorise_stiffness(line, matrices), dtype=np.float64)
+    w2, vectors = eigsh(matrices.stiffness, count, matrices.mass, sigma=0.0, v0=start, OPinv=inverse)
     ascending = np.argsort(w2)
     shape = np.zeros((count, line.beams.free.size))
     shape[:, bandwidth_order(line)[matrices.free]] = _normalise_sign(vectors[:, ascending].T)

@@ -5,12 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from scipy.sparse.linalg import splu
 
 from pantocheck.model.arrays import Array
 from pantocheck.model.discretised_line import DiscretisedLine
 from pantocheck.model.failures import NoEquilibrium
-from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, connector_directions
+from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, connector_directions, factorise_stiffness
 
 MAX_ITERATIONS = 100
 """Largest number of changes of the set of slack droppers."""
@@ -50,7 +49,7 @@ class StaticSolver:
         self.line = line
         matrices = assemble_matrices(line)
         self._free = matrices.free
-        self._factor = splu(matrices.stiffness)
+        self._solve = factorise_stiffness(line, matrices)
         self._direction = sp.csc_array(connector_directions(line)[self._free])
 
     def deflection(self, load: Array) -> Deflection:
@@ -72,7 +71,7 @@ class StaticSolver:
             The set of slack droppers does not settle.
         """
         connectors = self.line.connectors
-        taut = self._factor.solve(np.asarray(load, dtype=float)[self._free])
+        taut = self._solve(np.asarray(load, dtype=float)[self._free])
         slack = np.zeros(connectors.station.size, dtype=np.bool_)
         for _ in range(MAX_ITERATIONS):
             solution = taut
@@ -80,7 +79,7 @@ class StaticSolver:
             if index.size:
                 # Cancel the compression of the slack droppers, and release their preload.
                 b = self._direction[:, index].toarray()
-                compliance = self._factor.solve(b)
+                compliance = self._solve(b)
                 k, preload = connectors.stiffness[index], connectors.preload[index]
                 system = np.eye(index.size) - k[:, None] * (b.T @ compliance)
                 release = np.linalg.solve(system, preload + k * (b.T @ taut))

@@ -66,6 +66,16 @@ def simple_line(
     )
 
 
+def fix_along_track(catenary: Catenary, axial_stiffness: float = 13.8e6) -> Catenary:
+    """Fix the messenger wires at all supports along the track; a solid bar of 120 mm2 of bronze has this EA [N]."""
+    supports = tuple(replace(support, along_track="fixed") for support in catenary.messenger_supports)
+    return replace(
+        catenary,
+        wires=tuple(replace(wire, axial_stiffness=axial_stiffness) for wire in catenary.wires),
+        messenger_supports=supports,
+    )
+
+
 def complex_roots(mass: Array, damping: Array, stiffness: Array, count: int) -> Array:
     """Lowest complex eigenvalues of M q'' + C q' + K q = 0 with positive imaginary part [1/s]."""
     n = len(mass)

@@ -23,6 +23,7 @@ from pantocheck.model.fem.assembly import (
     contact_stiffness,
     point_load,
     stepping_mass,
+    stretch_directions,
 )
 
 
@@ -61,7 +62,8 @@ class PlainNewmark:
         inner = slice(0, self.free.size)
         self.M[inner, inner] = stepping_mass(line, passage.time_step).toarray()
         self.C[inner, inner] = matrices.damping.toarray()
-        self.K[inner, inner] = matrices.stiffness.toarray()
+        stretches = stretch_directions(line)[self.free].toarray()
+        self.K[inner, inner] = matrices.stiffness.toarray() + (stretches * line.stretches.stiffness) @ stretches.T
         self.force = np.zeros(starts[-1])
         for block, p in zip(self.pantograph_slices, pantographs, strict=True):
             self.M[block, block], self.C[block, block], self.K[block, block] = p.mass, p.damping, p.stiffness

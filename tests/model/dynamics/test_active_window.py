@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from helpers.lines import DAMPED, PANTOGRAPH_2002, simple_line
+from helpers.lines import DAMPED, PANTOGRAPH_2002, fix_along_track, simple_line
 from pantocheck.model import History, Passage, simulate_passage
 from pantocheck.model.discretised_line import discretise
 from pantocheck.model.dynamics.active_window import MIN_HALF_WIDTH, build_window_arrays, half_widths, max_wave_speed
@@ -86,3 +86,14 @@ def test_whole_line_is_active_for_a_train_faster_than_the_waves(speed: float, ac
     assert build_window_arrays(LINE, passage).whole_line is active
     assert build_window_arrays(LINE, replace(passage, kept_behind=math.inf)).whole_line
     assert not build_window_arrays(LINE, replace(passage, reach=100.0)).whole_line
+
+
+def test_held_stretches_make_the_whole_line_active() -> None:
+    """A stretch moves as a whole and starts its neighbour at once, so that no station may be held at rest."""
+    line = discretise(fix_along_track(simple_line(spans=6, damping=DAMPED)), 1.0)
+    supports = tuple(("contact", float(x)) for x in np.arange(60.0, 360.0, 60.0))
+    passage = Passage((PANTOGRAPH_2002,), (70.0,), 70.0, 1.0, 1e-3, supports)
+    whole, limited = simulate_passage(line, passage), simulate_passage(line, replace(passage, kept_behind=0.0))
+    np.testing.assert_array_equal(limited.force, whole.force)
+    np.testing.assert_array_equal(limited.motion, whole.motion)
+    assert np.abs(whole.motion[-1, 100, 0]) > 1e-9  # 0.1 s after the start, 230 m ahead

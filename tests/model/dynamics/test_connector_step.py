@@ -22,7 +22,7 @@ def swept_state() -> tuple[DiscretisedLine, KernelArrays, Motion, int]:
     w, r = np.zeros((3, rows, stations)), np.zeros((3, rows, stations))
     lifted = (line.mesh.position > 20.0) & (line.mesh.position < 40.0)
     w[0, line.contact_rows[0], lifted] = 5e-3
-    motion = Motion(w, r, line.connectors.preload.copy(), np.zeros(0), np.zeros(1))
+    motion = Motion(w, r, line.connectors.preload.copy(), np.zeros(0), np.zeros(1), np.zeros(0))
     window, predicted = Window(0, stations - 1), np.zeros(line.connectors.station.size)
     predict_connectors(kernel.connectors, motion, predicted, window)
     solve_line(kernel.factor, 0, stations - 1, w[2], r[2])

@@ -38,7 +38,7 @@ def test_free_vibration_converges_with_second_order() -> None:
     for time_step in (4e-3, 2e-3, 1e-3):
         kernel, train = build_kernel_arrays(line, time_step), build_empty_train(1)
         initial = np.array([amplitude.sum(axis=1), np.zeros(place.size), -amplitude @ omega**2])
-        motion = Motion(*spread(initial), line.connectors.preload.copy(), np.zeros(0), np.zeros(1))
+        motion = Motion(*spread(initial), line.connectors.preload.copy(), np.zeros(0), np.zeros(1), np.zeros(0))
         work = build_workspace(kernel, train)
         for _ in range(round(duration / time_step)):
             assert step(kernel, motion, train, work)

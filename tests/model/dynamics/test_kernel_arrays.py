@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from helpers.lines import DAMPED, PANTOGRAPH_2002, Array, bare_wire, simple_line
-from pantocheck.model import Kind, ModalBand, Passage, discretise
+from helpers.lines import DAMPED, PANTOGRAPH_2002, Array, bare_wire, fix_along_track, simple_line
+from pantocheck.model import Catenary, Kind, ModalBand, Passage, discretise
 from pantocheck.model.dynamics.active_window import build_window_arrays, max_wave_speed
 from pantocheck.model.dynamics.block_tridiagonal import solve_line
 from pantocheck.model.dynamics.inverse_columns import column_half_width
@@ -22,11 +22,13 @@ def leaves(arrays: tuple[object, ...]) -> list[Array]:
     return [array for part in nested for array in part]
 
 
-def test_kernel_arrays_are_contiguous_and_finite() -> None:
+@pytest.mark.parametrize("catenary", [simple_line(damping=DAMPED), fix_along_track(simple_line(damping=DAMPED))])
+def test_kernel_arrays_are_contiguous_and_finite(catenary: Catenary) -> None:
     """The compiled step is specialised for contiguous arrays; another layout would compile it a second time."""
-    line = discretise(simple_line(damping=DAMPED), 1.0)
-    kernel = build_kernel_arrays(line, 1e-3, build_window_arrays(line, PASSAGE))
-    for array in leaves(kernel):
+    line = discretise(catenary, 1.0)
+    window = build_window_arrays(line, PASSAGE)
+    # The window of held stretches is infinite on purpose.
+    for array in leaves(build_kernel_arrays(line, 1e-3, window)._replace(window=window)):
         assert array.flags.c_contiguous
         assert array.dtype == np.bool_ or np.isfinite(array).all()
 

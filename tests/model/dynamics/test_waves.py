@@ -53,7 +53,7 @@ def test_pulse_follows_the_exact_dispersion_relation(bending_stiffness: float, d
     kernel = build_kernel_arrays(line, dt)
     steps = round(40.0 / SPEED_OF_WAVES / dt)
     at_start, at_end = travelled(line, bending_stiffness, width, centre, np.array([0.0, steps * dt]))
-    motion = Motion(at_start[:, :1].copy(), at_start[:, 1:].copy(), np.zeros(0), np.zeros(0), np.zeros(1))
+    motion = Motion(at_start[:, :1].copy(), at_start[:, 1:].copy(), np.zeros(0), np.zeros(0), np.zeros(1), np.zeros(0))
     train = build_empty_train(1)
     work = build_workspace(kernel, train)
     for _ in range(steps):

@@ -36,7 +36,7 @@ def test_wire_forces_equal_matrix_products() -> None:
     beams, stations = line.beams, line.mesh.position.size
     assert stations > 2 * wire_step.PIECE
     w, r = np.random.default_rng(0).normal(size=(2, 3, 1, stations))
-    motion = Motion(w, r, np.zeros(0), np.zeros(0), np.zeros(1))
+    motion = Motion(w, r, np.zeros(0), np.zeros(0), np.zeros(1), np.zeros(0))
     q, v = (np.stack([w[i, 0], r[i, 0]], axis=-1).ravel() for i in range(2))
     alpha, beta = beams.mass_coefficient[0], beams.stiffness_coefficient[0]
     expected = -wire_stiffness(beams, 0) @ (q + beta * v) - alpha * (wire_mass(beams, 0) @ v)

@@ -77,7 +77,7 @@ def test_step_with_modal_damping_equals_the_full_matrix() -> None:
     tension = line.connectors.preload + line.connectors.stiffness * np.einsum(
         "nb,nb->n", line.connectors.coefficient, w[0].T[line.connectors.station]
     )
-    motion = Motion(w, r, tension, np.zeros(kernel.modal.damping.size), np.zeros(1))
+    motion = Motion(w, r, tension, np.zeros(kernel.modal.damping.size), np.zeros(1), np.zeros(0))
     train = build_empty_train(1)
     work = build_workspace(kernel, train)
     effective = mass + dt / 2 * damping + dt**2 / 4 * stiffness
