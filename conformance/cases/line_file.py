@@ -91,6 +91,15 @@ class WireTable(SourcedTable):
     area_mm2: Area = None
 
 
+class MessengerWireTable(WireTable):
+    """Messenger wire; the values are those of one wire, also of two parallel wires."""
+
+    axial_stiffness_EA_N: Annotated[
+        float | None,
+        Field(gt=0, le=1e9, description="axial stiffness EA; needed with messenger_support.along_track = 'fixed' [N]"),
+    ] = None
+
+
 class StitchWireTable(SourcedTable):
     """Stitch wire, clamped to the messenger wire on both sides of a support; it carries the nearest droppers."""
 
@@ -190,6 +199,13 @@ class MessengerSupportTable(SourcedTable):
 
     stiffness_N_m: Annotated[Positive, Field(le=1e10, description="vertical stiffness [N/m]")]
     damping_N_s_m: Annotated[NonNegative, Field(description="vertical damper [N s/m]")] = 0.0
+    along_track: Annotated[
+        Literal["free", "fixed"],
+        Field(
+            description="motion of the messenger wire along the track at the supports; free: its tension is constant; "
+            "fixed: its tension changes with its elongation between two supports"
+        ),
+    ] = "free"
 
 
 class LineFile(InputTable):
@@ -198,7 +214,7 @@ class LineFile(InputTable):
     title: Annotated[str, Field(description="title in reports", max_length=200)]
     geometry: Geometry
     contact_wire: WireTable
-    messenger_wire: WireTable
+    messenger_wire: MessengerWireTable
     stitch_wire: StitchWireTable | None = None
     droppers: DropperTable
     steady_arm: SteadyArmTable
@@ -227,5 +243,11 @@ class LineFile(InputTable):
                 "messenger_wire.number",
                 "two messenger wires carry one contact wire",
                 "Set messenger_wire.number = 1 or contact_wire.number = 2.",
+            )
+        if self.messenger_support.along_track == "fixed" and self.messenger_wire.axial_stiffness_EA_N is None:
+            raise validation_problem(
+                "messenger_wire.axial_stiffness_EA_N",
+                "the supports hold the messenger wire along the track, but its axial stiffness is not given",
+                "Give messenger_wire.axial_stiffness_EA_N, or set messenger_support.along_track = 'free'.",
             )
         return self

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from pantocheck.conformance.cases.damping_file import ComponentDamping
-from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.cases.line_file import LineFile, WireTable
 from pantocheck.model import (
     Catenary,
     Clamp,
@@ -79,10 +79,11 @@ def _names(line: LineFile, kind: Kind) -> list[str]:
 def _wires(line: LineFile, kind: Kind) -> Iterator[Wire]:
     geometry, stitch = line.geometry, line.stitch_wire
     changes: tuple[TensionChange, ...] = ()
-    if kind is Kind.CONTACT_WIRE:
-        table, stagger = line.contact_wire, geometry.stagger_contact_wire_m
-    else:
+    table: WireTable = line.contact_wire
+    stagger, axial_stiffness = geometry.stagger_contact_wire_m, None
+    if kind is Kind.MESSENGER_WIRE:
         table, stagger = line.messenger_wire, geometry.stagger_messenger_m
+        axial_stiffness = line.messenger_wire.axial_stiffness_EA_N
         if stitch is not None:
             # The messenger and the stitch wire share the tension between the clamps.
             half = stitch.length_m / 2
@@ -101,6 +102,7 @@ def _wires(line: LineFile, kind: Kind) -> Iterator[Wire]:
             table.bending_stiffness_N_m2,
             tension_changes=changes,
             stagger=plan if lateral else None,
+            axial_stiffness=axial_stiffness,
         )
 
 
@@ -169,7 +171,12 @@ def _messenger_supports(line: LineFile) -> Iterator[MessengerSupport]:
     for x in line.geometry.supports:
         for messenger in _names(line, Kind.MESSENGER_WIRE):
             yield MessengerSupport(
-                x, messenger, line.geometry.encumbrance_m, support.stiffness_N_m, support.damping_N_s_m
+                x,
+                messenger,
+                line.geometry.encumbrance_m,
+                support.stiffness_N_m,
+                support.damping_N_s_m,
+                support.along_track,
             )
 
 

@@ -122,6 +122,10 @@ def test_case_is_checked(changes: dict[str, Any], key: str | None, edited_case: 
         ({"steady_arm.vertical_stiffness_N_m": None}, "steady_arm.vertical_stiffness_N_m"),
         ({"steady_arm.vertical_stiffness_N_m": None, "steady_arm.length_m": 1.0}, None),
         ({"messenger_wire.number": 2}, "messenger_wire.number"),
+        ({"messenger_support.along_track": "fixed"}, "messenger_wire.axial_stiffness_EA_N"),
+        ({"messenger_support.along_track": "fixed", "messenger_wire.axial_stiffness_EA_N": 13.8e6}, None),
+        ({"messenger_wire.axial_stiffness_EA_N": 13.8e6}, None),
+        ({"contact_wire.axial_stiffness_EA_N": 16.3e6}, "contact_wire.axial_stiffness_EA_N"),
         ({"contact_wire.number": 2}, None),
         ({"contact_wire.number": 2, "messenger_wire.number": 2}, None),
         ({"damping.modal": [{"from_Hz": 1.0, "to_Hz": 1.0, "damping_ratio": 0.1}]}, "damping.modal[1].from_Hz"),
@@ -511,10 +515,11 @@ def test_profile_is_found_by_name_or_file(tmp_path: Path) -> None:
 
 
 def test_lines_of_the_library_have_the_stated_defaults() -> None:
-    """A wire without a stated stiffness is a string; an arm without a stated direction pulls."""
+    """A wire without a stated stiffness is a string, an arm without a stated direction pulls, supports are free."""
     content = tomllib.loads((library_folder() / "en50318-2002" / "line.toml").read_text("utf-8"))
     change_keys(content, {"contact_wire.bending_stiffness_N_m2": None})
     line = LineFile.model_validate(content)
     assert (line.contact_wire.bending_stiffness_N_m2, line.contact_wire.number) == (0.0, 1)
     assert (line.steady_arm.acts, line.steady_arm.clamp_kg, line.messenger_support.damping_N_s_m) == ("pull", 0.0, 0.0)
+    assert (line.messenger_support.along_track, line.messenger_wire.axial_stiffness_EA_N) == ("free", None)
     assert (line.geometry.stagger_contact_wire_m, line.geometry.stagger_messenger_m) == (0.0, 0.0)

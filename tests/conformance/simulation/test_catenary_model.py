@@ -32,3 +32,22 @@ def test_parallel_contact_wires_lie_on_either_side_of_the_stagger(number: int, o
         assert wire.stagger is not None
         assert [x for x, _ in wire.stagger] == list(geometry.span_limits)
         assert [y - offset for _, y in wire.stagger] == pytest.approx([0.2, -0.2, 0.2, -0.2])
+
+
+def test_supports_fixed_along_the_track_hold_every_messenger_wire() -> None:
+    """Two messenger wires over three spans have three stretches each; the axial stiffness is that of one wire."""
+    line = select_cases(["en50318-2018/ac-simple/static"])[0].line
+    wires = {"number": 2, "spacing_m": 0.04}
+    messenger = line.messenger_wire.model_copy(update=wires | {"axial_stiffness_EA_N": 13.8e6})
+    tables = {
+        "geometry": line.geometry.shorten(3),
+        "contact_wire": line.contact_wire.model_copy(update=wires),
+        "messenger_wire": messenger,
+    }
+    stretches = []
+    for along_track in ("free", "fixed"):
+        support = line.messenger_support.model_copy(update={"along_track": along_track})
+        changed = line.model_copy(update=tables | {"messenger_support": support})
+        stretches.append(discretise(build_catenary(changed), COARSE).stretches.stiffness)
+    assert stretches[0].size == 0
+    assert stretches[1] == pytest.approx([13.8e6 / line.geometry.span_m] * 6)
