@@ -67,6 +67,8 @@ def build_line(case: CaseData) -> Line:
     inputs, derived = case["line"], case["derived"]["line"]
     if inputs["contact_wire"]["number"] != 1 or inputs["messenger_wire"]["number"] != 1 or inputs["damping"]["modal"]:
         raise ValueError("the second formulation has one contact wire, one messenger wire and no modal damping")
+    if inputs["messenger_support"]["along_track"] != "free":
+        raise ValueError("the second formulation has messenger wires of constant tension only")
     messenger, stitch = inputs["messenger_wire"], derived["stitch_wires"]
     stretches = [] if stitch is None else list(zip(stitch["start_m"], stitch["end_m"], strict=True))
     change = 0.0 if stitch is None else stitch["messenger_tension_N"] - messenger["tension_N"]
