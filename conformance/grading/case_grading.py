@@ -10,6 +10,7 @@ from pantocheck.conformance.grading.case_identity import compare_with_library, l
 from pantocheck.conformance.grading.case_verdict import judge_case
 from pantocheck.conformance.grading.case_verification import verify_evaluation, verify_ungraded
 from pantocheck.conformance.grading.extended_band import extended_band_warnings
+from pantocheck.conformance.grading.validity_warnings import validity_warnings
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.results.outcome import Delivered, Errored, Outcome, Skipped
@@ -81,6 +82,7 @@ def grade_evaluation(evaluation: CaseEvaluation, lowest_trust: Trust) -> CaseRes
             *(finding.text for finding in findings if finding.kind == "doubt"),
             *([start.text] if record is not None and start.state == "differs" else []),
             *evaluation.edge_warnings(),
+            *validity_warnings(case, values.evaluation),
             *extended_band_warnings(values.evaluation, values.refined, delivered.run.dt_s),
         ],
         notes=[

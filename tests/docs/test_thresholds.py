@@ -28,6 +28,7 @@ from pantocheck.conformance.grading import (
     record_mismatch,
     record_uncertainty,
     start_agreement,
+    validity_warnings,
     verification_limits,
 )
 from pantocheck.conformance.quantities import bands, filters, signals
@@ -44,9 +45,9 @@ ROWS = re.findall(
 MODULES: list[ModuleType] = [
     attachment, reported_numbers, force_content, force_copy, force_dynamics, implied_force, mean_force, roll_off,
     rounding, support_coincidence, support_passing, assessed_record, baseline, discretisation,
-    extended_band, record_mismatch, record_uncertainty, start_agreement, start_and_section, verification_limits,
-    bands, filters, signals, record, block_bootstrap, force_checks, usable_sections, results_format,
-    results_reading, traces,
+    extended_band, record_mismatch, record_uncertainty, start_agreement, start_and_section, validity_warnings,
+    verification_limits, bands, filters, signals, record, block_bootstrap, force_checks, usable_sections,
+    results_format, results_reading, traces,
 ]  # fmt: skip
 BY_FILE = {"/".join(module.__name__.split(".")[2:]) + ".py": module for module in MODULES}
 FOLDERS = ("quantities", "consistency", "grading", "records", "results", "authenticity")

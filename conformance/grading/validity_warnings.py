@@ -1,0 +1,114 @@
+"""Limits of validity of a run: warnings with the reason and the remedy, for the run of any system."""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.pantograph_file import PantographFile
+from pantocheck.conformance.quantities.evaluation import LINE, Evaluation
+from pantocheck.conformance.simulation.pantograph_model import build_pantograph
+from pantocheck.model.fem.beam import wave_speed
+from pantocheck.model.pantograph import equilibrium
+
+HIGH_SPEED, CRITICAL_SPEED = 0.7, 0.9
+"""Shares of the wave speed of the contact wire above which a run is warned of.
+
+A wave that runs ahead and is reflected returns amplified by (c + v) / (c - v): 6 times at 0.7, the usual limit of
+operation, and 19 times at 0.9."""
+
+LARGEST_STATIC_DIFFERENCE = 0.03
+"""Relative difference of static contact force and uplift force above which the convention of the working height
+matters: the accepted error of the mean force in the consistency check."""
+
+
+def validity_warnings(case: Case, evaluation: Evaluation) -> list[str]:
+    """Warnings on speed, working height and lost contact of a passage; none for a static case.
+
+    Parameters
+    ----------
+    case : Case
+        Case of the run.
+    evaluation : Evaluation
+        Quantities of the run.
+    """
+    if case.is_static or not case.pantographs:
+        return []
+    return [*_speed_warnings(case), *_working_height_warnings(case), *_contact_loss_warnings(evaluation)]
+
+
+def _speed_warnings(case: Case) -> Iterator[str]:
+    """Warn of a speed near the wave speed sqrt(T / m) of the contact wire, the slowest wave that meets the head."""
+    wire = case.line.contact_wire
+    c = wave_speed(wire.tension_N, wire.mass_kg_m)
+    share = case.speed / c
+    speed = (
+        f"{3.6 * case.speed:.4g} km/h is {100 * share:.3g} % of the wave speed of the contact wire, {3.6 * c:.4g} km/h"
+    )
+    if share > CRITICAL_SPEED:
+        yield (
+            f"speed: {speed}. The waves hardly run ahead of the pantograph: the results depend on run-in, damping, "
+            "element and time step, and are no prediction. Choose a higher tension or a lower speed"
+        )
+    elif share > HIGH_SPEED:
+        yield (
+            f"speed: {speed}, above the usual limit of {100 * HIGH_SPEED:g} %. The results settle slowly: lengthen the "
+            "run-in until a shift of the analysis section (compared_spans) changes no result"
+        )
+
+
+def _working_height_warnings(case: Case) -> Iterator[str]:
+    """Warn of an untuned pantograph whose static contact force at the working height is not its uplift force."""
+    for number, (use, file) in enumerate(zip(case.file.pantograph, case.pantographs, strict=True), 1):
+        uplift_force = use.uplift_force_N
+        if use.target_mean_force_N is not None or uplift_force is None:
+            continue
+        prefix, remedy = f"working height of pantograph {number}", "Give target_mean_force_N to be independent of it"
+        if file.chain is not None and file.chain.base_spring_unstretched == "wire_height":
+            stiffness = file.chain.stiffness_N_m[0]
+            yield (
+                f"{prefix}: its base spring is unstretched at the nominal height of the wire, so that it carries "
+                f"{stiffness:g} N per metre of lift. A simulator that counts from the static height of the head has "
+                f"another mean force. {remedy}"
+            )
+        elif not _states_uplift_point(file):
+            yield (
+                f"{prefix}: the uplift force acts on the head, as uplift_force_on is not given. The same pantograph as "
+                "a chain has another mean force if its uplift force acts on a lower mass. Give uplift_force_on, or "
+                "target_mean_force_N"
+            )
+        else:
+            contact = _static_contact_force(file, uplift_force)
+            if abs(contact / uplift_force - 1) > LARGEST_STATIC_DIFFERENCE:
+                yield (
+                    f"{prefix}: with the head there, the static contact force is {contact:.4g} N, the uplift force "
+                    f"{uplift_force:.4g} N, because displacements of all masses count from the height of the head. A "
+                    f"simulator with another convention has another mean force. {remedy}"
+                )
+
+
+def _static_contact_force(file: PantographFile, uplift_force: float) -> float:
+    """Contact force with the head at the working height [N]; NaN for a mechanism, which has no static state."""
+    try:
+        return equilibrium(build_pantograph(file, uplift_force, 0.0), 0.0)[1]
+    except np.linalg.LinAlgError:
+        return math.nan
+
+
+def _states_uplift_point(file: PantographFile) -> bool:
+    table = file.matrices or file.modes
+    return table is None or table.uplift_force_on is not None
+
+
+def _contact_loss_warnings(evaluation: Evaluation) -> Iterator[str]:
+    """Warn of a negative minimum of the filtered force."""
+    for number, values in evaluation.values.items():
+        smallest, loss = values.get("min_force_N"), values.get("contact_loss_pct")
+        if number == LINE or not isinstance(smallest, float) or smallest >= 0:
+            continue
+        share = f", lost for {loss:.3g} % of the time" if isinstance(loss, float) else ""
+        yield (
+            f"contact loss: the smallest filtered force of pantograph {number} is {smallest:.3g} N{share}. No contact "
+            "pulls: the filter undershoots where the force is zero. Judge contact_loss_pct in place of min_force_N"
+        )
