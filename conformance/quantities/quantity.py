@@ -65,6 +65,8 @@ class Quantity:
         Fixed tables that show the quantity.
     force_level : str
         Short name of the quantity as a level of the force, beside whose curve its limits are drawn; empty: no level.
+    other_definition : str
+        Other definition in use, and the largest change of the value by it on the EN 50318:2002 cases; empty: none.
     """
 
     name: str
@@ -77,6 +79,7 @@ class Quantity:
     never_negative: bool = False
     tables: tuple[QuantityTable, ...] = ()
     force_level: str = ""
+    other_definition: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)

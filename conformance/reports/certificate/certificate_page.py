@@ -14,6 +14,7 @@ from pantocheck.conformance.reports.certificate.criteria_table import criteria_b
 from pantocheck.conformance.reports.certificate.quantity_tables import (
     build_band_table,
     build_quantity_table,
+    list_definitions,
     list_skipped,
 )
 from pantocheck.conformance.reports.certificate.scope_page import (
@@ -131,6 +132,8 @@ def _case_section(case: dict[str, Any], anchor: str) -> doc.Section:
         blocks.append(doc.Section("All quantities", (quantities,)))
     if case["uncertainty_basis"]:
         blocks.append(doc.Section("Uncertainty by component", uncertainty_blocks(case)))
+    if definitions := list_definitions(case):
+        blocks.append(doc.Section("Definitions", (doc.BulletList(definitions),)))
     for heading, sentences in (("Skipped", list_skipped(case)), ("Notes", tuple(case["notes"]))):
         if sentences:
             blocks.append(doc.Section(heading, (doc.BulletList(sentences),)))

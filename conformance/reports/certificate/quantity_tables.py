@@ -57,6 +57,16 @@ def build_quantity_table(case: dict[str, Any]) -> Table:
     return _table(ordered, keys, cell)
 
 
+def list_definitions(case: dict[str, Any]) -> tuple[RichText, ...]:
+    """Definitions that depend on a choice of filter or band, with the change of the value by another choice."""
+    shown = {name for values in case["quantities"].values() for name in values}
+    return tuple(
+        (Code(name), f": {quantity.definition}; {quantity.other_definition}.")
+        for name, quantity in QUANTITIES.items()
+        if name in shown and quantity.other_definition
+    )
+
+
 def list_skipped(case: dict[str, Any]) -> tuple[str, ...]:
     """Skipped quantities with their reasons."""
     return tuple(

@@ -7,7 +7,7 @@ from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.reports.certificate.case_facts import list_case_facts
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
 from pantocheck.conformance.reports.certificate.criteria_table import criteria_blocks, describe_criterion
-from pantocheck.conformance.reports.certificate.quantity_tables import build_band_table
+from pantocheck.conformance.reports.certificate.quantity_tables import build_band_table, list_definitions
 from pantocheck.conformance.reports.certificate.verdict_reasons import list_reasons
 from pantocheck.conformance.reports.document import (
     BulletList,
@@ -96,6 +96,18 @@ def test_band_table_marks_graded_and_informative_values(results: dict[str, Any])
     assert rear[0].endswith("(FAIL)")
     assert rear[5].endswith("(informative)")  # its limit is provisional
     assert rear[6] == "not available"
+
+
+def test_definitions_state_the_worth_of_filter_and_band(results: dict[str, Any]) -> None:
+    """Of the shown quantities only."""
+    case = results["cases"][0]
+    texts = {name.text: text for name, text in list_definitions(case)}
+    assert texts["min_force_N"] == (
+        ": smallest contact force, 0-20 Hz; a causal filter of the same order changes it by up to 15 %."
+    )
+    assert "mean_force_N" not in texts
+    without = {"quantities": {"1": {"mean_force_N": 118.0}}}
+    assert list_definitions(without) == ()
 
 
 def test_case_facts_show_wall_time_and_filter(passing: dict[str, Any]) -> None:
