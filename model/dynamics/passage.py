@@ -25,13 +25,13 @@ class Passage:
         Time step [s].
     watched : tuple of (str, float)
         Wire and position of the stations whose vertical motion is recorded [-, m].
+    reach : float
+        Largest half-width of the active window around the pantographs [m]: stations farther away are held at rest,
+        although waves may return from there. Infinite: no limit.
     kept_behind : float
         Distance behind the last pantograph within which the motion is known until the end of the simulation [m].
         Stations from which no wave returns there, or to a pantograph, in time are held at rest. Infinite: the whole
         line is active.
-    reach : float
-        Largest half-width of the active window around the pantographs [m]: stations farther away are held at rest,
-        although waves may return from there. Infinite: no limit.
     ramp : float
         Time over which every pantograph rises from zero contact force to its static force [s]. Zero: it presses with
         its static force from the start.
@@ -43,8 +43,8 @@ class Passage:
     duration: float
     time_step: float
     watched: tuple[tuple[str, float], ...] = ()
-    kept_behind: float = math.inf
     reach: float = math.inf
+    kept_behind: float = math.inf
     ramp: float = 0.0
 
 
