@@ -58,11 +58,17 @@ def resolution_warnings(case: Case, discretisation: Discretisation) -> tuple[str
             warnings.append(
                 f"time step: {1e3 * dt:g} ms changes the period at {edge:g} Hz by "
                 f"{100 * period_error(edge, dt):.2g} %: quantities up to {edge:g} Hz are not accurate. "
-                f"Set time_step_s to at most {longest_dt:.2g}"
+                f"Set time_step_s to at most {_round_down(longest_dt)}"
             )
         if h > longest_h:
             warnings.append(
                 f"element length: a pantograph passes {case.speed / h:.3g} elements of {h:g} m per second; quantities "
-                f"up to {edge:g} Hz need {passing:g}. Set element_m to at most {longest_h:.2g}"
+                f"up to {edge:g} Hz need {passing:g}. Set element_m to at most {_round_down(longest_h)}"
             )
     return tuple(warnings)
+
+
+def _round_down(value: float) -> str:
+    """A positive value with two significant digits, not above it, so that the remedy of a warning removes it."""
+    digit = 10.0 ** (math.floor(math.log10(value)) - 1)
+    return f"{math.floor(value / digit) * digit:.2g}"

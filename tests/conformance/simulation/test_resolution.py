@@ -92,8 +92,9 @@ def test_message_names_the_remedy(case_300: Case) -> None:
         "time step: 2 ms changes the period at 50 Hz by 3.3 %: quantities up to 50 Hz are not accurate. "
         "Set time_step_s to at most 0.0011",
         "element length: a pantograph passes 55.6 elements of 1.5 m per second; quantities up to 50 Hz need 70. "
-        "Set element_m to at most 1.2",
+        "Set element_m to at most 1.1",
     )
+    assert resolution_warnings(case_300, discretised(case_300, 1.1, 0.0011).file.discretisation) == ()
     assert longest_element(case_300.speed, 20.0) == pytest.approx(case_300.speed / 50)
 
 
