@@ -27,6 +27,7 @@ from pantocheck.conformance.plan import Plan
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.record_summary import RecordSummary
 from pantocheck.conformance.results.results_format import Results
+from pantocheck.conformance.simulation.model_uncertainty import ModelUncertaintyFile
 from pantocheck.conformance.systems.command.protocol_messages import answer_schema, request_schema
 
 READ_FORMATS: dict[str, type[BaseModel]] = {
@@ -41,8 +42,9 @@ READ_FORMATS: dict[str, type[BaseModel]] = {
     "summary": RecordSummary,
     "profile": Profile,
     "converged": ConvergedFile,
+    "model-uncertainty": ModelUncertaintyFile,
 }
-"""TOML files that users write, and the converged values of the library."""
+"""TOML files that users write, and the converged values and model uncertainties of the library."""
 
 WRITTEN_FORMATS: dict[str, type[BaseModel]] = {
     "results": Results,

@@ -124,6 +124,7 @@ def _build_result(case: Case, delivered: Delivered, notes: Sequence[str], **part
             "id": case.id,
             "title": file.title,
             "notes": [*case.notes, *delivered.notes, *notes],
+            "model_uncertainty": list(delivered.model_uncertainty),
             "inputs": inputs,
             "input_digest": case.digest,
             "limits_digest": limits_digest(case.limits),

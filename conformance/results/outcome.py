@@ -43,6 +43,8 @@ class Delivered:
         Remarks on the run for the reader of the report.
     warnings : tuple of str
         Caveats for the reader of the report.
+    model_uncertainty : tuple of str
+        Effects that the equations of the system leave out, with their sizes.
     summary : Evaluation or None
         Quantities delivered as numbers in place of a record.
     study : StudyResult
@@ -66,6 +68,7 @@ class Delivered:
     run: RunTable = field(default_factory=RunTable)
     notes: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
+    model_uncertainty: tuple[str, ...] = ()
     summary: Evaluation | None = None
     study: StudyResult = field(default_factory=StudyResult)
     case_digest: str | None = None

@@ -347,6 +347,10 @@ class CaseResult(ResultsPart):
         dict[ComponentName, str],
         Field(default_factory=dict, description="how each component was determined, or why it is not known"),
     ]
+    model_uncertainty: Annotated[
+        list[str],
+        Field(description="effects that the equations of the system leave out, with sizes; not part of `uncertainty`"),
+    ] = []
     record: RecordFacts | None = None
     """Null without a record: line at rest, mass drop, or a study of several runs."""
     run: RunFacts

@@ -11,6 +11,7 @@ from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.simulation.case_run import run_passage, run_starts
 from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.simulation.model_uncertainty import list_model_uncertainty
 from pantocheck.conformance.simulation.resolution import resolution_warnings
 from pantocheck.conformance.simulation.static_quantities import compute_static_quantities
 from pantocheck.model import discretise
@@ -64,6 +65,12 @@ def _deliver(
             static=static, run=RunTable(dt_s=discretisation.time_step_s, element_m=discretisation.element_m)
         ), None
     passage = run_passage(case, line, discretisation, uplift_forces)
-    warnings = resolution_warnings(case, discretisation)
-    delivered = Delivered(passage.record, static, passage.run, warnings=warnings, start=case.start_table)
+    delivered = Delivered(
+        passage.record,
+        static,
+        passage.run,
+        warnings=resolution_warnings(case, discretisation),
+        model_uncertainty=list_model_uncertainty(case),
+        start=case.start_table,
+    )
     return delivered, passage.uplift_forces

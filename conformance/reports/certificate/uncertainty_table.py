@@ -16,9 +16,10 @@ KEY = (
 
 
 def uncertainty_blocks(case: dict[str, Any]) -> tuple[doc.Block, ...]:
-    """Basis of each component, and the half-widths of all quantities of a case."""
+    """Basis of each component, model uncertainty, and the half-widths of all quantities of a case."""
     names = list(case["uncertainty_basis"])
     basis = tuple(f"{name.capitalize()}: {text}." for name, text in case["uncertainty_basis"].items())
+    basis += tuple(f"Model, not part of the combined width: {sentence}" for sentence in case["model_uncertainty"])
     rows = tuple(_row(case, key, name, names) for key in list_owners(case) for name in _quantities(case, key))
     if not rows:
         return (doc.BulletList(basis),)

@@ -75,10 +75,13 @@ def test_result_shows_the_start(case_250: Case, start: StartTable | None, state:
     assert result.verdict == grade_case(case_250, delivered(case_250, None), "secondary").verdict
 
 
-def test_reference_simulator_states_the_start_of_the_case(case_250: Case) -> None:
+def test_reference_simulator_states_the_start_of_the_case_and_its_model_uncertainty(case_250: Case) -> None:
     mesh = case_250.file.discretisation.model_copy(update={"element_m": 5.0, "time_step_s": 0.005})
     coarse = replace(case_250, file=case_250.file.model_copy(update={"discretisation": mesh}))
-    assert ReferenceSimulator().run_unrefined(coarse).start == StartTable(**START)
+    run = ReferenceSimulator().run_unrefined(coarse)
+    assert run.start == StartTable(**START)
+    (effect,) = grade_case(coarse, run, "secondary").model_uncertainty
+    assert effect.startswith("Messenger wire of constant tension")
 
 
 @pytest.mark.parametrize("start", [START, START | {"state": "other", "ramp_m": 12.5}, None])

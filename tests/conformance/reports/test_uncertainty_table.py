@@ -28,6 +28,19 @@ def test_table_has_every_component_of_every_quantity(passing: dict[str, Any]) ->
         assert rows[f"pantograph {pantograph}", Code("std_force_N")][2:] == ("N", *widths, "–", "–")
 
 
+def test_model_uncertainty_stands_below_the_components_and_changes_no_width(passing: dict[str, Any]) -> None:
+    case = passing["cases"][0]
+    _, table, _ = uncertainty_blocks(case)
+    case["model_uncertainty"] = ["Constant tension. Maximum of the 20 Hz force: 0.8 %."]
+    basis, same, _ = uncertainty_blocks(case)
+    assert isinstance(basis, BulletList)
+    assert len(basis.items) == 5
+    assert basis.items[4] == (
+        "Model, not part of the combined width: Constant tension. Maximum of the 20 Hz force: 0.8 %."
+    )
+    assert same == table
+
+
 def test_several_values_have_the_largest_of_their_half_widths(passing: dict[str, Any]) -> None:
     case = passing["cases"][0]
     case["quantities"]["0"]["presag_mm"] = [20.0, 55.0]
