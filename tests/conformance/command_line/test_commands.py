@@ -73,7 +73,7 @@ def test_run_grades_records_and_writes_results(records: Path, tmp_path: Path) ->
 def test_run_passes_with_exit_code_0(records: Path, lenient: Path, tmp_path: Path) -> None:
     result = pantocheck(
         "run", "en50318-2002/250", "--system", f"record:{records}", "--out", tmp_path / "out", "--formats", "json",
-        "--limits", lenient,
+        "--limits", lenient, "--verdicts", "criteria",
     )  # fmt: skip
     assert (result.exit_code, result.output.split()[0]) == (0, "PASS")
 
@@ -82,7 +82,7 @@ def test_skipped_case_gives_exit_code_1(records: Path, lenient: Path, tmp_path: 
     (records / "300.toml").unlink()
     result = pantocheck(
         "run", "--system", f"record:{records}", "--out", tmp_path / "out", "--formats", "json", "--limits", lenient,
-        "en50318-2002/250", "en50318-2002/300",
+        "--verdicts", "criteria", "en50318-2002/250", "en50318-2002/300",
     )  # fmt: skip
     assert (result.exit_code, result.output.split()[0]) == (1, "SKIP")
     assert "there is no record of this case" in result.output
@@ -92,9 +92,10 @@ def test_option_of_the_command_line_replaces_that_of_the_plan(records: Path, len
     plan = tmp_path / "plan.toml"
     plan.write_text(
         'cases = ["en50318-2002/250"]\nsystem = "record:records"\nout = "planned"\n'
-        'formats = ["json"]\nlimits = "lenient.toml"\n'
+        'formats = ["json"]\nlimits = "lenient.toml"\nverdicts = "criteria"\n'
     )
     assert pantocheck("run", "--plan", plan).exit_code == 0
+    assert pantocheck("run", "--plan", plan, "--verdicts", "both").exit_code == 1  # a sine is not the solution
     assert (tmp_path / "planned" / "results.json").exists()
     assert pantocheck("run", "--plan", plan, "--out", tmp_path / "replaced", "en50318-2002/300").exit_code == 1
     assert json.loads((tmp_path / "replaced" / "results.json").read_text())["cases"][0]["id"] == "en50318-2002/300"
