@@ -1,6 +1,7 @@
 """`pantocheck self-test`: systems with known faults must not pass."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -13,9 +14,12 @@ from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.reports.formats.report_writers import write_report
 from pantocheck.conformance.self_test.bench import MutantResult, SelfTest, run_self_test
+from pantocheck.conformance.self_test.numerical_faults import NumericalResult, run_numerical_faults
 from pantocheck.conformance.self_test.self_test_page import build_self_test_page
 
 DEFAULT_CASES = ("en50318-2002/250", "en50318-2002/300")
+NUMERICAL_CASES = ("en50318-2018/ac-simple/320-twin",)
+"""Further cases of the numerical faults, without published limits."""
 
 
 def self_test_command(
@@ -38,7 +42,13 @@ def self_test_command(
         check_writable(markdown.parent)
     output = console()
     with output.status("testing the suite") as status:
-        self_test = run_self_test(cases, lambda name: status.update(f"testing the suite: {name}"))
+
+        def progress(name: str) -> None:
+            status.update(f"testing the suite: {name}")
+
+        further = () if case else select_cases(NUMERICAL_CASES)
+        numerical = run_numerical_faults([*cases, *(extra for extra in further if not extra.is_static)], progress)
+        self_test = replace(run_self_test(cases, progress), numerical=numerical)
     _print(self_test)
     if markdown is not None:
         write_report(build_self_test_page(self_test), markdown)
@@ -59,9 +69,14 @@ def _print(self_test: SelfTest) -> None:
         output.print(escape_text(text), soft_wrap=True)
     for name, (verdict, reason) in self_test.reference.items():
         output.print(escape_text(f"reference simulator on {name}:"), style_verdict(verdict), escape_text(reason))
+    for fault in (row for row in self_test.numerical if not row.detected):
+        output.print(escape_text(f"NOT DETECTED: {fault.fault.name} on {fault.case}, by verification"), soft_wrap=True)
     for title, results in (("must be detected", self_test.severe), ("may remain undetected", self_test.mild)):
         output.print()
         output.print(_build_mutant_table(title, results))
+    if self_test.numerical:
+        output.print()
+        output.print(_build_fault_table(self_test.numerical))
 
 
 def _build_mutant_table(title: str, results: Sequence[MutantResult]) -> Table:
@@ -75,5 +90,20 @@ def _build_mutant_table(title: str, results: Sequence[MutantResult]) -> Table:
             style_verdict(result.by_limits),
             escape_text(check if result.detected else f"not by {check}"),
             escape_text(result.reason[:160]),
+        )
+    return table
+
+
+def _build_fault_table(results: Sequence[NumericalResult]) -> Table:
+    columns = ("numerical fault", "case", "EN 50318 criteria", "verification", "quantities outside")
+    table = build_table(*columns, title="numerical faults")
+    for result in results:
+        fault = result.fault.name if result.fault.must_be_detected else f"{result.fault.name} (optional)"
+        table.add_row(
+            escape_text(fault),
+            escape_text(result.case),
+            style_verdict(result.criteria),
+            style_verdict(result.verification),
+            escape_text(", ".join(result.outside) or "none"),
         )
     return table

@@ -15,6 +15,7 @@ from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.results.results_format import CaseResult
 from pantocheck.conformance.self_test.mutants import MILD, MUTANTS, Mutant
+from pantocheck.conformance.self_test.numerical_faults import NumericalResult
 from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
 
 TRUST: Final = "secondary"
@@ -53,17 +54,21 @@ class SelfTest:
         Mutants that must be detected.
     mild : tuple of MutantResult
         Mutants that may remain undetected.
+    numerical : tuple of NumericalResult
+        Numerical faults with both verdicts.
     """
 
     reference: dict[str, tuple[Verdict, str]]
     severe: tuple[MutantResult, ...]
     mild: tuple[MutantResult, ...]
+    numerical: tuple[NumericalResult, ...] = ()
 
     @property
     def passed(self) -> bool:
-        """Whether the reference simulator passes and every severe fault is detected by the expected check."""
+        """Whether the reference simulator passes and every severe fault is detected as expected."""
         accepted = all(verdict == "pass" for verdict, _ in self.reference.values())
-        return accepted and all(result.detected for result in self.severe)
+        detected = [*(result.detected for result in self.severe), *(result.detected for result in self.numerical)]
+        return accepted and all(detected)
 
 
 def run_self_test(cases: Sequence[Case], progress: Callable[[str], None]) -> SelfTest:

@@ -3,6 +3,7 @@
 from pantocheck.conformance.consistency.record_checks import RECORD_CHECKS
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.self_test.bench import MutantResult, SelfTest
+from pantocheck.conformance.self_test.numerical_faults import NumericalResult
 
 LIMITS_ALONE_KEY = (
     "Limits alone: verdict without the checks. Where it is ",
@@ -17,6 +18,11 @@ UNDETECTED_FAULTS = (
     "A gain within 3 % and a shift of a few milliseconds stay below the tolerances of the dynamics check, which allow "
     "for other integration schemes and for rounding. A record of force and position alone cannot be checked for "
     "dynamics: deliver contact height and uplift. A mesh of 4 m can stay within the limits; the table shows where."
+)
+
+NUMERICAL_FAULTS = (
+    "A record of a faulty simulator is consistent with itself, so that no check detects it. The verification up to "
+    "50 Hz must detect the faults on every case, except those marked optional, which show its limit of detection."
 )
 
 
@@ -56,6 +62,10 @@ def build_self_test_page(self_test: SelfTest) -> doc.Document:
                 (doc.BulletList(reference), _mutants(self_test.severe), doc.Paragraph(LIMITS_ALONE_KEY)),
             ),
             doc.Section(
+                "Numerical faults and the two verdicts",
+                (doc.Paragraph(NUMERICAL_FAULTS), _numerical_faults(self_test.numerical)),
+            ),
+            doc.Section(
                 "Faults that may remain undetected",
                 (
                     doc.Paragraph("Smaller faults of the same kinds show the limit of detection."),
@@ -82,6 +92,21 @@ def _mutants(rows: tuple[MutantResult, ...]) -> doc.Table:
 def _mild_mutants(rows: tuple[MutantResult, ...]) -> doc.Table:
     columns = ("Mutant", "Fault", "Case", "Verdict", "Failed check", "Quantities outside their limits")
     cells = tuple((*_fault(row), ", ".join(row.checks) or "none", _names(row.outside)) for row in rows)
+    return doc.Table(tuple(map(doc.Column, columns)), cells)
+
+
+def _numerical_faults(rows: tuple[NumericalResult, ...]) -> doc.Table:
+    columns = ("Fault", "Case", "EN 50318 criteria", "Verification", "Verified quantities outside their limits")
+    cells = tuple(
+        (
+            row.fault.name if row.fault.must_be_detected else f"{row.fault.name} (optional)",
+            doc.Code(row.case),
+            row.criteria,
+            row.verification,
+            _names(row.outside),
+        )
+        for row in rows
+    )
     return doc.Table(tuple(map(doc.Column, columns)), cells)
 
 

@@ -1,5 +1,6 @@
 """Self-test: every mutant on one case, and its page."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.self_test import bench
 from pantocheck.conformance.self_test.bench import SelfTest, run_self_test
 from pantocheck.conformance.self_test.mutants import MILD, MUTANTS, Mutant
+from pantocheck.conformance.self_test.numerical_faults import FAULTS, run_numerical_faults
 from pantocheck.conformance.self_test.self_test_page import build_self_test_page
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "self-test.md"
@@ -19,7 +21,8 @@ DOCUMENT = Path(__file__).parents[2] / "docs" / "self-test.md"
 
 @pytest.fixture(scope="module")
 def self_test() -> SelfTest:
-    return run_self_test(select_cases(["en50318-2002/300"]), lambda _: None)
+    cases = select_cases(["en50318-2002/300"])
+    return replace(run_self_test(cases, lambda _: None), numerical=run_numerical_faults(cases, lambda _: None))
 
 
 def test_self_test_passes_the_simulator_and_detects_every_mutant(self_test: SelfTest) -> None:
@@ -29,6 +32,23 @@ def test_self_test_passes_the_simulator_and_detects_every_mutant(self_test: Self
     assert self_test.passed
     assert len(self_test.severe) == len(MUTANTS) == 11
     assert {row.verdict for row in self_test.severe} <= {"fail", "error"}
+
+
+def test_verification_detects_numerical_faults_that_the_criteria_let_pass(self_test: SelfTest) -> None:
+    """Only droppers that push change the force below 20 Hz enough to leave the limits of EN 50318:2002."""
+    rows = {row.fault.name: row for row in self_test.numerical}
+    assert len(rows) == len(FAULTS) == 8
+    severe = [row for row in rows.values() if row.fault.must_be_detected]
+    assert {row.verification for row in severe} == {"fail"}
+    assert all("rms_20_50_N" in row.outside for row in severe)
+    assert {name for name, row in rows.items() if row.criteria == "fail"} == {"no slackening"}
+
+
+def test_undetected_numerical_fault_fails_the_self_test(self_test: SelfTest) -> None:
+    missed = replace(self_test.numerical[0], verification="pass")
+    assert not replace(self_test, numerical=(missed,)).passed
+    optional = replace(missed, fault=replace(missed.fault, must_be_detected=False))
+    assert replace(self_test, numerical=(optional,)).passed
 
 
 def test_limits_alone_do_not_detect_shifts(self_test: SelfTest) -> None:
@@ -43,7 +63,7 @@ def test_self_test_page_is_current(self_test: SelfTest) -> None:
     text = DOCUMENT.read_text(encoding="utf-8")
     assert len(self_test.mild) == len(MILD)
     assert render_markdown(build_self_test_page(self_test)).splitlines() == [
-        row for row in text.splitlines() if "en50318-2002/250" not in row
+        row for row in text.splitlines() if "en50318-2002/250" not in row and "320-twin" not in row
     ]
 
 

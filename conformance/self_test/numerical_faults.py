@@ -1,0 +1,111 @@
+"""Numerical faults of a simulator, which the verification detects where the EN 50318 criteria let them pass."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.converged_file import find_converged
+from pantocheck.conformance.grading.case_grading import grade_case
+from pantocheck.conformance.grading.verdicts import Verdict
+from pantocheck.conformance.results.outcome import Delivered
+from pantocheck.conformance.self_test.faulty_lines import scale_damping, without_residual_flexibility
+from pantocheck.conformance.simulation.case_run import run_passage
+from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.model import DiscretisedLine, discretise, make_droppers_bilateral
+
+TRUST: Final = "secondary"
+
+
+@dataclass(frozen=True)
+class NumericalFault:
+    """A fault of the equations or of their solution.
+
+    Parameters
+    ----------
+    name : str
+        Short name.
+    element_m : float or None
+        Element length [m]; None: that of the case.
+    change : callable
+        Change of the discretised line.
+    must_be_detected : bool
+        Whether the verification must fail on every case; otherwise the fault shows the limit of detection.
+    """
+
+    name: str
+    element_m: float | None
+    change: Callable[[DiscretisedLine], DiscretisedLine]
+    must_be_detected: bool
+
+
+@dataclass(frozen=True)
+class NumericalResult:
+    """Two verdicts on a numerical fault."""
+
+    fault: NumericalFault
+    case: str
+    """Id of the case."""
+    criteria: Verdict
+    """Verdict by the EN 50318 criteria."""
+    verification: Verdict
+    """Verdict by verification."""
+    outside: tuple[str, ...]
+    """Verified quantities outside their limits."""
+
+    @property
+    def detected(self) -> bool:
+        """Whether the verification detects the fault; true for a fault that may remain undetected."""
+        return self.verification == "fail" or not self.fault.must_be_detected
+
+
+def keep_line(line: DiscretisedLine) -> DiscretisedLine:
+    """The same line."""
+    return line
+
+
+FAULTS: tuple[NumericalFault, ...] = (
+    NumericalFault("mesh of 2 m", 2.0, keep_line, must_be_detected=True),
+    NumericalFault("mesh of 2 m, no residual flexibility", 2.0, without_residual_flexibility, must_be_detected=True),
+    NumericalFault("no slackening", None, make_droppers_bilateral, must_be_detected=True),
+    NumericalFault("three times the damping", None, lambda line: scale_damping(line, 3.0), must_be_detected=True),
+    NumericalFault("no damping", None, lambda line: scale_damping(line, 0.0), must_be_detected=True),
+    NumericalFault("no residual flexibility", None, without_residual_flexibility, must_be_detected=False),
+    NumericalFault("half the damping", None, lambda line: scale_damping(line, 0.5), must_be_detected=False),
+    NumericalFault("twice the damping", None, lambda line: scale_damping(line, 2.0), must_be_detected=False),
+)
+"""Numerical faults, the severe ones first."""
+
+
+def run_numerical_faults(cases: Sequence[Case], progress: Callable[[str], None]) -> tuple[NumericalResult, ...]:
+    """Run the numerical faults on the cases that have converged values.
+
+    Parameters
+    ----------
+    cases : sequence of Case
+        Cases with a train.
+    progress : callable
+        Function that receives the name of each fault before it runs.
+    """
+    results = []
+    for fault in FAULTS:
+        progress(fault.name)
+        results += [_run_fault(fault, case) for case in cases if find_converged(case.id) is not None]
+    return tuple(results)
+
+
+def _run_fault(fault: NumericalFault, case: Case) -> NumericalResult:
+    mesh = case.file.discretisation
+    element = fault.element_m or mesh.element_m
+    line = fault.change(discretise(build_catenary(case.line), element))
+    passage = run_passage(case, line, mesh.model_copy(update={"element_m": element}))
+    result = grade_case(case, Delivered(passage.record), TRUST)
+    verification = result.verification
+    failed = [] if verification is None else [row for row in verification.criteria if row.verdict == "fail"]
+    return NumericalResult(
+        fault=fault,
+        case=case.id,
+        criteria=result.criteria_verdict or result.verdict,
+        verification="info" if verification is None else verification.verdict,
+        outside=tuple(dict.fromkeys(row.quantity for row in failed)),
+    )
