@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Final
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
@@ -15,10 +14,8 @@ from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.results.results_format import CaseResult
 from pantocheck.conformance.self_test.mutants import MILD, MUTANTS, Mutant
-from pantocheck.conformance.self_test.numerical_faults import NumericalResult
+from pantocheck.conformance.self_test.numerical_faults import TRUST, NumericalResult
 from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
-
-TRUST: Final = "secondary"
 
 
 @dataclass(frozen=True)
