@@ -41,7 +41,7 @@ def test_derived_values_are_printed_with_their_meaning() -> None:
     rows = {line.split()[0]: " ".join(line.split()) for line in result.output.splitlines() if line.strip()}
     assert rows["contact_wire.wave_speed_m_s"].startswith("contact_wire.wave_speed_m_s 121.716 speed of transverse")
     assert rows["droppers.position_m"].startswith("droppers.position_m 305.0, 310.5,")
-    assert rows["start.place_m"] == "start.place_m 60.0 position of the last pantograph [m]"
+    assert rows["start.place_m"].startswith("start.place_m 60.0 position of the last pantograph at the start")
     assert "242.5, 245.0, ... 24 values ..., 295.0" in rows["working_height_positions_m"]
     assert rows["evaluation.bands_Hz"].startswith("evaluation.bands_Hz 0.0, 5.0; 5.0, 20.0; 20.0, 50.0 ")
 
