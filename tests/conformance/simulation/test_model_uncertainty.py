@@ -15,8 +15,8 @@ PAGE = Path(__file__).parents[3] / "docs" / "exact-model.md"
 def cells(effect: Effect) -> dict[str, str]:
     """Sizes as the page prints them, by quantity."""
     units = {"min_force_N": "N"}
-    relative = {name: f"{size:g} %" for name, size in effect.relative_pct.items()}
-    return relative | {name: f"{size:g} {units[name]}" for name, size in effect.absolute.items()}
+    relative = {name: f"{size:.1f} %" for name, size in effect.relative_pct.items()}
+    return relative | {name: f"{size:.1f} {units[name]}" for name, size in effect.absolute.items()}
 
 
 def test_page_has_the_sizes_of_the_library() -> None:
