@@ -61,12 +61,11 @@ def _check_copy(case: Case, signals: RecordSignals) -> Finding | None:
             if likeness is None or likeness.remainder > LARGEST_REMAINDER:
                 continue
             delay = (likeness.lag - pantograph.inside.start) / signals.record.rate
-            difference = _compare_uplifts(case, signals, (number, other), delay)
+            differences = _compare_uplifts(case, signals, (number, other), delay)
         except QuantityUnavailable:
             return None  # other checks state which channel is missing
-        if difference > SMALLEST_DIFFERENCE_M:
-            findings.append(_describe(number, other, difference))
-    return worst_finding(findings)
+        findings.append(_judge(number, other, differences))
+    return worst_finding([finding for finding in findings if finding is not None])
 
 
 def find_likeness(part: RealArray, force: RealArray) -> Likeness | None:
@@ -105,20 +104,20 @@ def find_likeness(part: RealArray, force: RealArray) -> Likeness | None:
     return Likeness(float(np.sqrt(max(1 - min(peak, 1.0) ** 2, SMALLEST_SQUARE))), best + shift)
 
 
-def _compare_uplifts(case: Case, signals: RecordSignals, pair: tuple[int, int], delay: float) -> float:
-    """Largest difference between the uplifts where both pantographs of a pair have the same force [m].
+def _compare_uplifts(case: Case, signals: RecordSignals, pair: tuple[int, int], delay: float) -> RealArray:
+    """Differences between the uplifts where both pantographs of a pair have the same force, (k,) [m].
 
-    Where the first passes a support, the second, later by the delay [s], must pass one too; otherwise the difference is
-    infinite. A support without a recorded uplift is left out.
+    Where the first passes one of the k supports of the analysis section, the second, later by the delay [s], must pass
+    a support too; otherwise the difference is infinite. It is NaN if the uplift is not recorded there.
     """
     record = signals.record
-    inside = list(zip(signals.line.supports, signals.line.uplift, strict=True))
+    inside = zip(signals.line.supports, signals.line.uplift, strict=True)
     position, other = (record.position[number - 1] for number in pair)
     recorded, channels = record.support_position, record.support_uplift
     assert recorded is not None
     assert channels is not None
     supports = np.asarray(case.line.geometry.span_limits)
-    differences = [0.0]
+    differences = []
     for support, uplift in inside:
         time = float(np.interp(support, position, record.time))
         place = float(np.interp(time + delay, record.time, other))
@@ -127,18 +126,30 @@ def _compare_uplifts(case: Case, signals: RecordSignals, pair: tuple[int, int], 
             passage = float(np.interp(recorded[nearest], other, record.time))
             at_passage = np.interp(passage, record.time, channels[nearest])
             differences.append(abs(float(at_passage - np.interp(time, record.time, uplift))))
-        elif np.abs(supports - place).min() > SUPPORT_TOLERANCE_M:
-            return np.inf
-    return max(differences)
+        else:
+            passes = np.abs(supports - place).min() <= SUPPORT_TOLERANCE_M
+            differences.append(np.nan if passes else np.inf)
+    return np.array(differences)
 
 
-def _describe(number: int, other: int, difference: float) -> Finding:
-    where = (
-        f"with uplifts at the supports that differ by {1e3 * difference:.2g} mm"
-        if np.isfinite(difference)
-        else "in another part of the span"
-    )
-    return Finding("doubt", f"the force of pantograph {number} is a copy of that of pantograph {other}, {where}")
+def _judge(number: int, other: int, differences: RealArray) -> Finding | None:
+    """Finding on a force that equals that of another pantograph; None if the uplifts are equal as well."""
+    known = differences[~np.isnan(differences)]
+    largest = float(known.max(initial=0.0))
+    if largest > SMALLEST_DIFFERENCE_M:
+        where = (
+            f"with uplifts at the supports that differ by {1e3 * largest:.2g} mm"
+            if np.isfinite(largest)
+            else "in another part of the span"
+        )
+        return Finding("doubt", f"the force of pantograph {number} is a copy of that of pantograph {other}, {where}")
+    if known.size < differences.size:
+        return Finding(
+            "unchecked",
+            f"the copy check was not made: pantographs {number} and {other} have the same force, and the record lacks "
+            f"the uplift at {differences.size - known.size} of {differences.size} supports to compare",
+        )
+    return None
 
 
 COPY = Check(

@@ -83,10 +83,10 @@ def test_equal_forces_need_equal_uplifts(two_pantograph_case: Case, alike: Recor
     assert (finding is not None) == found
 
 
-def test_support_without_uplift_decides_nothing(run: tuple[Case, Record]) -> None:
-    """A copy at the same time, two spans of 55 m behind: only recorded supports two spans apart can be compared.
+def test_copy_stays_unverified_without_the_uplift_to_compare(run: tuple[Case, Record]) -> None:
+    """A copy at the same time, two spans of 55 m behind, needs the uplift at supports two spans apart.
 
-    Before their waves meet, two equal pantographs in the same part of a span have the same force.
+    A record without these supports, or without their uplift at the passage, does not become verified.
     """
     case, record = run
     spaced = replace(record, position=np.array([record.position[0], record.position[0] - 110.0]))
@@ -96,7 +96,14 @@ def test_support_without_uplift_decides_nothing(run: tuple[Case, Record]) -> Non
     assert record.support_uplift is not None
     two = slice(0, 2)
     few = replace(copy, support_position=record.support_position[two], support_uplift=record.support_uplift[two])
-    assert COPY.run(case, read_signals(case, few)) is None
+    finding = COPY.run(case, read_signals(case, few))
+    assert finding is not None
+    assert (finding.kind, finding.text[-42:]) == ("unchecked", "lacks the uplift at 2 of 2 supports to compare"[-42:])
+    before = record.support_position < case.analysis_section[0]
+    passes = np.abs(spaced.position[1] - record.support_position[:, None]) < 1.0
+    gaps = np.where(before[:, None] & passes, np.nan, record.support_uplift)
+    finding = COPY.run(case, read_signals(case, replace(copy, support_uplift=gaps)))
+    assert finding is not None
 
 
 def test_record_without_uplift_is_left_to_other_checks(two_pantograph_case: Case, alike: Record) -> None:
