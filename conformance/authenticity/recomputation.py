@@ -9,11 +9,12 @@ from pantocheck.conformance.authenticity.reported_numbers import EXACT, ROUNDED,
 from pantocheck.conformance.authenticity.uncertainty_check import check_combination, check_components
 from pantocheck.conformance.grading.case_verdict import judge_case, read_participation
 from pantocheck.conformance.grading.near_limit import ValueErrors, near_limit_remarks
+from pantocheck.conformance.grading.start_agreement import list_verification_components
 from pantocheck.conformance.grading.verdicts import Verdict, judge, margin
 from pantocheck.conformance.input_files.trust import limit_counts
 from pantocheck.conformance.quantities.bands import BANDS
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, statistical_extremes
-from pantocheck.conformance.results.results_format import COMPONENT_NAMES, VERIFICATION_COMPONENTS, RecordFacts, Results
+from pantocheck.conformance.results.results_format import COMPONENT_NAMES, RecordFacts, Results
 
 
 def find_discrepancies(results: dict[str, Any]) -> list[str]:
@@ -68,7 +69,8 @@ def _check_case(case: dict[str, Any], trust: Any) -> Iterator[str]:
 
 
 def _check_criteria(case: dict[str, Any], criteria: list[dict[str, Any]], trust: Any) -> Iterator[str]:
-    names = VERIFICATION_COMPONENTS if trust == "computed" else COMPONENT_NAMES
+    start = case["record"] and case["record"]["start"]
+    names = list_verification_components(start) if trust == "computed" else COMPONENT_NAMES
     for row in criteria:
         where = f"{case['id']}, {row['quantity']} of pantograph {row['pantograph']}"
         components = check_components(row, case["uncertainty_components"], names)

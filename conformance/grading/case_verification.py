@@ -13,37 +13,39 @@ from pantocheck.conformance.grading import verification_limits
 from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
 from pantocheck.conformance.grading.case_verdict import judge_case
 from pantocheck.conformance.grading.criterion_grading import grade_requirement
+from pantocheck.conformance.grading.start_agreement import list_verification_components
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.grading.verification_limits import build_requirements
-from pantocheck.conformance.results.results_format import VERIFICATION_COMPONENTS, CaseVerification
+from pantocheck.conformance.results.results_format import CaseVerification
 
 
 def verify_evaluation(evaluation: CaseEvaluation) -> CaseVerification | None:
     """Verify an evaluated delivery; None if its case has no converged values.
 
-    The section and the start are those of the converged solution, so that of the errors of a value only its
-    discretisation error matters.
+    The section is that of the converged solution, and so is the start unless the record states another one. The other
+    components of the uncertainty do not matter.
     """
     case = evaluation.case
     if (converged := find_converged(case.id)) is None:
         return None
     if (reason := find_obstacle(case, converged)) is not None:
-        return build_unverified(converged, "info", reason)
+        return _build_verification(converged, "info", reason)
     if evaluation.contradiction is not None:
-        return build_unverified(converged, "error", evaluation.contradiction)
-    values = replace(evaluation.values, spread={}, uncertainty=evaluation.uncertainty.select(VERIFICATION_COMPONENTS))
+        return _build_verification(converged, "error", evaluation.contradiction)
+    components = list_verification_components(evaluation.start_agreement.state)
+    values = replace(evaluation.values, spread={}, uncertainty=evaluation.uncertainty.select(components))
     criteria = [
         grade_requirement(requirement, values, "computed")
         for requirement in build_requirements(converged, case.is_static)
     ]
     verdict = judge_case((criterion.verdict for criterion in criteria), evaluation.record_facts)
-    return build_unverified(converged, verdict, None).model_copy(update={"criteria": criteria})
+    return _build_verification(converged, verdict, None).model_copy(update={"criteria": criteria})
 
 
 def verify_ungraded(case: Case, verdict: Verdict, reason: str) -> CaseVerification | None:
     """Verification of a case that was not graded; None if the case has no converged values."""
     converged = find_converged(case.id)
-    return None if converged is None else build_unverified(converged, verdict, reason)
+    return None if converged is None else _build_verification(converged, verdict, reason)
 
 
 def find_obstacle(case: Case, converged: ConvergedFile) -> str | None:
@@ -55,7 +57,7 @@ def find_obstacle(case: Case, converged: ConvergedFile) -> str | None:
     return None
 
 
-def build_unverified(converged: ConvergedFile, verdict: Verdict, reason: str | None) -> CaseVerification:
+def _build_verification(converged: ConvergedFile, verdict: Verdict, reason: str | None) -> CaseVerification:
     """Verification without criteria."""
     return CaseVerification(
         verdict=verdict,

@@ -1,15 +1,15 @@
 """Comparison of the start that a record states with the start of its case.
 
-The start moves the results of a line with a short run-in. A record that states another start solves other equations, so
-that the uncertainty from the start counts in its comparison with a converged solution. A record without a statement is
-never treated better than a record that states the start of the case.
+The start moves the results of a line with a short run-in. Where a record states another start, the uncertainty from the
+start counts in its comparison with a converged solution: it can mark a criterion as close. It never widens a limit, so
+that no statement turns a failure into a pass.
 """
 
 from dataclasses import dataclass
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.records.sidecar_tables import StartTable
-from pantocheck.conformance.results.results_format import StartState
+from pantocheck.conformance.results.results_format import ComponentName, StartState
 
 START_TOLERANCE_M = 0.1
 """Tolerance of the place and the ramp of a start [m].
@@ -31,11 +31,6 @@ class StartAgreement:
 
     state: StartState
     text: str
-
-    @property
-    def widens_tolerance(self) -> bool:
-        """Whether the uncertainty from the start enters the tolerance of the verification: if the starts differ."""
-        return self.state == "differs"
 
 
 def compare_starts(case: Case, stated: StartTable | None) -> StartAgreement:
@@ -65,3 +60,14 @@ def compare_starts(case: Case, stated: StartTable | None) -> StartAgreement:
     if not differences:
         return StartAgreement("as in the case", "The start of the record is that of the case.")
     return StartAgreement("differs", f"The start of the record differs: {'; '.join(differences)}.")
+
+
+def list_verification_components(start: StartState | None) -> tuple[ComponentName, ...]:
+    """Components of the uncertainty that count against converged values, which have the section of the case.
+
+    Parameters
+    ----------
+    start : StartState or None
+        Start of the record against that of its case; None without a record.
+    """
+    return ("discretisation", "start") if start == "differs" else ("discretisation",)

@@ -28,9 +28,6 @@ ComponentName = Literal["discretisation", "start", "section", "length"]
 
 COMPONENT_NAMES: tuple[ComponentName, ...] = get_args(ComponentName)
 
-VERIFICATION_COMPONENTS: tuple[ComponentName, ...] = ("discretisation",)
-"""Components that count against converged values, which have the start and the analysis section of the case."""
-
 LARGEST_RESULT = 1e15
 """Largest absolute value of a number in results.json."""
 
