@@ -48,7 +48,7 @@ class GradedCase:
     @property
     def reasons(self) -> tuple[str, ...]:
         """Lines for the case and its record, and for every criterion that is not met; none if the case passes."""
-        return tuple(_list_reasons(self.result, self._criteria))
+        return tuple(self._list_reasons(self._criteria))
 
     @property
     def _criteria(self) -> list[Criterion]:
@@ -72,28 +72,31 @@ class GradedCase:
         Raises
         ------
         AssertionError
-            A criterion is not met or does not count, a quantity has no limits, or the record is not verified.
+            A criterion is not met or does not count, a quantity has no limits, a requested verification is impossible,
+            or the record is not verified.
         """
         __tracebackhide__ = True
         criteria = [c for c in self._criteria if not quantities or c.quantity in quantities]
-        reasons = _list_reasons(self.result, criteria, accept_unverified)
+        reasons = self._list_reasons(criteria, accept_unverified)
         reasons += [criterion_line(c) for c in criteria if quantities and c.verdict == "info"]
         limited = {criterion.quantity for criterion in criteria}
         reasons += [f"{name} has no limits" for name in quantities if name not in limited]
         if reasons:
             raise AssertionError(f"{self.result.id}: " + "\n".join(reasons))
 
-
-def _list_reasons(result: CaseResult, criteria: Sequence[Criterion], accept_unverified: bool = False) -> list[str]:
-    """Reasons why some criteria of a case do not pass."""
-    if result.reason:
-        return [f"{result.verdict}: {result.reason}"]
-    reasons = [criterion_line(c) for c in criteria if c.verdict not in {"pass", "info"}]
-    if all(criterion.verdict == "info" for criterion in criteria):
-        reasons.append("no limit counts")
-    if is_unverified(result) and not accept_unverified:
-        reasons.append(unverified_line(result))
-    return reasons
+    def _list_reasons(self, criteria: Sequence[Criterion], accept_unverified: bool = False) -> list[str]:
+        """Reasons why some criteria of the case do not pass, or why a requested verification has no criteria."""
+        result = self.result
+        if result.reason:
+            return [f"{result.verdict}: {result.reason}"]
+        reasons = [criterion_line(c) for c in criteria if c.verdict not in {"pass", "info"}]
+        if all(criterion.verdict == "info" for criterion in criteria):
+            reasons.append("no limit counts")
+        if "verification" in self.requested and result.verification is not None and result.verification.reason:
+            reasons.append(f"verification: {result.verification.verdict}, {result.verification.reason}")
+        if is_unverified(result) and not accept_unverified:
+            reasons.append(unverified_line(result))
+        return reasons
 
 
 def list_verdict_criteria(result: CaseResult, name: VerdictName) -> list[Criterion]:

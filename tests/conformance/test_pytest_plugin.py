@@ -4,17 +4,23 @@ import json
 import subprocess
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from helpers.converged_fixtures import StateConverged
 from helpers.toml_edit import edit_toml, write_toml
 from helpers.wave_system import Wave
+from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import load_case, select_cases
+from pantocheck.conformance.grading.case_grading import grade_case
+from pantocheck.conformance.grading.case_selection import BOTH
+from pantocheck.conformance.grading.case_verdict import Participation
 from pantocheck.conformance.grading.criterion_grading import Requirement, build_criterion
 from pantocheck.conformance.pytest_plugin import collection  # noqa: F401 - once here, or anew in every session below
-from pantocheck.conformance.pytest_plugin.user_fixtures import criterion_line
+from pantocheck.conformance.pytest_plugin.user_fixtures import GradedCase, criterion_line
 from pantocheck.conformance.records.record_writing import write_record
 
 pytest_plugins = ["pytester"]
@@ -250,6 +256,22 @@ def test_fixture_checks_both_verdicts_of_another_system(pytester: pytest.Pyteste
         """
     )
     session(pytester).assert_outcomes(passed=3)
+
+
+@pytest.mark.parametrize("quantities", [(), ("mean_force_N",)])
+def test_check_needs_the_requested_verification(
+    state_converged: StateConverged, case_250: Case, quantities: tuple[str, ...]
+) -> None:
+    """Every criterion passes, but the converged values belong to another version of the case: its verdict is info."""
+    limits = tuple(limit for limit in case_250.limits if limit.quantity == "mean_force_N")
+    state_converged(case_250, {1: {"mean_force_N": 119.0}}, case_digest="sha256:0")
+    result = grade_case(replace(case_250, limits=limits), Wave().run(case_250), "secondary")
+    GradedCase(result, ("criteria",)).check(*quantities)
+    both = GradedCase(Participation(requested=BOTH).decide_case(result), BOTH)
+    assert both.verdict == "info"
+    with pytest.raises(AssertionError, match="verification: info, the converged values belong to another version"):
+        both.check(*quantities)
+    assert len(both.reasons) == 1
 
 
 def test_criteria_of_a_case_are_one_group_of_xdist(pytester: pytest.Pytester, plan: Path) -> None:
