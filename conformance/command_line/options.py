@@ -18,7 +18,7 @@ FormatsOption = Annotated[
     str | None,
     typer.Option(
         help="Formats to write, separated by commas: html, pdf, json, csv, junit, md, badge.",
-        show_default="html,pdf,json,junit,md",
+        show_default=",".join(Plan.model_fields["formats"].default),
     ),
 ]
 TrustOption = Annotated[
