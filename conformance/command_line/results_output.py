@@ -19,7 +19,7 @@ from pantocheck.conformance.runner import Progress as ResultCallback
 EXIT_CODES: dict[Verdict, int] = {"pass": 0, "unverified": 1, "info": 1, "skip": 1, "fail": 1, "error": 2}
 """Exit code by verdict: 0 only for `pass`."""
 
-LEGEND = "+-: uncertainty of the value; shift: its change when the analysis section is shifted"
+LEGEND = "+-: uncertainty of the value; shift: its change when the analysis section is shifted span by span"
 
 
 @contextmanager

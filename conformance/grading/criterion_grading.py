@@ -59,7 +59,7 @@ class GradedValues:
     refined : Evaluation or None
         Quantities of the same case with element length and time step halved.
     spread : mapping
-        Largest change when the analysis section is shifted.
+        Largest change when the analysis section is shifted span by span.
     uncertainty : Uncertainty
         Half-widths of the 95 % intervals by component.
     """

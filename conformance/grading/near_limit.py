@@ -28,7 +28,7 @@ class ValueErrors:
     discretisation : float or None
         Change when element length and time step are halved; None: not known.
     spread : float or None
-        Largest change when the analysis section is shifted; None: not known.
+        Largest change when the analysis section is shifted span by span; None: not known.
     components : mapping of ComponentName to float
         Half-widths of the 95 % interval by component; unknown components are left out.
     limit_uncertainty : float

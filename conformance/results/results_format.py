@@ -83,8 +83,9 @@ class Criterion(ResultsPart):
     """A value against its limits. `pantograph` is 0 for the line; `item` counts droppers or modes from 1.
 
     `discretisation_error` is the change when element length and time step are halved. `spread` is the largest change
-    when the analysis section is shifted along the line. `uncertainty` is the half-width of the 95 % interval, the root
-    of the sum of squares of `components`; before `components` existed, it was that from the length of the record.
+    when the analysis section is shifted span by span; it is not part of `uncertainty`. `uncertainty` is the half-width
+    of the 95 % interval, the root of the sum of squares of `components`; before `components` existed, it was that from
+    the length of the record.
     `limit_uncertainty` is that of a limit from a measured record. `close` has a remark if both combined exceed the
     distance from the nearer limit.
     `baseline` is the value of earlier results, if the limits bound the drift from it.
@@ -323,7 +324,9 @@ class CaseResult(ResultsPart):
     spread: Annotated[
         dict[Owner, dict[str, float]],
         Field(
-            default_factory=dict, description="largest change when the analysis section is shifted, as in `quantities`"
+            default_factory=dict,
+            description="largest change when the analysis section is shifted span by span, as in `quantities`; "
+            "not part of `uncertainty`",
         ),
     ]
     uncertainty: Annotated[

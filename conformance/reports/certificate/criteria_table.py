@@ -126,8 +126,8 @@ def is_close(criterion: dict[str, Any]) -> bool:
 
 
 def remark_shift(criterion: dict[str, Any]) -> str | None:
-    """A remark on the change of a value when the analysis section is shifted, where the case asks for it."""
+    """A remark on the change of a value over the compared spans of its case, if it has any."""
     if criterion["spread"] is None or criterion["value"] is None:
         return None
     change = f"{format_value(criterion['spread'], 2)} {criterion['unit']}".rstrip()
-    return f"changes by up to {change} when the analysis section is shifted"
+    return f"changes by up to {change} when the analysis section is shifted span by span"
