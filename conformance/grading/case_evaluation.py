@@ -8,10 +8,7 @@ from pantocheck.conformance.cases.start_and_section import shift_section, span_l
 from pantocheck.conformance.consistency.check import CheckName, Finding
 from pantocheck.conformance.consistency.record_checks import check_record
 from pantocheck.conformance.consistency.record_state import record_state
-from pantocheck.conformance.grading.case_uncertainty import (
-    discretisation_component,
-    start_component,
-)
+from pantocheck.conformance.grading.case_uncertainty import discretisation_component, start_component
 from pantocheck.conformance.grading.criterion_grading import GradedValues, grade_limit
 from pantocheck.conformance.grading.record_mismatch import find_other_case, find_record_mismatch
 from pantocheck.conformance.grading.record_uncertainty import length_component, section_spread, shift_component
@@ -69,12 +66,21 @@ class CaseEvaluation:
         return None if record is None else self._signals(record)
 
     @cached_property
+    def evaluation(self) -> Evaluation:
+        """Quantities of the run of the case."""
+        return _complete(self.delivered, None if self.signals is None else self.signals.evaluation)
+
+    @cached_property
+    def refined(self) -> Evaluation | None:
+        """Quantities with element length and time step halved; None if the system delivered no such run."""
+        return None if self.delivered.refined is None else self._evaluate(self.delivered.refined)
+
+    @cached_property
     def values(self) -> GradedValues:
         """Quantities with their uncertainty, discretisation error and section spread."""
-        refined = self.delivered.refined
         return GradedValues(
-            evaluation=self._evaluate(self.delivered),
-            refined=None if refined is None else self._evaluate(refined),
+            evaluation=self.evaluation,
+            refined=self.refined,
             spread={} if self.signals is None else section_spread(self.signals, self.case.shifted_sections),
             uncertainty=self.uncertainty,
         )
@@ -83,9 +89,9 @@ class CaseEvaluation:
     def uncertainty(self) -> Uncertainty:
         """Uncertainty of the quantities by component."""
         delivered, case, signals = self.delivered, self.case, self.signals
-        coarse, fine = (None if run is None else self._evaluate(run) for run in (delivered.coarse, delivered.refined))
+        coarse = None if delivered.coarse is None else self._evaluate(delivered.coarse)
         components: dict[ComponentName, Component] = {
-            "discretisation": discretisation_component(coarse, self._evaluate(delivered), fine)
+            "discretisation": discretisation_component(coarse, self.evaluation, self.refined)
         }
         if signals is None:
             absent = AT_REST if case.is_static else NO_RECORD
@@ -139,9 +145,7 @@ class CaseEvaluation:
         return [] if self.signals is None else edge_warnings(self.signals.pantographs, self.signals.record.speed)
 
     def _evaluate(self, run: Delivered) -> Evaluation:
-        """Quantities of one of the delivered runs."""
-        if run is self.delivered:
-            return _complete(run, None if self.signals is None else self.signals.evaluation)
+        """Quantities of a further run of the case."""
         return _complete(run, None if run.record is None else self._signals(run.record).evaluation)
 
     def _signals(self, record: Record) -> RecordSignals:
