@@ -13,10 +13,7 @@ def build_bars(line: DiscretisedLine, position: Array) -> Bars:
     """Droppers, and steady arms if there is a lateral field."""
     droppers, state = line.catenary.droppers, line.state
     ends = [(point_number(line, d.lower, d.position), point_number(line, d.upper, d.position)) for d in droppers]
-    stiffness = [
-        d.stiffness or (d.axial_stiffness or 0.0) / length
-        for d, length in zip(droppers, state.dropper_length, strict=True)
-    ]
+    stiffness = [d.taut_stiffness(float(rest)) for d, rest in zip(droppers, state.dropper_length, strict=True)]
     tension = list(state.dropper_tension)
     axial_damping = [line.catenary.rayleigh(Kind.DROPPER).stiffness_coefficient * k for k in stiffness]
     rotational_damping = [0.0] * len(droppers)
@@ -29,7 +26,7 @@ def build_bars(line: DiscretisedLine, position: Array) -> Bars:
             tension.append(arm_tension)
             axial_damping.append(0.0)
             beta = line.catenary.rayleigh(Kind.STEADY_ARM).stiffness_coefficient
-            rotational_damping.append(beta * abs(arm_tension) / (arm.length or 1.0))
+            rotational_damping.append(beta * abs(arm.transverse_stiffness(arm_tension)))
     pairs = np.array(ends, dtype=np.int64).reshape(-1, 2)
     length = np.linalg.norm(position[:, pairs[:, 1]] - position[:, pairs[:, 0]], axis=0)
     return Bars(
