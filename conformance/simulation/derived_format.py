@@ -195,7 +195,7 @@ class DerivedPantograph(InputTable):
     start_m: Annotated[float, Field(description="position at the start [m]")]
     start_force_N: Annotated[float, Field(description="contact force at the start [N]")]
     start_wire_height_m: Annotated[
-        float, Field(description="height of the contact wire above the head at the start [m]")
+        float, Field(description="height of the contact wire at the position of the head at the start [m]")
     ]
     start_displacement: Annotated[Numbers, Field(description="z of every unknown at the start [m; modes: m kg^1/2]")]
 
