@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from helpers.lines import DAMPED, PANTOGRAPH_2002, fix_along_track, simple_line
-from pantocheck.model import History, Passage, simulate_passage
+from pantocheck.model import History, Kind, Passage, Rayleigh, simulate_passage
 from pantocheck.model.discretised_line import discretise
 from pantocheck.model.dynamics.active_window import MIN_HALF_WIDTH, build_window_arrays, half_widths, max_wave_speed
 
@@ -86,6 +86,19 @@ def test_whole_line_is_active_for_a_train_faster_than_the_waves(speed: float, ac
     assert build_window_arrays(LINE, passage).whole_line is active
     assert build_window_arrays(LINE, replace(passage, kept_behind=math.inf)).whole_line
     assert not build_window_arrays(LINE, replace(passage, reach=100.0)).whole_line
+
+
+@pytest.mark.parametrize(("coefficient", "active"), [(0.0, True), (3e-5, True), (5e-5, False)])
+def test_window_needs_damping_of_short_waves(coefficient: float, active: bool) -> None:
+    """Without damping the shortest waves of the mesh overtake the window and change the forces by newtons.
+
+    1e-6 N: with 5e-5 s they change them by 1e-8 N in this time.
+    """
+    line = discretise(simple_line(spans=10, damping=dict.fromkeys(Kind, Rayleigh(0.0, coefficient))), 0.5)
+    passage = replace(PASSAGE, duration=1.5, time_step=1e-3, watched=(), kept_behind=0.0)
+    assert build_window_arrays(line, passage).whole_line is active
+    whole, near = (simulate_passage(line, replace(passage, kept_behind=kept)) for kept in (math.inf, 0.0))
+    np.testing.assert_allclose(near.force, whole.force, rtol=0, atol=1e-6)
 
 
 def test_held_stretches_make_the_whole_line_active() -> None:
