@@ -103,8 +103,8 @@ def build_kernel_arrays(
     time_step : float
         Time step [s].
     window : WindowArrays or None
-        Limits of the active window; None: the whole line is active. It is also with modal damping, because a mode moves
-        all of it, and with held stretches: one moves as a whole and starts its neighbour at once.
+        Limits of the active window; None: the whole line is active. With modal damping or held stretches the whole line
+        is active, too: a mode moves all of it, and a stretch moves its neighbours at once.
     load : Load or None
         Position of an external load.
 

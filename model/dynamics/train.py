@@ -68,7 +68,7 @@ def build_train(passage: Passage, wire_height: Array, flexibility: Array) -> Tra
     passage : Passage
         Pantographs, positions, speed, time step and ramp.
     wire_height : (P, W) ndarray
-        Height of each contact wire above each head in the state at the start [m].
+        Height of each contact wire at the position of each head in the state at the start [m].
     flexibility : (P, W) ndarray
         Residual flexibility of each contact wire there [m/N].
 
