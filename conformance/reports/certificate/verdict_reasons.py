@@ -8,7 +8,7 @@ from pantocheck.conformance.reports.certificate.criteria_table import criterion_
 from pantocheck.conformance.reports.certificate.scope_page import summarise_identity
 from pantocheck.conformance.reports.certificate.two_verdicts import select_criteria, verdict_sentences
 from pantocheck.conformance.reports.document import BulletList, Section
-from pantocheck.conformance.reports.page_text import format_beside_limits, format_limits
+from pantocheck.conformance.reports.page_text import format_beside_limits, format_limits, format_value
 from pantocheck.conformance.reports.words import name_owner, read_words
 
 MARGINS_SHOWN = 3
@@ -74,7 +74,9 @@ def list_reasons(results: dict[str, Any]) -> tuple[Section, ...]:
         "Failed": [*_case_reasons(results, "fail"), *map(_value, _select(results, "fail"))],
         "Not evaluated": [*_case_reasons(results, "skip"), *map(_reason, _select(results, "skip"))],
         "Not verified": _record_reasons(results),
-        "Closer to a limit than the uncertainty": [_value(pair) for pair in _criteria(results) if is_close(pair[1])],
+        "Closer to a limit than the uncertainty": [
+            _close_value(pair) for pair in _criteria(results) if is_close(pair[1])
+        ],
         # Between two equal limits a margin is 0 at best and says nothing about closeness.
         "Smallest margins": [_value(pair) for pair in bounded[:MARGINS_SHOWN]],
     }
@@ -128,6 +130,13 @@ def _value(pair: CaseCriterion) -> str:
     margin = "" if criterion["margin"] is None else f", margin {format_signed(criterion['margin'])}"
     text = f"{_subject(case, criterion)}: {value} {criterion['unit']}".rstrip()
     return f"{text}, limits {format_limits(criterion['lower'], criterion['upper'])}{margin}."
+
+
+def _close_value(pair: CaseCriterion) -> str:
+    """A value and its limits with its uncertainty, which is the reason why it is close."""
+    uncertainty, unit = pair[1]["uncertainty"], pair[1]["unit"]
+    error = "" if uncertainty is None else f", uncertainty ± {format_value(uncertainty, 2)} {unit}".rstrip()
+    return f"{_value(pair).removesuffix('.')}{error}."
 
 
 def _reason(pair: CaseCriterion) -> str:

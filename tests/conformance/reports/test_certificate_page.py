@@ -68,6 +68,10 @@ def test_criterion_close_to_its_limit_is_marked_in_row_and_reasons(passing: dict
     assert describe_criterion(row).remarks == (remark,)
     headings = [section.heading for section in list_reasons(passing)]
     assert headings == ["Closer to a limit than the uncertainty", "Smallest margins"]
+    sentences = list_reasons(passing)[0].blocks[0].items
+    assert [
+        "119.9 N" in sentence and sentence.endswith("margin +0.02, uncertainty ± 0.20 N.") for sentence in sentences
+    ] == [True]
     assert describe_criterion(row | {"verdict": "info"}).remarks == ()
 
 
