@@ -30,7 +30,7 @@ def draw_case_figures(case: dict[str, Any]) -> Iterator[Figure]:
     supports = [support for support in case["uplift"] if support["time_s"]]
     if supports:
         peaks = ", ".join(
-            f"{format_value(max(support['uplift_mm']), 3)} mm at {format_plain(support['support_m'])} m"
+            f"{format_plain(round(max(support['uplift_mm'])))} mm at {format_plain(support['support_m'])} m"
             for support in supports
         )
         caption = f"Uplift at the supports. Largest: {peaks}."
