@@ -13,12 +13,14 @@ from difference_passage import difference_quantities
 from finite_differences import uplift_forces
 
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
 from pantocheck.conformance.quantities.statistics import statistical_extremes
 from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.simulation.case_run import run_passage
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.simulation.static_quantities import SMALL_LOAD, sample_span
 from pantocheck.conformance.systems.command.case_message import build_case_message
+from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
 from pantocheck.model import discretise
 from pantocheck.model.statics.elasticity import non_uniformity, static_uplift
 
@@ -41,7 +43,9 @@ MESHES = ((1.0, 2e-3), (0.5, 1e-3), (0.25, 5e-4))
 SPACINGS = (0.25, 0.125)
 """Distances of the points of the second formulation [m]."""
 Runs = dict[str, Any]
-"""Uplift forces of a case, and quantities by formulation and mesh; a quantity is named `pantograph|name`."""
+"""Uplift forces of a case, quantities by formulation and mesh, and their change with the start.
+
+A quantity is named `pantograph|name`."""
 
 
 def complete_runs(case: Case, store: Path, report: Callable[[str], None]) -> Runs:
@@ -73,6 +77,10 @@ def complete_runs(case: Case, store: Path, report: Callable[[str], None]) -> Run
             report(f"{case.id}: {formulation} formulation, {mesh_name} m")
             runs[formulation][mesh_name] = run()
             store.write_text(json.dumps(known, indent=1), encoding="utf-8")
+    if "start" not in runs:
+        report(f"{case.id}: change with the start")
+        runs["start"] = run_other_starts(case)
+        store.write_text(json.dumps(known, indent=1), encoding="utf-8")
     return runs
 
 
@@ -88,6 +96,17 @@ def run_reference(case: Case, element: float, step: float, forces: list[float]) 
     found = evaluate_record(record, case.file.filter.low_pass, case.line.geometry.supports).values
     values |= {f"{k}|{name}": float(found[k][name]) for k in range(1, len(forces) + 1) for name in FORCES}
     return values | {f"0|{UPLIFT}": float(found[0][UPLIFT])}
+
+
+def run_other_starts(case: Case) -> dict[str, float]:
+    """Half-widths of the quantities from the start and the run-in, on the reference simulator."""
+    if case.is_static:
+        return {}
+    component = CaseEvaluation(case, ReferenceSimulator().run(case)).uncertainty.components["start"]
+    widths = {
+        f"{owner}|{name}": width for owner, names in component.half_widths.items() for name, width in names.items()
+    }
+    return {key: float(width) for key, width in widths.items() if key.split("|")[1] in (*FORCES, UPLIFT)}
 
 
 def run_second(case: Case, spacing: float, forces: list[float]) -> dict[str, float]:

@@ -78,6 +78,8 @@ def _list_values(runs: Runs) -> Iterator[str]:
         entry, second = reference[key], second_value(runs, key)
         half_width = max(entry.half_width, abs(second - entry.value))
         yield from ("", "[[value]]", *header, f"value = {entry.value:.6g}", f"half_width = {half_width:.3g}")
+        if key in runs["start"]:
+            yield f"start_half_width = {runs['start'][key]:.3g}"
         yield from ([f"order = {entry.order:.2f}"] if entry.order is not None else [])
         yield from (f"second_value = {second:.6g}", f"difference_pct = {differences[key]:.3f}")
 

@@ -47,6 +47,10 @@ class ConvergedValue(OwnedQuantity):
 
     value: Annotated[FiniteBound, Field(description="extrapolated value, in the unit of the quantity")]
     half_width: Annotated[NonNegative, Field(description="half-width of the interval of the value")]
+    start_half_width: Annotated[
+        NonNegative | None,
+        Field(description="half-width of the change of the value with other starts; none where it is not known"),
+    ] = None
     order: Annotated[
         float | None, Field(description="observed order of convergence; none where it is not observed")
     ] = None

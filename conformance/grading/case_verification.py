@@ -15,15 +15,15 @@ from pantocheck.conformance.grading.case_verdict import judge_case
 from pantocheck.conformance.grading.criterion_grading import grade_requirement
 from pantocheck.conformance.grading.start_agreement import list_verification_components
 from pantocheck.conformance.grading.verdicts import Verdict
-from pantocheck.conformance.grading.verification_limits import build_requirements
+from pantocheck.conformance.grading.verification_limits import build_requirements, include_start
 from pantocheck.conformance.results.results_format import CaseVerification
 
 
 def verify_evaluation(evaluation: CaseEvaluation) -> CaseVerification | None:
     """Verify an evaluated delivery; None if its case has no converged values.
 
-    The section is that of the converged solution, and so is the start unless the record states another one. The other
-    components of the uncertainty do not matter.
+    The section is that of the converged solution, and so is the start unless the record states another one. Then the
+    change of the values with the start widens the limits. The other components of the uncertainty do not matter.
     """
     case = evaluation.case
     if (converged := find_converged(case.id)) is None:
@@ -32,11 +32,13 @@ def verify_evaluation(evaluation: CaseEvaluation) -> CaseVerification | None:
         return _build_verification(converged, "info", reason)
     if evaluation.contradiction is not None:
         return _build_verification(converged, "error", evaluation.contradiction)
-    components = list_verification_components(evaluation.start_agreement.state)
+    start = evaluation.start_agreement.state
+    limits = include_start(converged) if start == "differs" else converged
+    components = list_verification_components(start)
     values = replace(evaluation.values, spread={}, uncertainty=evaluation.uncertainty.select(components))
     criteria = [
         grade_requirement(requirement, values, "computed")
-        for requirement in build_requirements(converged, case.is_static)
+        for requirement in build_requirements(limits, case.is_static)
     ]
     verdict = judge_case((criterion.verdict for criterion in criteria), evaluation.record_facts)
     return _build_verification(converged, verdict, None).model_copy(update={"criteria": criteria})

@@ -47,6 +47,18 @@ VERIFIED_QUANTITIES = (*RELATIVE, *EXTREMES)
 """Quantities with a tolerance; no other quantity has a verification limit."""
 
 
+def include_start(converged: ConvergedFile) -> ConvergedFile:
+    """Converged values whose intervals hold for other starts, too.
+
+    A value whose change with the start is not known keeps its interval.
+    """
+    widened = tuple(
+        value.model_copy(update={"half_width": value.half_width + (value.start_half_width or 0.0)})
+        for value in converged.value
+    )
+    return converged.model_copy(update={"value": widened})
+
+
 def build_requirements(converged: ConvergedFile, is_static: bool) -> tuple[Requirement, ...]:
     """Verification limits of a case.
 

@@ -243,3 +243,30 @@ def test_limits_of_the_case_never_change_the_verification(
     )
     assert with_limits.verification == without.verification
     assert {row.trust for row in with_limits.criteria} == {"secondary"}
+
+
+def test_start_widens_the_limits_if_it_differs(
+    twin: Case, record: Record, values: Values, state_converged: StateConverged
+) -> None:
+    """A force beyond 10 % in 20-50 Hz passes with another start whose half-width reaches it, and only then."""
+    true = values[2]["rms_20_50_N"]
+    converged = state_converged(twin, change(values, EXTENDED, true / 1.2))
+    known = converged.model_copy(
+        update={"value": tuple(v.model_copy(update={"start_half_width": 0.2 * v.value}) for v in converged.value)}
+    )
+    expected = twin.start_table
+    other = expected.model_copy(update={"place_m": expected.place_m + 5.0})
+    verdicts = {}
+    for name, file in (("unknown", converged), ("known", known)):
+        state_converged(twin, change(values, EXTENDED, true / 1.2), value=[v.model_dump() for v in file.value])
+        for start in (None, expected, other):
+            delivered = Delivered(record, case_digest=twin.digest, start=start)
+            verdicts[name, start] = verdict(grade_case(twin, delivered, "secondary"))
+    assert verdicts == {
+        ("unknown", None): "fail",
+        ("unknown", expected): "fail",
+        ("unknown", other): "fail",
+        ("known", None): "fail",
+        ("known", expected): "fail",
+        ("known", other): "pass",
+    }
