@@ -2,9 +2,15 @@
 
 import os
 
+from hypothesis import settings
+
 # On matrices of a few hundred unknowns, the threads of a linear algebra library wait for each other.
 for _library in ("OMP", "OPENBLAS", "MKL"):
     os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
+
+# Property tests try the same examples in every run, and have no time limit on a loaded machine.
+settings.register_profile("suite", deadline=None, derandomize=True, database=None)
+settings.load_profile("suite")
 
 pytest_plugins = [
     "helpers.case_fixtures",

@@ -192,7 +192,7 @@ def spoil_uplift(record: Record) -> Record:
 
 @pytest.mark.parametrize("spoil", [spoil_force, spoil_uplift])
 @pytest.mark.parametrize("speed_alone", [False, True])
-@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=25, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_removing_information_never_gives_a_pass(
     twin: Case,

@@ -29,7 +29,7 @@ from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.results.results_format import CaseResult
 from pantocheck.conformance.systems.record_folder import open_record_folder
 
-RULE = settings(max_examples=20, deadline=None, derandomize=True, database=None)
+RULE = settings(max_examples=20)
 
 FAULTS = ("force of pantograph 2", "uplift of one support")
 

@@ -17,7 +17,7 @@ def noise(seed: int, n: int = 2000) -> np.ndarray:
     return 120 + 30 * np.random.default_rng(seed).normal(size=n)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(seed=st.integers(0, 2**32 - 1), n=st.integers(1000, 1999), edge=st.floats(2.0, 190.0))
 def test_two_bands_add_up_to_their_union(seed: int, n: int, edge: float) -> None:
     force = noise(seed, n)
@@ -57,7 +57,7 @@ def test_bands_differ_from_the_filtered_deviation_by_its_roll_off_only() -> None
     assert_allclose(LowPass()(slow, RATE)[5000:15_000].std(), band_rms(slow, RATE, 0, 20), rtol=1e-3)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(seed=st.integers(0, 1000), scale=st.floats(0.01, 100), shift=st.floats(-1000, 1000))
 def test_band_scales_with_the_force_and_ignores_its_mean(seed: int, scale: float, shift: float) -> None:
     force = noise(seed)

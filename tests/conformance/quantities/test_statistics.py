@@ -35,7 +35,7 @@ def test_contact_loss_of_a_filtered_force_is_unknown() -> None:
         contact_loss(np.zeros(10), 20.0, WHOLE_RECORD)
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 # No measuring chain or simulation delivers subnormal forces (below 2e-308 N), whose class number underflows to zero.
 @given(values=st.lists(st.floats(-500, 500, allow_subnormal=False), min_size=1, max_size=300))
 def test_histogram_holds_every_sample_once(values: list[float]) -> None:

@@ -38,7 +38,7 @@ def test_mass_correction_removes_the_frequency_error_of_waves_up_to_50_hz() -> N
     assert (np.abs(error) < np.abs(plain) / 5).all()
 
 
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(max_examples=40)
 @given(st.lists(st.floats(0.02, 6.0), max_size=9), st.floats(0.1, 3.0), st.floats(1e-5, 0.1))
 def test_corrected_mass_is_positive_definite_at_any_time_step(
     gaps: list[float], element: float, time_step: float

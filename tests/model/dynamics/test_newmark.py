@@ -184,7 +184,7 @@ def pantographs(draw: st.DrawFn) -> Pantograph:
     return chain(masses, stiffness, damping, draw(st.floats(20.0, 300.0)), 0, draw(st.sampled_from([5e3, 5e4, 2e5])))
 
 
-@settings(max_examples=15, deadline=None, derandomize=True)
+@settings(max_examples=15)
 @given(small_lines(), st.lists(pantographs(), min_size=1, max_size=2), st.floats(10.0, 110.0), st.floats(0.0, 2.0))
 def test_step_equals_the_plain_implementation_on_any_small_line(
     catenary: Catenary, several: list[Pantograph], speed: float, drop: float
