@@ -161,6 +161,7 @@ def test_self_test_tests_every_selected_case_with_a_train(monkeypatch: pytest.Mo
         return SelfTest({"en50318-2002/300": ("fail", "a limit")} if len(tested) > 1 else {}, (), ())
 
     monkeypatch.setattr(self_test_command, "run_self_test", run)
+    monkeypatch.setattr(self_test_command, "run_numerical_faults", lambda *_: ())
     assert pantocheck("self-test").exit_code == 0
     assert pantocheck("self-test", "en50318-2018/ac-stitched/*").exit_code == 1, "the reference must pass"
     assert tested == [
@@ -171,6 +172,7 @@ def test_self_test_tests_every_selected_case_with_a_train(monkeypatch: pytest.Mo
 
 def test_self_test_prints_no_control_characters_of_a_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(self_test_command, "run_self_test", lambda *_: SelfTest({}, (), ()))
+    monkeypatch.setattr(self_test_command, "run_numerical_faults", lambda *_: ())
     result = pantocheck("self-test", "--markdown", tmp_path / "[red]page\x1b.md")
     assert "[red]page?.md" in result.output
 
