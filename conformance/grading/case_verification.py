@@ -37,8 +37,7 @@ def verify_evaluation(evaluation: CaseEvaluation) -> CaseVerification | None:
     components = list_verification_components(start)
     values = replace(evaluation.values, spread={}, uncertainty=evaluation.uncertainty.select(components))
     criteria = [
-        grade_requirement(requirement, values, "computed")
-        for requirement in build_requirements(limits, case.is_static)
+        grade_requirement(requirement, values, "computed") for requirement in build_requirements(limits, case.is_static)
     ]
     verdict = judge_case((criterion.verdict for criterion in criteria), evaluation.record_facts)
     return _build_verification(converged, verdict, None).model_copy(update={"criteria": criteria})
