@@ -46,3 +46,15 @@ def test_items_are_combined_one_by_one_and_must_agree_in_number() -> None:
     assert map_items(lambda a: -a, 3.0) == -3.0
     with pytest.raises(ValueError, match="zip"):
         map_items(lambda a, b: a + b, (3.0, 5.0), (1.0,))
+
+
+def test_selection_keeps_the_named_components() -> None:
+    """Against converged values only some components count; the others, larger here, must not."""
+    parts = Uncertainty(
+        {
+            "discretisation": Component("meshes", {1: {"std_force_N": 0.3}, 2: {"std_force_N": 0.5}}),
+            "start": Component("starts", {1: {"std_force_N": 0.4}, 2: {"std_force_N": 1.2}}),
+        }
+    )
+    assert parts.select(("discretisation",)).combined == {1: {"std_force_N": 0.3}, 2: {"std_force_N": 0.5}}
+    assert parts.select(("discretisation", "start")).combined == {1: {"std_force_N": 0.5}, 2: {"std_force_N": 1.3}}
