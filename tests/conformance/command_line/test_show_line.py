@@ -36,7 +36,7 @@ def test_line_at_rest_and_apparent_mass_are_printed() -> None:
 
 def test_derived_values_are_printed_with_their_meaning() -> None:
     """Lists by span show the middle span; long lists show their ends."""
-    result = CliRunner().invoke(app, ["show", "en50318-2002/250", "--derived"], terminal_width=250)
+    result = CliRunner(env={"COLUMNS": "250"}).invoke(app, ["show", "en50318-2002/250", "--derived"])
     assert result.exit_code == 0, result.output
     rows = {line.split()[0]: " ".join(line.split()) for line in result.output.splitlines() if line.strip()}
     assert rows["contact_wire.wave_speed_m_s"].startswith("contact_wire.wave_speed_m_s 121.716 speed of transverse")
