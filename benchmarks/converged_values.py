@@ -14,23 +14,13 @@ from converged_extrapolation import AGREEMENT_PCT, Extrapolation, difference_pct
 from converged_runs import MESHES, SPACINGS, Runs, complete_runs
 from difference_arrays import build_model
 from difference_line import build_line
+from library_passages import PASSAGES
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.systems.command.case_message import build_case_message
 
-CASES = (
-    "en50318-2002/250",
-    "en50318-2002/300",
-    "en50318-2018/ac-simple/static",
-    "en50318-2018/ac-simple/275",
-    "en50318-2018/ac-simple/320",
-    "en50318-2018/ac-simple/275-twin",
-    "en50318-2018/ac-simple/320-twin",
-    "en50318-2018/ac-stitched/static",
-    "en50318-2018/ac-stitched/275",
-    "en50318-2018/ac-stitched/320",
-)
+CASES = (*PASSAGES, "en50318-2018/ac-simple/static", "en50318-2018/ac-stitched/static")
 SECOND = "explicit finite differences, benchmarks/finite_differences.py"
 BANDS = ("std_force_N", "rms_0_5_N", "rms_5_20_N", "rms_20_50_N")
 """Quantities of a pantograph that must agree before any of its values is stored."""

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from difference_passage import LINE_QUANTITIES, QUANTITIES, Quantities, difference_quantities
+from library_passages import PASSAGES
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
@@ -20,16 +21,6 @@ from pantocheck.conformance.systems.command.case_message import build_case_messa
 from pantocheck.model import DiscretisedLine, discretise
 from pantocheck.model.statics.elasticity import static_uplift
 
-CASES = (
-    "en50318-2002/250",
-    "en50318-2002/300",
-    "en50318-2018/ac-simple/275",
-    "en50318-2018/ac-simple/320",
-    "en50318-2018/ac-simple/275-twin",
-    "en50318-2018/ac-simple/320-twin",
-    "en50318-2018/ac-stitched/275",
-    "en50318-2018/ac-stitched/320",
-)
 FINE_MESH = (0.125, 2.5e-4)
 """Element length [m] and time step [s] of the reference simulator."""
 AIM_PCT = 1.0
@@ -131,7 +122,7 @@ def print_summary(comparisons: Sequence[Comparison]) -> None:
 def main() -> None:
     """Run and print."""
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    options.add_argument("cases", nargs="*", default=CASES, metavar="CASE")
+    options.add_argument("cases", nargs="*", default=PASSAGES, metavar="CASE")
     options.add_argument("--coarse", type=float, default=0.25, help="coarse spacing of the points [m]")
     options.add_argument(
         "--fine", type=float, default=0.125, help="fine spacing of the points, half the coarse one [m]"

@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable, Sequence
 
 from calibration import Calibration
+from library_passages import PASSAGES
 from uncertainty_of_mesh import calibrate_discretisation
 from uncertainty_of_section import calibrate_run_in, calibrate_section
 from uncertainty_of_start import calibrate_start
@@ -18,22 +19,12 @@ from uncertainty_of_start import calibrate_start
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 
-CASES = (
-    "en50318-2002/250",
-    "en50318-2002/300",
-    "en50318-2018/ac-simple/275",
-    "en50318-2018/ac-simple/320",
-    "en50318-2018/ac-simple/275-twin",
-    "en50318-2018/ac-simple/320-twin",
-    "en50318-2018/ac-stitched/275",
-    "en50318-2018/ac-stitched/320",
-)
-SHORT, LONG = CASES[:2], CASES[2:4]
+SHORT, LONG = PASSAGES[:2], PASSAGES[2:4]
 CALIBRATIONS: dict[str, tuple[Callable[[Case], Calibration], Sequence[str]]] = {
     "start": (calibrate_start, SHORT),
     "run-in": (calibrate_run_in, LONG),
     "section": (calibrate_section, LONG),
-    "discretisation": (calibrate_discretisation, CASES),
+    "discretisation": (calibrate_discretisation, PASSAGES),
 }
 """Calibration of each component, and its cases."""
 
