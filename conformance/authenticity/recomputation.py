@@ -14,7 +14,9 @@ from pantocheck.conformance.grading.verdicts import Verdict, judge, margin
 from pantocheck.conformance.input_files.trust import limit_counts
 from pantocheck.conformance.quantities.bands import BANDS
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, statistical_extremes
-from pantocheck.conformance.results.results_format import COMPONENT_NAMES, RecordFacts, Results
+from pantocheck.conformance.results.criterion_format import COMPONENT_NAMES
+from pantocheck.conformance.results.record_facts import RecordFacts
+from pantocheck.conformance.results.results_format import Results
 
 
 def find_discrepancies(results: dict[str, Any]) -> list[str]:

@@ -5,7 +5,7 @@ from collections.abc import Collection, Iterator
 from typing import Any
 
 from pantocheck.conformance.authenticity.reported_numbers import same_number, select_item
-from pantocheck.conformance.results.results_format import ComponentName
+from pantocheck.conformance.results.criterion_format import ComponentName
 
 
 def check_components(

@@ -13,7 +13,8 @@ from pantocheck.conformance.command_line.console import build_table, console, es
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.quantities.limit_text import format_bounds, name_value
 from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline, describe_record
-from pantocheck.conformance.results.results_format import Criterion, Results, name_case
+from pantocheck.conformance.results.criterion_format import Criterion
+from pantocheck.conformance.results.results_format import Results, name_case
 from pantocheck.conformance.runner import Progress as ResultCallback
 
 EXIT_CODES: dict[Verdict, int] = {"pass": 0, "unverified": 1, "info": 1, "skip": 1, "fail": 1, "error": 2}

@@ -10,7 +10,8 @@ from pantocheck.conformance.grading.criterion_grading import Requirement, build_
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.quantities.registry import QUANTITIES
-from pantocheck.conformance.results.results_format import BASELINE, CaseResult, Criterion, Results
+from pantocheck.conformance.results.criterion_format import BASELINE, Criterion
+from pantocheck.conformance.results.results_format import CaseResult, Results
 from pantocheck.conformance.results.results_reading import read_results
 
 SMALLEST_SCALE = 1.0

@@ -20,8 +20,9 @@ from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.signals import edge_warnings
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
+from pantocheck.conformance.results.criterion_format import ComponentName, Criterion
 from pantocheck.conformance.results.outcome import Delivered
-from pantocheck.conformance.results.results_format import ComponentName, Criterion, RecordFacts
+from pantocheck.conformance.results.record_facts import RecordFacts
 
 AT_REST = Component("does not apply: the line is at rest")
 NO_RECORD = Component("not known: there is no record of one passage")

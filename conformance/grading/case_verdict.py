@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from typing import get_args
 
 from pantocheck.conformance.grading.verdicts import Verdict, worst_verdict
-from pantocheck.conformance.results.results_format import CaseResult, RecordFacts, Results, VerdictName
+from pantocheck.conformance.results.record_facts import RecordFacts
+from pantocheck.conformance.results.results_format import CaseResult, Results, VerdictName
 
 
 def judge_case(criteria: Iterable[Verdict], record: RecordFacts | None) -> Verdict:

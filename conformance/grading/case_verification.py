@@ -16,7 +16,7 @@ from pantocheck.conformance.grading.criterion_grading import grade_requirement
 from pantocheck.conformance.grading.start_agreement import list_verification_components
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.grading.verification_limits import build_requirements, include_start
-from pantocheck.conformance.results.results_format import CaseVerification
+from pantocheck.conformance.results.criterion_format import CaseVerification
 
 
 def verify_evaluation(evaluation: CaseEvaluation) -> CaseVerification | None:

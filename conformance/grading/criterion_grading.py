@@ -13,7 +13,7 @@ from pantocheck.conformance.input_files.trust import Computed, Trust, limit_coun
 from pantocheck.conformance.quantities.evaluation import Evaluation, Value
 from pantocheck.conformance.quantities.limit_text import name_value
 from pantocheck.conformance.quantities.registry import QUANTITIES
-from pantocheck.conformance.results.results_format import Criterion
+from pantocheck.conformance.results.criterion_format import Criterion
 
 ErrorsByQuantity = Mapping[int, Mapping[str, float]]
 """Errors of quantities, by pantograph (0: the line) and name."""

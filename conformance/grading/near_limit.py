@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
-from pantocheck.conformance.results.results_format import ComponentName
+from pantocheck.conformance.results.criterion_format import ComponentName
 
 REMEDIES: Mapping[str, str] = MappingProxyType(
     {

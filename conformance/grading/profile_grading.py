@@ -17,6 +17,7 @@ from pantocheck.conformance.grading.extended_band import find_unvalidated
 from pantocheck.conformance.grading.rule_grading import RuleGrading
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.results.record_facts import RecordFacts
 from pantocheck.conformance.results.results_building import (
     build_results,
     describe_uncertainty,
@@ -24,14 +25,7 @@ from pantocheck.conformance.results.results_building import (
     select_finite,
     utc_now,
 )
-from pantocheck.conformance.results.results_format import (
-    CaseResult,
-    FilterFacts,
-    RecordFacts,
-    Results,
-    RunFacts,
-    SystemIdentity,
-)
+from pantocheck.conformance.results.results_format import CaseResult, FilterFacts, Results, RunFacts, SystemIdentity
 from pantocheck.conformance.results.traces import build_pantograph_traces
 
 

@@ -15,7 +15,7 @@ from pantocheck.conformance.grading.uncertainty import combine_half_widths
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.quantities.registry import QUANTITIES
-from pantocheck.conformance.results.results_format import Criterion
+from pantocheck.conformance.results.criterion_format import Criterion
 
 
 @dataclass(frozen=True)

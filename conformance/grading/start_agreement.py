@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.records.sidecar_tables import StartTable
-from pantocheck.conformance.results.results_format import ComponentName, StartState
+from pantocheck.conformance.results.criterion_format import ComponentName
+from pantocheck.conformance.results.record_facts import StartState
 
 START_TOLERANCE_M = 0.1
 """Tolerance of the place and the ramp of a start [m].

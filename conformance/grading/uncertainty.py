@@ -9,7 +9,7 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 
 from pantocheck.conformance.quantities.evaluation import Value, ValuesByOwner
-from pantocheck.conformance.results.results_format import ComponentName
+from pantocheck.conformance.results.criterion_format import ComponentName
 
 
 @dataclass(frozen=True)

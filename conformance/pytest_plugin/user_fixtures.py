@@ -18,8 +18,9 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.records.record import Record, RecordInvalid
 from pantocheck.conformance.records.record_reading import read_record
+from pantocheck.conformance.results.criterion_format import Criterion
 from pantocheck.conformance.results.outcome import Delivered
-from pantocheck.conformance.results.results_format import CaseResult, Criterion, VerdictName
+from pantocheck.conformance.results.results_format import CaseResult, VerdictName
 from pantocheck.conformance.runner import run_case
 from pantocheck.conformance.systems.system import System
 from pantocheck.conformance.systems.system_choice import TIMEOUT_S, choose_system

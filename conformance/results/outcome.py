@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pantocheck.conformance.quantities.evaluation import Evaluation, Value
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.sidecar_tables import RunTable, StartTable
-from pantocheck.conformance.results.results_format import Chart, TextTable
+from pantocheck.conformance.results.figure_data import Chart, TextTable
 
 
 @dataclass(frozen=True)

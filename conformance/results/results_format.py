@@ -6,40 +6,21 @@ The models check the file when it is written and read. Their JSON Schema is expo
 import json
 from typing import Annotated, Any, Literal, get_args
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from pantocheck.conformance.grading.verdicts import Verdict
-from pantocheck.conformance.input_files.trust import Computed, Trust
+from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.results.criterion_format import CaseVerification, ComponentName, Criterion
+from pantocheck.conformance.results.figure_data import Chart, TextTable, Traces, UpliftTrace
+from pantocheck.conformance.results.record_facts import RecordFacts
+from pantocheck.conformance.results.results_part import Number, Owner, ResultsPart
 
 RESULTS_SCHEMA = "pantocheck.results/1"
+
 STATEMENT = "self-declared conformance report, in the style of EN 50318"
 
 VerdictName = Literal["criteria", "verification"]
 """One of two verdicts: by the EN 50318 criteria, or by verification against the converged solution up to 50 Hz."""
-
-RecordState = Literal["verified", "unverified", "contradicted"]
-"""Result of the consistency checks of a record: confirmed, not all of them possible, or refuted."""
-
-BASELINE = "baseline"
-"""Quantity of a criterion that states why a comparison with a baseline is impossible."""
-
-ComponentName = Literal["discretisation", "start", "section", "length"]
-"""Component of an uncertainty: mesh and time step; start and run-in; place of the analysis section; record length."""
-
-COMPONENT_NAMES: tuple[ComponentName, ...] = get_args(ComponentName)
-
-LARGEST_RESULT = 1e15
-"""Largest absolute value of a number in results.json."""
-
-FiniteNumber = Annotated[float, Field(ge=-LARGEST_RESULT, le=LARGEST_RESULT)]
-Number = FiniteNumber | list[FiniteNumber]
-Owner = Annotated[str, Field(pattern="^[0-9]{1,2}$", description="number of a pantograph, 0: the line")]
-
-
-class ResultsPart(BaseModel):
-    """Part of results.json: numbers are finite, unknown keys are rejected."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
 
 class Suite(ResultsPart):
@@ -79,44 +60,6 @@ class InputGroup(ResultsPart):
     source: str
 
 
-class Criterion(ResultsPart):
-    """A value against its limits. `pantograph` is 0 for the line; `item` counts droppers or modes from 1.
-
-    `discretisation_error` is the change when element length and time step are halved. `spread` is the largest change
-    when the analysis section is shifted span by span; it is not part of `uncertainty`. `uncertainty` is the half-width
-    of the 95 % interval, the root of the sum of squares of `components`; before `components` existed, it was that from
-    the length of the record.
-    `limit_uncertainty` is that of a limit from a measured record. `close` has a remark if both combined exceed the
-    distance from the nearer limit.
-    `baseline` is the value of earlier results, if the limits bound the drift from it.
-    """
-
-    quantity: str
-    pantograph: int
-    item: int | None = None
-    value: FiniteNumber | None
-    unit: str
-    lower: FiniteNumber | None
-    upper: FiniteNumber | None
-    verdict: Verdict
-    trust: Trust | Computed
-    source: str
-    margin: float | None
-    discretisation_error: float | None
-    spread: float | None = None
-    reason: str | None
-    uncertainty: float | None = None
-    components: dict[ComponentName, float] = {}
-    limit_uncertainty: float = 0.0
-    close: list[str] = []
-    baseline: float | None = None
-
-    @property
-    def is_drift(self) -> bool:
-        """Whether the criterion compares with a baseline, or states that a comparison is impossible."""
-        return self.baseline is not None or self.quantity == BASELINE
-
-
 class FilterFacts(ResultsPart):
     """Filter of the graded force."""
 
@@ -137,85 +80,6 @@ class RunFacts(ResultsPart):
     rate_Hz: float | None
     filter: FilterFacts
     evaluated_m: tuple[float, float] | None
-
-
-class Spectrum(ResultsPart):
-    """Single-sided amplitude spectrum of the delivered force about its mean, over the analysis section."""
-
-    frequency_Hz: list[float]
-    amplitude_N: list[float]
-
-
-class Histogram(ResultsPart):
-    """Share of the samples of the 20 Hz force in each class."""
-
-    edges_N: list[float]
-    share_pct: list[float]
-
-
-class Traces(ResultsPart):
-    """Curves of one pantograph over the analysis section."""
-
-    position_m: list[float]
-    force_N: list[float]
-    force_20_N: list[float] | None
-    mean_N: float
-    std_N: float | None
-    supports_m: list[float]
-    spectrum: Spectrum
-    histogram: Histogram | None
-
-
-class UpliftTrace(ResultsPart):
-    """Uplift of the contact wire at one support."""
-
-    support_m: float
-    time_s: list[float]
-    uplift_mm: list[float]
-
-
-class Series(ResultsPart):
-    """Data of a chart. `boxes` draws a box plot of the values at each x; `bars` stand side by side at the ticks."""
-
-    label: str
-    style: Literal["line", "points", "boxes", "bars"]
-    x: list[float]
-    y: list[float]
-    error: list[float] | None = None
-    """Half the length of the error bar of each point."""
-
-
-class Mark(ResultsPart):
-    """A published value or a limit: a line across a chart, or a band if `high` is given."""
-
-    label: str
-    axis: Literal["x", "y"]
-    low: float
-    high: float | None = None
-
-
-class Chart(ResultsPart):
-    """Figure of a study."""
-
-    caption: str
-    alternative: str
-    x_label: str
-    y_label: str
-    x_scale: Literal["linear", "log"] = "linear"
-    y_scale: Literal["linear", "log"] = "linear"
-    ticks: list[str] | None = None
-    """Names at x = 0, 1, 2, ..."""
-    series: list[Series]
-    marks: list[Mark] = []
-    wide: bool = True
-
-
-class TextTable(ResultsPart):
-    """Table of a study as text."""
-
-    caption: str
-    columns: list[str]
-    rows: list[list[str]]
 
 
 LibraryIdentity = Literal["identical", "modified", "own"]
@@ -242,43 +106,6 @@ class ScopeStep(ResultsPart):
 def name_case(case_id: str, library: LibraryIdentity | None) -> str:
     """Name of a case in reports: its id, or `modified copy of` the library case with this id."""
     return f"modified copy of {case_id}" if library == "modified" else case_id
-
-
-StartState = Literal["as in the case", "differs", "not stated"]
-"""Start of a record against that of its case; `not stated` is never treated better than `as in the case`."""
-
-
-class RecordFacts(ResultsPart):
-    """Record of a case. Digests are SHA-256 in hexadecimal, null if unknown.
-
-    `demanded` is false if a profile shows the state `unverified` without lowering the verdict. `digest` is that of the
-    record. `case_digest` is that of the case for which the record was made, as the record states it. `measured_digest`
-    is that of the measured record, if a profile compares with one. `start` compares the stated start of the record with
-    that of its case, null without a case; `start_text` is the remark on it.
-    """
-
-    state: RecordState
-    reason: str
-    demanded: bool = True
-    digest: str | None = None
-    case_digest: str | None = None
-    measured_digest: str | None = None
-    start: StartState | None = None
-    start_text: str | None = None
-
-
-class CaseVerification(ResultsPart):
-    """Comparison with the converged solution of the same equations, up to 50 Hz.
-
-    The limits of its criteria are computed: they never decide the verdict by the EN 50318 criteria.
-    """
-
-    verdict: Verdict
-    reason: Annotated[str | None, Field(description="reason why there are no criteria")]
-    confirmed_by: Annotated[str, Field(description="second formulation that confirms the converged values")]
-    digest: Annotated[str, Field(description="SHA-256 of the converged values and of the tolerances")]
-    omitted: Annotated[list[str], Field(description="quantities without a confirmed value, with the reason")]
-    criteria: list[Criterion]
 
 
 class CaseResult(ResultsPart):

@@ -17,7 +17,7 @@ from pantocheck.conformance.quantities.signals import (
 from pantocheck.conformance.quantities.statistics import force_histogram
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.record_signals import RecordSignals
-from pantocheck.conformance.results.results_format import Histogram, Spectrum, Traces, UpliftTrace
+from pantocheck.conformance.results.figure_data import Histogram, Spectrum, Traces, UpliftTrace
 
 MAX_POINTS = 1500
 """Approximate number of points in a curve."""

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from pantocheck.conformance.quantities.evaluation import LINE, Value, ValuesByOwner
-from pantocheck.conformance.results.results_format import Chart, Series
+from pantocheck.conformance.results.figure_data import Chart, Series
 
 PrintedValues = Mapping[tuple[str, int], Mapping[str, float]]
 """Printed values of a publication by damping model and pantograph, then by name of quantity."""

@@ -12,8 +12,8 @@ from pantocheck.conformance.quantities.bands import BAND_QUANTITIES
 from pantocheck.conformance.quantities.evaluation import LINE, ValuesByOwner
 from pantocheck.conformance.quantities.registry import table_quantities
 from pantocheck.conformance.records.record_signals import evaluate_record
+from pantocheck.conformance.results.figure_data import TextTable
 from pantocheck.conformance.results.outcome import Delivered, Outcome, StudyResult, missing_record_reason
-from pantocheck.conformance.results.results_format import TextTable
 from pantocheck.conformance.studies.band_charts import draw_band_bars
 from pantocheck.conformance.systems.system import System
 

@@ -34,7 +34,7 @@ from pantocheck.conformance.grading import (
 from pantocheck.conformance.quantities import bands, filters, signals
 from pantocheck.conformance.records import record
 from pantocheck.conformance.records.measured import block_bootstrap, force_checks, usable_sections
-from pantocheck.conformance.results import results_format, results_reading, traces
+from pantocheck.conformance.results import results_part, results_reading, traces
 
 ROOT = Path(__file__).parents[2]
 ROWS = re.findall(
@@ -47,7 +47,7 @@ MODULES: list[ModuleType] = [
     rounding, support_coincidence, support_passing, assessed_record, baseline, discretisation,
     extended_band, record_mismatch, record_uncertainty, start_agreement, start_and_section, validity_warnings,
     verification_limits, bands, filters, signals, record, block_bootstrap, force_checks, usable_sections,
-    results_format, results_reading, traces,
+    results_part, results_reading, traces,
 ]  # fmt: skip
 BY_FILE = {"/".join(module.__name__.split(".")[2:]) + ".py": module for module in MODULES}
 FOLDERS = ("quantities", "consistency", "grading", "records", "results", "authenticity")

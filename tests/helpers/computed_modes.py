@@ -5,8 +5,8 @@ from dataclasses import replace
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.identification.mode import Mode, SensorShape
+from pantocheck.conformance.results.criterion_format import Criterion
 from pantocheck.conformance.results.outcome import Delivered, StudyResult
-from pantocheck.conformance.results.results_format import Criterion
 from pantocheck.conformance.studies.vovan2015.line_damping import computed_damping_ratios
 from pantocheck.model import Catenary, discretise
 from pantocheck.model.modal.modes import compute_modes_below

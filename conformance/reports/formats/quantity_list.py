@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from pantocheck.conformance.reports.words import quantity_unit
-from pantocheck.conformance.results.results_format import COMPONENT_NAMES
+from pantocheck.conformance.results.criterion_format import COMPONENT_NAMES
 
 COLUMNS = (
     *("case", "pantograph", "quantity", "item", "value", "unit", "uncertainty"),

@@ -11,6 +11,7 @@ from pantocheck.conformance.quantities.signals import EXTENDED_CUTOFF_HZ, ForceC
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import evaluate_record
+from pantocheck.conformance.results.figure_data import Chart, Series, TextTable
 from pantocheck.conformance.results.outcome import (
     Delivered,
     Errored,
@@ -19,7 +20,6 @@ from pantocheck.conformance.results.outcome import (
     StudyResult,
     missing_record_reason,
 )
-from pantocheck.conformance.results.results_format import Chart, Series, TextTable
 from pantocheck.conformance.results.traces import thin_series
 from pantocheck.conformance.studies.band_charts import PrintedValues, draw_band_bars, list_pantographs
 from pantocheck.conformance.studies.vovan2015.paper_tables import build_findings_table, build_provenance_table

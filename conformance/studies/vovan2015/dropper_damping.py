@@ -19,8 +19,8 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import DropperDamping
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.quantities.evaluation import LINE, Value
+from pantocheck.conformance.results.figure_data import Chart, Mark, Series
 from pantocheck.conformance.results.outcome import Delivered, StudyResult
-from pantocheck.conformance.results.results_format import Chart, Mark, Series
 from pantocheck.conformance.results.traces import thin_series
 from pantocheck.conformance.simulation.case_run import build_passage, build_run_table, record_passage
 from pantocheck.conformance.simulation.catenary_model import build_catenary

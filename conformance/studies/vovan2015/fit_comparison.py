@@ -9,7 +9,7 @@ from pantocheck.conformance.identification.damping.damping_results import build_
 from pantocheck.conformance.identification.damping.damping_terms import MATRICES
 from pantocheck.conformance.identification.identify import Identification
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.results.results_format import Chart, Mark, Series, TextTable
+from pantocheck.conformance.results.figure_data import Chart, Mark, Series, TextTable
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.model import Catenary, Kind
 

@@ -13,7 +13,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.identification.identify import Identification, identify_modes
 from pantocheck.conformance.identification.mode import Mode
 from pantocheck.conformance.records.sidecar_tables import RunTable
-from pantocheck.conformance.results.results_format import Series
+from pantocheck.conformance.results.figure_data import Series
 from pantocheck.conformance.results.traces import thin_series
 from pantocheck.conformance.simulation.case_run import build_run_table
 from pantocheck.conformance.simulation.catenary_model import build_catenary

@@ -4,8 +4,8 @@ import time
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.quantities.evaluation import LINE
+from pantocheck.conformance.results.figure_data import Chart, Mark, Series
 from pantocheck.conformance.results.outcome import Delivered, StudyResult
-from pantocheck.conformance.results.results_format import Chart, Mark, Series
 from pantocheck.conformance.results.traces import thin_series
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.simulation.drop_simulation import require_mass_drop

@@ -10,7 +10,7 @@ from pantocheck.conformance.grading.verdicts import judge
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.evaluation import ValuesByOwner
 from pantocheck.conformance.quantities.registry import QUANTITIES
-from pantocheck.conformance.results.results_format import TextTable
+from pantocheck.conformance.results.figure_data import TextTable
 
 PAPER = "vovan2015"
 """Key of Vo Van, Balmes and Lorang (2015) in the bibliography."""

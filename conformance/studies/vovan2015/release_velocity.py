@@ -8,8 +8,8 @@ from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import ReleaseVelocity
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.results.figure_data import Chart, Series, TextTable
 from pantocheck.conformance.results.outcome import Delivered, StudyResult
-from pantocheck.conformance.results.results_format import Chart, Series, TextTable
 from pantocheck.conformance.results.traces import thin_series
 from pantocheck.conformance.simulation.drop_simulation import ORDER, SimulatedDrop, require_mass_drop, simulate_drop
 from pantocheck.conformance.studies.vovan2015.line_damping import build_drop_run_table, build_lines

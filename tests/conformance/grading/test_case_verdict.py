@@ -19,14 +19,9 @@ from pantocheck.conformance.grading.verdicts import WORST_FIRST, Verdict
 from pantocheck.conformance.plan import Plan, prepare_plan
 from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline
 from pantocheck.conformance.reports.formats.junit import render_junit
-from pantocheck.conformance.results.results_format import (
-    CaseResult,
-    CaseVerification,
-    RecordFacts,
-    RecordState,
-    Results,
-    VerdictName,
-)
+from pantocheck.conformance.results.criterion_format import CaseVerification
+from pantocheck.conformance.results.record_facts import RecordFacts, RecordState
+from pantocheck.conformance.results.results_format import CaseResult, Results, VerdictName
 from pantocheck.conformance.results.results_reading import read_results
 from pantocheck.conformance.runner import run_cases
 

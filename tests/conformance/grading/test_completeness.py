@@ -18,8 +18,9 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.quantities.force_quantities import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_writing import write_record
+from pantocheck.conformance.results.criterion_format import Criterion
 from pantocheck.conformance.results.outcome import Delivered
-from pantocheck.conformance.results.results_format import CaseResult, Criterion
+from pantocheck.conformance.results.results_format import CaseResult
 from pantocheck.conformance.runner import run_case
 from pantocheck.conformance.systems.record_folder import open_record_folder
 

@@ -28,7 +28,8 @@ from pantocheck.conformance.grading.profile_grading import assess_record
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.sidecar_tables import LineTable
 from pantocheck.conformance.reports.formats.junit import render_junit
-from pantocheck.conformance.results.results_format import Criterion, Results
+from pantocheck.conformance.results.criterion_format import Criterion
+from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.schemas import build_schema
 
 NAMES = ("acceptance-ac", "acceptance-dc-3kv", "acceptance-dc-1500v", "line-test")

@@ -13,7 +13,7 @@ from pantocheck.conformance.reports.certificate.certificate_page import build_ce
 from pantocheck.conformance.reports.document import Section
 from pantocheck.conformance.reports.figures.study_chart import draw_chart
 from pantocheck.conformance.reports.formats.html import render_html
-from pantocheck.conformance.results.results_format import Chart, Mark, Series, TextTable
+from pantocheck.conformance.results.figure_data import Chart, Mark, Series, TextTable
 
 LINE = Series(label="computed", style="line", x=[1e-6, 1e-3, 1.0], y=[3.0, 2.0, 1.0])
 

@@ -10,8 +10,9 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.damping_file import Damping
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.grading.case_grading import grade_case
+from pantocheck.conformance.results.criterion_format import Criterion
 from pantocheck.conformance.results.outcome import Delivered, Outcome, Skipped, StudyResult
-from pantocheck.conformance.results.results_format import CaseResult, Criterion
+from pantocheck.conformance.results.results_format import CaseResult
 from pantocheck.conformance.studies.band_charts import draw_band_bars
 from pantocheck.conformance.studies.study_dispatch import run_study
 from pantocheck.conformance.studies.vovan2015.damping_change import band_changes

@@ -10,7 +10,7 @@ from pantocheck.conformance.identification.damping import observability
 from pantocheck.conformance.identification.damping.damping_format import DampingResults, Observability
 from pantocheck.conformance.reports.figures.damping_figures import draw_observability
 from pantocheck.conformance.reports.mass_drop.damping_report import describe_observability
-from pantocheck.conformance.results.results_format import Chart
+from pantocheck.conformance.results.figure_data import Chart
 from pantocheck.conformance.studies.vovan2015 import fit_comparison
 
 OBSERVED = tuple(

@@ -1,0 +1,69 @@
+"""Criterion of results.json: a value against its limits, with the components of its uncertainty."""
+
+from typing import Annotated, Literal, get_args
+
+from pydantic import Field
+
+from pantocheck.conformance.grading.verdicts import Verdict
+from pantocheck.conformance.input_files.trust import Computed, Trust
+from pantocheck.conformance.results.results_part import FiniteNumber, ResultsPart
+
+BASELINE = "baseline"
+"""Quantity of a criterion that states why a comparison with a baseline is impossible."""
+
+ComponentName = Literal["discretisation", "start", "section", "length"]
+"""Component of an uncertainty: mesh and time step; start and run-in; place of the analysis section; record length."""
+
+COMPONENT_NAMES: tuple[ComponentName, ...] = get_args(ComponentName)
+
+
+class Criterion(ResultsPart):
+    """A value against its limits. `pantograph` is 0 for the line; `item` counts droppers or modes from 1.
+
+    `discretisation_error` is the change when element length and time step are halved. `spread` is the largest change
+    when the analysis section is shifted span by span; it is not part of `uncertainty`. `uncertainty` is the half-width
+    of the 95 % interval, the root of the sum of squares of `components`; before `components` existed, it was that from
+    the length of the record.
+    `limit_uncertainty` is that of a limit from a measured record. `close` has a remark if both combined exceed the
+    distance from the nearer limit.
+    `baseline` is the value of earlier results, if the limits bound the drift from it.
+    """
+
+    quantity: str
+    pantograph: int
+    item: int | None = None
+    value: FiniteNumber | None
+    unit: str
+    lower: FiniteNumber | None
+    upper: FiniteNumber | None
+    verdict: Verdict
+    trust: Trust | Computed
+    source: str
+    margin: float | None
+    discretisation_error: float | None
+    spread: float | None = None
+    reason: str | None
+    uncertainty: float | None = None
+    components: dict[ComponentName, float] = {}
+    limit_uncertainty: float = 0.0
+    close: list[str] = []
+    baseline: float | None = None
+
+    @property
+    def is_drift(self) -> bool:
+        """Whether the criterion compares with a baseline, or states that a comparison is impossible."""
+        return self.baseline is not None or self.quantity == BASELINE
+
+
+class CaseVerification(ResultsPart):
+    """Comparison with the converged solution of the same equations, up to 50 Hz.
+
+    The limits of its criteria are computed: they never decide the verdict by the EN 50318 criteria.
+    """
+
+    verdict: Verdict
+    reason: Annotated[str | None, Field(description="reason why there are no criteria")]
+    confirmed_by: Annotated[str, Field(description="second formulation that confirms the converged values")]
+    digest: Annotated[str, Field(description="SHA-256 of the converged values and of the tolerances")]
+    omitted: Annotated[list[str], Field(description="quantities without a confirmed value, with the reason")]
+    criteria: list[Criterion]

@@ -1,0 +1,84 @@
+"""Curves, charts and tables of results.json: everything that a page draws."""
+
+from typing import Literal
+
+from pantocheck.conformance.results.results_part import ResultsPart
+
+
+class Spectrum(ResultsPart):
+    """Single-sided amplitude spectrum of the delivered force about its mean, over the analysis section."""
+
+    frequency_Hz: list[float]
+    amplitude_N: list[float]
+
+
+class Histogram(ResultsPart):
+    """Share of the samples of the 20 Hz force in each class."""
+
+    edges_N: list[float]
+    share_pct: list[float]
+
+
+class Traces(ResultsPart):
+    """Curves of one pantograph over the analysis section."""
+
+    position_m: list[float]
+    force_N: list[float]
+    force_20_N: list[float] | None
+    mean_N: float
+    std_N: float | None
+    supports_m: list[float]
+    spectrum: Spectrum
+    histogram: Histogram | None
+
+
+class UpliftTrace(ResultsPart):
+    """Uplift of the contact wire at one support."""
+
+    support_m: float
+    time_s: list[float]
+    uplift_mm: list[float]
+
+
+class Series(ResultsPart):
+    """Data of a chart. `boxes` draws a box plot of the values at each x; `bars` stand side by side at the ticks."""
+
+    label: str
+    style: Literal["line", "points", "boxes", "bars"]
+    x: list[float]
+    y: list[float]
+    error: list[float] | None = None
+    """Half the length of the error bar of each point."""
+
+
+class Mark(ResultsPart):
+    """A published value or a limit: a line across a chart, or a band if `high` is given."""
+
+    label: str
+    axis: Literal["x", "y"]
+    low: float
+    high: float | None = None
+
+
+class Chart(ResultsPart):
+    """Figure of a study."""
+
+    caption: str
+    alternative: str
+    x_label: str
+    y_label: str
+    x_scale: Literal["linear", "log"] = "linear"
+    y_scale: Literal["linear", "log"] = "linear"
+    ticks: list[str] | None = None
+    """Names at x = 0, 1, 2, ..."""
+    series: list[Series]
+    marks: list[Mark] = []
+    wide: bool = True
+
+
+class TextTable(ResultsPart):
+    """Table of a study as text."""
+
+    caption: str
+    columns: list[str]
+    rows: list[list[str]]

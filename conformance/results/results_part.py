@@ -1,0 +1,20 @@
+"""Base of every part of results.json, and its numbers."""
+
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field
+
+LARGEST_RESULT = 1e15
+"""Largest absolute value of a number in results.json."""
+
+FiniteNumber = Annotated[float, Field(ge=-LARGEST_RESULT, le=LARGEST_RESULT)]
+
+Number = FiniteNumber | list[FiniteNumber]
+
+Owner = Annotated[str, Field(pattern="^[0-9]{1,2}$", description="number of a pantograph, 0: the line")]
+
+
+class ResultsPart(BaseModel):
+    """Part of results.json: numbers are finite, unknown keys are rejected."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
