@@ -5,7 +5,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.cases.line_file import Geometry
+from pantocheck.conformance.cases.geometry import Geometry
 from pantocheck.conformance.reports.figures.figure_style import FULL, GREY, INK, render_svg
 from pantocheck.model import DiscretisedLine, Kind, Wire
 

@@ -2,8 +2,8 @@
 
 import pytest
 
+from pantocheck.conformance.cases.geometry import Geometry
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.cases.line_file import Geometry
 
 
 @pytest.fixture

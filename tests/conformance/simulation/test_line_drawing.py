@@ -7,8 +7,8 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from pantocheck.conformance.cases.geometry import Geometry
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.cases.line_file import Geometry
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.simulation.line_drawing import draw_line
 from pantocheck.model import DiscretisedLine, Kind, discretise
