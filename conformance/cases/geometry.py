@@ -42,6 +42,16 @@ class Geometry(SourcedTable):
         return self.span_limits[-1]
 
     @property
+    def longest_span(self) -> float:
+        """Length of the longest span [m]."""
+        return max(self.span_lengths)
+
+    @property
+    def shortest_span(self) -> float:
+        """Length of the shortest span [m]."""
+        return min(self.span_lengths)
+
+    @property
     def middle_span(self) -> int:
         """Number of the span in the middle of the line, from 1."""
         return self.spans // 2 + 1

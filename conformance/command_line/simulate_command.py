@@ -47,7 +47,7 @@ def simulate_command(
         further={
             "case_digest": outcome.case_digest if simulator.kind == "record" else chosen.digest,
             "start": None if outcome.start is None else outcome.start.model_dump(),
-            "line": {"span_m": max(chosen.line.geometry.span_lengths)},
+            "line": {"span_m": chosen.line.geometry.longest_span},
         },
     )
     output.print(escape_text(f"{out} and {sidecar.name}"), soft_wrap=True)

@@ -117,7 +117,7 @@ def _find_hold(case: Case, signals: RecordSignals, support: float, uplift: RealA
     """Find an uplift that is constant after a passage."""
     record = signals.record
     distance = record.position - support
-    behind = (distance >= 0) & (distance <= HELD_SPANS * case.line.geometry.span_m)
+    behind = (distance >= 0) & (distance <= HELD_SPANS * case.line.geometry.shortest_span)
     moving = np.any(behind, axis=0, keepdims=True)[0]
     edges = [0, *(np.flatnonzero(np.diff(uplift)) + 1), uplift.size]
     for first, last in pairwise(edges):

@@ -108,7 +108,7 @@ class _Passages:
         self._case, self._signals = case, signals
         self._supports, self._uplift = signals.line.supports, signals.line.uplift
         self.length = max(KINK_LENGTH_M, 2 * signals.record.speed / signals.record.rate)
-        steps = round(LARGEST_SHIFT_SPANS * case.line.geometry.span_m / SHIFT_STEP_M)
+        steps = round(LARGEST_SHIFT_SPANS * case.line.geometry.longest_span / SHIFT_STEP_M)
         self.shifts = SHIFT_STEP_M * np.arange(-steps, steps + 1)
 
     def kinks(self, number: int) -> tuple[RealArray, RealArray]:

@@ -149,7 +149,7 @@ def _place_train(
         duration=duration,
         time_step=discretisation.time_step_s,
         watched=_watched_supports(case, line),
-        kept_behind=max(KEPT_SPANS * case.line.geometry.span_m, UPLIFT_STRETCH_M),
+        kept_behind=max(KEPT_SPANS * case.line.geometry.longest_span, UPLIFT_STRETCH_M),
         reach=math.inf if discretisation.reach_m is None else discretisation.reach_m,
     )
 

@@ -17,6 +17,7 @@ def test_spans_follow_each_other_from_zero_to_the_length_of_the_line(geometry: G
     assert spans[-1][1] == geometry.length == 300.0
     assert [end for _, end in spans[:-1]] == [start for start, _ in spans[1:]] == list(geometry.supports)
     assert geometry.span_lengths == tuple(end - start for start, end in spans)
+    assert geometry.longest_span == geometry.shortest_span == 60.0
 
 
 def test_section_covers_its_first_and_its_last_span(geometry: Geometry) -> None:
