@@ -1,6 +1,7 @@
 """Derived values of a line at rest, from its fine finite elements; `derived_format` defines them."""
 
 from collections.abc import Iterable, Sequence
+from itertools import accumulate
 from typing import TypeVar
 
 import numpy as np
@@ -103,7 +104,7 @@ def _stitch_wires(catenary: Catenary) -> DerivedStitchWires | None:
 def _droppers(file: LineFile, line: DiscretisedLine) -> DerivedDroppers:
     catenary, state, droppers = line.catenary, line.state, line.catenary.droppers
     length, direction = state.dropper_length, state.dropper_direction
-    spans, rayleigh = file.geometry.spans, catenary.rayleigh(Kind.DROPPER)
+    spans, rayleigh = _count_by_span(file, catenary), catenary.rayleigh(Kind.DROPPER)
     contact = {wire.name: n for n, wire in enumerate(catenary.contact_wires, 1)}
 
     def by_span(values: Sequence[float] | RealArray) -> tuple[tuple[float, ...], ...]:
@@ -130,10 +131,15 @@ def _droppers(file: LineFile, line: DiscretisedLine) -> DerivedDroppers:
     )
 
 
-def _split(values: Sequence[Entry], parts: int) -> tuple[tuple[Entry, ...], ...]:
-    """Values in parts of equal length."""
-    count = len(values) // parts
-    return tuple(tuple(values[i * count : (i + 1) * count]) for i in range(parts))
+def _count_by_span(file: LineFile, catenary: Catenary) -> list[int]:
+    """Number of droppers of every span."""
+    positions = [dropper.position for dropper in catenary.droppers]
+    return [int(count) for count in np.histogram(positions, file.geometry.span_limits)[0]]
+
+
+def _split(values: Sequence[Entry], counts: Sequence[int]) -> tuple[tuple[Entry, ...], ...]:
+    """Values in consecutive parts with given numbers of entries."""
+    return tuple(tuple(values[end - count : end]) for count, end in zip(counts, accumulate(counts), strict=True))
 
 
 def _steady_arms(file: LineFile, line: DiscretisedLine) -> DerivedSteadyArms:
