@@ -1,35 +1,46 @@
-"""Geometry of a line: spans, heights and stagger."""
+"""Geometry of a line: spans, heights and stagger; the spans are equal, or listed one by one."""
 
-from typing import Annotated
+from abc import abstractmethod
+from collections.abc import Sequence
+from fractions import Fraction
+from functools import lru_cache
+from itertools import accumulate
+from typing import Annotated, Self
 
-from pydantic import Field
+from pydantic import Discriminator, Field, Tag, model_validator
 
-from pantocheck.conformance.input_files.sourced_table import SourcedTable
+from pantocheck.conformance.cases.dropper_schedule import DropperSchedule
+from pantocheck.conformance.input_files.sourced_table import InputTable, SourcedTable, validation_problem
+from pantocheck.conformance.input_files.suggestions import suggest_names
 
+MOST_SPANS = 1000
+"""Largest number of spans of a line."""
+
+SpanLength = Annotated[float, Field(ge=10, le=120)]
+Encumbrance = Annotated[
+    float,
+    Field(gt=0, le=5, description="vertical distance between messenger wire and contact wire at a support [m]"),
+]
 Stagger = Annotated[float, Field(ge=-1, le=1, description="lateral offset at the supports, with alternating sign [m]")]
+ScheduleName = Annotated[str, Field(min_length=1, max_length=100)]
 
 
-class Geometry(SourcedTable):
-    """Spans, heights and stagger."""
-
-    span_m: Annotated[float, Field(ge=10, le=120, description="length of every span [m]")]
-    spans: Annotated[int, Field(ge=1, le=1000, description="number of spans")]
-    encumbrance_m: Annotated[
-        float,
-        Field(gt=0, le=5, description="vertical distance between messenger wire and contact wire at a support [m]"),
-    ]
-    stagger_contact_wire_m: Stagger = 0.0
-    stagger_messenger_m: Stagger = 0.0
+class SpanPositions:
+    """Positions of spans, supports and sections along a line, from the lengths of its spans."""
 
     @property
+    @abstractmethod
     def span_lengths(self) -> tuple[float, ...]:
         """Length of every span [m]."""
-        return (self.span_m,) * self.spans
+
+    @abstractmethod
+    def shorten(self, spans: int) -> Self:
+        """Same geometry with the first spans only."""
 
     @property
     def span_limits(self) -> tuple[float, ...]:
         """Positions of both ends of the line and of the supports between them, in increasing order [m], from 0."""
-        return tuple(self.span_m * i for i in range(self.spans + 1))
+        return _sum_lengths(self.span_lengths)
 
     @property
     def supports(self) -> tuple[float, ...]:
@@ -54,7 +65,7 @@ class Geometry(SourcedTable):
     @property
     def middle_span(self) -> int:
         """Number of the span in the middle of the line, from 1."""
-        return self.spans // 2 + 1
+        return len(self.span_lengths) // 2 + 1
 
     def span(self, number: int) -> tuple[float, float]:
         """Start and end of a span, numbered from 1 [m]."""
@@ -68,6 +79,111 @@ class Geometry(SourcedTable):
         """Start of the first span and end of the last span of a section, numbered from 1 [m]."""
         return self.span_limits[first - 1], self.span_limits[last]
 
-    def shorten(self, spans: int) -> "Geometry":
+
+class EqualSpans(SpanPositions, SourcedTable):
+    """Equal spans, heights and stagger."""
+
+    span_m: Annotated[SpanLength, Field(description="length of every span [m]")]
+    spans: Annotated[int, Field(ge=1, le=MOST_SPANS, description="number of spans")]
+    encumbrance_m: Encumbrance
+    stagger_contact_wire_m: Stagger = 0.0
+    stagger_messenger_m: Stagger = 0.0
+
+    @property
+    def span_lengths(self) -> tuple[float, ...]:
+        """Length of every span [m]."""
+        return (self.span_m,) * self.spans
+
+    def shorten(self, spans: int) -> Self:
         """Same geometry with the first spans only."""
         return self.model_copy(update={"spans": min(self.spans, spans)})
+
+    def choose_schedules(self, common: DropperSchedule) -> tuple[DropperSchedule, ...]:
+        """Dropper schedule of every span: the common one of the line."""
+        return (common,) * self.spans
+
+
+SpanDroppers = Annotated[
+    Annotated[ScheduleName, Tag("name")] | Annotated[DropperSchedule, Tag("DropperSchedule")],
+    Discriminator(lambda droppers: "name" if isinstance(droppers, str) else "DropperSchedule"),
+]
+
+
+class Span(InputTable):
+    """Span of a line with its droppers."""
+
+    length_m: Annotated[SpanLength, Field(description="length of the span [m]")]
+    droppers: Annotated[
+        SpanDroppers | None,
+        Field(description="name of a table in geometry.schedule, or the schedule itself; default: that of [droppers]"),
+    ] = None
+
+
+class ListedSpans(SpanPositions, SourcedTable):
+    """Spans listed one by one, heights and stagger."""
+
+    span_list: Annotated[
+        tuple[Span, ...],
+        Field(strict=False, min_length=1, max_length=MOST_SPANS, description="spans in running order"),
+    ]
+    schedule: Annotated[
+        dict[ScheduleName, DropperSchedule],
+        Field(default_factory=dict, max_length=MOST_SPANS, description="dropper schedules by name"),
+    ]
+    encumbrance_m: Encumbrance
+    stagger_contact_wire_m: Stagger = 0.0
+    stagger_messenger_m: Stagger = 0.0
+
+    @property
+    def spans(self) -> int:
+        """Number of spans."""
+        return len(self.span_list)
+
+    @property
+    def span_lengths(self) -> tuple[float, ...]:
+        """Length of every span [m]."""
+        return tuple(span.length_m for span in self.span_list)
+
+    def shorten(self, spans: int) -> Self:
+        """Same geometry with the first spans only."""
+        return self.model_copy(update={"span_list": self.span_list[:spans]})
+
+    def choose_schedules(self, common: DropperSchedule) -> tuple[DropperSchedule, ...]:
+        """Dropper schedule of every span: its own, a named one, or the common one of the line."""
+        return tuple(
+            common if span.droppers is None
+            else self.schedule[span.droppers] if isinstance(span.droppers, str)
+            else span.droppers
+            for span in self.span_list
+        )  # fmt: skip
+
+    @model_validator(mode="after")
+    def _schedules_exist(self) -> "ListedSpans":
+        for i, span in enumerate(self.span_list, 1):
+            if isinstance(span.droppers, str) and span.droppers not in self.schedule:
+                raise validation_problem(
+                    f"span_list[{i}].droppers",
+                    f"there is no dropper schedule {span.droppers!r}",
+                    suggest_names(span.droppers, list(self.schedule)),
+                )
+        return self
+
+
+def _form_of_spans(geometry: object) -> str:
+    """Form of the spans, which pydantic validates and reports alone."""
+    if isinstance(geometry, dict):
+        return "ListedSpans" if "span_list" in geometry else "EqualSpans"
+    return type(geometry).__name__
+
+
+Geometry = EqualSpans | ListedSpans
+GeometryTable = Annotated[
+    Annotated[EqualSpans, Tag("EqualSpans")] | Annotated[ListedSpans, Tag("ListedSpans")],
+    Discriminator(_form_of_spans),
+]
+
+
+@lru_cache(maxsize=64)
+def _sum_lengths(lengths: Sequence[float]) -> tuple[float, ...]:
+    """Exact sums of lengths, rounded once: n equal lengths give the product, as of equal spans."""
+    return tuple(map(float, accumulate(map(Fraction, lengths), initial=Fraction())))

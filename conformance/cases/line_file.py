@@ -1,18 +1,22 @@
-"""Line files: geometry, wires, connectors and damping of a line with equal spans."""
+"""Line files: geometry, wires, connectors and damping of a line."""
 
-from itertools import pairwise
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
 from pantocheck.conformance.cases.damping_file import Damping
-from pantocheck.conformance.cases.geometry import Geometry
+from pantocheck.conformance.cases.dropper_schedule import (
+    DropperLengths,
+    DropperPositions,
+    DropperPresags,
+    DropperSchedule,
+    check_schedule,
+)
+from pantocheck.conformance.cases.geometry import GeometryTable, ListedSpans
 from pantocheck.conformance.input_files.sourced_table import (
     InputTable,
     NonNegative,
-    NumberList,
     Positive,
-    PositiveList,
     SourcedTable,
     validation_problem,
 )
@@ -57,16 +61,11 @@ class StitchWireTable(SourcedTable):
 
 
 class DropperTable(SourcedTable):
-    """Droppers of every span: bars that carry tension, but no compression."""
+    """Droppers: bars that carry tension, but no compression; their schedule holds for spans without another one."""
 
-    x_m: Annotated[PositiveList, Field(description="positions from the start of the span, increasing [m]")]
-    presag_m: Annotated[
-        NumberList | None,
-        Field(description="planned pre-sag of the contact wire at each dropper [m]; default: 0"),
-    ] = None
-    length_m: Annotated[
-        PositiveList | None, Field(description="published length of each dropper, for comparison [m]")
-    ] = None
+    x_m: DropperPositions
+    presag_m: DropperPresags = None
+    length_m: DropperLengths = None
     stiffness_N_m: Annotated[float | None, Field(gt=0, description="stiffness of a taut dropper [N/m]")] = None
     axial_stiffness_EA_N: Annotated[
         float | None, Field(gt=0, description="axial stiffness EA of a dropper, for a stiffness of EA / length [N]")
@@ -78,20 +77,7 @@ class DropperTable(SourcedTable):
 
     @model_validator(mode="after")
     def _consistent(self) -> "DropperTable":
-        n = len(self.x_m)
-        for i, (before, x) in enumerate(pairwise(self.x_m), 2):
-            if x <= before:
-                raise validation_problem(
-                    f"x_m[{i}]",
-                    f"{x:g} m is not greater than the preceding {before:g} m",
-                    "List the droppers in the direction of travel.",
-                )
-        for key in ("presag_m", "length_m"):
-            value = getattr(self, key)
-            if value is not None and len(value) != n:
-                raise validation_problem(
-                    key, f"{len(value)} values for {n} droppers", "Give one value per dropper of x_m."
-                )
+        check_schedule(self.x_m, {"presag_m": self.presag_m, "length_m": self.length_m})
         if (self.stiffness_N_m is None) == (self.axial_stiffness_EA_N is None):
             raise validation_problem(
                 "stiffness_N_m",
@@ -103,6 +89,11 @@ class DropperTable(SourcedTable):
                 "mass_kg", "the mass of the droppers is given twice", "Give either mass_kg or mass_kg_m."
             )
         return self
+
+    @property
+    def schedule(self) -> DropperSchedule:
+        """Schedule of the spans that name no other."""
+        return DropperSchedule(x_m=self.x_m, presag_m=self.presag_m, length_m=self.length_m)
 
 
 class SteadyArmTable(SourcedTable):
@@ -158,7 +149,7 @@ class LineFile(InputTable):
     """Content of a line file."""
 
     title: Annotated[str, Field(description="title in reports", max_length=200)]
-    geometry: Geometry
+    geometry: GeometryTable
     contact_wire: WireTable
     messenger_wire: MessengerWireTable
     stitch_wire: StitchWireTable | None = None
@@ -168,16 +159,27 @@ class LineFile(InputTable):
     damping: Damping
     note: Annotated[str | None, Field(description="remark for the reader", max_length=4000)] = None
 
+    @property
+    def dropper_schedules(self) -> tuple[DropperSchedule, ...]:
+        """Dropper schedule of every span."""
+        return self.geometry.choose_schedules(self.droppers.schedule)
+
+    @model_validator(mode="after")
+    def _droppers_lie_in_their_spans(self) -> "LineFile":
+        schedules = zip(self.geometry.span_lengths, self.dropper_schedules, strict=True)
+        for number, (span, schedule) in enumerate(schedules, 1):
+            for i, x in enumerate(schedule.x_m, 1):
+                if x >= span:
+                    raise validation_problem(
+                        f"{self._schedule_key(number)}.x_m[{i}]",
+                        f"{x:g} m is not inside the span of {span:g} m",
+                        f"Give positions between 0 and {span:g} m, from the start of the span.",
+                    )
+        return self
+
     @model_validator(mode="after")
     def _fits_together(self) -> "LineFile":
-        span = self.geometry.span_m
-        for i, x in enumerate(self.droppers.x_m, 1):
-            if x >= span:
-                raise validation_problem(
-                    f"droppers.x_m[{i}]",
-                    f"{x:g} m is not inside the span of {span:g} m",
-                    f"Give positions between 0 and {span:g} m, from the start of the span.",
-                )
+        span = self.geometry.shortest_span
         if self.stitch_wire is not None and self.stitch_wire.length_m >= span:
             raise validation_problem(
                 "stitch_wire.length_m",
@@ -197,3 +199,11 @@ class LineFile(InputTable):
                 "Give messenger_wire.axial_stiffness_EA_N, or set messenger_support.along_track = 'free'.",
             )
         return self
+
+    def _schedule_key(self, number: int) -> str:
+        """Key of the dropper schedule of a span."""
+        if not isinstance(self.geometry, ListedSpans) or self.geometry.span_list[number - 1].droppers is None:
+            return "droppers"
+        droppers = self.geometry.span_list[number - 1].droppers
+        named = isinstance(droppers, str)
+        return f"geometry.schedule.{droppers}" if named else f"geometry.span_list[{number}].droppers"

@@ -129,9 +129,9 @@ def _clamps(line: LineFile) -> Iterator[Clamp]:
 
 def _droppers(line: LineFile) -> Iterator[Dropper]:
     table, messengers, stitch_wires = line.droppers, _names(line, Kind.MESSENGER_WIRE), _stitch_wires(line)
-    presag = table.presag_m or (0.0,) * len(table.x_m)
-    for span_start in line.geometry.span_limits[:-1]:
-        for x, sag in zip(table.x_m, presag, strict=True):
+    for span_start, schedule in zip(line.geometry.span_limits[:-1], line.dropper_schedules, strict=True):
+        presag = schedule.presag_m or (0.0,) * len(schedule.x_m)
+        for x, sag in zip(schedule.x_m, presag, strict=True):
             for i, contact in enumerate(_names(line, Kind.CONTACT_WIRE)):
                 position, messenger = span_start + x, messengers[min(i, len(messengers) - 1)]
                 stitch = (w.name for name, w in stitch_wires if name == messenger and w.start < position < w.end)

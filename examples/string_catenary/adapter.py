@@ -27,6 +27,8 @@ def reason_to_skip(case):
         return "only a base spring that is unstretched at the working height is supported"
     if line["stitch_wire"] or line["contact_wire"]["number"] > 1 or line["damping"]["modal"]:
         return "stitch wires, twin contact wires and modal damping are not supported"
+    if "span_list" in line["geometry"]:
+        return "only lines of equal spans are supported"
     if line["geometry"]["stagger_contact_wire_m"] or line["geometry"]["stagger_messenger_m"]:
         return "stagger is not supported: only the vertical plane is simulated"
     if line["droppers"]["stiffness_N_m"] is None or line["droppers"]["mass_kg_m"]:

@@ -2,16 +2,16 @@
 
 import pytest
 
-from pantocheck.conformance.cases.geometry import Geometry
+from pantocheck.conformance.cases.geometry import EqualSpans
 from pantocheck.conformance.cases.library import select_cases
 
 
 @pytest.fixture
-def geometry() -> Geometry:
-    return Geometry(span_m=60.0, spans=5, encumbrance_m=1.2, trust="secondary", source="test")
+def geometry() -> EqualSpans:
+    return EqualSpans(span_m=60.0, spans=5, encumbrance_m=1.2, trust="secondary", source="test")
 
 
-def test_spans_follow_each_other_from_zero_to_the_length_of_the_line(geometry: Geometry) -> None:
+def test_spans_follow_each_other_from_zero_to_the_length_of_the_line(geometry: EqualSpans) -> None:
     spans = [geometry.span(number) for number in range(1, geometry.spans + 1)]
     assert spans[0][0] == 0.0
     assert spans[-1][1] == geometry.length == 300.0
@@ -20,15 +20,15 @@ def test_spans_follow_each_other_from_zero_to_the_length_of_the_line(geometry: G
     assert geometry.longest_span == geometry.shortest_span == 60.0
 
 
-def test_section_covers_its_first_and_its_last_span(geometry: Geometry) -> None:
+def test_section_covers_its_first_and_its_last_span(geometry: EqualSpans) -> None:
     assert geometry.section(2, 4) == (geometry.span(2)[0], geometry.span(4)[1])
 
 
-def test_middle_span_lies_half_way_along_the_line(geometry: Geometry) -> None:
+def test_middle_span_lies_half_way_along_the_line(geometry: EqualSpans) -> None:
     assert geometry.mid_span(geometry.middle_span) == geometry.length / 2
 
 
-def test_shorten_keeps_the_first_spans_and_never_adds_any(geometry: Geometry) -> None:
+def test_shorten_keeps_the_first_spans_and_never_adds_any(geometry: EqualSpans) -> None:
     assert geometry.shorten(2).span_limits == geometry.span_limits[:3]
     assert geometry.shorten(9) == geometry
 
