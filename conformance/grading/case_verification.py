@@ -16,7 +16,7 @@ from pantocheck.conformance.grading.criterion_grading import grade_requirement
 from pantocheck.conformance.grading.start_agreement import list_verification_components
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.grading.verification_limits import build_requirements, include_start
-from pantocheck.conformance.results.criterion_format import CaseVerification
+from pantocheck.conformance.results.criterion_format import CaseVerification, Criterion
 
 
 def verify_evaluation(evaluation: CaseEvaluation) -> CaseVerification | None:
@@ -32,15 +32,24 @@ def verify_evaluation(evaluation: CaseEvaluation) -> CaseVerification | None:
         return _build_verification(converged, "info", reason)
     if evaluation.contradiction is not None:
         return _build_verification(converged, "error", evaluation.contradiction)
-    start = evaluation.start_agreement.state
-    limits = include_start(converged) if start == "differs" else converged
-    components = list_verification_components(start)
+    components = list_verification_components(evaluation.start_agreement.state)
     values = replace(evaluation.values, spread={}, uncertainty=evaluation.uncertainty.select(components))
-    criteria = [
-        grade_requirement(requirement, values, "computed") for requirement in build_requirements(limits, case.is_static)
-    ]
+    requirements = build_requirements(converged, case.is_static)
+    criteria = [grade_requirement(requirement, values, "computed") for requirement in requirements]
+    if evaluation.start_agreement.state == "differs":
+        widened = [include_start(requirement, converged) for requirement in requirements]
+        others = [grade_requirement(requirement, values, "computed") for requirement in widened]
+        criteria = [_name_statement(*pair) for pair in zip(criteria, others, strict=True)]
     verdict = judge_case((criterion.verdict for criterion in criteria), evaluation.record_facts)
     return _build_verification(converged, verdict, None).model_copy(update={"criteria": criteria})
+
+
+def _name_statement(criterion: Criterion, widened: Criterion) -> Criterion:
+    """Criterion with widened limits; if it passes only inside them, its reason says so."""
+    if (criterion.verdict, widened.verdict) != ("fail", "pass"):
+        return widened
+    reason = f"{criterion.reason} without the stated start, which is not checked"
+    return widened.model_copy(update={"reason": reason})
 
 
 def verify_ungraded(case: Case, verdict: Verdict, reason: str) -> CaseVerification | None:

@@ -1,8 +1,8 @@
 """Comparison of the start that a record states with the start of its case.
 
-The start moves the results of a line with a short run-in. Where a record states another start, the uncertainty from the
-start counts in its comparison with a converged solution: it can mark a criterion as close. It never widens a limit, so
-that no statement turns a failure into a pass.
+The start moves the results of a line with a short run-in. Where a record states another start, the stored change of a
+converged value with the start widens its limits, and the uncertainty from the start can mark a criterion as close. No
+check compares the statement with the record. A criterion that passes only inside the widened limits therefore says so.
 """
 
 from dataclasses import dataclass

@@ -3,6 +3,8 @@
 docs/verification.md gives the measurements behind the tolerances.
 """
 
+from dataclasses import replace
+
 from pantocheck.conformance.cases.converged_file import ConvergedFile, ConvergedValue
 from pantocheck.conformance.grading.criterion_grading import Requirement
 from pantocheck.conformance.quantities.registry import QUANTITIES
@@ -47,18 +49,6 @@ VERIFIED_QUANTITIES = (*RELATIVE, *EXTREMES)
 """Quantities with a tolerance; no other quantity has a verification limit."""
 
 
-def include_start(converged: ConvergedFile) -> ConvergedFile:
-    """Converged values whose intervals hold for other starts, too.
-
-    A value whose change with the start is not known keeps its interval.
-    """
-    widened = tuple(
-        value.model_copy(update={"half_width": value.half_width + (value.start_half_width or 0.0)})
-        for value in converged.value
-    )
-    return converged.model_copy(update={"value": widened})
-
-
 def build_requirements(converged: ConvergedFile, is_static: bool) -> tuple[Requirement, ...]:
     """Verification limits of a case.
 
@@ -90,6 +80,19 @@ def _build_requirement(converged: ConvergedValue, mean: float | None, source: st
         trust="computed",
         source=source,
     )
+
+
+def include_start(requirement: Requirement, converged: ConvergedFile) -> Requirement:
+    """Verification limit that holds for other starts, too.
+
+    A value whose change with the start is not known keeps its limits.
+    """
+    widths = {(value.owner, value.quantity): value.start_half_width for value in converged.value}
+    width = widths[requirement.owner, requirement.quantity]
+    if width is None or requirement.lower is None or requirement.upper is None:
+        return requirement
+    source = f"{requirement.source}; widened for the start that the record states, which is not checked"
+    return replace(requirement, lower=requirement.lower - width, upper=requirement.upper + width, source=source)
 
 
 def tolerance(quantity: str, value: float, mean: float | None) -> float:

@@ -74,6 +74,7 @@ def list_reasons(results: dict[str, Any]) -> tuple[Section, ...]:
         "Failed": [*_case_reasons(results, "fail"), *map(_value, _select(results, "fail"))],
         "Not evaluated": [*_case_reasons(results, "skip"), *map(_reason, _select(results, "skip"))],
         "Not verified": _record_reasons(results),
+        "Inside the limits only with the stated start": [_reason(pair) for pair in passed if pair[1]["reason"]],
         "Closer to a limit than the uncertainty": [
             _close_value(pair) for pair in _criteria(results) if is_close(pair[1])
         ],

@@ -10,7 +10,12 @@ from helpers.converged_fixtures import StateConverged, build_converged
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.grading.case_grading import grade_case
-from pantocheck.conformance.grading.verification_limits import VERIFIED_QUANTITIES, build_requirements, tolerance
+from pantocheck.conformance.grading.verification_limits import (
+    VERIFIED_QUANTITIES,
+    build_requirements,
+    include_start,
+    tolerance,
+)
 from pantocheck.conformance.input_files.trust import LEVELS, limit_counts
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import evaluate_record
@@ -245,10 +250,27 @@ def test_limits_of_the_case_never_change_the_verification(
     assert {row.trust for row in with_limits.criteria} == {"secondary"}
 
 
+def test_start_widens_a_limit_by_its_half_width_and_no_more(twin: Case) -> None:
+    """A false statement can move a verdict by the stored change of the value with the start only."""
+    converged = build_converged(twin, {1: {"std_force_N": 30.0, "min_force_N": 50.0, "mean_force_N": 120.0}})
+    widths = {"std_force_N": 1.1, "min_force_N": 3.6, "mean_force_N": None}
+    value = tuple(v.model_copy(update={"start_half_width": widths[v.quantity]}) for v in converged.value)
+    converged = converged.model_copy(update={"value": value})
+    for limit in build_requirements(converged, is_static=False):
+        other = include_start(limit, converged)
+        assert limit.lower is not None
+        assert limit.upper is not None
+        width = widths[limit.quantity] or 0.0
+        assert (other.lower, other.upper) == (limit.lower - width, limit.upper + width)
+
+
 def test_start_widens_the_limits_if_it_differs(
     twin: Case, record: Record, values: Values, state_converged: StateConverged
 ) -> None:
-    """A force beyond 10 % in 20-50 Hz passes with another start whose half-width reaches it, and only then."""
+    """A force beyond 10 % in 20-50 Hz passes with another start whose half-width reaches it, and only then.
+
+    The certificate names the statement beside every widened limit, and where a criterion needs it.
+    """
     true = values[2]["rms_20_50_N"]
     converged = state_converged(twin, change(values, EXTENDED, true / 1.2))
     known = converged.model_copy(
@@ -256,12 +278,20 @@ def test_start_widens_the_limits_if_it_differs(
     )
     expected = twin.start_table
     other = expected.model_copy(update={"place_m": expected.place_m + 5.0})
-    verdicts = {}
+    verdicts, named, widened = {}, {}, {}
     for name, file in (("unknown", converged), ("known", known)):
         state_converged(twin, change(values, EXTENDED, true / 1.2), value=[v.model_dump() for v in file.value])
         for start in (None, expected, other):
             delivered = Delivered(record, case_digest=twin.digest, start=start)
-            verdicts[name, start] = verdict(grade_case(twin, delivered, "secondary"))
+            result = grade_case(twin, delivered, "secondary")
+            assert result.verification is not None
+            verdicts[name, start], rows = result.verification.verdict, result.verification.criteria
+            named[name, start] = {row.quantity for row in rows if "which is not checked" in (row.reason or "")}
+            widened[name, start] = {row.quantity for row in rows if "widened for the start" in row.source}
+    # Only the criterion that needs the statement has the remark; every widened limit names the statement.
+    assert {key: names for key, names in named.items() if names} == {("known", other): {EXTENDED[1]}}
+    assert {key for key, names in widened.items() if names} == {("known", other)}
+    assert widened["known", other] == set(VERIFIED_QUANTITIES) - {"elasticity_mm_N", "elasticity_non_uniformity_pct"}
     assert verdicts == {
         ("unknown", None): "fail",
         ("unknown", expected): "fail",

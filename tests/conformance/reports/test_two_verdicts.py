@@ -10,7 +10,7 @@ from pantocheck.conformance.authenticity.recomputation import find_discrepancies
 from pantocheck.conformance.grading.case_verdict import Participation
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
 from pantocheck.conformance.reports.certificate.summary_page import build_summary
-from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline
+from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline, list_reasons
 from pantocheck.conformance.reports.formats.badge import summarise_verdict
 from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.reports.formats.junit import render_junit
@@ -64,6 +64,17 @@ def test_headline_states_both_verdicts_and_their_part(failing: Results) -> None:
     alone = build_headline(decide(failing, "verification"))
     assert "(1 of 1 counted criteria outside their limits)" in alone
     assert "EN 50318 criteria: PASS (for information); Verification up to 50 Hz: FAIL." in alone
+
+
+def test_page_1_names_a_criterion_that_needs_the_stated_start(passing: dict[str, Any]) -> None:
+    results = decide(add_verification(passing, 60.0), *BOTH)
+    remark = "1 N above the upper limit without the stated start, which is not checked"
+    results["cases"][0]["verification"]["criteria"][0]["reason"] = remark
+    sections = {section.heading: section for section in list_reasons(results)}
+    page = render_markdown(build_certificate(results))
+    assert "Inside the limits only with the stated start" in sections
+    assert page.count(remark) == 2  # page 1 and the table of the case
+    assert find_discrepancies(results) == []
 
 
 def test_headline_without_converged_values_is_unchanged(passing: dict[str, Any]) -> None:
