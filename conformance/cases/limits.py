@@ -4,7 +4,13 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field, model_validator
 
-from pantocheck.conformance.input_files.sourced_table import InputTable, validation_problem
+from pantocheck.conformance.input_files.sourced_table import (
+    NO_SOURCE,
+    NO_TRUST,
+    InputTable,
+    check_provenance,
+    validation_problem,
+)
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.registry import QUANTITIES
@@ -44,12 +50,15 @@ class Limit(InputTable):
     ] = None
     lower: Annotated[FiniteBound | None, Field(description="lower bound, in the unit of the quantity")] = None
     upper: Annotated[FiniteBound | None, Field(description="upper bound, in the unit of the quantity")] = None
-    trust: Annotated[Trust, Field(description="trust in the limit")]
-    source: Annotated[str | list[str], Field(description="source of the limit: keys of sources.toml, or free text")]
+    trust: Annotated[Trust, Field(description="trust in the limit")] = NO_TRUST
+    source: Annotated[str | list[str], Field(description="source of the limit: keys of sources.toml, or free text")] = (
+        NO_SOURCE
+    )
     note: Annotated[str | None, Field(description="remark for the reader", max_length=4000)] = None
 
     @model_validator(mode="after")
     def _consistent(self) -> "Limit":
+        check_provenance(self.trust, self.source)
         if self.lower is None and self.upper is None:
             raise validation_problem("", f"the limit of {self.quantity} has no bound", "Give lower, upper or both.")
         if self.lower is not None and self.upper is not None and self.lower > self.upper:

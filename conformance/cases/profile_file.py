@@ -10,7 +10,13 @@ from pantocheck.conformance.cases.case_file import Filter
 from pantocheck.conformance.cases.library import library_folder
 from pantocheck.conformance.cases.limits import QuantityName
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.sourced_table import InputTable, validation_problem
+from pantocheck.conformance.input_files.sourced_table import (
+    NO_SOURCE,
+    NO_TRUST,
+    InputTable,
+    check_provenance,
+    validation_problem,
+)
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.input_files.trust import Trust
@@ -70,12 +76,15 @@ class Rule(InputTable):
     tolerance_pct: Annotated[
         Tolerance | None, Field(description="largest difference from the measured value, relative to it [%]")
     ] = None
-    trust: Annotated[Trust, Field(description="trust in the rule")]
-    source: Annotated[str | list[str], Field(description="source of the rule: keys of sources.toml, or free text")]
+    trust: Annotated[Trust, Field(description="trust in the rule")] = NO_TRUST
+    source: Annotated[str | list[str], Field(description="source of the rule: keys of sources.toml, or free text")] = (
+        NO_SOURCE
+    )
     note: Annotated[str | None, Field(description="remark for the reader", max_length=4000)] = None
 
     @model_validator(mode="after")
     def _consistent(self) -> "Rule":
+        check_provenance(self.trust, self.source)
         if QUANTITIES[self.quantity].scope == "mass_drop":
             raise validation_problem(
                 "quantity", f"{self.quantity} is not a quantity of a run", "Give a quantity of a contact-force record."

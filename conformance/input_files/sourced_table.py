@@ -1,4 +1,4 @@
-"""Base tables of input files: unknown keys are refused, numbers are finite, and a sourced table states its source."""
+"""Base tables of input files: unknown keys are refused, numbers are finite, and the source of numbers can be stated."""
 
 from typing import Annotated
 
@@ -18,6 +18,12 @@ NumberList = Annotated[tuple[float, ...], Field(strict=False, min_length=1, max_
 PROVENANCE = frozenset({"trust", "source", "provisional", "note"})
 """Keys of a sourced table that state the origin of its numbers."""
 
+NO_SOURCE = "user data, no source stated"
+"""Source of a table without the key `source`."""
+
+NO_TRUST: Trust = "provisional"
+"""Trust in a table without the key `trust`: the lowest one."""
+
 
 class InputTable(BaseModel):
     """Table of an input file: unknown keys, NaN and infinity are refused."""
@@ -28,11 +34,11 @@ class InputTable(BaseModel):
 class SourcedTable(InputTable):
     """Table whose numbers share one source and one trust; `provisional` lists the exceptions."""
 
-    trust: Annotated[Trust, Field(description="trust in the numbers of this table")]
+    trust: Annotated[Trust, Field(description="trust in the numbers of this table")] = NO_TRUST
     source: Annotated[
         str | list[str],
         Field(description="source of the numbers: keys of sources.toml, or free text", max_length=500),
-    ]
+    ] = NO_SOURCE
     provisional: Annotated[
         tuple[str, ...],
         Field(strict=False, description="keys of this table whose numbers have no printed source"),
@@ -46,7 +52,29 @@ class SourcedTable(InputTable):
                 raise validation_problem(
                     "provisional", f"{key!r} is not a key of this table", "List keys of the same table."
                 )
+        check_provenance(self.trust, self.source)
         return self
+
+
+def check_provenance(trust: Trust, source: str | list[str]) -> None:
+    """Check that a trust above `provisional` comes with a source.
+
+    Parameters
+    ----------
+    trust : Trust
+        Trust of a table or a limit.
+    source : str or list of str
+        Its source, or `NO_SOURCE`.
+
+    Raises
+    ------
+    PydanticCustomError
+        The trust is above `provisional` and the source is missing: nobody could check the trust.
+    """
+    if trust != NO_TRUST and source == NO_SOURCE:
+        raise validation_problem(
+            "source", f"missing, although the trust is {trust!r}", "Name the source, or leave out the key trust."
+        )
 
 
 def validation_problem(key: str, found: str, hint: str) -> PydanticCustomError:

@@ -104,7 +104,7 @@ def test_summary_of_another_case_is_an_error(changes: dict[str, Any], message: s
         ({"pantograph.0.min_force_N": 200.0}, "200 is above max_force_N = 193.7"),
         ({"quantities": {"mean_force_N": 52.2}}, r"quantities.mean_force_N: not a quantity of this table"),
         ({"pantograph": None, "pantographs": []}, "key pantographs: unknown key.\n  Did you mean pantograph"),
-        ({"trust": None}, "key trust: missing"),
+        ({"source": None}, "key source: missing, although the trust is"),
     ],
 )
 def test_impossible_summary_is_refused_with_its_key(changes: dict[str, Any], message: str, tmp_path: Path) -> None:
