@@ -12,7 +12,8 @@ import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import library_folder, load_case
+from pantocheck.conformance.cases.library import load_case
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.quantities.bands import BANDS, band_rms
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.quantities.signals import PantographSignals

@@ -24,7 +24,8 @@ from fuzz_uses import (
 )
 
 from pantocheck.conformance.authenticity.verification import verify_certificate
-from pantocheck.conformance.cases.library import library_folder, load_case, select_cases
+from pantocheck.conformance.cases.library import load_case, select_cases
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
 from pantocheck.conformance.mass_drops.drop_writing import write_drop_csv, write_drop_hdf5
 from pantocheck.conformance.mass_drops.uff_writing import write_drop_uff

@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from pantocheck.conformance.authenticity.recomputation import find_discrepancies
-from pantocheck.conformance.cases.library import library_folder, overlay_limits, read_limits, select_cases
+from pantocheck.conformance.cases.library import overlay_limits, read_limits, select_cases
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
 from pantocheck.conformance.grading.baseline import compare_with_baseline, read_baseline

@@ -26,7 +26,8 @@ import tomli_w
 from manipulation_dossier import Dossier
 from manipulation_grammar import MANIPULATIONS
 
-from pantocheck.conformance.cases.library import library_folder, overlay_limits, read_limits, select_cases
+from pantocheck.conformance.cases.library import overlay_limits, read_limits, select_cases
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.command_line.results_output import EXIT_CODES
 from pantocheck.conformance.grading.assessed_record import load_assessed_record

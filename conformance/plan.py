@@ -10,7 +10,8 @@ from typing import Annotated
 from pydantic import Field
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import library_folder, overlay_limits, read_limits, select_cases
+from pantocheck.conformance.cases.library import overlay_limits, read_limits, select_cases
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.grading.baseline import compare_with_baseline, read_baseline
 from pantocheck.conformance.grading.case_selection import CaseSelection, VerdictChoice, choose_verdicts
 from pantocheck.conformance.grading.case_verdict import Participation

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from pantocheck.conformance.cases.library import library_folder
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.limits import FiniteBound, QuantityName
 from pantocheck.conformance.input_files.sourced_table import InputTable, NonNegative, PositiveList, validation_problem
 from pantocheck.conformance.input_files.toml_file import read_model

@@ -4,12 +4,12 @@ import re
 from collections.abc import Sequence
 from fnmatch import fnmatchcase
 from functools import cache
-from importlib.resources import files
 from pathlib import Path
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import CaseFile
 from pantocheck.conformance.cases.damping_file import Damping, DampingFile, overlay_damping
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.limits import Limit, LimitOverride, LimitsFile
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.pantograph_file import PantographFile
@@ -18,11 +18,6 @@ from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.toml_file import read_model, read_toml
 
 _ID = re.compile(r"^id\s*=", re.MULTILINE)
-
-
-def library_folder() -> Path:
-    """Folder of the reference cases of the suite."""
-    return Path(str(files("pantocheck.reference_cases")))
 
 
 @cache

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from pantocheck.conformance.cases.case_file import Filter
-from pantocheck.conformance.cases.library import library_folder
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.limits import QuantityName
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.sourced_table import (

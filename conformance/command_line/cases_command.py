@@ -3,7 +3,8 @@
 from collections import Counter
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import library_folder, list_library, load_case
+from pantocheck.conformance.cases.library import list_library, load_case
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.command_line.console import build_table, console, escape_text
 from pantocheck.conformance.input_files.trust import LEVELS
 

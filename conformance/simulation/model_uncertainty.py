@@ -6,7 +6,8 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import library_folder, source_text
+from pantocheck.conformance.cases.library import source_text
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.limits import QuantityName
 from pantocheck.conformance.input_files.sourced_table import InputTable, Positive
 from pantocheck.conformance.input_files.toml_file import read_model

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.damping_file import DampingFile
-from pantocheck.conformance.cases.library import library_folder
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.study_tables import DampingSensitivity
 from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.quantities.bands import BAND_QUANTITIES

@@ -5,7 +5,8 @@ from pathlib import Path
 from typing import Literal
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import library_folder, source_text
+from pantocheck.conformance.cases.library import source_text
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.grading.record_mismatch import find_summary_mismatch
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_toml

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from pantocheck.conformance.cases.library import library_folder, load_case
+from pantocheck.conformance.cases.library import load_case
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.quantities.registry import QUANTITIES
 
 sys.path.append(str(Path(__file__).parents[2] / "benchmarks"))

@@ -11,7 +11,7 @@ import pytest
 from jsonschema import Draft202012Validator, validate
 from typer.testing import CliRunner
 
-from pantocheck.conformance.cases.library import library_folder
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.schemas import FORMAT_NAMES, build_schema, format_schema
 

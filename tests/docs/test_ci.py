@@ -11,7 +11,7 @@ import yaml
 from typer.testing import CliRunner
 
 from helpers.toml_edit import edit_toml
-from pantocheck.conformance.cases.library import library_folder
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.command_line.app import app
 
 CI = Path(__file__).parents[2] / "docs" / "ci"

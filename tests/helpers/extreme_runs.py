@@ -5,7 +5,8 @@ from dataclasses import replace
 from typing import Any
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import library_folder, load_case
+from pantocheck.conformance.cases.library import load_case
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.simulation.case_run import build_passage, record_passage
 from pantocheck.conformance.simulation.catenary_model import build_catenary

@@ -15,13 +15,13 @@ from pantocheck.conformance.cases import (
     damping_file,
     drop_test,
     geometry,
-    library,
     limits,
     line_file,
     pantograph_file,
     profile_file,
     study_tables,
 )
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.mass_drops import drop_sidecar
 from pantocheck.conformance.records import record_sidecar, record_summary, sidecar_tables
 from pantocheck.conformance.systems.command import protocol_messages
@@ -44,7 +44,7 @@ def list_models(module: ModuleType) -> Iterator[type[BaseModel]]:
 def read_shipped_tables() -> dict[str, dict[str, Any]]:
     """Schemas of the tables of all file formats, by the name of the model."""
     tables = {}
-    for path in (library.library_folder() / "schema").glob("*.json"):
+    for path in (library_folder() / "schema").glob("*.json"):
         schema = json.loads(path.read_text(encoding="utf-8"))
         shared = schema.get("$defs", {})
         for name, table in {schema.get("title", ""): schema, **shared}.items():

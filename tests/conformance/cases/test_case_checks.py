@@ -11,7 +11,8 @@ from helpers.case_fixtures import EditedCase
 from helpers.toml_edit import change_keys, edit_toml, write_toml
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.damping_file import Damping, overlay_damping
-from pantocheck.conformance.cases.library import library_folder, load_case, overlay_limits, read_limits, select_cases
+from pantocheck.conformance.cases.library import load_case, overlay_limits, read_limits, select_cases
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.line_file import DropperTable, LineFile
 from pantocheck.conformance.cases.pantograph_file import ChainTable, MatricesTable, ModesTable

@@ -9,7 +9,6 @@ from helpers.case_fixtures import EditedCase
 from helpers.toml_edit import write_toml
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import (
-    library_folder,
     list_library,
     load_case,
     overlay_limits,
@@ -17,6 +16,7 @@ from pantocheck.conformance.cases.library import (
     read_limits,
     select_cases,
 )
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.plan import Plan, prepare_plan
 

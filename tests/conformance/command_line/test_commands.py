@@ -16,7 +16,8 @@ from typer.testing import CliRunner, Result
 
 from helpers.case_fixtures import EditedCase
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import library_folder, list_library, select_cases
+from pantocheck.conformance.cases.library import list_library, select_cases
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.command_line import run_command, self_test_command, show_command
 from pantocheck.conformance.command_line.app import COMMANDS, app
 from pantocheck.conformance.command_line.guard import guard_command

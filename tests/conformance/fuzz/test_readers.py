@@ -20,7 +20,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from helpers.toml_edit import edit_toml
-from pantocheck.conformance.cases.library import library_folder, select_cases
+from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record_reading import open_record, read_samples
 from pantocheck.conformance.runner import run_cases

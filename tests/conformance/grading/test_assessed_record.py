@@ -9,7 +9,7 @@ import pytest
 import tomli_w
 
 from helpers.toml_edit import edit_toml
-from pantocheck.conformance.cases.library import library_folder
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.grading.assessed_record import AssessedRecord, find_equal_pantograph, load_assessed_record
 from pantocheck.conformance.input_files.formats.csv_table import write_csv_table

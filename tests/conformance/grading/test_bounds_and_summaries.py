@@ -10,7 +10,7 @@ import pytest
 
 from helpers.toml_edit import edit_toml
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import library_folder
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.profile_file import BoundMissing, NamedBound, Rule, SpeedFormula, resolve_bounds
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record import Record, RecordInvalid

@@ -9,7 +9,8 @@ from typer.testing import CliRunner
 
 from helpers.case_fixtures import EditedCase
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import library_folder, list_library, load_case, overlay_limits
+from pantocheck.conformance.cases.library import list_library, load_case, overlay_limits
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.limits import Limit, LimitOverride
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.grading.case_grading import grade_case

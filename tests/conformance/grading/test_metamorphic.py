@@ -18,7 +18,8 @@ from hypothesis import strategies as st
 
 from helpers.toml_edit import edit_toml
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import library_folder, load_case
+from pantocheck.conformance.cases.library import load_case
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
 from pantocheck.conformance.input_files.toml_file import read_toml

@@ -18,7 +18,7 @@ from typer.testing import CliRunner, Result
 
 from helpers.toml_edit import edit_toml, write_toml
 from pantocheck.conformance.authenticity.recomputation import find_discrepancies
-from pantocheck.conformance.cases.library import library_folder
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.profile_file import BoundMissing, SpeedFormula, load_profile, resolve_bounds
 from pantocheck.conformance.command_line.app import app

@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pantocheck.conformance.cases.library import library_folder, load_case
+from pantocheck.conformance.cases.library import load_case
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.grading.verdicts import Verdict, judge, margin, worst_verdict
 from pantocheck.conformance.input_files.trust import limit_counts
 

@@ -7,7 +7,8 @@ from typing import Any
 import pytest
 
 from helpers.case_fixtures import EditedCase
-from pantocheck.conformance.cases.library import library_folder, load_case, read_limits
+from pantocheck.conformance.cases.library import load_case, read_limits
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.input_files.input_error import InputError
 
 LINE, PANTOGRAPH, CASE = "line.toml", "pantograph.toml", "250.toml"

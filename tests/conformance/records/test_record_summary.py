@@ -8,7 +8,8 @@ import pytest
 
 from helpers.toml_edit import edit_toml
 from pantocheck.conformance.authenticity.recomputation import find_discrepancies
-from pantocheck.conformance.cases.library import library_folder, select_cases
+from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record_reading import open_record
 from pantocheck.conformance.records.record_summary import RecordSummary

@@ -15,7 +15,8 @@ from typer.testing import CliRunner, Result
 from helpers.toml_edit import edit_toml
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.damping_file import Damping
-from pantocheck.conformance.cases.library import library_folder, load_case, select_cases
+from pantocheck.conformance.cases.library import load_case, select_cases
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records

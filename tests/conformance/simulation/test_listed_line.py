@@ -5,7 +5,7 @@ import tomllib
 import pytest
 
 from helpers.listed_spans import list_spans
-from pantocheck.conformance.cases.library import library_folder
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 

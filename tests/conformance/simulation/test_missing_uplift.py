@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import library_folder, load_case
+from pantocheck.conformance.cases.library import load_case
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_writing import write_record

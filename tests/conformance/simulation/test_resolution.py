@@ -6,7 +6,8 @@ from dataclasses import replace
 import pytest
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import library_folder, load_case, select_cases
+from pantocheck.conformance.cases.library import load_case, select_cases
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.simulation.resolution import (
     longest_element,

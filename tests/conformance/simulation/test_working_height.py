@@ -7,7 +7,7 @@ import pytest
 from scipy.linalg import eigh
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import library_folder
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.pantograph_file import MatricesTable, ModesTable, PantographFile
 from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.simulation.case_run import build_passage

@@ -7,7 +7,8 @@ import pytest
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import Discretisation
-from pantocheck.conformance.cases.library import library_folder, load_case
+from pantocheck.conformance.cases.library import load_case
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.start_and_section import list_other_starts
 from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
 from pantocheck.conformance.results.outcome import Delivered

@@ -8,7 +8,7 @@ import pytest
 from helpers.toml_edit import edit_toml
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import library_folder
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record_reading import record_digest

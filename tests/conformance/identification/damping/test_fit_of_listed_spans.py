@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from pydantic import TypeAdapter
 
-from pantocheck.conformance.cases.library import library_folder
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.identification.damping.damping_results import build_damping_results
 from pantocheck.conformance.identification.mode import Mode
