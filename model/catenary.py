@@ -5,6 +5,8 @@ z ^      o support                                  o support
   |          |      |      |      |      |     |       droppers
   |  arm --o----------------------------------------o-- arm      contact wire
   +--------------------------------------------------------> x
+
+Heights count from one datum, on a level line usually the contact wire at its supports.
 """
 
 from dataclasses import dataclass, field
@@ -83,6 +85,9 @@ class Wire:
         Prescribed lateral positions (x, y) at supports and steady arms [m, m]; None: no lateral field.
     axial_stiffness : float or None
         Axial stiffness EA, needed if a support is fixed along the track [N].
+    end_heights : (float, float) or None
+        Heights at the anchors [m, m]; None: a contact wire ends at height zero, a messenger wire level with its next
+        support. A stitch wire ends at its clamps.
     """
 
     name: str
@@ -95,6 +100,7 @@ class Wire:
     tension_changes: tuple[TensionChange, ...] = ()
     stagger: tuple[tuple[float, float], ...] | None = None
     axial_stiffness: float | None = None
+    end_heights: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -116,7 +122,7 @@ class Dropper:
     upper_clamp_mass, lower_clamp_mass : float
         Masses of the clamps [kg].
     contact_wire_height : float or None
-        Prescribed height of the lower wire at the dropper, above its height at the supports [m]; None: not prescribed.
+        Prescribed height of the lower wire at the dropper [m]; None: not prescribed.
     """
 
     position: float
@@ -153,9 +159,11 @@ class SteadyArm:
     vertical_damper : float
         Damper between the clamp and the ground [N s/m].
     carries_share : bool
-        Whether the arm carries its share of the contact wire, so that the wire is level at the support.
+        Whether the arm carries its share of the contact wire, so that the wire lies at a prescribed height.
     acts : {"pull", "push"}
         Direction of the arm force on the wire; a pushing arm is a negative spring.
+    height : float
+        Height at which an arm that carries its share holds the wire [m].
     """
 
     position: float
@@ -166,6 +174,7 @@ class SteadyArm:
     vertical_damper: float = 0.0
     carries_share: bool = False
     acts: Literal["pull", "push"] = "pull"
+    height: float = 0.0
 
     def transverse_stiffness(self, tension: float) -> float:
         """Stiffness across a hinged bar with a tension [N]: tension / length, 0 beside a vertical stiffness [N/m]."""
@@ -183,7 +192,7 @@ class MessengerSupport:
     wire : str
         Name of the messenger wire.
     height : float
-        Encumbrance: height of the messenger wire above the contact wire at the support [m].
+        Height of the messenger wire at the support [m].
     stiffness : float
         Vertical stiffness [N/m].
     damping : float

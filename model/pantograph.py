@@ -22,7 +22,7 @@ from pantocheck.model.arrays import Array
 class Pantograph:
     """Linear pantograph model: M z'' + C z' + K z = force - contact force on the head.
 
-    Displacements z are positive upwards from the height of the contact wire at the supports.
+    Displacements z are positive upwards from the datum of the line.
 
     Parameters
     ----------
@@ -185,7 +185,7 @@ def equilibrium(pantograph: Pantograph, head_height: float) -> tuple[Array, floa
     pantograph : Pantograph
         Linear model.
     head_height : float
-        Height of the head above the contact wire at the supports [m].
+        Height of the head above the datum of the line [m].
 
     Returns
     -------

@@ -61,7 +61,7 @@ class History:
     force : (P, T) ndarray
         Contact force, unfiltered [N].
     height : (P, T) ndarray
-        Height of the head above the contact wire at the supports [m].
+        Height of the head above the datum of the line [m].
     motion : (U, T, 3) ndarray
         Vertical displacement, velocity and acceleration at the watched stations [m, m/s, m/s2]; NaN while it is
         unknown, see `active_window`.

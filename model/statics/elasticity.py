@@ -53,7 +53,7 @@ def height_under_forces(line: DiscretisedLine, position: Array, force: Array) ->
     Returns
     -------
     (n,) ndarray
-        Height above the contact wire at the supports, mean over the contact wires [m].
+        Height, mean over the contact wires [m].
     """
     rows = line.contact_rows
     shapes = [np.mean([point_load(line, row, float(x)) for row in rows], axis=0) for x in position]

@@ -33,8 +33,7 @@ class InitialState:
     Parameters
     ----------
     deflection : (rows, stations, 2) ndarray
-        Vertical rows: height above the contact wire at the supports; lateral rows: distance from the track centre
-        line; each with its slope [m, -].
+        Vertical rows: height; lateral rows: distance from the track centre line; each with its slope [m, -].
     dropper_tension : (droppers,) ndarray
         Axial tension at mid-length [N].
     dropper_length : (droppers,) ndarray
@@ -127,7 +126,9 @@ def _hold_contact_wire(
         if d.lower in names and d.contact_wire_height is not None
     }
     arms = [arm for arm in catenary.steady_arms if arm.wire in names and arm.carries_share]
-    heights |= {mesh.station(arm.position): 0.0 for arm in arms}
+    heights |= {mesh.station(arm.position): arm.height for arm in arms}
+    for wire in map(catenary.wire, names):
+        heights |= zip(map(mesh.station, (wire.start, wire.end)), wire.end_heights or (0.0, 0.0), strict=True)
     load, free = weight(beams, row, GRAVITY), beams.free[row].copy()
     shape = np.zeros((mesh.position.size, 2))
     for station, height in heights.items():
@@ -186,13 +187,14 @@ def _hang_upper_wires(
 
 
 def _messenger_heights(catenary: Catenary) -> list[tuple[str, float, float]]:
-    """Wire, position and height of the supports of the messenger wires; an anchor is level with the next support."""
+    """Wire, position and height of the anchors and supports of the messenger wires; a support at an anchor rules."""
     heights = []
     for wire in catenary.wires:
         if wire.kind is Kind.MESSENGER_WIRE:
             supports = sorted((s.position, s.height) for s in catenary.messenger_supports if s.wire == wire.name)
-            if supports:
-                heights += [(wire.name, wire.start, supports[0][1]), (wire.name, wire.end, supports[-1][1])]
+            next_supports = (supports[0][1], supports[-1][1]) if supports else (0.0, 0.0)
+            start, end = wire.end_heights or next_supports
+            heights += [(wire.name, wire.start, start), (wire.name, wire.end, end)]
             heights += [(wire.name, *support) for support in supports]
     return heights
 
