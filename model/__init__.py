@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from pantocheck.model.dynamics.passage import History, Passage
     from pantocheck.model.dynamics.simulation import simulate_passage
     from pantocheck.model.failures import SimulationError
+    from pantocheck.model.irregularity import Irregularity, SpectralDensity, realise_irregularity
     from pantocheck.model.pantograph import Pantograph, chain
 
 __all__ = [
@@ -31,6 +32,7 @@ __all__ = [
     "DiscretisedLine",
     "Dropper",
     "History",
+    "Irregularity",
     "Kind",
     "MessengerSupport",
     "ModalBand",
@@ -38,24 +40,29 @@ __all__ = [
     "Passage",
     "Rayleigh",
     "SimulationError",
+    "SpectralDensity",
     "SteadyArm",
     "TensionChange",
     "Wire",
     "chain",
     "discretise",
     "make_droppers_bilateral",
+    "realise_irregularity",
     "simulate_passage",
 ]
 
 _MODULES = {
     "DiscretisedLine": "discretised_line",
     "History": "dynamics.passage",
+    "Irregularity": "irregularity",
     "Pantograph": "pantograph",
     "Passage": "dynamics.passage",
     "SimulationError": "failures",
+    "SpectralDensity": "irregularity",
     "chain": "pantograph",
     "discretise": "discretised_line",
     "make_droppers_bilateral": "discretised_line",
+    "realise_irregularity": "irregularity",
     "simulate_passage": "dynamics.simulation",
 }
 """Modules of the public names that are not defined in `catenary`."""

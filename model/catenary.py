@@ -13,6 +13,8 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Literal
 
+from pantocheck.model.irregularity import Irregularity
+
 GRAVITY = 9.81
 """Acceleration of gravity [m/s2]."""
 
@@ -88,6 +90,8 @@ class Wire:
     end_heights : (float, float) or None
         Heights at the anchors [m, m]; None: a contact wire ends at height zero, a messenger wire level with its next
         support. A stitch wire ends at its clamps.
+    irregularity : Irregularity or None
+        Heights that a pantograph feels in addition to those of the wire; only of a contact wire.
     """
 
     name: str
@@ -101,6 +105,7 @@ class Wire:
     stagger: tuple[tuple[float, float], ...] | None = None
     axial_stiffness: float | None = None
     end_heights: tuple[float, float] | None = None
+    irregularity: Irregularity | None = None
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,11 @@ from pantocheck.model.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.active_window import Window
 from pantocheck.model.dynamics.block_tridiagonal import Factor
 from pantocheck.model.dynamics.inverse_columns import add_column, inverse_columns
+from pantocheck.model.dynamics.irregularity_step import (
+    IrregularityArrays,
+    build_irregularity_arrays,
+    height_of_irregularity,
+)
 from pantocheck.model.dynamics.motion import Motion
 from pantocheck.model.dynamics.sweeps import NEGLIGIBLE_FORCE, maximum
 from pantocheck.model.dynamics.train import Train
@@ -43,6 +48,8 @@ class ContactArrays(NamedTuple):
         Height and slope of the contact wires in the initial state [m, -].
     flexibility : (W, S-1, 7) ndarray
         Residual flexibility of the elements, see `element_flexibility` [m/N].
+    irregularity : IrregularityArrays
+        Additional heights of the contact wires.
     columns : (W, S, 2, 2, 2H) ndarray
         Columns of the inverse around every station, for a force and for a moment.
     """
@@ -52,6 +59,7 @@ class ContactArrays(NamedTuple):
     row: Indices
     rest: Array
     flexibility: Array
+    irregularity: IrregularityArrays
     columns: Array
 
 
@@ -90,6 +98,7 @@ def build_contact_arrays(line: DiscretisedLine, factor: Factor, time_step: float
         row=row,
         rest=np.ascontiguousarray(line.state.deflection[line.contact_rows]),
         flexibility=np.ascontiguousarray(line.beams.flexibility[line.contact_rows]),
+        irregularity=build_irregularity_arrays(line.catenary.contact_wires),
         columns=columns.reshape(row.size, stations, 2, 2, 2 * half_width),
     )
 
@@ -164,7 +173,7 @@ def _predict_contact(
     work.stiffness[p, wire] = 1 / (
         1 / train.contact_stiffness[p] + residual_flexibility(contact.flexibility[wire, e], s)
     )
-    work.overlap[p, wire] -= height
+    work.overlap[p, wire] -= height + height_of_irregularity(contact.irregularity, wire, train.position[p])
     work.compliance[p, wire] = compliance
 
 

@@ -8,6 +8,7 @@ from pantocheck.model.arrays import Array
 from pantocheck.model.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.active_window import build_window_arrays, find_unknown
 from pantocheck.model.dynamics.contact_step import ContactArrays
+from pantocheck.model.dynamics.irregularity_step import height_of_irregularity
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, build_kernel_arrays
 from pantocheck.model.dynamics.motion import Motion, motion_at_rest
 from pantocheck.model.dynamics.passage import History, Passage
@@ -90,7 +91,8 @@ def start_motion(line: DiscretisedLine, kernel: KernelArrays, passage: Passage) 
 
 
 def _contact_point(contact: ContactArrays, profile: Array, wire: int, position: float) -> tuple[float, float]:
-    """Height of a contact wire with a static profile, and its residual flexibility at a position [m, m/N]."""
+    """Height of a contact wire with its irregularity, and its residual flexibility, at a position [m, m/N]."""
     element, length, s = find_element(contact.position, position)
     height = float(beam.shape(s, length) @ profile[element : element + 2].ravel())
+    height += height_of_irregularity(contact.irregularity, wire, position)
     return height, residual_flexibility(contact.flexibility[wire, element], s)

@@ -7,6 +7,7 @@ from pantocheck.model.discretised_line import DiscretisedLine
 from pantocheck.model.fem.assembly import point_load
 from pantocheck.model.fem.mesh import find_element
 from pantocheck.model.fem.residual_flexibility import residual_flexibility
+from pantocheck.model.irregularity_spline import NO_IRREGULARITY, irregularity_height
 from pantocheck.model.statics.static_solver import StaticSolver
 
 
@@ -39,7 +40,7 @@ def static_uplift(line: DiscretisedLine, position: Array, force: float) -> Array
 
 
 def height_under_forces(line: DiscretisedLine, position: Array, force: Array) -> Array:
-    """Compute the height of the contact wire at static forces that act together; droppers may slacken.
+    """Compute the height of the contact wire, with its irregularity, at static forces; droppers may slacken.
 
     Parameters
     ----------
@@ -60,13 +61,20 @@ def height_under_forces(line: DiscretisedLine, position: Array, force: Array) ->
     displacement = StaticSolver(line).deflection(np.sum([f * n for f, n in zip(force, shapes, strict=True)], axis=0))
     height = (line.state.deflection + displacement.displacement).transpose(1, 0, 2).ravel()
     residual = [f / len(rows) * _mean_residual(line, float(x)) for x, f in zip(position, force, strict=True)]
-    return np.asarray(np.array([shape @ height for shape in shapes]) + residual)
+    return np.asarray(np.array([shape @ height for shape in shapes]) + residual + _mean_irregularity(line, position))
 
 
 def _mean_residual(line: DiscretisedLine, position: float) -> float:
     """Residual flexibility at a position, mean over the contact wires [m/N]."""
     element, _, s = find_element(line.mesh.position, position)
     return float(np.mean([residual_flexibility(line.beams.flexibility[r, element], s) for r in line.contact_rows]))
+
+
+def _mean_irregularity(line: DiscretisedLine, position: Array) -> Array:
+    """Irregularity at positions, mean over the contact wires [m]."""
+    wires = line.catenary.contact_wires
+    heights = [irregularity_height(wire.irregularity or NO_IRREGULARITY, position) for wire in wires]
+    return np.asarray(np.mean(heights, axis=0))
 
 
 def non_uniformity(elasticity: Array) -> float:

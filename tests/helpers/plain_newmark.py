@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 from scipy.linalg import solve
 
 from helpers.lines import Array, without_connectors
@@ -130,5 +131,14 @@ class PlainNewmark:
             share = point_load(self.line, row, self.passage.start[p] + self.passage.speed * time)
             closing[: self.free.size, n] = -share[self.free]
             closing[self.pantograph_slices[p], n] = self.passage.pantographs[p].head
-            height[n] = share @ self.rest
+            height[n] = share @ self.rest + self._irregularity(n % len(self.line.contact_rows), time, p)
         return closing, height
+
+    def _irregularity(self, wire: int, time: float, p: int) -> float:
+        """Irregularity of a contact wire under a pantograph; beyond its points the height of the nearest end."""
+        irregularity = self.line.catenary.contact_wires[wire].irregularity
+        if irregularity is None:
+            return 0.0
+        spline = CubicSpline(irregularity.position, irregularity.height, bc_type=((1, 0.0), (1, 0.0)))
+        place = self.passage.start[p] + self.passage.speed * time
+        return float(spline(min(max(place, irregularity.position[0]), irregularity.position[-1])))

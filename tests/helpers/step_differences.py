@@ -1,0 +1,58 @@
+"""Differences between the time step of the kernel and an independent implementation with full matrices."""
+
+import numpy as np
+
+from helpers.lines import Array
+from helpers.plain_newmark import PlainNewmark
+from pantocheck.model import Passage, chain
+from pantocheck.model.discretised_line import DiscretisedLine
+from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
+from pantocheck.model.dynamics.newmark import step
+from pantocheck.model.dynamics.simulation import start_motion
+from pantocheck.model.fem.assembly import bandwidth_order
+
+SCALES = {"q": 0.01, "v": 0.1, "a": 10.0, "tension": 100.0, "contact": 100.0}
+"""Sizes of a passage [m, m/s, m/s2, N, N] below which a difference is not made relative to the largest value.
+
+Both implementations balance forces of the order of 100 N to 1e-9 N, so their differences do not shrink with the motion:
+a line that hardly moves has the same absolute error as a line that moves by centimetres.
+"""
+
+THREE_MASSES = chain(
+    np.array([6.0, 9.0, 7.5]), np.array([160.0, 15500.0, 7000.0]), np.array([100.0, 0.1, 45.0]), 250.0, 0, 50e3
+)
+
+
+def largest_differences(
+    line: DiscretisedLine, passage: Passage, steps: int, drop: float
+) -> tuple[dict[str, float], Array, Array]:
+    """Advance kernel and plain implementation side by side; the heads start with the speed `drop` downwards [m/s].
+
+    Returns the largest difference of each quantity as a share of its largest value, at least of the size in `SCALES`,
+    then the tensions and the contact forces.
+    """
+    kernel = build_kernel_arrays(line, passage.time_step)
+    motion, train = start_motion(line, kernel, passage)
+    for p, pantograph in enumerate(passage.pantographs):
+        train.z[1, p, : pantograph.head.size] = -drop * pantograph.head
+    plain = PlainNewmark(line, passage)
+    state, work, place = plain.copy_state(motion, train), build_workspace(kernel, train), bandwidth_order(line)
+    computed: dict[str, list[Array]] = {name: [] for name in ("q", "v", "a", "tension", "contact")}
+    expected: dict[str, list[Array]] = {name: [] for name in computed}
+    for _ in range(steps):
+        assert step(kernel, motion, train, work)
+        plain.advance(state)
+        for i, name in enumerate(("q", "v", "a")):
+            wires = np.stack([motion.w[i], motion.r[i]], axis=-1).ravel()[place[plain.free]]
+            masses = [train.z[i, p, : pan.head.size] for p, pan in enumerate(passage.pantographs)]
+            computed[name].append(np.concatenate([wires, *masses]))
+        computed["tension"].append(motion.tension.copy())
+        computed["contact"].append(train.contact.ravel().copy())
+        for name, values in expected.items():
+            values.append(getattr(state, name))
+    difference = {
+        name: float(np.abs(np.array(computed[name]) - np.array(expected[name])).max(initial=0.0))
+        / max(float(np.abs(np.array(expected[name])).max(initial=0.0)), SCALES[name])
+        for name in computed
+    }
+    return difference, np.array(computed["tension"]), np.array(computed["contact"])
