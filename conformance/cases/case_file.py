@@ -2,12 +2,13 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from pantocheck.conformance.cases.damping_file import Damping
 from pantocheck.conformance.cases.drop_test import MassDrop
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.study_tables import Study
+from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.sourced_table import InputTable, PositiveList, SourcedTable, validation_problem
 from pantocheck.conformance.quantities.filters import LowPass
 
@@ -26,15 +27,14 @@ class PantographUse(SourcedTable):
         float | None, Field(gt=0, le=2000, description="mean contact force to which the uplift force is tuned [N]")
     ] = None
 
-    @model_validator(mode="after")
-    def _has_a_force(self) -> "PantographUse":
+    @cross_check
+    def _has_a_force(self) -> Problems:
         if self.uplift_force_N is None and self.target_mean_force_N is None:
-            raise validation_problem(
+            yield validation_problem(
                 "uplift_force_N",
                 "missing",
                 "Give uplift_force_N, or target_mean_force_N for an uplift force tuned to a mean force.",
             )
-        return self
 
 
 class Filter(InputTable):
@@ -47,15 +47,14 @@ class Filter(InputTable):
         Literal["zero", "causal"], Field(description="zero: forward and backward pass; causal: forward only")
     ] = "zero"
 
-    @model_validator(mode="after")
-    def _exists(self) -> "Filter":
+    @cross_check
+    def _exists(self) -> Problems:
         if self.phase == "zero" and self.order % 2:
-            raise validation_problem(
+            yield validation_problem(
                 "order",
                 f"{self.order} is odd",
                 'Give an even order: a zero-phase filter divides it between two passes. Or set phase = "causal".',
             )
-        return self
 
     @property
     def low_pass(self) -> LowPass:
@@ -153,52 +152,10 @@ class CaseFile(SourcedTable):
     discretisation: Discretisation = Discretisation()
     limit: Annotated[tuple[Limit, ...], Field(strict=False, max_length=10_000)] = ()
 
-    @model_validator(mode="after")
-    def _consistent(self) -> "CaseFile":
-        self._check_study()
-        if self.speed_km_h is None:
-            if self.pantograph:
-                raise validation_problem(
-                    "speed_km_h", "missing", "Give the speed of the train in km/h, e.g. speed_km_h = 250.0 ."
-                )
-        elif self.apparent_mass is not None:
-            raise validation_problem(
-                "apparent_mass", "stands in a case with speed_km_h", "Move it to a static case, without speed_km_h."
-            )
-        elif not self.pantograph:
-            raise validation_problem("pantograph", "missing", "A run needs at least one [[pantograph]] table.")
-        elif self.evaluated_spans is None:
-            raise validation_problem(
-                "evaluated_spans", "missing", "Give the spans of the analysis section, e.g. evaluated_spans = [5, 6] ."
-            )
-        if self.pantograph and len(self.spacing_m or ()) != len(self.pantograph) - 1:
-            raise validation_problem(
-                "spacing_m",
-                f"{len(self.spacing_m or ())} distances for {len(self.pantograph)} pantographs",
-                "Give the distances between successive pantographs, in running order.",
-            )
-        spans = self.evaluated_spans or (1,)
-        ranged = len(spans) == 2 and spans[0] < spans[1]
-        if spans[0] < 1 or not (ranged or list(spans) == list(range(spans[0], spans[0] + len(spans)))):
-            raise validation_problem(
-                "evaluated_spans",
-                f"{list(spans)} are not neighbouring spans",
-                "Give the first and the last span, numbered from 1, e.g. [5, 6].",
-            )
-        if self.compared_spans is not None and not (
-            1 <= self.compared_spans[0] <= spans[0] and spans[-1] <= self.compared_spans[1]
-        ):
-            raise validation_problem(
-                "compared_spans",
-                f"spans {list(self.compared_spans)} do not include evaluated_spans = {list(spans)}",
-                "Give the first and the last span of a section that includes evaluated_spans.",
-            )
-        self._check_limits()
-        return self
-
-    def _check_study(self) -> None:
+    @cross_check
+    def _check_study(self) -> Problems:
         if self.mass_drop is not None and self.speed_km_h is not None:
-            raise validation_problem(
+            yield validation_problem(
                 "mass_drop",
                 "stands in a case with speed_km_h",
                 "Write one case for the train and one for the mass drop.",
@@ -207,23 +164,71 @@ class CaseFile(SourcedTable):
             return
         drops = self.study.kind in {"release-velocity", "steady-arm-damper"}
         if drops and self.mass_drop is None:
-            raise validation_problem("mass_drop", "missing", f"A study of the kind {self.study.kind} needs mass drops.")
+            yield validation_problem("mass_drop", "missing", f"A study of the kind {self.study.kind} needs mass drops.")
         if not drops and self.speed_km_h is None:
-            raise validation_problem(
+            yield validation_problem(
                 "speed_km_h", "missing", f"A study of the kind {self.study.kind} needs the speed of a train."
             )
 
-    def _check_limits(self) -> None:
+    @cross_check
+    def _check_train(self) -> Problems:
+        if self.speed_km_h is None:
+            if self.pantograph:
+                yield validation_problem(
+                    "speed_km_h", "missing", "Give the speed of the train in km/h, e.g. speed_km_h = 250.0 ."
+                )
+            return
+        if self.apparent_mass is not None:
+            yield validation_problem(
+                "apparent_mass", "stands in a case with speed_km_h", "Move it to a static case, without speed_km_h."
+            )
+        elif not self.pantograph:
+            yield validation_problem("pantograph", "missing", "A run needs at least one [[pantograph]] table.")
+        if self.pantograph and self.evaluated_spans is None:
+            yield validation_problem(
+                "evaluated_spans", "missing", "Give the spans of the analysis section, e.g. evaluated_spans = [5, 6] ."
+            )
+
+    @cross_check
+    def _check_spacing(self) -> Problems:
+        if self.pantograph and len(self.spacing_m or ()) != len(self.pantograph) - 1:
+            yield validation_problem(
+                "spacing_m",
+                f"{len(self.spacing_m or ())} distances for {len(self.pantograph)} pantographs",
+                "Give the distances between successive pantographs, in running order.",
+            )
+
+    @cross_check
+    def _check_spans(self) -> Problems:
+        spans = self.evaluated_spans or (1,)
+        ranged = len(spans) == 2 and spans[0] < spans[1]
+        if spans[0] < 1 or not (ranged or list(spans) == list(range(spans[0], spans[0] + len(spans)))):
+            yield validation_problem(
+                "evaluated_spans",
+                f"{list(spans)} are not neighbouring spans",
+                "Give the first and the last span, numbered from 1, e.g. [5, 6].",
+            )
+        elif self.compared_spans is not None and not (
+            1 <= self.compared_spans[0] <= spans[0] and spans[-1] <= self.compared_spans[1]
+        ):
+            yield validation_problem(
+                "compared_spans",
+                f"spans {list(self.compared_spans)} do not include evaluated_spans = {list(spans)}",
+                "Give the first and the last span of a section that includes evaluated_spans.",
+            )
+
+    @cross_check
+    def _check_limits(self) -> Problems:
         seen = set()
         for i, limit in enumerate(self.limit, 1):
             if limit.owner > len(self.pantograph):
-                raise validation_problem(
+                yield validation_problem(
                     f"limit[{i}].pantograph",
                     f"there is no pantograph {limit.owner}",
                     f"The case has {len(self.pantograph)}, numbered from 1 in running order.",
                 )
             if limit.target in seen:
-                raise validation_problem(
+                yield validation_problem(
                     f"limit[{i}].quantity",
                     f"{limit.quantity} already has a limit",
                     "Give the lower and the upper bound of a quantity in one [[limit]] table.",

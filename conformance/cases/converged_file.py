@@ -4,10 +4,11 @@ from functools import cache
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.limits import FiniteBound, QuantityName
+from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.sourced_table import InputTable, NonNegative, PositiveList, validation_problem
 from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.input_files.trust import Computed
@@ -26,15 +27,14 @@ class OwnedQuantity(InputTable):
         Field(ge=1, le=20, description="number of the pantograph in running order; none for a quantity of the line"),
     ] = None
 
-    @model_validator(mode="after")
-    def _owned(self) -> "OwnedQuantity":
+    @cross_check
+    def _owned(self) -> Problems:
         if (QUANTITIES[self.quantity].scope == "pantograph") != (self.pantograph is not None):
-            raise validation_problem(
+            yield validation_problem(
                 "pantograph",
                 f"{self.quantity} has {'a' if self.pantograph else 'no'} pantograph",
                 "Quantities of a pantograph have its number, those of the line and of a static check have none.",
             )
-        return self
 
     @property
     def owner(self) -> int:
@@ -89,14 +89,13 @@ class ConvergedFile(InputTable):
     value: Annotated[tuple[ConvergedValue, ...], Field(strict=False, max_length=1000)] = ()
     omitted: Annotated[tuple[OmittedValue, ...], Field(strict=False, max_length=1000)] = ()
 
-    @model_validator(mode="after")
-    def _distinct(self) -> "ConvergedFile":
+    @cross_check
+    def _distinct(self) -> Problems:
         seen = set()
         for entry in (*self.value, *self.omitted):
             if (entry.owner, entry.quantity) in seen:
-                raise validation_problem("value", f"{entry.quantity} occurs twice", "Give each quantity once.")
+                yield validation_problem("value", f"{entry.quantity} occurs twice", "Give each quantity once.")
             seen.add((entry.owner, entry.quantity))
-        return self
 
 
 def find_converged(case_id: str) -> ConvergedFile | None:

@@ -6,8 +6,9 @@ The keys name the matrix of each Rayleigh coefficient, because publications use 
 from itertools import pairwise
 from typing import Annotated
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
+from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.sourced_table import PROVENANCE, InputTable, SourcedTable, validation_problem
 from pantocheck.conformance.input_files.trust import LEVELS
 
@@ -28,15 +29,14 @@ class ModalDamping(InputTable):
     to_Hz: Annotated[float, Field(gt=0, le=1000, description="upper edge of the band [Hz]")]
     damping_ratio: Annotated[float, Field(ge=0, lt=1, description="ratio to critical damping [-]")]
 
-    @model_validator(mode="after")
-    def _ordered(self) -> "ModalDamping":
+    @cross_check
+    def _ordered(self) -> Problems:
         if self.from_Hz >= self.to_Hz:
-            raise validation_problem(
+            yield validation_problem(
                 "from_Hz",
                 f"{self.from_Hz:g} Hz is not below to_Hz = {self.to_Hz:g} Hz",
                 "Give the lower edge of the band as from_Hz, the upper edge as to_Hz.",
             )
-        return self
 
 
 class Damping(SourcedTable):
@@ -52,16 +52,15 @@ class Damping(SourcedTable):
         Field(strict=False, max_length=1000, description="frequency bands with a damping ratio"),
     ] = ()
 
-    @model_validator(mode="after")
-    def _bands_apart(self) -> "Damping":
+    @cross_check
+    def _bands_apart(self) -> Problems:
         for before, after in pairwise(sorted(self.modal, key=lambda band: band.from_Hz)):
             if after.from_Hz < before.to_Hz:
-                raise validation_problem(
+                yield validation_problem(
                     "modal",
                     f"the bands {before.from_Hz:g}-{before.to_Hz:g} Hz, {after.from_Hz:g}-{after.to_Hz:g} Hz overlap",
                     "Change their edges: a mode has one damping ratio only.",
                 )
-        return self
 
 
 class DampingFile(InputTable):

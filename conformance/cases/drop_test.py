@@ -2,8 +2,9 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
+from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.sourced_table import (
     InputTable,
     NonNegative,
@@ -62,12 +63,11 @@ class MassDrop(SourcedTable):
     highest_Hz: Annotated[Positive, Field(le=200, description="highest frequency of the identified modes [Hz]")] = 10.0
     compared: Annotated[DampingModels, Field(default_factory=dict)]
 
-    @model_validator(mode="after")
-    def _observable(self) -> "MassDrop":
+    @cross_check
+    def _observable(self) -> Problems:
         if self.highest_Hz > 0.4 * self.rate_Hz:
-            raise validation_problem(
+            yield validation_problem(
                 "highest_Hz",
                 f"{self.highest_Hz:g} Hz is not observable with rate_Hz = {self.rate_Hz:g}",
                 f"Give at most {0.4 * self.rate_Hz:g} Hz, or rate_Hz = {2.5 * self.highest_Hz:g}.",
             )
-        return self

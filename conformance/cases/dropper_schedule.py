@@ -4,8 +4,9 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import Annotated
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
+from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.sourced_table import (
     InputTable,
     NumberList,
@@ -29,14 +30,13 @@ class DropperSchedule(InputTable):
     presag_m: DropperPresags = None
     length_m: DropperLengths = None
 
-    @model_validator(mode="after")
-    def _consistent(self) -> "DropperSchedule":
-        check_schedule(self.x_m, {"presag_m": self.presag_m, "length_m": self.length_m})
-        return self
+    @cross_check
+    def _consistent(self) -> Problems:
+        yield from find_schedule_problems(self.x_m, {"presag_m": self.presag_m, "length_m": self.length_m})
 
 
-def check_schedule(positions: Sequence[float], lists: dict[str, tuple[float, ...] | None]) -> None:
-    """Check that positions increase, and that every other list has one value per position.
+def find_schedule_problems(positions: Sequence[float], lists: dict[str, tuple[float, ...] | None]) -> Problems:
+    """Problems of a schedule: positions increase, and every other list has one value per position.
 
     Parameters
     ----------
@@ -45,20 +45,20 @@ def check_schedule(positions: Sequence[float], lists: dict[str, tuple[float, ...
     lists : dict of str to tuple of float or None
         Further values of the droppers by key; None: not given.
 
-    Raises
+    Yields
     ------
     PydanticCustomError
-        A position does not increase, or a list has another number of values.
+        A position that does not increase, or a list with another number of values.
     """
     for i, (before, x) in enumerate(pairwise(positions), 2):
         if x <= before:
-            raise validation_problem(
+            yield validation_problem(
                 f"x_m[{i}]",
                 f"{x:g} m is not greater than the preceding {before:g} m",
                 "List the droppers in the direction of travel.",
             )
     for key, values in lists.items():
         if values is not None and len(values) != len(positions):
-            raise validation_problem(
+            yield validation_problem(
                 key, f"{len(values)} values for {len(positions)} droppers", "Give one value per dropper of x_m."
             )

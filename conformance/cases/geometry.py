@@ -7,9 +7,10 @@ from functools import lru_cache
 from itertools import accumulate
 from typing import Annotated, Self
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, Tag
 
 from pantocheck.conformance.cases.dropper_schedule import DropperSchedule
+from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.sourced_table import InputTable, SourcedTable, validation_problem
 from pantocheck.conformance.input_files.suggestions import suggest_names
 
@@ -157,16 +158,15 @@ class ListedSpans(SpanPositions, SourcedTable):
             for span in self.span_list
         )  # fmt: skip
 
-    @model_validator(mode="after")
-    def _schedules_exist(self) -> "ListedSpans":
+    @cross_check
+    def _schedules_exist(self) -> Problems:
         for i, span in enumerate(self.span_list, 1):
             if isinstance(span.droppers, str) and span.droppers not in self.schedule:
-                raise validation_problem(
+                yield validation_problem(
                     f"span_list[{i}].droppers",
                     f"there is no dropper schedule {span.droppers!r}",
                     suggest_names(span.droppers, list(self.schedule)),
                 )
-        return self
 
 
 def _form_of_spans(geometry: object) -> str:

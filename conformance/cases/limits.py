@@ -2,13 +2,14 @@
 
 from typing import Annotated
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field
 
+from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.sourced_table import (
     NO_SOURCE,
     NO_TRUST,
     InputTable,
-    check_provenance,
+    find_missing_source,
     validation_problem,
 )
 from pantocheck.conformance.input_files.suggestions import suggest_names
@@ -56,20 +57,19 @@ class Limit(InputTable):
     )
     note: Annotated[str | None, Field(description="remark for the reader", max_length=4000)] = None
 
-    @model_validator(mode="after")
-    def _consistent(self) -> "Limit":
-        check_provenance(self.trust, self.source)
+    @cross_check
+    def _consistent(self) -> Problems:
+        yield from find_missing_source(self.trust, self.source)
         if self.lower is None and self.upper is None:
-            raise validation_problem("", f"the limit of {self.quantity} has no bound", "Give lower, upper or both.")
+            yield validation_problem("", f"the limit of {self.quantity} has no bound", "Give lower, upper or both.")
         if self.lower is not None and self.upper is not None and self.lower > self.upper:
-            raise validation_problem(
+            yield validation_problem(
                 "lower", f"{self.lower:g} is above upper = {self.upper:g}", "Give the smaller number as lower."
             )
         if QUANTITIES[self.quantity].scope != "pantograph" and self.pantograph is not None:
-            raise validation_problem(
+            yield validation_problem(
                 "pantograph", f"{self.quantity} is not a quantity of a pantograph", "Leave the key pantograph out."
             )
-        return self
 
     @property
     def owner(self) -> int:

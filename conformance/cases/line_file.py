@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from pantocheck.conformance.cases.damping_file import Damping
 from pantocheck.conformance.cases.dropper_schedule import (
@@ -10,9 +10,10 @@ from pantocheck.conformance.cases.dropper_schedule import (
     DropperPositions,
     DropperPresags,
     DropperSchedule,
-    check_schedule,
+    find_schedule_problems,
 )
 from pantocheck.conformance.cases.geometry import GeometryTable, ListedSpans
+from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.sourced_table import (
     InputTable,
     NonNegative,
@@ -75,25 +76,30 @@ class DropperTable(SourcedTable):
     clamp_on_messenger_kg: ClampMass = 0.0
     clamp_on_contact_kg: ClampMass = 0.0
 
-    @model_validator(mode="after")
-    def _consistent(self) -> "DropperTable":
-        check_schedule(self.x_m, {"presag_m": self.presag_m, "length_m": self.length_m})
+    @cross_check
+    def _check_schedule(self) -> Problems:
+        yield from find_schedule_problems(self.x_m, {"presag_m": self.presag_m, "length_m": self.length_m})
+
+    @cross_check
+    def _check_stiffness(self) -> Problems:
         if (self.stiffness_N_m is None) == (self.axial_stiffness_EA_N is None):
-            raise validation_problem(
+            yield validation_problem(
                 "stiffness_N_m",
                 "the stiffness of the droppers is missing or given twice",
                 "Give either stiffness_N_m or axial_stiffness_EA_N.",
             )
+
+    @cross_check
+    def _check_mass(self) -> Problems:
         if self.mass_kg is not None and self.mass_kg_m is not None:
-            raise validation_problem(
+            yield validation_problem(
                 "mass_kg", "the mass of the droppers is given twice", "Give either mass_kg or mass_kg_m."
             )
-        return self
 
     @property
     def schedule(self) -> DropperSchedule:
         """Schedule of the spans that name no other."""
-        return DropperSchedule(x_m=self.x_m, presag_m=self.presag_m, length_m=self.length_m)
+        return DropperSchedule.model_construct(x_m=self.x_m, presag_m=self.presag_m, length_m=self.length_m)
 
 
 class SteadyArmTable(SourcedTable):
@@ -120,15 +126,14 @@ class SteadyArmTable(SourcedTable):
         Literal["pull", "push"], Field(description="kind of lateral force of the arm on the contact wire")
     ] = "pull"
 
-    @model_validator(mode="after")
-    def _check_stiffness(self) -> "SteadyArmTable":
+    @cross_check
+    def _check_stiffness(self) -> Problems:
         if self.vertical_stiffness_N_m is None and self.length_m is None:
-            raise validation_problem(
+            yield validation_problem(
                 "vertical_stiffness_N_m",
                 "the steady arm has neither a stiffness nor a length",
                 "Give vertical_stiffness_N_m, or length_m for a stiffness of force / length.",
             )
-        return self
 
 
 class MessengerSupportTable(SourcedTable):
@@ -164,41 +169,47 @@ class LineFile(InputTable):
         """Dropper schedule of every span."""
         return self.geometry.choose_schedules(self.droppers.schedule)
 
-    @model_validator(mode="after")
-    def _droppers_lie_in_their_spans(self) -> "LineFile":
-        schedules = zip(self.geometry.span_lengths, self.dropper_schedules, strict=True)
-        for number, (span, schedule) in enumerate(schedules, 1):
+    @cross_check
+    def _droppers_lie_in_their_spans(self) -> Problems:
+        spans = enumerate(zip(self.geometry.span_lengths, self.dropper_schedules, strict=True), 1)
+        # Spans of one length with one schedule have the same problems.
+        schedules = {(self._schedule_key(number), span): schedule for number, (span, schedule) in spans}
+        for (key, span), schedule in schedules.items():
             for i, x in enumerate(schedule.x_m, 1):
                 if x >= span:
-                    raise validation_problem(
-                        f"{self._schedule_key(number)}.x_m[{i}]",
+                    yield validation_problem(
+                        f"{key}.x_m[{i}]",
                         f"{x:g} m is not inside the span of {span:g} m",
                         f"Give positions between 0 and {span:g} m, from the start of the span.",
                     )
-        return self
 
-    @model_validator(mode="after")
-    def _fits_together(self) -> "LineFile":
+    @cross_check
+    def _check_stitch_wire(self) -> Problems:
         span = self.geometry.shortest_span
         if self.stitch_wire is not None and self.stitch_wire.length_m >= span:
-            raise validation_problem(
+            yield validation_problem(
                 "stitch_wire.length_m",
                 f"{self.stitch_wire.length_m:g} m is not shorter than the span of {span:g} m",
                 "Give a length below that of a span; neighbouring stitch wires must not overlap.",
             )
+
+    @cross_check
+    def _check_numbers_of_wires(self) -> Problems:
         if self.messenger_wire.number > self.contact_wire.number:
-            raise validation_problem(
+            yield validation_problem(
                 "messenger_wire.number",
                 "two messenger wires carry one contact wire",
                 "Set messenger_wire.number = 1 or contact_wire.number = 2.",
             )
+
+    @cross_check
+    def _check_axial_stiffness(self) -> Problems:
         if self.messenger_support.along_track == "fixed" and self.messenger_wire.axial_stiffness_EA_N is None:
-            raise validation_problem(
+            yield validation_problem(
                 "messenger_wire.axial_stiffness_EA_N",
                 "the supports hold the messenger wire along the track, but its axial stiffness is not given",
                 "Give messenger_wire.axial_stiffness_EA_N, or set messenger_support.along_track = 'free'.",
             )
-        return self
 
     def _schedule_key(self, number: int) -> str:
         """Key of the dropper schedule of a span."""

@@ -3,8 +3,9 @@
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field
 
+from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.sourced_table import (
     InputTable,
     NonNegativeList,
@@ -45,19 +46,19 @@ class ChainTable(SourcedTable):
         ),
     ] = "working_height"
 
-    @model_validator(mode="after")
-    def _consistent(self) -> "ChainTable":
-        _check_lengths(self, ("stiffness_N_m", "damping_N_s_m", "names"), len(self.masses_kg), "mass", "masses")
+    @cross_check
+    def _consistent(self) -> Problems:
+        lists = ("stiffness_N_m", "damping_N_s_m", "names")
+        yield from _find_wrong_lengths(self, lists, len(self.masses_kg), "mass", "masses")
         on, names = self.uplift_force_on, self.names or ()
         if isinstance(on, str) and on not in names:
-            raise validation_problem(
+            yield validation_problem(
                 "uplift_force_on", f"there is no mass {on!r}", f"Known names are {', '.join(names) or 'not given'}."
             )
         if isinstance(on, int) and not 1 <= on <= len(self.masses_kg):
-            raise validation_problem(
+            yield validation_problem(
                 "uplift_force_on", f"there is no mass {on}", f"Give a number from 1 to {len(self.masses_kg)}."
             )
-        return self
 
     @property
     def uplift_mass(self) -> int:
@@ -90,29 +91,30 @@ class MatricesTable(SourcedTable):
         ),
     ] = None
 
-    @model_validator(mode="after")
-    def _possible(self) -> "MatricesTable":
+    @cross_check
+    def _possible(self) -> Problems:
         n = len(self.head)
-        _check_lengths(self, ("uplift_force_on",), n, "degree of freedom", "degrees of freedom")
+        yield from _find_wrong_lengths(self, ("uplift_force_on",), n, "degree of freedom", "degrees of freedom")
         if not any(self.head):
-            raise validation_problem("head", "all values are 0", "Give at least one value that is not 0.")
+            yield validation_problem("head", "all values are 0", "Give at least one value that is not 0.")
         for key in ("mass_kg", "damping_N_s_m", "stiffness_N_m"):
             rows = getattr(self, key)
             if len(rows) != n or any(len(row) != n for row in rows):
-                raise validation_problem(
+                yield validation_problem(
                     key, f"not {n} rows of {n} values", "Give a square matrix with one row per value of head."
                 )
+                continue
             matrix = np.array(rows)
             if not np.allclose(matrix, matrix.T, rtol=1e-9, atol=1e-9 * float(np.abs(matrix).max())):
-                raise validation_problem(key, "not symmetric", "Give a symmetric matrix, row by row.")
+                yield validation_problem(key, "not symmetric", "Give a symmetric matrix, row by row.")
+                continue
             lowest, largest = np.linalg.eigvalsh(matrix)[[0, -1]]
             if lowest < -1e-9 * abs(largest) or (key == "mass_kg" and lowest <= 1e-12 * largest):
-                raise validation_problem(
+                yield validation_problem(
                     key,
                     f"the lowest eigenvalue is {lowest:.3g}",
                     "Eigenvalues of the mass matrix are positive, those of damping and stiffness not negative.",
                 )
-        return self
 
 
 class ModesTable(SourcedTable):
@@ -135,14 +137,13 @@ class ModesTable(SourcedTable):
         ),
     ] = None
 
-    @model_validator(mode="after")
-    def _same_length(self) -> "ModesTable":
-        _check_lengths(
+    @cross_check
+    def _same_length(self) -> Problems:
+        yield from _find_wrong_lengths(
             self, ("damping_ratio", "head_shape", "uplift_force_on"), len(self.frequency_Hz), "mode", "modes"
         )
         if not any(self.head_shape):
-            raise validation_problem("head_shape", "all values are 0", "Give at least one value that is not 0.")
-        return self
+            yield validation_problem("head_shape", "all values are 0", "Give at least one value that is not 0.")
 
 
 class PantographFile(InputTable):
@@ -155,18 +156,17 @@ class PantographFile(InputTable):
     contact: ContactTable
     note: Annotated[str | None, Field(description="remark for the reader", max_length=4000)] = None
 
-    @model_validator(mode="after")
-    def _has_one_model(self) -> "PantographFile":
+    @cross_check
+    def _has_one_model(self) -> Problems:
         models = [name for name in ("chain", "matrices", "modes") if getattr(self, name) is not None]
         hint = "Give one of the tables chain, matrices and modes."
         if not models:
-            raise validation_problem("chain", "missing", hint)
+            yield validation_problem("chain", "missing", hint)
         if len(models) > 1:
-            raise validation_problem(models[-1], f"the pantograph has {len(models)} models: {', '.join(models)}", hint)
-        return self
+            yield validation_problem(models[-1], f"the pantograph has {len(models)} models: {', '.join(models)}", hint)
 
 
-def _check_lengths(table: InputTable, keys: tuple[str, ...], n: int, item: str, items: str) -> None:
+def _find_wrong_lengths(table: InputTable, keys: tuple[str, ...], n: int, item: str, items: str) -> Problems:
     for key in keys:
         if (values := getattr(table, key)) is not None and len(values) != n:
-            raise validation_problem(key, f"{len(values)} values for {n} {items}", f"Give one value per {item}.")
+            yield validation_problem(key, f"{len(values)} values for {n} {items}", f"Give one value per {item}.")

@@ -4,17 +4,18 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, Tag
 
 from pantocheck.conformance.cases.case_file import Filter
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.limits import QuantityName
+from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.sourced_table import (
     NO_SOURCE,
     NO_TRUST,
     InputTable,
-    check_provenance,
+    find_missing_source,
     validation_problem,
 )
 from pantocheck.conformance.input_files.suggestions import suggest_names
@@ -82,21 +83,20 @@ class Rule(InputTable):
     )
     note: Annotated[str | None, Field(description="remark for the reader", max_length=4000)] = None
 
-    @model_validator(mode="after")
-    def _consistent(self) -> "Rule":
-        check_provenance(self.trust, self.source)
+    @cross_check
+    def _consistent(self) -> Problems:
+        yield from find_missing_source(self.trust, self.source)
         if QUANTITIES[self.quantity].scope == "mass_drop":
-            raise validation_problem(
+            yield validation_problem(
                 "quantity", f"{self.quantity} is not a quantity of a run", "Give a quantity of a contact-force record."
             )
         stated = self.lower is not None or self.upper is not None
         if stated + (self.tolerance is not None) + (self.tolerance_pct is not None) != 1:
-            raise validation_problem(
+            yield validation_problem(
                 "",
                 f"the rule for {self.quantity} has no bound, or several kinds of bounds",
                 "Give one kind: lower and upper, tolerance or tolerance_pct.",
             )
-        return self
 
     @property
     def compares(self) -> bool:

@@ -2,9 +2,10 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from pantocheck.conformance.cases.drop_test import DampingModels, Place
+from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.sourced_table import (
     InputTable,
     Positive,
@@ -47,14 +48,13 @@ class ReleaseVelocity(SourcedTable):
     ]
     sensor: Annotated[int, Field(ge=1, description="number of the sensor, from 1")] = 1
 
-    @model_validator(mode="after")
-    def _ordered(self) -> "ReleaseVelocity":
+    @cross_check
+    def _ordered(self) -> Problems:
         for i, (start, end) in enumerate(self.windows_s, 1):
             if not 0 <= start < end:
-                raise validation_problem(
+                yield validation_problem(
                     f"windows_s[{i}]", f"from {start:g} s to {end:g} s", "Give [start, end] with 0 <= start < end."
                 )
-        return self
 
 
 class DropperDamping(SourcedTable):
@@ -64,13 +64,12 @@ class DropperDamping(SourcedTable):
     coefficients_s: Annotated[PositiveList, Field(min_length=4, description="stiffness coefficients, ascending [s]")]
     x_m: Place
 
-    @model_validator(mode="after")
-    def _ascending(self) -> "DropperDamping":
+    @cross_check
+    def _ascending(self) -> Problems:
         if list(self.coefficients_s) != sorted(set(self.coefficients_s)):
-            raise validation_problem(
+            yield validation_problem(
                 "coefficients_s", "not in ascending order", "List every value once, from small to large."
             )
-        return self
 
 
 class SteadyArmDamper(SourcedTable):

@@ -16,6 +16,11 @@ tune and simulate a line          `SimulationError`                   message of
 In a run of several cases, the first and the last end as the verdict `error` of their case.
 """
 
+from collections.abc import Sequence
+
+MOST_MESSAGES = 50
+"""Largest number of messages in the text of an error; further ones are counted."""
+
 
 class InputError(ValueError):
     """Input that cannot be used. It is refused, because wrong input would give a wrong number in a certificate.
@@ -28,10 +33,32 @@ class InputError(ValueError):
         Content found there.
     hint : str
         Content expected there, or the next step of the user.
+    further : sequence of InputError
+        Further errors of the same input.
     """
 
-    def __init__(self, where: str, found: str, hint: str) -> None:
-        super().__init__(f"{where}: {found}.\n  {hint}")
+    def __init__(self, where: str, found: str, hint: str, further: Sequence["InputError"] = ()) -> None:
         self.where = where
         self.found = found
         self.hint = hint
+        self.further = tuple(further)
+        messages = [error.message for error in self.problems]
+        more = len(messages) - MOST_MESSAGES
+        counted = [f"... and {more} more. Correct these first."] if more > 0 else []
+        super().__init__("\n".join([*messages[:MOST_MESSAGES], *counted]))
+
+    @property
+    def message(self) -> str:
+        """Text of this error, without further errors."""
+        return f"{self.where}: {self.found}.\n  {self.hint}"
+
+    @property
+    def problems(self) -> tuple["InputError", ...]:
+        """This error and all further ones."""
+        return (self, *(problem for error in self.further for problem in error.problems))
+
+
+def join_errors(errors: Sequence[InputError]) -> InputError:
+    """One error that reports several, in their order."""
+    first, *others = (problem for error in errors for problem in error.problems)
+    return InputError(first.where, first.found, first.hint, others)

@@ -1,10 +1,11 @@
 """Base tables of input files: unknown keys are refused, numbers are finite, and the source of numbers can be stated."""
 
-from typing import Annotated
+from typing import Annotated, Any, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ModelWrapValidatorHandler, model_validator
 from pydantic_core import PydanticCustomError
 
+from pantocheck.conformance.input_files.cross_checks import Problems, cross_check, validate_table
 from pantocheck.conformance.input_files.trust import Trust
 
 Positive = Annotated[float, Field(gt=0)]
@@ -30,6 +31,11 @@ class InputTable(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
+    @model_validator(mode="wrap")
+    @classmethod
+    def _find_all_problems(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        return validate_table(cls, data, handler)
+
 
 class SourcedTable(InputTable):
     """Table whose numbers share one source and one trust; `provisional` lists the exceptions."""
@@ -45,19 +51,21 @@ class SourcedTable(InputTable):
     ] = ()
     note: Annotated[str | None, Field(description="reason for a number or a choice", max_length=4000)] = None
 
-    @model_validator(mode="after")
-    def _exceptions_exist(self) -> "SourcedTable":
+    @cross_check
+    def _check_exceptions(self) -> Problems:
         for key in self.provisional:
             if key not in type(self).model_fields:
-                raise validation_problem(
+                yield validation_problem(
                     "provisional", f"{key!r} is not a key of this table", "List keys of the same table."
                 )
-        check_provenance(self.trust, self.source)
-        return self
+
+    @cross_check
+    def _check_source(self) -> Problems:
+        yield from find_missing_source(self.trust, self.source)
 
 
-def check_provenance(trust: Trust, source: str | list[str]) -> None:
-    """Check that a trust above `provisional` comes with a source.
+def find_missing_source(trust: Trust, source: str | list[str]) -> Problems:
+    """Problem of a trust above `provisional` without a source, because nobody could check the trust.
 
     Parameters
     ----------
@@ -66,19 +74,19 @@ def check_provenance(trust: Trust, source: str | list[str]) -> None:
     source : str or list of str
         Its source, or `NO_SOURCE`.
 
-    Raises
+    Yields
     ------
     PydanticCustomError
-        The trust is above `provisional` and the source is missing: nobody could check the trust.
+        The problem, if there is one.
     """
     if trust != NO_TRUST and source == NO_SOURCE:
-        raise validation_problem(
+        yield validation_problem(
             "source", f"missing, although the trust is {trust!r}", "Name the source, or leave out the key trust."
         )
 
 
 def validation_problem(key: str, found: str, hint: str) -> PydanticCustomError:
-    """Build the error that a validator raises for keys that contradict each other.
+    """Build the error that a cross check yields for keys that contradict each other.
 
     Parameters
     ----------

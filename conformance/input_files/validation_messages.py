@@ -1,15 +1,19 @@
 """Messages for validation errors: file, key, value that was found, and next step."""
 
 import math
+import re
 import typing
+from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
-from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.input_error import InputError, join_errors
+from pantocheck.conformance.input_files.key_descriptions import describe_key
 from pantocheck.conformance.input_files.suggestions import suggest_names
+from pantocheck.conformance.input_files.table_models import find_field, list_models, names_in_unions
 from pantocheck.conformance.input_files.units import suggest_key
 
 _BOUNDS = {
@@ -21,6 +25,11 @@ _BOUNDS = {
 
 LONGEST_KEY = 80
 """Largest number of characters of a key in a message; all keys of the schemas are shorter."""
+
+MOST_PROBLEMS = 1000
+"""Largest number of errors of a file that are described; nobody corrects more at once."""
+
+_PARTS = re.compile(r"[.\[]")
 
 _KINDS = {
     "float_type": "a number",
@@ -37,7 +46,7 @@ _KINDS = {
 
 
 def build_input_error(error: ValidationError, model: type[BaseModel], where: str) -> InputError:
-    """Build an `InputError` from the most useful one of the validation errors of a file.
+    """Build an `InputError` with one message for each problem of a file.
 
     Parameters
     ----------
@@ -51,25 +60,69 @@ def build_input_error(error: ValidationError, model: type[BaseModel], where: str
     Returns
     -------
     InputError
-        Error with file, key, value and hint.
+        First error with file, key, value and hint, and all further ones. Unknown keys come first.
     """
-    # A key in a wrong unit gives two errors, an unknown and a missing key; the unknown key gives the better hint.
-    detail = min(error.errors(), key=lambda item: item["type"] != "extra_forbidden")
-    table, field, key = _walk(model, detail["loc"])
+    details = sorted(error.errors(include_url=False), key=lambda detail: detail["type"] != "extra_forbidden")
+    details = details[:MOST_PROBLEMS]
+    problems = [_describe(detail, model) for detail in details]
+    return join_errors(
+        [
+            InputError(f"{where}, key {problem.key}" if problem.key else where, problem.found, problem.hint)
+            for problem in _drop_repetitions(problems)
+        ]
+    )
+
+
+@dataclass(frozen=True)
+class _Problem:
+    """Message on one key: kind of the error of pydantic, dotted key, content found, hint."""
+
+    kind: str
+    key: str
+    found: str
+    hint: str
+
+
+def _drop_repetitions(problems: list[_Problem]) -> Iterator[_Problem]:
+    """Problems of different causes: one per key, none that an unknown key or an error in a part of the key explains."""
+    above = {key[: end.start()] for key in {problem.key for problem in problems} for end in _PARTS.finditer(key)}
+    unknown = [problem for problem in problems if problem.kind == "extra_forbidden"]
+    seen: set[object] = set()
+    for problem in problems:
+        if problem.kind == "inconsistent":
+            repeated = problem in seen
+            seen.add(problem)
+        else:
+            of_union = problem.key in above  # the other member of a union fits better
+            misspelt = problem.kind == "missing" and any(_explains(other, problem.key) for other in unknown)
+            repeated = of_union or misspelt or problem.key in seen
+            seen.add(problem.key)
+        if not repeated:
+            yield problem
+
+
+def _explains(problem: _Problem, missing: str) -> bool:
+    """Whether the hint on an unknown key of the same table names the missing key, and no other."""
+    table, _, name = missing.rpartition(".")
+    same_table = problem.key.rpartition(".")[0] == table
+    return same_table and f"id you mean {name} " in problem.hint and " or " not in problem.hint
+
+
+def _describe(detail: ErrorDetails, model: type[BaseModel]) -> _Problem:
+    """Key, content found and hint of one error of pydantic."""
+    table, name, key = _walk(model, detail["loc"])
     if detail["type"] == "inconsistent":
         context = detail["ctx"]
-        key, found, hint = f"{key}.{context['key']}".strip("."), context["found"], context["hint"]
-    else:
-        found, hint = _explain(detail, table, field)
-    return InputError(f"{where}, key {key}" if key else where, found, hint)
+        return _Problem(detail["type"], f"{key}.{context['key']}".strip("."), context["found"], context["hint"])
+    return _Problem(detail["type"], key, *_explain(detail, table, name))
 
 
-def _explain(detail: ErrorDetails, table: type[BaseModel], field: FieldInfo | None) -> tuple[str, str]:
+def _explain(detail: ErrorDetails, table: type[BaseModel], field: str | None) -> tuple[str, str]:
     """Content that was found, and hint, for one error of pydantic."""
     kind, value = detail["type"], detail["input"]
     name = str(detail["loc"][-1]) if detail["loc"] else ""
-    known = list(table.model_fields)
-    about = f"It is: {field.description}." if field is not None and field.description else "See `pantocheck schema`."
+    known = [other.alias or key for key, other in table.model_fields.items()]
+    about = describe_key(table, field) if field is not None else "See `pantocheck schema`."
     if kind == "extra_forbidden":
         return "unknown key", suggest_key(name, value, known) or suggest_names(name, known)
     if kind == "missing":
@@ -92,34 +145,25 @@ def _show(value: object) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-def _walk(model: type[BaseModel], location: tuple[int | str, ...]) -> tuple[type[BaseModel], FieldInfo | None, str]:
+def _walk(model: type[BaseModel], location: tuple[int | str, ...]) -> tuple[type[BaseModel], str | None, str]:
     """Table and field at a location, and the location as a dotted key with list items numbered from 1."""
-    table, field, key = model, None, ""
+    table, name, key = model, None, ""
     inner: Any = model
     for part in location:
         if isinstance(part, int):
             key += f"[{part + 1}]"
             continue
-        member = next((model for model in _models_in(inner) if part in _names_in_unions(model)), None)
-        holder = next(iter(_models_in(inner)), None)
-        if member is not None or holder is None:
-            inner = member or inner
+        models = list_models(inner)
+        if (member := next((model for model in models if part in names_in_unions(model)), None)) is not None:
+            inner = member
             continue  # name of a member of a union, not a key
-        table, field = holder, holder.model_fields.get(part)
-        name = part if len(part) <= LONGEST_KEY else part[:LONGEST_KEY] + "..."
-        key += f".{name}" if key else name
-        inner = field.annotation if field is not None else None
-    return table, field, key
-
-
-def _names_in_unions(model: type[BaseModel]) -> tuple[str, ...]:
-    """Names that pydantic gives to a member of a union: the model, or the tag in its key `kind`."""
-    kind = model.model_fields.get("kind")
-    return (model.__name__, *(typing.get_args(kind.annotation) if kind is not None else ()))
-
-
-def _models_in(annotation: Any) -> list[type[BaseModel]]:
-    """Models in an annotation, in its order."""
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return [annotation]
-    return [model for argument in typing.get_args(annotation) for model in _models_in(argument)]
+        if not models:
+            continue
+        shown = part if len(part) <= LONGEST_KEY else part[:LONGEST_KEY] + "..."
+        key += f".{shown}" if key else shown
+        if typing.get_origin(inner) is dict:
+            inner = typing.get_args(inner)[1]
+            continue  # name of a table that the user chooses
+        table, name = models[0], find_field(models[0], part)
+        inner = None if name is None else table.model_fields[name].annotation
+    return table, name, key

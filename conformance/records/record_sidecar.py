@@ -2,8 +2,9 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
+from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.sourced_table import InputTable, NumberList, PositiveList, validation_problem
 from pantocheck.conformance.records.sidecar_tables import (
     CaseDigest,
@@ -13,7 +14,7 @@ from pantocheck.conformance.records.sidecar_tables import (
     Speed,
     StartTable,
     SystemTable,
-    check_section,
+    find_section_problems,
 )
 
 RECORD_SCHEMA = "pantocheck.record/1"
@@ -67,26 +68,25 @@ class RecordSidecar(InputTable):
         None
     )
 
-    @model_validator(mode="after")
-    def _check_consistency(self) -> "RecordSidecar":
+    @cross_check
+    def _check_consistency(self) -> Problems:
         if self.low_passed_Hz is not None and self.low_passed_Hz <= 0:
-            raise validation_problem(
+            yield validation_problem(
                 "filter_applied_Hz",
                 f"found {self.low_passed_Hz:g} Hz, expected a positive cut-off",
                 'Write filter_applied_Hz = "none" for an unfiltered force.',
             )
-        check_section(self.evaluated_m)
+        yield from find_section_problems(self.evaluated_m)
         if "/" in self.file or "\\" in self.file or self.file in {".", ".."} or "\0" in self.file:
-            raise validation_problem(
+            yield validation_problem(
                 "file", f"found the path {self.file!r}", "Put the table beside its sidecar, and give its name only."
             )
         if self.spacing_m is not None and len(self.spacing_m) != self.pantographs - 1:
-            raise validation_problem(
+            yield validation_problem(
                 "spacing_m",
                 f"{len(self.spacing_m)} distances for {self.pantographs} pantographs",
                 "Give the distances between successive pantographs, in running order.",
             )
-        return self
 
     @property
     def behind(self) -> tuple[float, ...]:

@@ -2,8 +2,9 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
+from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.sourced_table import NumberList, SourcedTable, validation_problem
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value
@@ -19,7 +20,7 @@ from pantocheck.conformance.records.sidecar_tables import (
     Speed,
     StartTable,
     SystemTable,
-    check_section,
+    find_section_problems,
 )
 
 SUMMARY_SCHEMA = "pantocheck.summary/1"
@@ -56,14 +57,15 @@ class RecordSummary(SourcedTable):
         None
     )
 
-    @model_validator(mode="after")
-    def _check_values(self) -> "RecordSummary":
+    @cross_check
+    def _check_values(self) -> Problems:
+        known = [quantity.name for quantity in PANTOGRAPH_QUANTITIES]
         for i, values in enumerate(self.pantograph, 1):
-            _check_table(values, f"pantograph[{i}]", [quantity.name for quantity in PANTOGRAPH_QUANTITIES])
+            yield from _find_table_problems(values, f"pantograph[{i}]", known)
         static = [quantity.name for quantity in QUANTITIES.values() if quantity.scope == "static"]
-        _check_table(self.quantities, "quantities", [*(quantity.name for quantity in LINE_QUANTITIES), *static])
-        check_section(self.evaluated_m)
-        return self
+        known = [*(quantity.name for quantity in LINE_QUANTITIES), *static]
+        yield from _find_table_problems(self.quantities, "quantities", known)
+        yield from find_section_problems(self.evaluated_m)
 
     @property
     def evaluation(self) -> Evaluation:
@@ -105,20 +107,21 @@ def _derive_statistics(values: dict[str, float]) -> list[tuple[str, float, float
     return [*derived, ("cov_20", coefficient_of_variation(mean, std), 0.006)] if mean > 0 else derived
 
 
-def _check_table(values: dict[str, float], table: str, known: list[str]) -> None:
+def _find_table_problems(values: dict[str, float], table: str, known: list[str]) -> Problems:
     for name, value in values.items():
         if name not in known:
-            raise validation_problem(
+            yield validation_problem(
                 f"{table}.{name[:80]}", "not a quantity of this table", suggest_names(name[:80], known)
             )
+            continue
         if value < 0 and QUANTITIES[name].never_negative:
-            raise validation_problem(
+            yield validation_problem(
                 f"{table}.{name}", f"{value:g} is negative", QUANTITIES[name].definition.capitalize() + "."
             )
         if value > 100 and name.endswith("_pct"):
-            raise validation_problem(f"{table}.{name}", f"{value:g} % is above 100 %", "Give a value from 0 to 100 %.")
+            yield validation_problem(f"{table}.{name}", f"{value:g} % is above 100 %", "Give a value from 0 to 100 %.")
     low, high = values.get("min_force_N"), values.get("max_force_N")
     if low is not None and high is not None and low > high:
-        raise validation_problem(
+        yield validation_problem(
             f"{table}.min_force_N", f"{low:g} is above max_force_N = {high:g}", "Correct the wrong value."
         )

@@ -4,6 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from pantocheck.conformance.input_files.cross_checks import Problems
 from pantocheck.conformance.input_files.sourced_table import InputTable, NonNegative, validation_problem
 
 Speed = Annotated[float, Field(ge=1, le=600, description="speed of the train [km/h]")]
@@ -72,9 +73,9 @@ class LineTable(InputTable):
     ] = None
 
 
-def check_section(section: tuple[float, ...] | None) -> None:
-    """Refuse an analysis section [m] whose end is not behind its start; for validators."""
+def find_section_problems(section: tuple[float, ...] | None) -> Problems:
+    """Problem of an analysis section [m] whose end is not behind its start."""
     if section is not None and section[0] >= section[1]:
-        raise validation_problem(
+        yield validation_problem(
             "evaluated_m", "the end is not greater than the start", "Give the start, then the end of the section."
         )

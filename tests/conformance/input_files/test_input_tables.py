@@ -82,8 +82,8 @@ def test_fault_is_named_with_its_key_and_value(content: dict[str, Any], key: str
 @pytest.mark.parametrize(
     ("content", "hint"),
     [
-        ({"single": {"depth_m": 0.5}}, "It is: depth of the part [m]."),
-        ({"part": [{"kind": "other"}]}, "See `pantocheck schema`."),
+        ({"single": {"depth_m": 0.5}}, "It is: depth of the part [m]. Allowed: a number at least 1, at most 2."),
+        ({"part": [{"kind": "other"}]}, "Allowed: a whole number greater than 0, less than 5."),
         ({"single": {"depth_mm": 1500.0}}, "Lengths are given in metres: did you mean depth_m = 1.5 ?"),
         ({"tablee": 3}, "Did you mean table ?"),
     ],
