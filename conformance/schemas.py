@@ -19,6 +19,8 @@ from pantocheck.conformance.cases.limits import LimitsFile
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.cases.profile_file import Profile
+from pantocheck.conformance.comparison.static_comparison_format import StaticComparison
+from pantocheck.conformance.comparison.static_sidecar import StaticSidecar
 from pantocheck.conformance.identification.damping.damping_format import DampingResults
 from pantocheck.conformance.identification.identification_format import IdentificationFile
 from pantocheck.conformance.identification.mode import ModesFile
@@ -39,6 +41,7 @@ READ_FORMATS: dict[str, type[BaseModel]] = {
     "plan": Plan,
     "record": RecordSidecar,
     "mass-drop": MassDropSidecar,
+    "static": StaticSidecar,
     "summary": RecordSummary,
     "profile": Profile,
     "converged": ConvergedFile,
@@ -51,6 +54,7 @@ WRITTEN_FORMATS: dict[str, type[BaseModel]] = {
     "modes": ModesFile,
     "identification": IdentificationFile,
     "damping-fit": DampingResults,
+    "static-comparison": StaticComparison,
 }
 """JSON files that the suite writes."""
 

@@ -19,6 +19,7 @@ COMMANDS = {
     "drop": "Simulate the mass drops of a case and write their records.",
     "identify": "Identify frequencies, damping ratios and mode shapes from mass-drop records.",
     "fit-damping": "Fit a damping model of a line to identified modes.",
+    "compare-statics": "Compare elasticities and contact wire heights measured along a line with its model.",
     "verify": "Check that the verdict of a certificate follows from its numbers.",
     "schema": "Print or write the JSON Schema of a file format, for editors and validators.",
     "self-test": "Test the suite with faulty systems: each fault must be detected.",

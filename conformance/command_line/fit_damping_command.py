@@ -5,9 +5,8 @@ from typing import Annotated
 
 import typer
 
-from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.command_line.console import console, escape_text
+from pantocheck.conformance.command_line.options import read_line
 from pantocheck.conformance.identification.damping.damping_results import build_damping_results
 from pantocheck.conformance.identification.damping.damping_toml import write_damping_toml
 from pantocheck.conformance.identification.damping.line_comparison import compare_line, refuse_other_line
@@ -15,8 +14,6 @@ from pantocheck.conformance.identification.damping.mode_matching import select_u
 from pantocheck.conformance.identification.mode import read_modes
 from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
-from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.toml_file import read_model, read_toml
 from pantocheck.conformance.reports.formats.report_writers import write_report
 from pantocheck.conformance.reports.mass_drop.damping_report import build_damping_document
 from pantocheck.conformance.simulation.catenary_model import build_catenary
@@ -42,7 +39,7 @@ def fit_damping_command(
 
     Example: pantocheck fit-damping T1/modes.json --line my-line.toml --out T1
     """
-    identified, catenary = read_modes(modes), build_catenary(_read_line(line))
+    identified, catenary = read_modes(modes), build_catenary(read_line(line))
     if not other_line:
         refuse_other_line(compare_line(select_usable(identified, modes.name), catenary), modes.name)
     check_writable(out)
@@ -65,13 +62,3 @@ def fit_damping_command(
         escape_text(f"{out}: damping.toml, damping_with_modal.toml, damping.json, damping.html, damping.pdf"),
         soft_wrap=True,
     )
-
-
-def _read_line(name: str) -> LineFile:
-    """Line of a line file, or of the cases that an id or path selects."""
-    if name.endswith(".toml") and "geometry" in read_toml(Path(name), "line"):
-        return read_model(Path(name), LineFile, "line")
-    cases = select_cases([name])
-    if any(case.line != cases[0].line for case in cases):
-        raise InputError(f"line '{name}'", f"{len(cases)} cases with different lines", "Give the id of one case.")
-    return cases[0].line

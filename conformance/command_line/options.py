@@ -1,4 +1,4 @@
-"""Options and the choice of a case that several commands share."""
+"""Options, and the choice of a case or line, that several commands share."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -9,7 +9,9 @@ from pydantic import ValidationError
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.toml_file import read_model, read_toml
 from pantocheck.conformance.input_files.validation_messages import build_input_error
 from pantocheck.conformance.plan import Plan, read_plan
 
@@ -93,3 +95,19 @@ def choose_case(name: str, accept: Callable[[Case], bool], kind: str) -> Case:
         ids = ", ".join(case.id for case in cases) or "none"
         raise InputError(f"case '{name}'", f"expected one case {kind}, found {ids}", "Give the id of one case.")
     return cases[0]
+
+
+def read_line(name: str) -> LineFile:
+    """Read the line of a line file, or of the cases that an id or path selects.
+
+    Raises
+    ------
+    InputError
+        The file is invalid, or the cases have different lines.
+    """
+    if name.endswith(".toml") and "geometry" in read_toml(Path(name), "line"):
+        return read_model(Path(name), LineFile, "line")
+    cases = select_cases([name])
+    if any(case.line != cases[0].line for case in cases):
+        raise InputError(f"line '{name}'", f"{len(cases)} cases with different lines", "Give the id of one case.")
+    return cases[0].line

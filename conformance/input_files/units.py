@@ -50,6 +50,10 @@ UNIT_FAMILIES = (
         {"N/m": 1.0, "kN/m": 1e3, "MN/m": 1e6, "N/mm": 1e3, "kN/mm": 1e6},
     ),
     UnitFamily(
+        "Elasticities are given in millimetres per newton",
+        {"m/N": 1.0, "mm/N": 1e-3, "mm/daN": 1e-4, "mm/kN": 1e-6, "m/kN": 1e-3, "cm/kN": 1e-5},
+    ),
+    UnitFamily(
         "Dampers are given in newton seconds per metre",
         {"N s/m": 1.0, "Ns/m": 1.0, "kN s/m": 1e3, "kNs/m": 1e3},
     ),

@@ -92,17 +92,43 @@ def read_samples(path: Path) -> tuple[RecordSamples, RecordSidecar, Path]:
     """
     sidecar_path = path.with_suffix(".toml")
     sidecar = read_model(sidecar_path, RecordSidecar, "sidecar")
-    table = sidecar_path.parent / sidecar.file
+    table = locate_table(sidecar_path, sidecar.file, sidecar.sha256)
+    return _build_samples(read_channel_rows(table, sidecar), sidecar), sidecar, table
+
+
+def locate_table(sidecar_path: Path, name: str, digest: str | None) -> Path:
+    """Find the table of a sidecar.
+
+    Parameters
+    ----------
+    sidecar_path : Path
+        The sidecar.
+    name : str
+        Name of the table, from the sidecar.
+    digest : str or None
+        Its SHA-256 by the sidecar.
+
+    Returns
+    -------
+    Path
+        The table.
+
+    Raises
+    ------
+    InputError
+        The table is missing, is a link to a file in another folder, or has another SHA-256.
+    """
+    table = sidecar_path.parent / name
     check_file(table, f"record '{table.name}'", MAX_FILE_BYTES)
     if not table.resolve().is_relative_to(sidecar_path.parent.resolve()):
         raise InputError(f"record '{table.name}'", "is a link to a file outside its folder", "Copy the table itself.")
-    if sidecar.sha256 is not None and file_digest(table) != sidecar.sha256:
+    if digest is not None and file_digest(table) != digest:
         raise InputError(
             f"record '{table.name}'",
             "the content does not agree with sha256 in the sidecar",
             "Copy table and sidecar again, or write them again.",
         )
-    return _build_samples(read_channel_rows(table, sidecar), sidecar), sidecar, table
+    return table
 
 
 def record_digest(sidecar_path: Path, table: Path | None = None) -> str:

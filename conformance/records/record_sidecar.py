@@ -14,7 +14,10 @@ from pantocheck.conformance.records.sidecar_tables import (
     Speed,
     StartTable,
     SystemTable,
+    TableDigest,
+    TableName,
     find_section_problems,
+    find_table_name_problems,
 )
 
 RECORD_SCHEMA = "pantocheck.record/1"
@@ -29,10 +32,8 @@ class RecordSidecar(InputTable):
     ]
     case: CaseName = None
     case_digest: CaseDigest | None = None
-    file: Annotated[str, Field(min_length=1, max_length=500, description="name of the table beside the sidecar")]
-    sha256: Annotated[
-        str | None, Field(pattern="^[0-9a-f]{64}$", description="SHA-256 of the table, to detect a damaged copy")
-    ] = None
+    file: TableName
+    sha256: TableDigest = None
     speed_km_h: Speed
     pantographs: Annotated[int, Field(ge=1, le=20, description="number of pantographs")]
     evaluated_m: Annotated[
@@ -77,10 +78,7 @@ class RecordSidecar(InputTable):
                 'Write filter_applied_Hz = "none" for an unfiltered force.',
             )
         yield from find_section_problems(self.evaluated_m)
-        if "/" in self.file or "\\" in self.file or self.file in {".", ".."} or "\0" in self.file:
-            yield validation_problem(
-                "file", f"found the path {self.file!r}", "Put the table beside its sidecar, and give its name only."
-            )
+        yield from find_table_name_problems(self.file)
         if self.spacing_m is not None and len(self.spacing_m) != self.pantographs - 1:
             yield validation_problem(
                 "spacing_m",

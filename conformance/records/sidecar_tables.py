@@ -1,4 +1,4 @@
-"""Common tables of sidecars and summaries: system, run and line."""
+"""Common tables and keys of sidecars and summaries: table, system, run and line."""
 
 from typing import Annotated, Literal
 
@@ -8,6 +8,12 @@ from pantocheck.conformance.input_files.cross_checks import Problems
 from pantocheck.conformance.input_files.sourced_table import InputTable, NonNegative, validation_problem
 
 Speed = Annotated[float, Field(ge=1, le=600, description="speed of the train [km/h]")]
+
+TableName = Annotated[str, Field(min_length=1, max_length=500, description="name of the table beside the sidecar")]
+
+TableDigest = Annotated[
+    str | None, Field(pattern="^[0-9a-f]{64}$", description="SHA-256 of the table, to detect a damaged copy")
+]
 
 CaseName = Annotated[str | None, Field(max_length=200, description="id of the case that was run")]
 
@@ -71,6 +77,14 @@ class LineTable(InputTable):
     uplift_space_mm: Annotated[
         NonNegative | None, Field(le=2000, description="space for the uplift of the contact wire at the supports [mm]")
     ] = None
+
+
+def find_table_name_problems(name: str) -> Problems:
+    """Problem of the name of a table that is a path."""
+    if "/" in name or "\\" in name or name in {".", ".."} or "\0" in name:
+        yield validation_problem(
+            "file", f"found the path {name!r}", "Put the table beside its sidecar, and give its name only."
+        )
 
 
 def find_section_problems(section: tuple[float, ...] | None) -> Problems:

@@ -1,4 +1,4 @@
-"""Elasticity of a line: static uplift of the contact wire under a force."""
+"""Elasticity of a line: static uplift of the contact wire under a force, and its height."""
 
 import numpy as np
 
@@ -37,6 +37,26 @@ def static_uplift(line: DiscretisedLine, position: Array, force: float) -> Array
         flat = displacement.transpose(1, 0, 2).ravel()
         uplift[i] = np.mean([load @ flat for load in loads]) + force / len(rows) * _mean_residual(line, float(x))
     return uplift
+
+
+def rest_height(line: DiscretisedLine, position: Array) -> Array:
+    """Height of the contact wire at rest.
+
+    Parameters
+    ----------
+    line : DiscretisedLine
+        Discretised line.
+    position : (n,) ndarray
+        Positions along the line [m].
+
+    Returns
+    -------
+    (n,) ndarray
+        Height above the datum of the line, mean over the contact wires [m].
+    """
+    deflection = line.state.deflection.transpose(1, 0, 2).ravel()
+    heights = [[point_load(line, row, float(x)) @ deflection for row in line.contact_rows] for x in position]
+    return np.asarray(np.mean(heights, axis=1))
 
 
 def height_under_forces(line: DiscretisedLine, position: Array, force: Array) -> Array:

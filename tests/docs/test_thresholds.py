@@ -9,6 +9,7 @@ import pytest
 
 from pantocheck.conformance.authenticity import attachment, reported_numbers
 from pantocheck.conformance.cases import start_and_section
+from pantocheck.conformance.comparison import static_comparison, static_criteria, static_differences, static_record
 from pantocheck.conformance.consistency import (
     force_content,
     force_copy,
@@ -47,10 +48,10 @@ MODULES: list[ModuleType] = [
     rounding, support_coincidence, support_passing, assessed_record, baseline, discretisation,
     extended_band, record_mismatch, record_uncertainty, start_agreement, start_and_section, validity_warnings,
     verification_limits, bands, filters, signals, record, block_bootstrap, force_checks, usable_sections,
-    results_part, results_reading, traces,
+    results_part, results_reading, traces, static_comparison, static_criteria, static_differences, static_record,
 ]  # fmt: skip
 BY_FILE = {"/".join(module.__name__.split(".")[2:]) + ".py": module for module in MODULES}
-FOLDERS = ("quantities", "consistency", "grading", "records", "results", "authenticity")
+FOLDERS = ("quantities", "consistency", "grading", "records", "results", "authenticity", "comparison")
 
 
 def defined_numbers() -> set[tuple[str, str]]:

@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 from helpers.lines import simple_line
 from pantocheck.model import Catenary, Kind, Wire, discretise
-from pantocheck.model.statics.elasticity import height_under_forces, non_uniformity, static_uplift
+from pantocheck.model.statics.elasticity import height_under_forces, non_uniformity, rest_height, static_uplift
 
 SPAN, FORCE = 60.0, 200.0
 
@@ -23,6 +23,17 @@ def test_uplift_is_the_mean_of_contact_wires_with_equal_shares(tensions: tuple[f
     position = np.array([15.0, 30.0, 40.0])
     flexibility = position * (SPAN - position) / SPAN * np.mean([1 / tension for tension in tensions])
     assert_allclose(static_uplift(line, position, FORCE), FORCE / len(tensions) * flexibility, rtol=0.01)
+
+
+@pytest.mark.parametrize("element", [1.0, 4.0])
+def test_height_at_rest_is_the_mean_parabola_of_the_wires(element: float) -> None:
+    """A string sags by m g x (L - x) / (2 T), less bending, m g EI / T^2 = 3e-5 m or less; the wires are averaged."""
+    tensions = (10e3, 20e3)
+    wires = (Wire(f"contact {t}", Kind.CONTACT_WIRE, 0.0, SPAN, t, 1.35, 195.0) for t in tensions)
+    line = discretise(Catenary(tuple(wires)), element)
+    position = np.array([14.3, 30.0, 41.7])
+    sag = 1.35 * 9.81 * position * (SPAN - position) / 2 * np.mean([1 / t for t in tensions])
+    assert_allclose(rest_height(line, position), -sag, rtol=0, atol=3e-5)
 
 
 def test_height_under_one_force_is_its_uplift_above_the_wire_at_rest() -> None:

@@ -1,0 +1,113 @@
+"""`pantocheck compare-statics`: elasticities and contact wire heights measured along a line beside its model."""
+
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+
+from pantocheck.conformance.command_line.console import build_table, console, escape_text, format_number, style_verdict
+from pantocheck.conformance.command_line.options import read_line
+from pantocheck.conformance.command_line.results_output import EXIT_CODES
+from pantocheck.conformance.comparison.static_comparison import compare_statics
+from pantocheck.conformance.comparison.static_comparison_format import ComparedValues, StaticComparison
+from pantocheck.conformance.comparison.static_record import read_static_record
+from pantocheck.conformance.identification.rounded_model import write_model
+from pantocheck.conformance.input_files.atomic_writing import check_writable, produce_atomically
+from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
+from pantocheck.conformance.reports.comparison.static_comparison_page import HEADLINES, build_static_comparison
+from pantocheck.conformance.reports.formats.report_writers import write_report
+
+ToleranceOption = float | None
+
+
+def compare_statics_command(
+    table: Annotated[Path, typer.Argument(help="Table of the measured values, or its sidecar (docs/line-tables.md).")],
+    line: Annotated[str, typer.Option(help="Measured line: id of a case, or path of a case or line file.")],
+    out: Annotated[Path, typer.Option(help="Folder for static_comparison.json, .html and .pdf, and a CSV per value.")],
+    elasticity_tolerance: Annotated[
+        ToleranceOption,
+        typer.Option("--elasticity-tolerance-mm-N", help="Largest accepted difference of the elasticity.", min=0.0),
+    ] = None,
+    elasticity_tolerance_pct: Annotated[
+        ToleranceOption,
+        typer.Option("--elasticity-tolerance-pct", help="The same, relative to the measured elasticity.", min=0.0),
+    ] = None,
+    height_tolerance: Annotated[
+        ToleranceOption,
+        typer.Option("--height-tolerance-mm", help="Largest accepted difference of the contact wire height.", min=0.0),
+    ] = None,
+    element: Annotated[float, typer.Option(help="Element length [m].", min=0.05, max=5.0)] = 0.5,
+) -> None:
+    """Compare elasticities and contact wire heights measured along a line with its model.
+
+    A tolerance makes a criterion; without one, the differences are shown and not graded. No standard states a
+    tolerance, so there is no default. A criterion is skipped if a part of the evaluated section was not measured.
+
+    Example: pantocheck compare-statics measured.csv --line my-line.toml --out statics --height-tolerance-mm 10
+    """
+    tolerances = {
+        "elasticity_difference_mm_N": elasticity_tolerance,
+        "elasticity_difference_pct": elasticity_tolerance_pct,
+        "contact_wire_height_difference_mm": height_tolerance,
+    }
+    line_file = read_line(line)
+    record = read_static_record(table, line_file.geometry)
+    check_writable(out)
+    output = console()
+    with output.status("line at rest"):
+        given = {name: tolerance for name, tolerance in tolerances.items() if tolerance is not None}
+        comparison = compare_statics(record, line_file, element, given)
+        files = _write(comparison, out)
+    output.print(style_verdict(comparison.verdict), escape_text(f" {HEADLINES[comparison.verdict]}"))
+    _print_differences(comparison)
+    for path in files:
+        output.print(escape_text(str(path)), soft_wrap=True)
+    raise typer.Exit(EXIT_CODES[comparison.verdict])
+
+
+def _write(comparison: StaticComparison, folder: Path) -> list[Path]:
+    """Write all files of a comparison; return their paths."""
+    files = [folder / "static_comparison.json"]
+    write_model(files[0], comparison)
+    document = build_static_comparison(comparison.model_dump(mode="json", by_alias=True))
+    for suffix in (".html", ".pdf"):
+        files.append(folder / f"static_comparison{suffix}")
+        write_report(document, files[-1])
+    for values in comparison.values:
+        files.append(folder / f"{values.name}.csv")
+        _write_differences(values, files[-1])
+    return files
+
+
+def _write_differences(values: ComparedValues, path: Path) -> None:
+    unit = values.unit.replace("/", "_")
+    names = ["row", "position_m", f"measured_{unit}", f"model_{unit}", f"difference_{unit}"]
+    columns = (values.row, values.position_m, values.measured, values.model, values.difference)
+    produce_atomically(path, lambda temporary: write_csv_table(temporary, names, np.column_stack(columns), 8))
+
+
+def _print_differences(comparison: StaticComparison) -> None:
+    """Print the criteria, and the differences of all values."""
+    output = console()
+    numbers = ("mean", "RMS", "outliers", "missing")
+    table = build_table("model - measured", "unit", *numbers, title="Evaluated section", right=numbers)
+    for values in comparison.values:
+        table.add_row(
+            values.name.replace("_", " "),
+            values.unit,
+            format_number(values.mean_difference, 3),
+            format_number(values.rms_difference, 3),
+            str(len(values.outlier_rows)),
+            str(len(values.missing_rows)),
+        )
+    output.print(table)
+    if comparison.criteria:
+        criteria = build_table("criterion", "value", "tolerance", "verdict", right=("value", "tolerance"))
+        for item in comparison.criteria:
+            verdict = style_verdict(item.verdict)
+            criteria.add_row(item.quantity, format_number(item.value), format_number(item.tolerance), verdict)
+        output.print(criteria)
+    for item in comparison.criteria:
+        for remark in filter(None, (item.reason, *item.close)):
+            output.print(escape_text(f"  {item.quantity}: {remark}"))

@@ -1,0 +1,1 @@
+"""Measured values of a line beside those of its model."""

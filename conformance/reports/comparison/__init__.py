@@ -1,0 +1,1 @@
+"""Reports on comparisons of measured values with a model."""

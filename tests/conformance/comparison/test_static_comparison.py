@@ -1,0 +1,168 @@
+"""Comparison of static records with the model: known differences, completeness, outliers and wrong units."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from helpers.static_records import SPACING, Array, measure_line, read_unequal_line, write_static_record
+from pantocheck.conformance.comparison.static_comparison import compare_statics
+from pantocheck.conformance.comparison.static_comparison_format import StaticComparison
+from pantocheck.conformance.comparison.static_criteria import grade_tolerance
+from pantocheck.conformance.comparison.static_record import read_static_record
+from pantocheck.conformance.comparison.static_sidecar import StaticSidecar
+from pantocheck.conformance.comparison.value_pair import ValuePair
+from pantocheck.conformance.input_files.input_error import InputError
+
+LINE = read_unequal_line()
+COMPLETE = {"evaluated_spans": [2, 5], "largest_distance_m": SPACING}
+TOLERANCES = {"elasticity_difference_mm_N": 0.05, "contact_wire_height_difference_mm": 5.0}
+
+
+@pytest.fixture(scope="module")
+def computed() -> dict[str, Array]:
+    """Values of the model itself, every 6 m."""
+    return measure_line()
+
+
+def compare(folder: Path, columns: dict[str, Array], tolerances: dict[str, float], **sidecar: Any) -> StaticComparison:
+    """Comparison with elements of 0.5 m."""
+    path = write_static_record(folder, columns, **sidecar)
+    return compare_statics(read_static_record(path, LINE.geometry), LINE, 0.5, tolerances)
+
+
+def change(columns: dict[str, Array], name: str, row: int, change: float) -> dict[str, Array]:
+    """Columns with one value changed; rows count from 1."""
+    values = columns[name].copy()
+    values[row - 1] += change
+    return columns | {name: values}
+
+
+def test_model_agrees_with_itself(tmp_path: Path, computed: dict[str, Array]) -> None:
+    """Nine digits in the table. The mesh of half the length moves heights by less than 0.1 mm."""
+    comparison = compare(tmp_path, computed, TOLERANCES, **COMPLETE)
+    assert comparison.verdict == "pass"
+    for item in comparison.criteria:
+        assert item.value is not None
+        assert item.value < 1e-6
+        assert item.discretisation is not None
+        assert item.discretisation < 0.1
+        assert item.close == ()
+    assert [span.values for span in comparison.values[0].spans] == [11, 10, 10, 10, 9, 11]
+    assert all(not values.outlier_rows for values in comparison.values)
+
+
+def test_known_differences_are_found_with_their_place_and_sign(tmp_path: Path, computed: dict[str, Array]) -> None:
+    """Row 21 lies in span 2 and measures 0.08 mm/N more than the model; row 31, in span 3, 7 mm less."""
+    columns = change(change(computed, "elasticity_mm_N", 21, 0.08), "contact_wire_height_m", 31, -0.007)
+    comparison = compare(tmp_path, columns, TOLERANCES | {"elasticity_difference_pct": 10.0}, **COMPLETE)
+    assert comparison.verdict == "fail"
+    elasticity, height, percent = comparison.criteria
+    measured = columns["elasticity_mm_N"][20]
+    assert elasticity.value == pytest.approx(0.08, rel=1e-4)
+    assert height.value == pytest.approx(7.0, rel=1e-4)
+    assert percent.value == pytest.approx(100 * 0.08 / measured, rel=1e-4)
+    assert "beyond the tolerance, at 121.5 m" in str(elasticity.reason)
+    assert comparison.values[0].outlier_rows == (21,)
+    assert comparison.values[1].outlier_rows == (31,)
+    assert comparison.values[0].spans[1].largest_difference == pytest.approx(-0.08, rel=1e-4)
+    assert comparison.values[1].spans[2].largest_difference == pytest.approx(7.0, rel=1e-4)
+
+
+def test_difference_of_two_forces_is_the_slope_between_them(tmp_path: Path, computed: dict[str, Array]) -> None:
+    """Droppers slacken under 200 N: the slope from 100 N to 200 N exceeds the elasticity under 100 N."""
+    one, two = (
+        compare(tmp_path, computed, {}, **COMPLETE, force_N=force).values[0].model
+        for force in ([100.0], [100.0, 200.0])
+    )
+    assert np.all(np.array(two) >= np.array(one) - 1e-9)
+    assert max(np.array(two) / np.array(one)) > 1.05
+
+
+def test_without_a_tolerance_nothing_is_judged(tmp_path: Path, computed: dict[str, Array]) -> None:
+    comparison = compare(tmp_path, computed, {}, **COMPLETE)
+    assert (comparison.verdict, comparison.criteria) == ("info", ())
+
+
+def test_stated_uncertainty_marks_a_close_criterion(tmp_path: Path, computed: dict[str, Array]) -> None:
+    columns = change(computed, "elasticity_mm_N", 21, 0.045)
+    comparison = compare(tmp_path, columns, TOLERANCES, **COMPLETE, elasticity_uncertainty_mm_N=0.01)
+    assert "could reverse the verdict" in comparison.criteria[0].close[0]
+    assert comparison.verdict == "pass"
+
+
+@pytest.mark.parametrize(
+    ("sidecar", "reason"),
+    [
+        ({"largest_distance_m": SPACING}, "no measured value between 355.5 and 364.5 m"),
+        ({"evaluated_spans": [2, 5]}, "does not state largest_distance_m"),
+        ({"evaluated_spans": [2, 5], "largest_distance_m": 5.9}, "no measured value between 67.5 and 73.5 m"),
+    ],
+)
+def test_incomplete_record_does_not_pass(
+    tmp_path: Path, computed: dict[str, Array], sidecar: dict[str, Any], reason: str
+) -> None:
+    """The last measured position is removed: the end of the line is then 9 m away."""
+    columns = {name: values[:-1] for name, values in computed.items()}
+    comparison = compare(tmp_path, columns, TOLERANCES, **sidecar)
+    assert comparison.verdict == "skip"
+    assert reason in str(comparison.criteria[0].reason)
+
+
+def test_missing_value_is_named_and_leaves_the_criterion_open(tmp_path: Path, computed: dict[str, Array]) -> None:
+    columns = change(computed, "elasticity_mm_N", 30, np.nan)
+    comparison = compare(tmp_path, columns, TOLERANCES, **COMPLETE)
+    elasticity, height = comparison.criteria
+    assert elasticity.verdict == "skip"
+    assert "no measured value between 169.5 and 181.5 m" in str(elasticity.reason)
+    assert height.verdict == "pass"
+    assert comparison.values[0].missing_rows == (30,)
+
+
+@pytest.mark.parametrize(
+    ("name", "factor", "offset", "message"),
+    [
+        ("elasticity_mm_N", 10.0, 0.0, "the median is 10 times that of the model"),
+        ("elasticity_mm_N", 1e-3, 0.0, "the median is 0.001 times"),
+        ("contact_wire_height_m", 1.0, 5.3, "give datum_m = 5.3 in the sidecar"),
+    ],
+)
+def test_evident_error_of_unit_or_datum_is_refused(
+    tmp_path: Path, computed: dict[str, Array], name: str, factor: float, offset: float, message: str
+) -> None:
+    columns = computed | {name: factor * computed[name] + offset}
+    with pytest.raises(InputError, match=message):
+        compare(tmp_path, columns, {}, **COMPLETE)
+
+
+POSITION = np.arange(0.0, 100.1, 5.0)
+SIDECAR = StaticSidecar(schema="pantocheck.static/1", file="a.csv", force_N=(100.0,), largest_distance_m=5.0)
+
+
+def grade(rows: list[int], sidecar: StaticSidecar, name: str = "elasticity_difference_mm_N") -> str:
+    """Verdict of a record with these rows, of which row 7 is 0.2 mm/N off, with a tolerance of 0.1 mm/N."""
+    measured = np.full(POSITION.size, 5e-4)
+    measured[7] += 2e-4
+    model = np.full(len(rows), 5e-4)
+    index = np.array(rows, dtype=np.int64)
+    pair = ValuePair(POSITION[index], measured[index], model, model, index + 1, np.zeros(0, dtype=np.int64))
+    return grade_tolerance(name, 0.1, {"elasticity": pair} if rows else {}, sidecar, (0.0, 100.0)).verdict
+
+
+def test_failing_record_fails() -> None:
+    assert grade(list(range(POSITION.size)), SIDECAR) == "fail"
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.sets(st.integers(0, POSITION.size - 1), max_size=POSITION.size), st.booleans())
+def test_no_removal_of_rows_or_metadata_makes_a_failing_record_pass(kept: set[int], stated: bool) -> None:
+    sidecar = SIDECAR if stated else SIDECAR.model_copy(update={"largest_distance_m": None})
+    assert grade(sorted(kept), sidecar) in {"fail", "skip"}
+
+
+def test_same_result_gives_the_same_bytes(tmp_path: Path, computed: dict[str, Array]) -> None:
+    first, second = (compare(tmp_path, computed, TOLERANCES, **COMPLETE).model_dump_json() for _ in range(2))
+    assert first == second

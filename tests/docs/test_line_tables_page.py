@@ -1,0 +1,79 @@
+"""The page on line tables: its commands run, and its tables name every key and column."""
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from helpers.static_records import LINE_PATH, measure_line, read_unequal_line, write_static_record
+from pantocheck.conformance.command_line.app import app
+from pantocheck.conformance.comparison.static_criteria import CRITERIA
+from pantocheck.conformance.comparison.static_record import COLUMN_UNITS, read_static_record
+from pantocheck.conformance.comparison.static_sidecar import StaticSidecar
+from pantocheck.conformance.input_files.units import find_key_units
+
+PAGE = (Path(__file__).parents[2] / "docs" / "line-tables.md").read_text(encoding="utf-8")
+
+
+def blocks(language: str) -> list[str]:
+    """Code blocks of the page in a language."""
+    fenced = re.findall(r"^```(\w*)\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE)
+    return [text for name, text in fenced if name == language]
+
+
+def command(name: str) -> list[str]:
+    """Arguments of the command of the page with this name."""
+    (line,) = (line for text in blocks("sh") for line in text.splitlines() if line.startswith(f"pantocheck {name} "))
+    return shlex.split(line)[1:]
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Working folder with the line of the page, and a table computed with its model."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mass-drop-line.toml").write_bytes(LINE_PATH.read_bytes())
+    columns = measure_line()
+    columns["position_m"] = columns["position_m"] + 1000
+    columns["contact_wire_height_m"] = columns["contact_wire_height_m"] + 5.3
+    write_static_record(tmp_path, columns)
+    (tmp_path / "measured.toml").write_text(blocks("toml")[0])
+    return tmp_path
+
+
+def test_comparison_runs_and_passes(folder: Path) -> None:
+    done = CliRunner().invoke(app, command("compare-statics"))
+    assert done.exit_code == 0, done.output
+    assert {path.name for path in (folder / "statics").iterdir()} == {
+        "static_comparison.json", "static_comparison.html", "static_comparison.pdf", "elasticity.csv",
+        "contact_wire_height.csv",
+    }  # fmt: skip
+    assert "PASS" in done.output
+
+
+def test_comparison_without_a_tolerance_is_informative(folder: Path) -> None:
+    done = CliRunner().invoke(app, command("compare-statics")[:-2])
+    assert done.exit_code == 1, done.output
+    assert "INFO" in done.output
+
+
+def test_excerpt_of_the_table_is_that_of_the_line(folder: Path) -> None:
+    """The first rows of the page, to the four decimals that it shows."""
+    (folder / "excerpt.csv").write_text(next(text for text in blocks("") if text.startswith("position_m")))
+    (folder / "excerpt.toml").write_text(blocks("toml")[0].replace("measured.csv", "excerpt.csv"))
+    geometry = read_unequal_line().geometry
+    shown, full = (read_static_record(folder / f"{name}.csv", geometry) for name in ("excerpt", "measured"))
+    for name, values in shown.values.items():
+        scale = 1e3 if name == "elasticity" else 1.0
+        assert scale * values == pytest.approx(scale * full.values[name][:3], abs=0.51e-4)
+
+
+def test_page_names_every_key_column_and_criterion() -> None:
+    for name, field in StaticSidecar.model_fields.items():
+        assert f"`{field.alias or name}`" in PAGE
+    for stem, unit in COLUMN_UNITS.items():
+        for other in find_key_units(unit):
+            assert f"`{stem}_{other}`" in PAGE or f"`_{other}`" in PAGE
+    for name in CRITERIA:
+        assert f"`{name}`" in PAGE
