@@ -1,11 +1,13 @@
-"""Dropper schedule: positions, planned pre-sags and published lengths of the droppers of one span."""
+"""Dropper schedule: positions, heights of the contact wire and published lengths of the droppers of one span."""
 
 from collections.abc import Sequence
 from itertools import pairwise
 from typing import Annotated
 
+import numpy as np
 from pydantic import Field
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.sourced_table import (
     InputTable,
@@ -18,6 +20,14 @@ DropperPositions = Annotated[PositiveList, Field(description="positions from the
 DropperPresags = Annotated[
     NumberList | None, Field(description="planned pre-sag of the contact wire at each dropper [m]; default: 0")
 ]
+DropperHeights = Annotated[
+    NumberList | None,
+    Field(
+        description="height of the contact wire at each dropper above the datum of the line, as surveyed, in place of "
+        "presag_m [m]",
+        exclude_if=lambda heights: heights is None,
+    ),
+]
 DropperLengths = Annotated[
     PositiveList | None, Field(description="published length of each dropper, for comparison [m]")
 ]
@@ -28,28 +38,53 @@ class DropperSchedule(InputTable):
 
     x_m: DropperPositions
     presag_m: DropperPresags = None
+    contact_wire_height_m: DropperHeights = None
     length_m: DropperLengths = None
 
     @cross_check
     def _consistent(self) -> Problems:
-        yield from find_schedule_problems(self.x_m, {"presag_m": self.presag_m, "length_m": self.length_m})
+        yield from find_schedule_problems(self.x_m, self.presag_m, self.contact_wire_height_m, self.length_m)
+
+    def prescribed_heights(self, chord: RealArray) -> RealArray:
+        """Heights of the contact wire at the droppers [m], above the datum.
+
+        Parameters
+        ----------
+        chord : (n,) ndarray
+            Heights of the straight line between the supports at the droppers [m].
+        """
+        if self.contact_wire_height_m is not None:
+            return np.array(self.contact_wire_height_m)
+        return np.asarray(chord - np.array(self.presag_m or (0.0,) * len(self.x_m)))
 
 
-def find_schedule_problems(positions: Sequence[float], lists: dict[str, tuple[float, ...] | None]) -> Problems:
-    """Problems of a schedule: positions increase, and every other list has one value per position.
+def find_schedule_problems(
+    positions: Sequence[float],
+    presags: Sequence[float] | None,
+    heights: Sequence[float] | None,
+    lengths: Sequence[float] | None,
+) -> Problems:
+    """Problems of a schedule: positions increase, every list has one value per position, heights are given once.
 
     Parameters
     ----------
     positions : sequence of float
         Positions of the droppers [m].
-    lists : dict of str to tuple of float or None
-        Further values of the droppers by key; None: not given.
+    presags, heights, lengths : sequence of float or None
+        Further values of the droppers; None: not given [m].
 
     Yields
     ------
     PydanticCustomError
-        A position that does not increase, or a list with another number of values.
+        A position that does not increase, a list with another number of values, or pre-sags beside heights.
     """
+    if presags is not None and heights is not None:
+        yield validation_problem(
+            "contact_wire_height_m",
+            "the height of the contact wire is given twice",
+            "Give either presag_m or contact_wire_height_m.",
+        )
+    lists = {"presag_m": presags, "contact_wire_height_m": heights, "length_m": lengths}
     for i, (before, x) in enumerate(pairwise(positions), 2):
         if x <= before:
             yield validation_problem(

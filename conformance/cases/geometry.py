@@ -1,7 +1,7 @@
 """Geometry of a line: spans, heights and stagger; the spans are equal, or listed one by one."""
 
 from abc import abstractmethod
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache
 from itertools import accumulate
@@ -10,18 +10,12 @@ from typing import Annotated, Self
 from pydantic import Discriminator, Field, Tag
 
 from pantocheck.conformance.cases.dropper_schedule import DropperSchedule
+from pantocheck.conformance.cases.support_tables import MOST_SPANS, Encumbrance, Height, SupportTable
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.sourced_table import InputTable, SourcedTable, validation_problem
+from pantocheck.conformance.input_files.sourced_table import InputTable, NonNegative, SourcedTable, validation_problem
 from pantocheck.conformance.input_files.suggestions import suggest_names
 
-MOST_SPANS = 1000
-"""Largest number of spans of a line."""
-
 SpanLength = Annotated[float, Field(ge=10, le=120)]
-Encumbrance = Annotated[
-    float,
-    Field(gt=0, le=5, description="vertical distance between messenger wire and contact wire at a support [m]"),
-]
 Stagger = Annotated[float, Field(ge=-1, le=1, description="lateral offset at the supports, with alternating sign [m]")]
 ScheduleName = Annotated[str, Field(min_length=1, max_length=100)]
 
@@ -37,6 +31,20 @@ class SpanPositions:
     @abstractmethod
     def shorten(self, spans: int) -> Self:
         """Same geometry with the first spans only."""
+
+    @property
+    def own_supports(self) -> Mapping[int, SupportTable]:
+        """Supports and ends of the line with their own values, by number."""
+        return {}
+
+    @property
+    def level_height(self) -> float:
+        """Height of the contact wire at supports without their own height [m]."""
+        return 0.0
+
+    def rise(self, x: float) -> float:
+        """Rise of the contact wire by gradients between the start of the line and a position [m]."""
+        return 0.0
 
     @property
     def span_limits(self) -> tuple[float, ...]:
@@ -120,8 +128,29 @@ class Span(InputTable):
     ] = None
 
 
+class GradientTable(InputTable):
+    """Stretch on which the contact wire rises or falls; behind it, the wire keeps the height that it reached."""
+
+    from_m: Annotated[NonNegative, Field(description="start of the gradient [m]")]
+    to_m: Annotated[NonNegative, Field(description="end of the gradient [m]")]
+    slope: Annotated[float, Field(ge=-0.05, le=0.05, description="rise per length; negative: the wire falls [-]")]
+
+    @cross_check
+    def _has_a_length(self) -> Problems:
+        if self.to_m <= self.from_m:
+            yield validation_problem(
+                "to_m",
+                f"{self.to_m:g} m is not greater than from_m = {self.from_m:g} m",
+                "Give start and end in running order; slope is positive where the wire rises.",
+            )
+
+    def rise(self, x: float) -> float:
+        """Rise between the start of the gradient and a position [m]."""
+        return self.slope * (min(max(x, self.from_m), self.to_m) - self.from_m)
+
+
 class ListedSpans(SpanPositions, SourcedTable):
-    """Spans listed one by one, heights and stagger."""
+    """Spans listed one by one; heights and stagger of the supports, and supports with their own values."""
 
     span_list: Annotated[
         tuple[Span, ...],
@@ -134,6 +163,25 @@ class ListedSpans(SpanPositions, SourcedTable):
     encumbrance_m: Encumbrance
     stagger_contact_wire_m: Stagger = 0.0
     stagger_messenger_m: Stagger = 0.0
+    contact_wire_height_m: Annotated[Height, Field(exclude_if=lambda height: height == 0.0)] = 0.0
+    support: Annotated[
+        tuple[SupportTable, ...],
+        Field(
+            strict=False,
+            max_length=MOST_SPANS + 1,
+            description="supports and ends of the line with their own values",
+            exclude_if=lambda supports: not supports,
+        ),
+    ] = ()
+    gradient: Annotated[
+        tuple[GradientTable, ...],
+        Field(
+            strict=False,
+            max_length=MOST_SPANS,
+            description="gradients of the contact wire; they add to the heights of the supports",
+            exclude_if=lambda gradients: not gradients,
+        ),
+    ] = ()
 
     @property
     def spans(self) -> int:
@@ -147,7 +195,24 @@ class ListedSpans(SpanPositions, SourcedTable):
 
     def shorten(self, spans: int) -> Self:
         """Same geometry with the first spans only."""
-        return self.model_copy(update={"span_list": self.span_list[:spans]})
+        listed = self.span_list[:spans]
+        return self.model_copy(
+            update={"span_list": listed, "support": tuple(s for s in self.support if s.number <= len(listed))}
+        )
+
+    @property
+    def own_supports(self) -> Mapping[int, SupportTable]:
+        """Supports and ends of the line with their own values, by number."""
+        return {support.number: support for support in self.support}
+
+    @property
+    def level_height(self) -> float:
+        """Height of the contact wire at supports without their own height [m]."""
+        return self.contact_wire_height_m
+
+    def rise(self, x: float) -> float:
+        """Rise of the contact wire by gradients between the start of the line and a position [m]."""
+        return sum((gradient.rise(x) for gradient in self.gradient), start=0.0)
 
     def choose_schedules(self, common: DropperSchedule) -> tuple[DropperSchedule, ...]:
         """Dropper schedule of every span: its own, a named one, or the common one of the line."""
@@ -166,6 +231,38 @@ class ListedSpans(SpanPositions, SourcedTable):
                     f"span_list[{i}].droppers",
                     f"there is no dropper schedule {span.droppers!r}",
                     suggest_names(span.droppers, list(self.schedule)),
+                )
+
+    @cross_check
+    def _supports_exist(self) -> Problems:
+        numbers = [support.number for support in self.support]
+        for i, support in enumerate(self.support, 1):
+            key, number = f"support[{i}]", support.number
+            if number > self.spans:
+                yield validation_problem(
+                    f"{key}.number",
+                    f"there is no support {number}",
+                    f"The line has the supports 1 to {self.spans - 1}, and the ends 0 and {self.spans}.",
+                )
+            if number in numbers[: i - 1]:
+                yield validation_problem(
+                    f"{key}.number", f"support {number} is listed twice", "Join both tables of this support."
+                )
+            if number in (0, self.spans) and (support.steady_arm or support.messenger_support):
+                yield validation_problem(
+                    f"{key}.{'steady_arm' if support.steady_arm else 'messenger_support'}",
+                    f"{number} is an end of the line, where the wires are anchored",
+                    "Leave it out: an end has a stagger, an encumbrance and a contact wire height only.",
+                )
+
+    @cross_check
+    def _gradients_lie_on_the_line(self) -> Problems:
+        for i, gradient in enumerate(self.gradient, 1):
+            if gradient.from_m >= self.length:
+                yield validation_problem(
+                    f"gradient[{i}].from_m",
+                    f"{gradient.from_m:g} m is not on the line",
+                    f"Give a position before the end of the line at {self.length:g} m.",
                 )
 
 

@@ -6,6 +6,7 @@ from pydantic import Field
 
 from pantocheck.conformance.cases.damping_file import Damping
 from pantocheck.conformance.cases.dropper_schedule import (
+    DropperHeights,
     DropperLengths,
     DropperPositions,
     DropperPresags,
@@ -13,20 +14,15 @@ from pantocheck.conformance.cases.dropper_schedule import (
     find_schedule_problems,
 )
 from pantocheck.conformance.cases.geometry import GeometryTable, ListedSpans
+from pantocheck.conformance.cases.line_layout import LineLayout, build_layout
+from pantocheck.conformance.cases.support_tables import ClampMass, MessengerSupportTable, SteadyArmTable
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.sourced_table import (
-    InputTable,
-    NonNegative,
-    Positive,
-    SourcedTable,
-    validation_problem,
-)
+from pantocheck.conformance.input_files.sourced_table import InputTable, Positive, SourcedTable, validation_problem
 
 Tension = Annotated[float, Field(gt=0, le=200e3, description="axial tension of one wire [N]")]
 MassPerLength = Annotated[float, Field(gt=0, le=20, description="mass per length of one wire [kg/m]")]
 BendingStiffness = Annotated[float, Field(ge=0, le=1e5, description="bending stiffness EI of one wire [N m2]")]
 Area = Annotated[float | None, Field(gt=0, le=1000, description="cross-section [mm2]")]
-ClampMass = Annotated[float, Field(ge=0, le=20, description="mass of a clamp [kg]")]
 
 
 class WireTable(SourcedTable):
@@ -66,6 +62,7 @@ class DropperTable(SourcedTable):
 
     x_m: DropperPositions
     presag_m: DropperPresags = None
+    contact_wire_height_m: DropperHeights = None
     length_m: DropperLengths = None
     stiffness_N_m: Annotated[float | None, Field(gt=0, description="stiffness of a taut dropper [N/m]")] = None
     axial_stiffness_EA_N: Annotated[
@@ -78,7 +75,7 @@ class DropperTable(SourcedTable):
 
     @cross_check
     def _check_schedule(self) -> Problems:
-        yield from find_schedule_problems(self.x_m, {"presag_m": self.presag_m, "length_m": self.length_m})
+        yield from find_schedule_problems(self.x_m, self.presag_m, self.contact_wire_height_m, self.length_m)
 
     @cross_check
     def _check_stiffness(self) -> Problems:
@@ -99,55 +96,12 @@ class DropperTable(SourcedTable):
     @property
     def schedule(self) -> DropperSchedule:
         """Schedule of the spans that name no other."""
-        return DropperSchedule.model_construct(x_m=self.x_m, presag_m=self.presag_m, length_m=self.length_m)
-
-
-class SteadyArmTable(SourcedTable):
-    """Steady arm, which holds the contact wire at a support."""
-
-    vertical_stiffness_N_m: Annotated[
-        float | None,
-        Field(ge=0, le=1e7, description="vertical stiffness at the wire [N/m]; default: force of the arm / length"),
-    ] = None
-    static_share: Annotated[
-        Literal["level", "none"],
-        Field(
-            description="weight of the contact wire on the arm at rest; level: as much as keeps the wire level at the "
-            "support; none: no weight"
-        ),
-    ]
-    length_m: Annotated[float | None, Field(gt=0, le=5, description="length of the arm [m]")] = None
-    mass_kg_m: Annotated[float, Field(ge=0, le=20, description="mass per length of the arm [kg/m]")] = 0.0
-    clamp_kg: ClampMass = 0.0
-    vertical_damper_N_s_m: Annotated[
-        NonNegative, Field(le=1e6, description="vertical damper between wire and ground [N s/m]")
-    ] = 0.0
-    acts: Annotated[
-        Literal["pull", "push"], Field(description="kind of lateral force of the arm on the contact wire")
-    ] = "pull"
-
-    @cross_check
-    def _check_stiffness(self) -> Problems:
-        if self.vertical_stiffness_N_m is None and self.length_m is None:
-            yield validation_problem(
-                "vertical_stiffness_N_m",
-                "the steady arm has neither a stiffness nor a length",
-                "Give vertical_stiffness_N_m, or length_m for a stiffness of force / length.",
-            )
-
-
-class MessengerSupportTable(SourcedTable):
-    """Support of the messenger wire: a vertical spring and damper."""
-
-    stiffness_N_m: Annotated[Positive, Field(le=1e10, description="vertical stiffness [N/m]")]
-    damping_N_s_m: Annotated[NonNegative, Field(description="vertical damper [N s/m]")] = 0.0
-    along_track: Annotated[
-        Literal["free", "fixed"],
-        Field(
-            description="motion of the messenger wire along the track at the supports; free: its tension is constant; "
-            "fixed: its tension changes with its elongation between two supports"
-        ),
-    ] = "free"
+        return DropperSchedule.model_construct(
+            x_m=self.x_m,
+            presag_m=self.presag_m,
+            contact_wire_height_m=self.contact_wire_height_m,
+            length_m=self.length_m,
+        )
 
 
 class LineFile(InputTable):
@@ -168,6 +122,11 @@ class LineFile(InputTable):
     def dropper_schedules(self) -> tuple[DropperSchedule, ...]:
         """Dropper schedule of every span."""
         return self.geometry.choose_schedules(self.droppers.schedule)
+
+    @property
+    def layout(self) -> LineLayout:
+        """Spans and supports with all their values, in either form of the geometry."""
+        return build_layout(self.geometry, self.dropper_schedules, self.steady_arm, self.messenger_support)
 
     @cross_check
     def _droppers_lie_in_their_spans(self) -> Problems:
@@ -204,10 +163,11 @@ class LineFile(InputTable):
 
     @cross_check
     def _check_axial_stiffness(self) -> Problems:
-        if self.messenger_support.along_track == "fixed" and self.messenger_wire.axial_stiffness_EA_N is None:
+        holding = self.layout.supports_fixed_along_track
+        if holding and self.messenger_wire.axial_stiffness_EA_N is None:
             yield validation_problem(
                 "messenger_wire.axial_stiffness_EA_N",
-                "the supports hold the messenger wire along the track, but its axial stiffness is not given",
+                f"support {holding[0]} holds the messenger wire along the track, but its axial stiffness is not given",
                 "Give messenger_wire.axial_stiffness_EA_N, or set messenger_support.along_track = 'free'.",
             )
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from pantocheck.conformance.cases.damping_file import ComponentDamping
 from pantocheck.conformance.cases.line_file import LineFile, WireTable
+from pantocheck.conformance.cases.line_layout import LineLayout, SpanLimit
 from pantocheck.model import (
     Catenary,
     Clamp,
@@ -45,15 +46,16 @@ def build_catenary(line: LineFile) -> Catenary:
     Catenary
         Catenary for the simulator.
     """
+    layout = line.layout
     catenary = Catenary(
         wires=(
-            *_wires(line, Kind.CONTACT_WIRE),
-            *_wires(line, Kind.MESSENGER_WIRE),
+            *_wires(line, layout, Kind.CONTACT_WIRE),
+            *_wires(line, layout, Kind.MESSENGER_WIRE),
             *(wire for _, wire in _stitch_wires(line)),
         ),
-        droppers=tuple(_droppers(line)),
-        steady_arms=tuple(_steady_arms(line)),
-        messenger_supports=tuple(_messenger_supports(line)),
+        droppers=tuple(_droppers(line, layout)),
+        steady_arms=tuple(_steady_arms(line, layout)),
+        messenger_supports=tuple(_messenger_supports(line, layout)),
         clamps=tuple(_clamps(line)),
         damping={kind: _rayleigh(getattr(line.damping, key)) for kind, key in _DAMPING_KEYS.items()},
         modal_damping=tuple(ModalBand(band.from_Hz, band.to_Hz, band.damping_ratio) for band in line.damping.modal),
@@ -76,34 +78,41 @@ def _names(line: LineFile, kind: Kind) -> list[str]:
     return [name] if table.number == 1 else [f"{name} {i + 1}" for i in range(table.number)]
 
 
-def _wires(line: LineFile, kind: Kind) -> Iterator[Wire]:
-    geometry, stitch = line.geometry, line.stitch_wire
+def _wires(line: LineFile, layout: LineLayout, kind: Kind) -> Iterator[Wire]:
+    stitch = line.stitch_wire
     changes: tuple[TensionChange, ...] = ()
     table: WireTable = line.contact_wire
-    stagger, axial_stiffness = geometry.stagger_contact_wire_m, None
+    axial_stiffness = None
     if kind is Kind.MESSENGER_WIRE:
-        table, stagger = line.messenger_wire, geometry.stagger_messenger_m
-        axial_stiffness = line.messenger_wire.axial_stiffness_EA_N
+        table, axial_stiffness = line.messenger_wire, line.messenger_wire.axial_stiffness_EA_N
         if stitch is not None:
             # The messenger and the stitch wire share the tension between the clamps.
             half = stitch.length_m / 2
-            changes = tuple(TensionChange(x - half, x + half, -stitch.tension_N) for x in geometry.supports)
-    lateral = geometry.stagger_contact_wire_m != 0.0 or geometry.stagger_messenger_m != 0.0
+            changes = tuple(TensionChange(x - half, x + half, -stitch.tension_N) for x in line.geometry.supports)
+    places = [_wire_place(limit, kind) for limit in layout.limits]
     for i, name in enumerate(_names(line, kind)):
         offset = (table.spacing_m or 0.0) * (i - (table.number - 1) / 2)
-        plan = tuple((x, (stagger if n % 2 == 0 else -stagger) + offset) for n, x in enumerate(geometry.span_limits))
+        plan = tuple((limit.position, y + offset) for limit, (y, _) in zip(layout.limits, places, strict=True))
         yield Wire(
             name,
             kind,
             0.0,
-            geometry.length,
+            line.geometry.length,
             table.tension_N,
             table.mass_kg_m,
             table.bending_stiffness_N_m2,
             tension_changes=changes,
-            stagger=plan if lateral else None,
+            stagger=plan if layout.has_stagger else None,
             axial_stiffness=axial_stiffness,
+            end_heights=(places[0][1], places[-1][1]),
         )
+
+
+def _wire_place(limit: SpanLimit, kind: Kind) -> tuple[float, float]:
+    """Lateral position and height of a contact or messenger wire at a support or end of the line [m, m]."""
+    if kind is Kind.CONTACT_WIRE:
+        return limit.contact_wire_stagger, limit.contact_wire_height
+    return limit.messenger_wire_stagger, limit.messenger_wire_height
 
 
 def _stitch_wires(line: LineFile) -> list[tuple[str, Wire]]:
@@ -127,13 +136,12 @@ def _clamps(line: LineFile) -> Iterator[Clamp]:
                 yield Clamp(end, messenger, wire.name, line.stitch_wire.clamp_kg)
 
 
-def _droppers(line: LineFile) -> Iterator[Dropper]:
+def _droppers(line: LineFile, layout: LineLayout) -> Iterator[Dropper]:
     table, messengers, stitch_wires = line.droppers, _names(line, Kind.MESSENGER_WIRE), _stitch_wires(line)
-    for span_start, schedule in zip(line.geometry.span_limits[:-1], line.dropper_schedules, strict=True):
-        presag = schedule.presag_m or (0.0,) * len(schedule.x_m)
-        for x, sag in zip(schedule.x_m, presag, strict=True):
+    for span in layout.spans:
+        for position, height in zip(span.dropper_position.tolist(), span.contact_wire_height.tolist(), strict=True):
             for i, contact in enumerate(_names(line, Kind.CONTACT_WIRE)):
-                position, messenger = span_start + x, messengers[min(i, len(messengers) - 1)]
+                messenger = messengers[min(i, len(messengers) - 1)]
                 stitch = (w.name for name, w in stitch_wires if name == messenger and w.start < position < w.end)
                 yield Dropper(
                     position,
@@ -144,18 +152,18 @@ def _droppers(line: LineFile) -> Iterator[Dropper]:
                     mass=table.mass_kg or 0.0,
                     upper_clamp_mass=table.clamp_on_messenger_kg,
                     lower_clamp_mass=table.clamp_on_contact_kg,
-                    contact_wire_height=-sag,
+                    contact_wire_height=height,
                 )
 
 
-def _steady_arms(line: LineFile) -> Iterator[SteadyArm]:
-    arm = line.steady_arm
-    # A bar that rotates about its hinge acts at the claw with a third of its mass.
-    mass = arm.mass_kg_m * (arm.length_m or 0.0) / 3 + arm.clamp_kg
-    for x in line.geometry.supports:
+def _steady_arms(line: LineFile, layout: LineLayout) -> Iterator[SteadyArm]:
+    for support in layout.supports:
+        arm = support.steady_arm
+        # A bar that rotates about its hinge acts at the claw with a third of its mass.
+        mass = arm.mass_kg_m * (arm.length_m or 0.0) / 3 + arm.clamp_kg
         for contact in _names(line, Kind.CONTACT_WIRE):
             yield SteadyArm(
-                x,
+                support.limit.position,
                 contact,
                 vertical_stiffness=arm.vertical_stiffness_N_m,
                 length=arm.length_m,
@@ -163,20 +171,21 @@ def _steady_arms(line: LineFile) -> Iterator[SteadyArm]:
                 vertical_damper=arm.vertical_damper_N_s_m,
                 carries_share=arm.static_share == "level",
                 acts=arm.acts,
+                height=support.limit.contact_wire_height,
             )
 
 
-def _messenger_supports(line: LineFile) -> Iterator[MessengerSupport]:
-    support = line.messenger_support
-    for x in line.geometry.supports:
+def _messenger_supports(line: LineFile, layout: LineLayout) -> Iterator[MessengerSupport]:
+    for support in layout.supports:
+        table = support.messenger_support
         for messenger in _names(line, Kind.MESSENGER_WIRE):
             yield MessengerSupport(
-                x,
+                support.limit.position,
                 messenger,
-                line.geometry.encumbrance_m,
-                support.stiffness_N_m,
-                support.damping_N_s_m,
-                support.along_track,
+                support.limit.messenger_wire_height,
+                table.stiffness_N_m,
+                table.damping_N_s_m,
+                table.along_track,
             )
 
 

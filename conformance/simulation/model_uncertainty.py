@@ -23,7 +23,8 @@ class Effect(InputTable):
     """Effect that the equations leave out, and its size on one line."""
 
     along_track: Annotated[
-        Literal["free", "fixed"], Field(description="lines that it concerns: those with this messenger_support")
+        Literal["free", "fixed"],
+        Field(description="lines that it concerns: fixed: those with a fixed messenger_support"),
     ]
     effect: Annotated[str, Field(description="equation of the simulator and effect that it leaves out", max_length=200)]
     compared: Annotated[str, Field(description="line, speed and mesh of the comparison", max_length=200)]
@@ -54,5 +55,5 @@ def read_effects() -> tuple[Effect, ...]:
 
 def list_model_uncertainty(case: Case) -> tuple[str, ...]:
     """Sentences on the effects that the reference simulator leaves out in a passage of a case."""
-    along_track = case.line.messenger_support.along_track
+    along_track = "fixed" if case.line.layout.supports_fixed_along_track else "free"
     return tuple(effect.sentence for effect in read_effects() if effect.along_track == along_track)

@@ -1,4 +1,4 @@
-"""Line files with their equal spans listed one by one."""
+"""Line files with their equal spans, and their supports, listed one by one."""
 
 from typing import Any
 
@@ -10,3 +10,34 @@ def list_spans(tables: dict[str, Any]) -> dict[str, Any]:
     }
     spans = [{"length_m": tables["geometry"]["span_m"]}] * tables["geometry"]["spans"]
     return tables | {"geometry": geometry | {"span_list": spans}}
+
+
+def list_supports(tables: dict[str, Any]) -> dict[str, Any]:
+    """Tables of a line file with listed spans and every value of every support; those of the line are wrong."""
+    parts = {name: _numbers(tables[name]) for name in ("steady_arm", "messenger_support")}
+    geometry = dict(tables["geometry"])
+    last = len(geometry["span_list"])
+    staggers = {key: geometry.pop(key, 0.0) for key in ("stagger_contact_wire_m", "stagger_messenger_m")}
+    heights = {"contact_wire_height_m": 0.0, "encumbrance_m": geometry["encumbrance_m"]}
+    geometry |= {"contact_wire_height_m": 1.0, "encumbrance_m": 0.1 + geometry["encumbrance_m"]}
+    geometry["support"] = [
+        {"number": n}
+        | {key: value if n % 2 == 0 else -value for key, value in staggers.items()}
+        | heights
+        | (parts if 0 < n < last else {})
+        for n in range(last + 1)
+    ]
+    wrong = {
+        name: tables[name] | {key: _other(key, value) for key, value in part.items()} for name, part in parts.items()
+    }
+    return tables | wrong | {"geometry": geometry}
+
+
+def _numbers(table: dict[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in table.items() if key not in {"trust", "source", "provisional", "note"}}
+
+
+def _other(key: str, value: Any) -> Any:
+    """Another value of the same key."""
+    others = {"level": "none", "none": "level", "pull": "push", "push": "pull", "free": "fixed", "fixed": "free"}
+    return others[value] if isinstance(value, str) else value / 2 + 1.0

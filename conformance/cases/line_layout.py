@@ -1,0 +1,182 @@
+"""Line layout: every span and every support of a line with all its values, in either form of the geometry.
+
+number      0          1          2          3  = number of spans
+            |----------o----------o----------|
+           end      support    support      end
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.cases.dropper_schedule import DropperSchedule
+from pantocheck.conformance.cases.geometry import Geometry
+from pantocheck.conformance.cases.support_tables import (
+    MessengerSupportTable,
+    SteadyArmTable,
+    SupportTable,
+    overlay_changes,
+)
+
+
+@dataclass(frozen=True)
+class SpanLimit:
+    """Point where the wires are held: a support, or an end of the line.
+
+    Parameters
+    ----------
+    number : int
+        Number from 0, the start of the line.
+    position : float
+        Position along the track [m].
+    contact_wire_height, messenger_wire_height : float
+        Heights of the wires above the datum [m].
+    contact_wire_stagger, messenger_wire_stagger : float
+        Lateral positions of the wires, signed [m].
+    """
+
+    number: int
+    position: float
+    contact_wire_height: float
+    messenger_wire_height: float
+    contact_wire_stagger: float
+    messenger_wire_stagger: float
+
+
+@dataclass(frozen=True)
+class SupportLayout:
+    """Support with its arm and its messenger support.
+
+    Parameters
+    ----------
+    limit : SpanLimit
+        Position, heights and staggers.
+    steady_arm : SteadyArmTable
+        Steady arm.
+    messenger_support : MessengerSupportTable
+        Messenger support.
+    """
+
+    limit: SpanLimit
+    steady_arm: SteadyArmTable
+    messenger_support: MessengerSupportTable
+
+
+@dataclass(frozen=True)
+class SpanLayout:
+    """Span with its droppers.
+
+    Parameters
+    ----------
+    start, end : SpanLimit
+        Support or end of the line at either side.
+    dropper_position : (n,) ndarray
+        Positions of the droppers along the track [m].
+    contact_wire_height : (n,) ndarray
+        Prescribed heights of the contact wire at the droppers [m].
+    """
+
+    start: SpanLimit
+    end: SpanLimit
+    dropper_position: RealArray
+    contact_wire_height: RealArray
+
+
+@dataclass(frozen=True)
+class LineLayout:
+    """Spans and supports in running order.
+
+    Parameters
+    ----------
+    limits : tuple of SpanLimit
+        Start of the line, supports, and end of the line.
+    spans : tuple of SpanLayout
+        Spans.
+    supports : tuple of SupportLayout
+        Supports between the ends of the line.
+    """
+
+    limits: tuple[SpanLimit, ...]
+    spans: tuple[SpanLayout, ...]
+    supports: tuple[SupportLayout, ...]
+
+    @property
+    def supports_fixed_along_track(self) -> tuple[int, ...]:
+        """Numbers of the supports that hold the messenger wire along the track."""
+        return tuple(s.limit.number for s in self.supports if s.messenger_support.along_track == "fixed")
+
+    @property
+    def has_stagger(self) -> bool:
+        """Whether a wire lies beside the centre line at a support."""
+        return any(limit.contact_wire_stagger or limit.messenger_wire_stagger for limit in self.limits)
+
+    @cached_property
+    def _chords(self) -> tuple[list[float], list[float]]:
+        return [limit.position for limit in self.limits], [limit.contact_wire_height for limit in self.limits]
+
+    def chord_height(self, position: RealArray) -> RealArray:
+        """Height of the straight lines between the contact wire at neighbouring supports, at positions (n,) [m]."""
+        return np.interp(position, *self._chords)
+
+
+def build_layout(
+    geometry: Geometry,
+    schedules: Sequence[DropperSchedule],
+    steady_arm: SteadyArmTable,
+    messenger_support: MessengerSupportTable,
+) -> LineLayout:
+    """Build the layout of a line.
+
+    Parameters
+    ----------
+    geometry : Geometry
+        Spans, heights and staggers.
+    schedules : sequence of DropperSchedule
+        Dropper schedule of every span.
+    steady_arm, messenger_support : SteadyArmTable, MessengerSupportTable
+        Arm and messenger support of supports without their own values.
+    """
+    own = geometry.own_supports
+    limits = tuple(_build_limit(geometry, number, x, own) for number, x in enumerate(geometry.span_limits))
+    supports = []
+    for limit in limits[1:-1]:
+        changes = own.get(limit.number, SupportTable(number=limit.number))
+        arm = overlay_changes(steady_arm, changes.steady_arm)
+        supports.append(SupportLayout(limit, arm, overlay_changes(messenger_support, changes.messenger_support)))
+    spans = zip(limits[:-1], limits[1:], schedules, strict=True)
+    return LineLayout(limits, tuple(_build_span(*span) for span in spans), tuple(supports))
+
+
+def _build_limit(geometry: Geometry, number: int, position: float, own: Mapping[int, SupportTable]) -> SpanLimit:
+    """Support or end of the line.
+
+    Staggers without an own value alternate in sign. An end of the line without own heights has those of its next
+    support; gradients add to both.
+    """
+    next_support = min(max(number, 1), max(geometry.spans - 1, 1))
+    here, level = own.get(number, SupportTable(number=number)), own.get(next_support, SupportTable(number=number))
+    side = 1.0 if number % 2 == 0 else -1.0
+    height = _first(here.contact_wire_height_m, level.contact_wire_height_m, geometry.level_height)
+    height += geometry.rise(position)
+    return SpanLimit(
+        number=number,
+        position=position,
+        contact_wire_height=height,
+        messenger_wire_height=height + _first(here.encumbrance_m, level.encumbrance_m, geometry.encumbrance_m),
+        contact_wire_stagger=_first(here.stagger_contact_wire_m, side * geometry.stagger_contact_wire_m),
+        messenger_wire_stagger=_first(here.stagger_messenger_m, side * geometry.stagger_messenger_m),
+    )
+
+
+def _first(*values: float | None) -> float:
+    """First given value."""
+    return next(value for value in values if value is not None)
+
+
+def _build_span(start: SpanLimit, end: SpanLimit, schedule: DropperSchedule) -> SpanLayout:
+    share = np.array(schedule.x_m) / (end.position - start.position)
+    chord = start.contact_wire_height + share * (end.contact_wire_height - start.contact_wire_height)
+    return SpanLayout(start, end, start.position + np.array(schedule.x_m), schedule.prescribed_heights(chord))
