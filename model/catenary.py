@@ -64,6 +64,26 @@ class TensionChange:
 
 
 @dataclass(frozen=True)
+class SectionChange:
+    """Stretch of a wire with another cross-section, such as a worn wire or a splice.
+
+    Parameters
+    ----------
+    start, end : float
+        Ends of the stretch [m].
+    mass_per_length : float
+        Added to the mass per length of the wire [kg/m].
+    bending_stiffness : float
+        Added to the bending stiffness of the wire [N m2].
+    """
+
+    start: float
+    end: float
+    mass_per_length: float = 0.0
+    bending_stiffness: float = 0.0
+
+
+@dataclass(frozen=True)
 class Wire:
     """Tensioned wire from anchor to anchor.
 
@@ -92,6 +112,8 @@ class Wire:
         support. A stitch wire ends at its clamps.
     irregularity : Irregularity or None
         Heights that a pantograph feels in addition to those of the wire; only of a contact wire.
+    section_changes : tuple of SectionChange
+        Stretches with another cross-section.
     """
 
     name: str
@@ -106,6 +128,7 @@ class Wire:
     axial_stiffness: float | None = None
     end_heights: tuple[float, float] | None = None
     irregularity: Irregularity | None = None
+    section_changes: tuple[SectionChange, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -236,6 +259,25 @@ class Clamp:
 
 
 @dataclass(frozen=True)
+class PointMass:
+    """Mass on a wire, such as a section insulator or a clamp; it hangs on the wire at rest and moves with it.
+
+    Parameters
+    ----------
+    position : float
+        Position along the track [m].
+    wire : str
+        Name of the wire.
+    mass : float
+        Mass [kg].
+    """
+
+    position: float
+    wire: str
+    mass: float
+
+
+@dataclass(frozen=True)
 class ModalBand:
     """Damping ratio of all modes in a frequency band, in place of their Rayleigh damping.
 
@@ -264,6 +306,8 @@ class Catenary:
         Damping of each kind of component; a missing kind is undamped.
     modal_damping : tuple of ModalBand
         Frequency bands with modal damping.
+    point_masses : tuple of PointMass
+        Masses on the wires, each with the damping of its wire.
     """
 
     wires: tuple[Wire, ...]
@@ -273,6 +317,7 @@ class Catenary:
     clamps: tuple[Clamp, ...] = ()
     damping: dict[Kind, Rayleigh] = field(default_factory=dict)
     modal_damping: tuple[ModalBand, ...] = ()
+    point_masses: tuple[PointMass, ...] = ()
 
     @property
     def contact_wires(self) -> tuple[Wire, ...]:

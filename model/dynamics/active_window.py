@@ -96,7 +96,8 @@ def max_wave_speed(line: DiscretisedLine) -> float:
 
     Bending makes short waves faster: 10 % above sqrt(T / m) is sufficient up to about 60 Hz on a contact wire.
     """
-    return 1.1 * math.sqrt(max(wire.tension / wire.mass_per_length for wire in line.catenary.wires))
+    present = line.beams.mass_per_length > 0
+    return 1.1 * math.sqrt(float(np.max(line.beams.tension[present] / line.beams.mass_per_length[present])))
 
 
 @njit(cache=True)

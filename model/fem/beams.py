@@ -66,6 +66,10 @@ def build_beams(catenary: Catenary, mesh: Mesh) -> Beams:
             tension[row, (change.start < middle) & (middle < change.end)] += change.change
         bending_stiffness[row, inside] = wire.bending_stiffness
         mass_per_length[row, inside] = wire.mass_per_length
+        for stretch in wire.section_changes:
+            changed = (stretch.start < middle) & (middle < stretch.end)
+            mass_per_length[row, changed] += stretch.mass_per_length
+            bending_stiffness[row, changed] += stretch.bending_stiffness
         first, last = mesh.station(wire.start), mesh.station(wire.end)
         free[row, first : last + 1] = True
         if wire.kind is not Kind.STITCH_WIRE:  # a stitch wire ends in clamps, not in anchors

@@ -1,6 +1,7 @@
 """Lumped parts: masses, springs and dampers that act on a single row at a single station.
 
-Droppers and clamps contribute their masses, steady arms and messenger supports also stiffness and damping.
+Droppers, clamps and point masses contribute their masses, steady arms and messenger supports also stiffness and
+damping.
 """
 
 from collections.abc import Iterator
@@ -55,6 +56,9 @@ def _lumped_parts(catenary: Catenary, mesh: Mesh) -> Iterator[LumpedPart]:
         for support in catenary.messenger_supports:
             row = mesh.row_of[support.wire, field]
             yield LumpedPart(Kind.MESSENGER_SUPPORT, row, support.position, 0.0, support.stiffness, support.damping)
+        for mass in catenary.point_masses:
+            kind, row = catenary.wire(mass.wire).kind, mesh.row_of[mass.wire, field]
+            yield LumpedPart(kind, row, mass.position, mass.mass)
     for arm in catenary.steady_arms:
         row, stiffness = mesh.row_of[arm.wire, "z"], arm.vertical_stiffness or 0.0
         yield LumpedPart(Kind.STEADY_ARM, row, arm.position, 0.0, stiffness, arm.vertical_damper)

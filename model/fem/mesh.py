@@ -96,13 +96,14 @@ def build_mesh(catenary: Catenary, element_length: float, places: tuple[float, .
 
 
 def _breakpoints(catenary: Catenary, requested: tuple[float, ...]) -> Array:
-    """Positions of connectors, anchors, changes of tension and requested stations, each once."""
+    """Positions of connectors, masses, anchors, changes of a wire and requested stations, each once."""
     places = [*requested, *(place for wire in catenary.wires for place in (wire.start, wire.end))]
-    changes = [change for wire in catenary.wires for change in wire.tension_changes]
-    places += [place for change in changes for place in (change.start, change.end)]
+    for wire in catenary.wires:
+        places += [place for change in wire.tension_changes for place in (change.start, change.end)]
+        places += [place for change in wire.section_changes for place in (change.start, change.end)]
     places += [dropper.position for dropper in catenary.droppers] + [arm.position for arm in catenary.steady_arms]
     places += [support.position for support in catenary.messenger_supports]
-    places += [clamp.position for clamp in catenary.clamps]
+    places += [clamp.position for clamp in catenary.clamps] + [mass.position for mass in catenary.point_masses]
     ordered = np.unique(np.array(places))
     # Equal positions from different sums differ in the last bits; an element of that length spoils the conditioning.
     kept: Array = ordered[np.append(True, np.diff(ordered) > 1e-6)]

@@ -129,13 +129,22 @@ def _hold_contact_wire(
     heights |= {mesh.station(arm.position): arm.height for arm in arms}
     for wire in map(catenary.wire, names):
         heights |= zip(map(mesh.station, (wire.start, wire.end)), wire.end_heights or (0.0, 0.0), strict=True)
-    load, free = weight(beams, row, GRAVITY), beams.free[row].copy()
+    load, free = _weight(catenary, mesh, beams, row), beams.free[row].copy()
     shape = np.zeros((mesh.position.size, 2))
     for station, height in heights.items():
         free[station, 0] = False
         shape[station, 0] = height
     solution = solve_with_prescribed_displacements(stiffness, load, free.ravel(), shape.ravel())
     return solution.reshape(-1, 2), (stiffness @ solution - load)[::2]
+
+
+def _weight(catenary: Catenary, mesh: Mesh, beams: Beams, row: int) -> Array:
+    """Weight of the wires of one row and of the point masses on them, as nodal forces [N, N m]."""
+    load = weight(beams, row, GRAVITY)
+    for mass in catenary.point_masses:
+        if mesh.row_of[mass.wire, "z"] == row:
+            load[2 * mesh.station(mass.position)] -= GRAVITY * mass.mass
+    return load
 
 
 def _dropper_tension(catenary: Catenary, mesh: Mesh, reaction: Array) -> Array:
@@ -160,7 +169,7 @@ def _hang_upper_wires(
 ) -> tuple[Array, Array]:
     """Shape of messenger and stitch wires under weight and dropper tensions, and the vertical forces of the clamps."""
     stations = mesh.position.size
-    load = np.concatenate([weight(beams, row, GRAVITY) for row in rows])
+    load = np.concatenate([_weight(catenary, mesh, beams, row) for row in rows])
     free, shape = beams.free[rows].ravel(), np.zeros(len(rows) * stations * 2)
 
     def deflection_index(wire: str, position: float) -> int:
