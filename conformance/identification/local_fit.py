@@ -10,6 +10,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from pantocheck.conformance.array_types import ComplexArray, RealArray
+from pantocheck.conformance.identification.column_factors import factor_columns
 from pantocheck.conformance.identification.decay_kernel import decay_kernel, far_pole_columns, stack_real_imaginary
 from pantocheck.conformance.identification.projection import DataBlock, ProjectionFit, pole_columns
 
@@ -81,7 +82,7 @@ def find_best_candidate(local: LocalFit, centre: float) -> tuple[complex, float]
     gain = np.zeros(trials.size)
     for data in local.blocks:
         present = pole_columns(local.poles, data)
-        q = scipy.linalg.qr(np.hstack([present, data.residual_terms]), mode="economic")[0]
+        q, _ = factor_columns(np.hstack([present, data.residual_terms]))
         x = stack_real_imaginary(data.spectrum)
         residual = x - q @ (q.T @ x)
         new = pole_columns(trials, data)
@@ -98,7 +99,7 @@ def pole_contributions(poles: ComplexArray, blocks: list[DataBlock]) -> RealArra
     m = poles.size
     reduction = np.zeros(m)
     for data in blocks:
-        q, r = scipy.linalg.qr(np.hstack([pole_columns(poles, data), data.residual_terms]), mode="economic")
+        q, r = factor_columns(np.hstack([pole_columns(poles, data), data.residual_terms]))
         inverse = scipy.linalg.pinv(r)
         coefficients = inverse @ (q.T @ stack_real_imaginary(data.spectrum))
         for j in range(m):

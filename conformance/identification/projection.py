@@ -18,6 +18,7 @@ import numpy as np
 import scipy.linalg
 
 from pantocheck.conformance.array_types import ComplexArray, IntegerArray, RealArray
+from pantocheck.conformance.identification.column_factors import factor_columns, solve_factor, solve_least_squares
 from pantocheck.conformance.identification.decay_kernel import (
     decay_kernel,
     drift_columns,
@@ -119,17 +120,20 @@ def pole_columns(poles: ComplexArray, data: DataBlock) -> RealArray:
 
 def solve_residues(poles: ComplexArray, data: DataBlock) -> ProjectionFit:
     """Solve for the residues of known poles, (m,) [1/s], by least squares."""
-    _, coefficients, residual = project_spectrum(pole_columns(poles, data), data)
+    columns = np.hstack([pole_columns(poles, data), data.residual_terms])
+    x = stack_real_imaginary(data.spectrum)
+    coefficients = solve_least_squares(columns, x)
+    residual = x - columns @ coefficients
     m, k = poles.size, data.lines.size
     return ProjectionFit(coefficients[:m] + 1j * coefficients[m : 2 * m], residual[:k] + 1j * residual[k:])
 
 
 def project_spectrum(columns: RealArray, data: DataBlock) -> tuple[RealArray, RealArray, RealArray]:
     """Project a spectrum: orthonormal basis of columns and residual terms, their coefficients, and the residual."""
-    q, r = scipy.linalg.qr(np.hstack([columns, data.residual_terms]), mode="economic", check_finite=False)
+    q, r = factor_columns(np.hstack([columns, data.residual_terms]))
     x = stack_real_imaginary(data.spectrum)
     projected = q.T @ x
-    return q, np.linalg.lstsq(r, projected, rcond=1e-13)[0], np.asarray(x - q @ projected)
+    return q, solve_factor(r, projected), np.asarray(x - q @ projected)
 
 
 def residue_spread(poles: ComplexArray, data: DataBlock) -> RealArray:

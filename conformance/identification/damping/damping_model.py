@@ -19,6 +19,7 @@ from pantocheck.conformance.array_types import IntegerArray, RealArray
 from pantocheck.conformance.identification.damping.damping_format import Coefficient
 from pantocheck.conformance.identification.damping.damping_terms import DampingBasis, Term
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.one_thread import use_one_thread
 from pantocheck.model import Kind
 from pantocheck.model.catenary import ModalBand
 
@@ -82,6 +83,7 @@ class DampingFit:
         return {(c.kind, c.matrix): c.value for c in self.coefficients}
 
 
+@use_one_thread
 def fit_damping_model(basis: DampingBasis, measured: MeasuredModes) -> DampingFit:
     """Fit the coefficients of the wires by non-negative least squares.
 

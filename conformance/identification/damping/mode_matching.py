@@ -15,6 +15,7 @@ from pantocheck.conformance.identification.damping.mode_pairing import (
 )
 from pantocheck.conformance.identification.mode import Mode
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.one_thread import use_one_thread
 from pantocheck.model import Catenary, DiscretisedLine, discretise
 from pantocheck.model.modal.modes import Modes, compute_modes_below
 
@@ -97,6 +98,7 @@ def select_usable(modes: Sequence[Mode], source: str) -> list[Mode]:
     return usable
 
 
+@use_one_thread
 def match_modes(usable: list[Mode], line: Catenary, element: float, source: str) -> MatchedModes:
     """Compute the modes of a line and pair them with identified modes.
 
