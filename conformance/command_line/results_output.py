@@ -11,7 +11,7 @@ from rich.text import Text
 
 from pantocheck.conformance.command_line.console import build_table, console, escape_text, format_number, style_verdict
 from pantocheck.conformance.grading.verdicts import Verdict
-from pantocheck.conformance.quantities.limit_text import format_bounds, name_value
+from pantocheck.conformance.quantities.limit_text import format_graded, format_margin, name_value
 from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline, describe_record
 from pantocheck.conformance.results.criterion_format import Criterion
 from pantocheck.conformance.results.results_format import Results, name_case
@@ -79,13 +79,14 @@ def _build_criterion_table(criteria: Sequence[Criterion]) -> Table:
     table.padding = (0, 1, 0, 0)
     for item in criteria:
         error = item.discretisation_error if item.uncertainty is None else item.uncertainty
+        texts = format_graded(item.value, item.lower, item.upper)
         table.add_row(
             escape_text(_name(item)),
-            format_number(item.value),
+            texts.value,
             format_number(error, 2),
             format_number(item.spread, 2),
-            format_bounds(item.lower, item.upper, 4),
-            "-" if item.margin is None else f"{item.margin:+.2f}",
+            texts.bounds,
+            "-" if item.margin is None else format_margin(item.margin),
             style_verdict(item.verdict),
             Text(item.trust),
         )

@@ -16,6 +16,7 @@ from pantocheck.conformance.grading.criterion_grading import criterion_name
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.quantities.limit_text import format_graded
 from pantocheck.conformance.records.record import Record, RecordInvalid
 from pantocheck.conformance.records.record_reading import read_record
 from pantocheck.conformance.results.criterion_format import Criterion
@@ -122,9 +123,8 @@ def criterion_line(criterion: Criterion) -> str:
     name = f"{'verification of ' if criterion.trust == 'computed' else ''}{criterion_name(criterion)}"
     if criterion.value is None:
         return f"{name}: {criterion.verdict}, {criterion.reason}"
-    bounds = " to ".join("any" if bound is None else f"{bound:g}" for bound in (criterion.lower, criterion.upper))
-    value = f"{criterion.value:.4g} {criterion.unit}".rstrip()
-    return f"{name} = {value}, limits {bounds}: {criterion.reason}"
+    value, bounds = format_graded(criterion.value, criterion.lower, criterion.upper)
+    return f"{name} = {f'{value} {criterion.unit}'.rstrip()}, limits {bounds}: {criterion.reason}"
 
 
 def run_and_grade(

@@ -1,4 +1,23 @@
-"""Texts that name a criterion: the number that a limit applies to, and its bounds."""
+"""Texts of a criterion: the number that a limit applies to, its value, its bounds and its margin."""
+
+from itertools import combinations
+from typing import NamedTuple
+
+ROUNDED_DIGITS = 4
+"""Significant digits of a computed number."""
+
+STATED_DIGITS = 5
+"""Largest number of significant digits of a limit that is taken as stated, so that it is not rounded."""
+
+EXACT_DIGITS = 17
+"""Significant digits that distinguish any two numbers."""
+
+
+class GradedText(NamedTuple):
+    """Texts of a value, `-` for none, and of its limits, in ASCII characters."""
+
+    value: str
+    bounds: str
 
 
 def name_value(quantity: str, item: int | None) -> str:
@@ -19,24 +38,78 @@ def name_value(quantity: str, item: int | None) -> str:
     return f"{quantity}[{item}]" if item else quantity
 
 
-def format_bounds(lower: float | None, upper: float | None, digits: int = 12) -> str:
-    """Bounds of a limit in ASCII characters.
+def format_rounded(value: float, digits: int = ROUNDED_DIGITS) -> str:
+    """A computed number with significant digits, as `119.7` or `-2.400e-09`."""
+    if value == 0:
+        return "0"
+    text = f"{value:#.{digits}g}"
+    return (f"{value:.{digits - 1}e}" if "e" in text else text).rstrip(".")
+
+
+def format_stated(value: float) -> str:
+    """An input number in its shortest form: `20`, `0.001`."""
+    return f"{value:.12g}"
+
+
+def format_margin(margin: float) -> str:
+    """A margin with its sign and two decimals, three or more where two would show no distance to the limit."""
+    if margin == 0:
+        return "0.00"
+    texts = (f"{margin:+.{decimals}f}" for decimals in range(2, 13))
+    return next((text for text in texts if float(text) != 0), f"{margin:+.1e}")
+
+
+def format_bounds(lower: float | None, upper: float | None) -> str:
+    """Stated bounds of a limit in ASCII characters.
 
     Parameters
     ----------
     lower, upper : float or None
         Bounds in the unit of the quantity; None if there is no such bound.
-    digits : int
-        Significant digits; 12 show an input number in its shortest form.
 
     Returns
     -------
     str
         `26 to 31`, `<= 225`, `>= 30`, `= 0` or `none`.
     """
-    low, high = (None if bound is None else f"{bound:.{digits}g}" for bound in (lower, upper))
+    return _join_bounds(*(None if bound is None else format_stated(bound) for bound in (lower, upper)))
+
+
+def format_graded(value: float | None, lower: float | None, upper: float | None) -> GradedText:
+    """A value and its limits, rounded so that their texts never contradict the verdict.
+
+    Stated limits keep their digits. The value and computed limits have `ROUNDED_DIGITS` significant digits, and more
+    where these would change the order of the three numbers: a value outside a limit is never shown on it or inside it.
+
+    Parameters
+    ----------
+    value : float or None
+        Graded value.
+    lower, upper : float or None
+        Limits in the unit of the value.
+    """
+    for digits in range(ROUNDED_DIGITS, EXACT_DIGITS + 1):
+        low, high = (None if bound is None else _format_bound(bound, digits) for bound in (lower, upper))
+        shown = None if value is None else format_rounded(value, digits)
+        if _keeps_order((lower, value, upper), (low, shown, high)):
+            break
+    return GradedText(shown or "-", _join_bounds(low, high))
+
+
+def _format_bound(bound: float, digits: int) -> str:
+    """A stated bound in its shortest form, a computed one rounded."""
+    return format_stated(bound) if float(f"{bound:.{STATED_DIGITS}g}") == bound else format_rounded(bound, digits)
+
+
+def _keeps_order(numbers: tuple[float | None, ...], texts: tuple[str | None, ...]) -> bool:
+    """Whether every two texts are in the order of their numbers."""
+    pairs = [(number, float(text)) for number, text in zip(numbers, texts, strict=True) if number is not None and text]
+    return all(((a > b) - (a < b)) == ((x > y) - (x < y)) for (a, x), (b, y) in combinations(pairs, 2))
+
+
+def _join_bounds(low: str | None, high: str | None) -> str:
     if low is None:
         return "none" if high is None else f"<= {high}"
     if high is None:
         return f">= {low}"
-    return f"= {low}" if lower == upper else f"{low} to {high}"
+    return f"= {low}" if low == high else f"{low} to {high}"

@@ -5,7 +5,7 @@ import unicodedata
 from collections.abc import Callable
 from typing import Any
 
-from pantocheck.conformance.quantities.limit_text import format_bounds
+from pantocheck.conformance.quantities.limit_text import ROUNDED_DIGITS, format_graded, format_rounded, format_stated
 
 LONGEST = 2000
 """Largest number of characters of a text."""
@@ -41,24 +41,19 @@ def change_texts(value: Any, change: Callable[[str], str]) -> Any:
     return value
 
 
-def format_value(value: float | None, digits: int = 4) -> str:
+def format_value(value: float | None, digits: int = ROUNDED_DIGITS) -> str:
     """A computed number with significant digits, as `119.7`; an en dash for no number."""
-    if value is None:
-        return "–"
-    if value == 0:
-        return "0"
-    text = f"{value:#.{digits}g}"
-    return replace_minus((f"{value:.{digits - 1}e}" if "e" in text else text).rstrip("."))
+    return "–" if value is None else replace_minus(format_rounded(value, digits))
 
 
-def format_percent(ratio: float | None, digits: int = 4) -> str:
+def format_percent(ratio: float | None, digits: int = ROUNDED_DIGITS) -> str:
     """A ratio in percent, without the sign."""
     return format_value(None if ratio is None else 100 * ratio, digits)
 
 
 def format_plain(value: float | None) -> str:
     """An input number in its shortest form: `20`, `0.001`."""
-    return "–" if value is None else replace_minus(f"{value:.12g}")
+    return "–" if value is None else replace_minus(format_stated(value))
 
 
 def replace_minus(text: str) -> str:
@@ -66,19 +61,8 @@ def replace_minus(text: str) -> str:
     return text.replace("-", "−")
 
 
-def format_beside_limits(value: float | None, lower: float | None, upper: float | None) -> str:
-    """A value with enough digits to show on which side of its limits it lies."""
-    if value is None:
-        return format_value(value)
-    for digits in range(4, 16):
-        text = format_value(value, digits)
-        shown = float(text.replace("−", "-"))
-        if all(limit is None or (shown > limit) - (shown < limit) == (value > limit) - (value < limit)
-               for limit in (lower, upper)):  # fmt: skip
-            return text
-    return repr(value)
-
-
-def format_limits(lower: float | None, upper: float | None) -> str:
-    """Limits with typographic signs: `26 to 31`, `≤ 225`, `≥ 30`, `= 0`, `none`."""
-    return replace_minus(format_bounds(lower, upper)).replace("<=", "≤").replace(">=", "≥")
+def format_beside_limits(value: float | None, lower: float | None, upper: float | None) -> tuple[str, str]:
+    """A value and its limits with typographic signs: `28.12` and `26 to 31`, `≤ 225`, `≥ 30`, `= 0` or `none`."""
+    texts = format_graded(value, lower, upper)
+    bounds = replace_minus(texts.bounds).replace("<=", "≤").replace(">=", "≥")
+    return format_value(None) if value is None else replace_minus(texts.value), bounds

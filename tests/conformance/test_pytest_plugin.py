@@ -298,8 +298,8 @@ def test_criteria_of_a_case_are_one_group_of_xdist(pytester: pytest.Pytester, pl
     [
         (158.6, 175.0, 210.0, "max_force_N", "max_force_N of pantograph 2 = 158.6 N, limits 175 to 210: "
          "16.4 N below the lower limit"),
-        (0.35, None, 0.3, "cov_20", "cov_20 of pantograph 2 = 0.35, limits any to 0.3: 0.05 above the upper limit"),
-        (1.0, 2.0, None, "cov_20", "cov_20 of pantograph 2 = 1, limits 2 to any: 1 below the lower limit"),
+        (0.35, None, 0.3, "cov_20", "cov_20 of pantograph 2 = 0.3500, limits <= 0.3: 0.05 above the upper limit"),
+        (1.0, 2.0, None, "cov_20", "cov_20 of pantograph 2 = 1.000, limits >= 2: 1 below the lower limit"),
         (None, 0.0, 1.0, "cov_20", "cov_20 of pantograph 2: skip, not delivered"),
     ],
 )  # fmt: skip

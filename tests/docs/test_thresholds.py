@@ -32,7 +32,7 @@ from pantocheck.conformance.grading import (
     validity_warnings,
     verification_limits,
 )
-from pantocheck.conformance.quantities import bands, filters, signals
+from pantocheck.conformance.quantities import bands, filters, limit_text, signals
 from pantocheck.conformance.records import record
 from pantocheck.conformance.records.measured import block_bootstrap, force_checks, usable_sections
 from pantocheck.conformance.results import results_part, results_reading, traces
@@ -47,7 +47,7 @@ MODULES: list[ModuleType] = [
     attachment, reported_numbers, force_content, force_copy, force_dynamics, implied_force, mean_force, roll_off,
     rounding, support_coincidence, support_passing, assessed_record, baseline, discretisation,
     extended_band, record_mismatch, record_uncertainty, start_agreement, start_and_section, validity_warnings,
-    verification_limits, bands, filters, signals, record, block_bootstrap, force_checks, usable_sections,
+    verification_limits, bands, filters, limit_text, signals, record, block_bootstrap, force_checks, usable_sections,
     results_part, results_reading, traces, static_comparison, static_criteria, static_differences, static_record,
 ]  # fmt: skip
 BY_FILE = {"/".join(module.__name__.split(".")[2:]) + ".py": module for module in MODULES}

@@ -3,9 +3,10 @@
 from dataclasses import dataclass
 from typing import Any
 
+from pantocheck.conformance.quantities.limit_text import format_margin
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.figures.margin_bar import draw_margin_bar
-from pantocheck.conformance.reports.page_text import format_beside_limits, format_limits, format_value, replace_minus
+from pantocheck.conformance.reports.page_text import format_beside_limits, format_value, replace_minus
 from pantocheck.conformance.reports.words import name_owner, quantity_label, read_words
 
 MARGIN_KEY = (
@@ -38,14 +39,15 @@ def describe_criterion(criterion: dict[str, Any]) -> CriterionTexts:
     value, lower, upper = criterion["value"], criterion["lower"], criterion["upper"]
     error, margin = _select_error(criterion), criterion["margin"]
     unit = "" if value is None else criterion["unit"]
+    shown, limits = format_beside_limits(value, lower, upper)
     close = criterion["close"] if is_close(criterion) else ()
     return CriterionTexts(
         label=criterion_title(criterion),
         pantograph=name_owner(criterion).removeprefix("pantograph "),
-        value=f"{format_beside_limits(value, lower, upper)} {unit}".rstrip(),
+        value=f"{shown} {unit}".rstrip(),
         error="–" if error is None else f"± {format_value(error, 2)}",
-        limits=format_limits(lower, upper),
-        margin="–" if margin is None else format_signed(margin),
+        limits=limits,
+        margin="–" if margin is None else replace_minus(format_margin(margin)),
         trust="" if lower is None and upper is None else criterion["trust"],
         remarks=tuple(filter(None, (criterion["reason"], *close, remark_shift(criterion)))),
     )
@@ -90,8 +92,8 @@ def _row(criterion: dict[str, Any], sources: list[str], anchor: str) -> tuple[do
 def _bar(criterion: dict[str, Any]) -> doc.Drawing:
     value, lower, upper, verdict = (criterion[key] for key in ("value", "lower", "upper", "verdict"))
     meaning = read_words()["verdict"][verdict]["meaning"]
-    text = f"{meaning}: {format_beside_limits(value, lower, upper)}, limits {format_limits(lower, upper)}"
-    return doc.Drawing(draw_margin_bar(value, lower, upper, _select_error(criterion), verdict), text)
+    text = "{}, limits {}".format(*format_beside_limits(value, lower, upper))
+    return doc.Drawing(draw_margin_bar(value, lower, upper, _select_error(criterion), verdict), f"{meaning}: {text}")
 
 
 def error_name(case: dict[str, Any]) -> str:
@@ -110,14 +112,6 @@ def criterion_title(criterion: dict[str, Any]) -> str:
     """Label of the quantity, or of its drift from a baseline."""
     drift = "" if criterion["baseline"] is None else ", drift from the baseline"
     return f"{quantity_label(criterion['quantity'])}{drift}"
-
-
-def format_signed(margin: float) -> str:
-    """A margin with its sign and two decimals, three or more where two would show no distance to the limit."""
-    if margin == 0:
-        return "0.00"
-    texts = (f"{margin:+.{decimals}f}" for decimals in range(2, 13))
-    return replace_minus(next((text for text in texts if float(text) != 0), f"{margin:+.1e}"))
 
 
 def is_close(criterion: dict[str, Any]) -> bool:

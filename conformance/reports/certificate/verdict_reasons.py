@@ -4,11 +4,12 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import Any
 
-from pantocheck.conformance.reports.certificate.criteria_table import criterion_title, format_signed, is_close
+from pantocheck.conformance.quantities.limit_text import format_margin
+from pantocheck.conformance.reports.certificate.criteria_table import criterion_title, is_close
 from pantocheck.conformance.reports.certificate.scope_page import summarise_identity
 from pantocheck.conformance.reports.certificate.two_verdicts import select_criteria, verdict_sentences
 from pantocheck.conformance.reports.document import BulletList, Section
-from pantocheck.conformance.reports.page_text import format_beside_limits, format_limits, format_value
+from pantocheck.conformance.reports.page_text import format_beside_limits, format_value, replace_minus
 from pantocheck.conformance.reports.words import name_owner, read_words
 
 MARGINS_SHOWN = 3
@@ -127,10 +128,10 @@ def _record_reasons(results: dict[str, Any]) -> list[str]:
 
 def _value(pair: CaseCriterion) -> str:
     case, criterion = pair
-    value = format_beside_limits(criterion["value"], criterion["lower"], criterion["upper"])
-    margin = "" if criterion["margin"] is None else f", margin {format_signed(criterion['margin'])}"
+    value, limits = format_beside_limits(criterion["value"], criterion["lower"], criterion["upper"])
+    margin = "" if criterion["margin"] is None else f", margin {replace_minus(format_margin(criterion['margin']))}"
     text = f"{_subject(case, criterion)}: {value} {criterion['unit']}".rstrip()
-    return f"{text}, limits {format_limits(criterion['lower'], criterion['upper'])}{margin}."
+    return f"{text}, limits {limits}{margin}."
 
 
 def _close_value(pair: CaseCriterion) -> str:

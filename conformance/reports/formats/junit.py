@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from typing import Any
 from xml.etree import ElementTree
 
+from pantocheck.conformance.quantities.limit_text import format_graded
 from pantocheck.conformance.reports.certificate.case_facts import name_system
 from pantocheck.conformance.reports.certificate.scope_page import describe_origin, prepare_results
 from pantocheck.conformance.reports.certificate.two_verdicts import NAMES, list_criteria, select_criteria
@@ -73,12 +74,12 @@ def _list_tests(case: dict[str, Any], results: dict[str, Any], name: str) -> Ite
 
 def _criterion_test(case: str, row: dict[str, Any]) -> ElementTree.Element:
     kind = "verification: " if row["trust"] == "computed" else "" if row["baseline"] is None else "drift of "
-    value = "no value" if row["value"] is None else f"{row['value']:.8g} {row['unit']}".rstrip()
-    bounds = f"limits {_bound(row['lower'])} to {_bound(row['upper'])}"
+    number, bounds = format_graded(row["value"], row["lower"], row["upper"])
+    value = "no value" if row["value"] is None else f"{number} {row['unit']}".rstrip()
     margin = "" if row["margin"] is None else f", margin {row['margin']:.4g}"
     reason = f" ({row['reason']})" if row["reason"] else ""
     name = f"{kind}{row['quantity']} of {name_owner(row)}"
-    return _test(case, name, row["verdict"], f"{value}, {bounds}{margin}, {row['trust']}{reason}")
+    return _test(case, name, row["verdict"], f"{value}, limits {bounds}{margin}, {row['trust']}{reason}")
 
 
 def _record_test(case: dict[str, Any], results: dict[str, Any]) -> ElementTree.Element:
@@ -102,7 +103,3 @@ def _test(case: str, name: str, verdict: str, text: str) -> ElementTree.Element:
     else:
         ElementTree.SubElement(test, "system-out").text = f"{verdict}: {text}"
     return test
-
-
-def _bound(limit: float | None) -> str:
-    return "none" if limit is None else f"{limit:.8g}"

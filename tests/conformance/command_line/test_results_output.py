@@ -66,12 +66,12 @@ def test_error_is_the_uncertainty_where_it_is_known(
         (None, 31.0, ["<=", "31"]),
         (0.0, 0.0, ["=", "0"]),
         (None, None, ["none"]),
-        (22.1264, 31.1264, ["22.13", "to", "31.13"]),
-        (22.1264, None, [">=", "22.13"]),
-        (None, 31.1264, ["<=", "31.13"]),
+        (22.12641234, 31.12641234, ["22.13", "to", "31.13"]),
+        (22.12641234, None, [">=", "22.13"]),
+        (None, 31.12641234, ["<=", "31.13"]),
     ],
 )
-def test_limits_are_printed_with_four_digits(
+def test_computed_limits_are_printed_with_four_digits(
     passing: dict[str, Any],
     rear: dict[str, Any],
     capsys: pytest.CaptureFixture[str],
@@ -83,6 +83,15 @@ def test_limits_are_printed_with_four_digits(
     rear |= {"discretisation_error": None}
     (row,) = rows(printed(passing, capsys), "std_force_N, pantograph 2")
     assert row[3:] == ["28.12", "-", "-", *cells, "-", "PASS", "secondary"]
+
+
+def test_value_outside_a_limit_is_not_printed_on_it(
+    passing: dict[str, Any], rear: dict[str, Any], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """31.0004 N above 31 N fails with a margin of -0.0001, which four digits and two decimals would hide."""
+    rear |= {"value": 31.0004, "verdict": "fail", "margin": -8.9e-5}
+    (row,) = rows(printed(passing, capsys), "std_force_N, pantograph 2")
+    assert (row[3], row[6:9], row[9]) == ("31.0004", ["22", "to", "31"], "-0.0001")
 
 
 def test_columns_of_the_table_are_one_space_apart(passing: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> None:

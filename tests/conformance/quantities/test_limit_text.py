@@ -1,9 +1,20 @@
-"""Texts that name a criterion: one form on terminal, pages and in results."""
+"""Texts of a criterion: one form on terminal, pages and in results, which never contradicts the verdict."""
 
 import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
 
-from pantocheck.conformance.quantities.limit_text import format_bounds, name_value
-from pantocheck.conformance.reports.page_text import format_limits
+from pantocheck.conformance.grading.verdicts import judge
+from pantocheck.conformance.quantities.limit_text import (
+    format_bounds,
+    format_graded,
+    format_margin,
+    format_rounded,
+    name_value,
+)
+from pantocheck.conformance.reports.page_text import format_beside_limits
+
+numbers = st.floats(-1e6, 1e6)
 
 
 @pytest.mark.parametrize(
@@ -15,18 +26,60 @@ from pantocheck.conformance.reports.page_text import format_limits
         (30.0, None, ">= 30", "≥ 30"),
         (0.0, 0.0, "= 0", "= 0"),
         (None, None, "none", "none"),
-        (None, 0.123456789, "<= 0.123456789", "≤ 0.123456789"),
+        (None, 1.0165, "<= 1.0165", "≤ 1.0165"),
     ],
 )
 def test_bounds_have_one_text_with_ascii_or_typographic_signs(
     lower: float | None, upper: float | None, text: str, page: str
 ) -> None:
     assert format_bounds(lower, upper) == text
-    assert format_limits(lower, upper) == page
+    assert format_beside_limits(None, lower, upper) == ("–", page)
 
 
-def test_bounds_in_a_narrow_column_are_rounded() -> None:
-    assert format_bounds(117.60123, 120.0, 4) == "117.6 to 120"
+@pytest.mark.parametrize(
+    ("value", "lower", "upper", "shown", "bounds"),
+    [
+        (28.1234, 22.0, 31.0, "28.12", "22 to 31"),
+        (144.0, 142.57834821, 145.46565179, "144.0", "142.6 to 145.5"),
+        (-5.5891, -14.17312345, 3.64412345, "-5.589", "-14.17 to 3.644"),
+        (1.01651, 1.0165, 1.018, "1.017", "1.0165 to 1.018"),  # a stated limit keeps its digits
+        (25.99996, 26.0, None, "25.99996", ">= 26"),  # four digits would show the limit itself
+        (26.0, 26.0, 31.0, "26.00", "26 to 31"),
+        (142.5783, 142.57834821, None, "142.57830", ">= 142.57835"),
+        (142.5783, None, 142.57834821, "142.57830", "<= 142.57835"),
+        (97.72345678, 92.79345678, 97.72345678, "97.72", "92.79 to 97.72"),
+        (1.0, 0.99999991, 1.00000012, "1.0000000", "0.99999991 to 1.0000001"),
+        (3e-9, 2.123456789e-9, None, "3.000e-09", ">= 2.123e-09"),
+        (None, 142.57834821, None, "-", ">= 142.6"),
+        (0.0, 0.0, 0.0, "0", "= 0"),
+    ],
+)
+def test_value_and_computed_limits_are_rounded_alike(
+    value: float | None, lower: float | None, upper: float | None, shown: str, bounds: str
+) -> None:
+    """Four digits, and more where a rounded value would lie on a limit or beyond it."""
+    assert format_graded(value, lower, upper) == (shown, bounds)
+
+
+@given(numbers, numbers, st.floats(0, 1e6), st.floats(-1e-12, 1e-12))
+@example(value=26.0, lower=26.0, width=1.0, shift=-1e-15)
+def test_texts_have_the_verdict_of_the_numbers(value: float, lower: float, width: float, shift: float) -> None:
+    """Also for a value that lies next to its limit."""
+    for number in (value, lower * (1 + shift), (lower + width) * (1 + shift)):
+        text, bounds = format_graded(number, lower, lower + width)
+        low, _, high = bounds.removeprefix("= ").partition(" to ")
+        assert judge(float(text), float(low), float(high or low)) == judge(number, lower, lower + width)
+
+
+@pytest.mark.parametrize(
+    ("margin", "shown"), [(0.0, "0.00"), (0.4812, "+0.48"), (-0.0004, "-0.0004"), (1e-20, "+1.0e-20")]
+)
+def test_margin_is_never_rounded_to_zero(margin: float, shown: str) -> None:
+    assert format_margin(margin) == shown
+
+
+def test_rounded_number_has_no_final_point() -> None:
+    assert (format_rounded(1234.5), format_rounded(119.71234, 2)) == ("1234", "1.2e+02")
 
 
 def test_item_of_a_quantity_stands_in_brackets() -> None:
