@@ -37,8 +37,7 @@ def verify_evaluation(evaluation: CaseEvaluation) -> CaseVerification | None:
     requirements = build_requirements(converged, case.is_static)
     criteria = [grade_requirement(requirement, values, "computed") for requirement in requirements]
     if evaluation.start_agreement.state == "differs":
-        widened = [include_start(requirement, converged) for requirement in requirements]
-        others = [grade_requirement(requirement, values, "computed") for requirement in widened]
+        others = [grade_requirement(include_start(limit, converged), values, "computed") for limit in requirements]
         criteria = [_name_statement(*pair) for pair in zip(criteria, others, strict=True)]
     verdict = judge_case((criterion.verdict for criterion in criteria), evaluation.record_facts)
     return _build_verification(converged, verdict, None).model_copy(update={"criteria": criteria})
@@ -48,8 +47,7 @@ def _name_statement(criterion: Criterion, widened: Criterion) -> Criterion:
     """Criterion with widened limits; if it passes only inside them, its reason says so."""
     if (criterion.verdict, widened.verdict) != ("fail", "pass"):
         return widened
-    reason = f"{criterion.reason} without the stated start, which is not checked"
-    return widened.model_copy(update={"reason": reason})
+    return widened.model_copy(update={"reason": f"{criterion.reason} without the stated start, which is not checked"})
 
 
 def verify_ungraded(case: Case, verdict: Verdict, reason: str) -> CaseVerification | None:
