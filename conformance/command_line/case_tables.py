@@ -34,7 +34,11 @@ def build_case_tables(case: Case) -> list[RenderableType]:
     parts.append(escape_text(f"mesh of the reference simulator: {mesh.element_m:g} m, {mesh.time_step_s:g} s"))
     parts.append(Text(case.digest, overflow="fold"))
     blocks: list[RenderableType] = [_build_input_table(case)]
-    blocks.append(_build_limit_table(case) if case.limits else escape_text("No limits: informative."))
+    blocks.append(
+        _build_limit_table(case)
+        if case.limits
+        else escape_text("No published limits: the EN 50318 criteria do not judge this case.")
+    )
     blocks += [escape_text(text) for text in case.notes]
     return [*parts, *(Padding(block, (1, 0, 0, 0)) for block in blocks), Text(), *_list_sources(case)]
 

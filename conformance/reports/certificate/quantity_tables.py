@@ -1,16 +1,17 @@
 """Tables of quantities: one row per quantity, one column per pantograph."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from pantocheck.conformance.quantities.registry import QUANTITIES, table_quantities
+from pantocheck.conformance.reports.certificate.two_verdicts import list_criteria
 from pantocheck.conformance.reports.document import Code, Column, RichText, Table
 from pantocheck.conformance.reports.page_text import format_value
 from pantocheck.conformance.reports.words import name_pantograph, quantity_label, quantity_unit, read_words
 
 BAND_CAPTION = (
-    "Standard deviation, coefficient of variation and RMS by band; each value with its verdict, or informative where "
-    "no limit counts."
+    "Standard deviation, coefficient of variation and RMS by band. Each value has its verdict by the EN 50318 "
+    "criteria, and by verification where the converged solution limits it."
 )
 
 
@@ -21,22 +22,28 @@ def list_owners(case: dict[str, Any]) -> list[str]:
 
 
 def build_band_table(case: dict[str, Any]) -> Table:
-    """Quantities of the bands up to 50 Hz, each with its verdict or marked informative."""
-    verdicts = {
-        (criterion["quantity"], str(criterion["pantograph"])): criterion["verdict"]
-        for criterion in case["criteria"]
-        if criterion["verdict"] != "info"
-    }
+    """Quantities of the bands up to 50 Hz, each with its verdicts, or the reason why it has none."""
 
     def cell(quantity: str, key: str) -> str:
         value = case["quantities"].get(key, {}).get(quantity)
         if value is None:
             return "not available"
-        verdict = verdicts.get((quantity, key))
-        return f"{format_value(value)} ({read_words()['verdict'][verdict]['word'] if verdict else 'informative'})"
+        return f"{format_value(value)} ({'; '.join(_list_verdicts(case, quantity, key))})"
 
     pantographs = [key for key in list_owners(case) if key != "0"]
     return _table(table_quantities("bands") if pantographs else (), pantographs, cell, BAND_CAPTION)
+
+
+def _list_verdicts(case: dict[str, Any], quantity: str, key: str) -> Iterator[str]:
+    """Verdict of a quantity by the criteria, or the reason why it has none, and its verdict by verification."""
+    words = {verdict: entry["word"] for verdict, entry in read_words()["verdict"].items()}
+    criteria, verification = (
+        [row["verdict"] for row in list_criteria(case, name)
+         if (row["quantity"], str(row["pantograph"]), row["baseline"]) == (quantity, key, None)]
+        for name in ("criteria", "verification")
+    )  # fmt: skip
+    yield (words | {"none": "no published limit", "info": "limit does not count"})[criteria[0] if criteria else "none"]
+    yield from (f"verification {words[verdict]}" for verdict in verification)
 
 
 def build_quantity_table(case: dict[str, Any]) -> Table:

@@ -94,11 +94,15 @@ def summarise_case(case: dict[str, Any]) -> str:
     verdicts = Counter(criterion["verdict"] for criterion in case["criteria"])
     words = read_words()["verdict"]
     parts = [
-        f"{verdicts[verdict]} {words[verdict]['meaning'] if verdict != 'info' else 'informative'}"
+        f"{verdicts[verdict]} {words[verdict]['meaning'] if verdict != 'info' else 'with a limit that does not count'}"
         for verdict in ("error", "fail", "skip", "pass", "info")
         if verdicts[verdict]
     ]
-    return f"{sum(verdicts.values())} criteria: {', '.join(parts)}." if parts else "No criteria."
+    return (
+        f"{sum(verdicts.values())} criteria: {', '.join(parts)}."
+        if parts
+        else "No criteria: there is no published limit."
+    )
 
 
 CaseCriterion = tuple[dict[str, Any], dict[str, Any]]

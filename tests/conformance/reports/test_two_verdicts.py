@@ -9,8 +9,10 @@ import pytest
 from pantocheck.conformance.authenticity.recomputation import find_discrepancies
 from pantocheck.conformance.grading.case_verdict import Participation
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
+from pantocheck.conformance.reports.certificate.quantity_tables import build_band_table
 from pantocheck.conformance.reports.certificate.summary_page import build_summary
 from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline, list_reasons
+from pantocheck.conformance.reports.document import Code
 from pantocheck.conformance.reports.formats.badge import summarise_verdict
 from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.reports.formats.junit import render_junit
@@ -75,6 +77,12 @@ def test_page_1_names_a_criterion_that_needs_the_stated_start(passing: dict[str,
     assert "Inside the limits only with the stated start" in sections
     assert page.count(remark) == 2  # page 1 and the table of the case
     assert find_discrepancies(results) == []
+
+
+def test_band_table_shows_the_verification_where_no_limit_is_published(failing: Results) -> None:
+    """A value that the verification fails is not called informative beside it."""
+    (row,) = (row for row in build_band_table(decide(failing)["cases"][0]).rows if Code(BAND) in row[0])
+    assert str(row[2]).endswith("(no published limit; verification FAIL)")
 
 
 def test_headline_without_converged_values_is_unchanged(passing: dict[str, Any]) -> None:
