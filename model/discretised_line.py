@@ -42,8 +42,8 @@ class DiscretisedLine:
 
     @property
     def contact_rows(self) -> list[int]:
-        """Rows of the vertical deflection of the contact wires."""
-        return [self.mesh.row_of[wire.name, "z"] for wire in self.catenary.contact_wires]
+        """Rows of the vertical deflection of the contact wires, each once."""
+        return list(dict.fromkeys(self.mesh.row_of[wire.name, "z"] for wire in self.catenary.contact_wires))
 
 
 def discretise(catenary: Catenary, element_length: float, places: tuple[float, ...] = ()) -> DiscretisedLine:

@@ -23,6 +23,7 @@ from pantocheck.conformance.simulation.derived_line import (
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 from pantocheck.conformance.simulation.uplift_tuning import TOLERANCE
 from pantocheck.model import DiscretisedLine, discretise
+from pantocheck.model.fem.contact_wires import touched_rows
 from pantocheck.model.pantograph import equilibrium
 from pantocheck.model.statics.elasticity import height_under_forces
 
@@ -79,17 +80,17 @@ def _pantographs(case: Case, line: DiscretisedLine, heights: RealArray) -> tuple
     for file, force, start, height in zip(
         case.pantographs, start_forces(case), case.start_positions, heights, strict=True
     ):
-        contact = file.contact.stiffness_N_m
+        contact, share = file.contact.stiffness_N_m, 1 / touched_rows(line, start).size
         working_height = compute_working_height(case, line, file, force)
         model = build_pantograph(file, force, working_height)
-        displacement, _ = equilibrium(model, float(height) + force / len(line.contact_rows) / contact)
+        displacement, _ = equilibrium(model, float(height) + force * share / contact)
         pantographs.append(
             DerivedPantograph(
                 uplift_force_N=force,
                 working_height_m=round_number(working_height),
                 constant_force=round_numbers(model.force),
                 contact_stiffness_N_m=contact,
-                contact_force_share=1 / len(line.contact_rows),
+                contact_force_share=share,
                 start_m=start,
                 start_force_N=force,
                 start_wire_height_m=round_number(height),

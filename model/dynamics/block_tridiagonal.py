@@ -10,7 +10,8 @@ The same elimination runs from the right. Both meet at the middle station m of t
 
     0 -> 1 -> ... -> m <- ... <- S-2 <- S-1        (D_m^left + D_m^right - A_m) x_m = f_m - both contributions
 
-The two eliminations are independent, so that the processor computes them at the same time. Both sets of factors are
+The two eliminations are independent, so that the processor computes them at the same time. All wires meet at the middle
+of the active window; a wire on one side of it is eliminated from its outer end only. Both sets of factors are
 stored for all stations: the eliminations can meet at any station, and any part of the line (`active_window`) is solved
 with the same factors.
 """
@@ -22,6 +23,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from pantocheck.model.arrays import Array
+from pantocheck.model.dynamics.active_window import Window
+from pantocheck.model.dynamics.extents import Extents, clip_extent
 
 ForceMoment = tuple[float, float]
 
@@ -101,25 +104,30 @@ def _invert(blocks: Array, free: NDArray[np.bool_], inverse: Array) -> None:
 
 
 @njit(cache=True)
-def solve_line(factor: Factor, first: int, last: int, w: Array, r: Array) -> None:
-    """Solve A x = f in place for a range of stations of all rows; f is zero and x negligible outside.
+def solve_wires(factor: Factor, extents: Extents, window: Window, w: Array, r: Array) -> None:
+    """Solve A x = f in place for the active stations of all wires; f is zero and x negligible outside.
 
     Parameters
     ----------
     factor : Factor
         Block factors of A.
-    first, last : int
-        First and last station.
+    extents : Extents
+        Extents of the wires.
+    window : Window
+        First and last active station.
     w, r : (B, S) ndarray
         On entry forces and moments [N, N m], on return accelerations of deflection and slope [m/s2, 1/s2].
     """
-    for b in range(w.shape[0]):
-        solve_row(factor, b, first, w[b, first : last + 1], r[b, first : last + 1])
+    middle = window.first + (window.last - window.first + 1) // 2
+    for n in range(extents.row.size):
+        row, (first, last) = extents.row[n], clip_extent(extents, n, window)
+        if first <= last:
+            solve_row(factor, row, first, middle - first, w[row, first : last + 1], r[row, first : last + 1])
 
 
 @njit(cache=True)
-def solve_row(factor: Factor, row: int, first: int, w: Array, r: Array) -> None:
-    """Solve one row as in `solve_line`: eliminate from both ends to the middle, then substitute back.
+def solve_row(factor: Factor, row: int, first: int, middle: int, w: Array, r: Array) -> None:
+    """Solve some stations of one row as in `solve_wires`: eliminate towards the middle, then substitute back.
 
     Parameters
     ----------
@@ -129,43 +137,66 @@ def solve_row(factor: Factor, row: int, first: int, w: Array, r: Array) -> None:
         Index of the row.
     first : int
         First station.
+    middle : int
+        Station at which the eliminations meet, counted from the first; beyond the n stations there is one elimination.
     w, r : (n,) ndarray
-        Forces and moments at n stations, replaced by accelerations as in `solve_line`.
+        Forces and moments at n stations, replaced by accelerations as in `solve_wires`.
     """
     n = w.size
-    middle = n // 2
-    pairs, stations = n - 1 - middle, slice(first, first + n)
-    # Both eliminations are counted from the ends inwards. An even number of stations leaves one more on the left, which
-    # is eliminated first and substituted last.
-    extra = middle - pairs
-    left_inverse = factor.inverse[0, row, stations][extra:middle]
-    left_link = factor.link[0, row, stations][extra:middle]
-    right_inverse = factor.inverse[1, row, stations][:middle:-1]
-    right_link = factor.link[1, row, stations][:middle:-1]
-    w_left, r_left, w_right, r_right = w[extra:middle], r[extra:middle], w[:middle:-1], r[:middle:-1]
+    left, right = min(max(middle, 0), n), min(max(n - 1 - middle, 0), n)
+    pairs, stations = min(left, right), slice(first, first + n)
+    # Both eliminations are counted from the ends inwards. The longer one begins and ends alone.
+    alone_left, alone_right = left - pairs, right - pairs
+    left_inverse, left_link = factor.inverse[0, row, stations][:left], factor.link[0, row, stations][:left]
+    right_inverse = factor.inverse[1, row, stations][::-1][:right]
+    right_link = factor.link[1, row, stations][::-1][:right]
+    w_left, r_left, w_right, r_right = w[:left], r[:left], w[::-1][:right], r[::-1][:right]
     # Force and moment that the two eliminations transfer to the next station.
-    left_f, left_m, right_f, right_m = 0.0, 0.0, 0.0, 0.0
-    if extra > 0:
-        left_f, left_m = _transfer(factor.link[0, row, stations], 0, w[0], r[0])
+    left_f, left_m = _eliminate_side(left_link, w_left[:alone_left], r_left[:alone_left])
+    right_f, right_m = _eliminate_side(right_link, w_right[:alone_right], r_right[:alone_right])
+    w0, r0, link0 = w_left[alone_left:], r_left[alone_left:], left_link[alone_left:]
+    w1, r1, link1 = w_right[alone_right:], r_right[alone_right:], right_link[alone_right:]
     for s in range(pairs):
-        f0, m0 = w_left[s] - left_f, r_left[s] - left_m
-        f1, m1 = w_right[s] - right_f, r_right[s] - right_m
-        w_left[s], r_left[s] = f0, m0
-        w_right[s], r_right[s] = f1, m1
-        left_f, left_m = _transfer(left_link, s, f0, m0)
-        right_f, right_m = _transfer(right_link, s, f1, m1)
-    middle_f, middle_m = w[middle] - left_f - right_f, r[middle] - left_m - right_m
-    left = right = _multiply(factor.meeting[row, stations], middle, middle_f, middle_m)
-    w[middle], r[middle] = left
+        f0, m0 = w0[s] - left_f, r0[s] - left_m
+        f1, m1 = w1[s] - right_f, r1[s] - right_m
+        w0[s], r0[s] = f0, m0
+        w1[s], r1[s] = f1, m1
+        left_f, left_m = _transfer(link0, s, f0, m0)
+        right_f, right_m = _transfer(link1, s, f1, m1)
+    inward_left = inward_right = (0.0, 0.0)
+    if left + right < n:
+        middle_f, middle_m = w[middle] - left_f - right_f, r[middle] - left_m - right_m
+        inward_left = inward_right = _multiply(factor.meeting[row, stations], middle, middle_f, middle_m)
+        w[middle], r[middle] = inward_left
+    inverse0, inverse1 = left_inverse[alone_left:], right_inverse[alone_right:]
     for back in range(pairs):
         s = pairs - 1 - back
-        left = _substitute(left_inverse, left_link, s, (w_left[s], r_left[s]), left)
-        right = _substitute(right_inverse, right_link, s, (w_right[s], r_right[s]), right)
-        w_left[s], r_left[s] = left
-        w_right[s], r_right[s] = right
-    if extra > 0:
-        inverse, link = factor.inverse[0, row, stations], factor.link[0, row, stations]
-        w[0], r[0] = _substitute(inverse, link, 0, (w[0], r[0]), left)
+        inward_left = _substitute(inverse0, link0, s, (w0[s], r0[s]), inward_left)
+        inward_right = _substitute(inverse1, link1, s, (w1[s], r1[s]), inward_right)
+        w0[s], r0[s] = inward_left
+        w1[s], r1[s] = inward_right
+    _substitute_side(left_inverse, left_link, w_left[:alone_left], r_left[:alone_left], inward_left)
+    _substitute_side(right_inverse, right_link, w_right[:alone_right], r_right[:alone_right], inward_right)
+
+
+@njit(cache=True)
+def _eliminate_side(link: Array, w: Array, r: Array) -> ForceMoment:
+    """Eliminate the outer stations of one side in place; return force and moment for the next station."""
+    force, moment = 0.0, 0.0
+    for s in range(w.size):
+        w[s] -= force
+        r[s] -= moment
+        force, moment = _transfer(link, s, w[s], r[s])
+    return force, moment
+
+
+@njit(cache=True)
+def _substitute_side(inverse: Array, link: Array, w: Array, r: Array, inward: ForceMoment) -> None:
+    """Substitute back the outer stations of one side in place, from the solution at their inward neighbour."""
+    for back in range(w.size):
+        s = w.size - 1 - back
+        inward = _substitute(inverse, link, s, (w[s], r[s]), inward)
+        w[s], r[s] = inward
 
 
 @njit(cache=True)
@@ -193,6 +224,7 @@ def solve_rows(factor: Factor, force: Array) -> Array:
     solution = np.empty_like(force)
     for n in range(force.shape[0]):
         w, r = force[n, :, :, 0].copy(), force[n, :, :, 1].copy()
-        solve_line(factor, 0, w.shape[1] - 1, w, r)
+        for row in range(w.shape[0]):
+            solve_row(factor, row, 0, w.shape[1] // 2, w[row], r[row])
         solution[n, :, :, 0], solution[n, :, :, 1] = w, r
     return solution

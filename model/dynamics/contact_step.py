@@ -1,5 +1,8 @@
 """Contact of pantographs and contact wires in a time step: Gauss-Seidel sweeps over the contact forces.
 
+A head can touch every contact wire whose extent covers the element above it: parallel wires, and in an overlap of
+sections the wires of both. A raised wire lies above the head and has no overlap with it.
+
 The contact is a unilateral spring between head and wire: the penalty and the residual flexibility of the wire element
 in series (`residual_flexibility`). With the predicted overlap d of head and wire, the force at the end of a step is
 
@@ -27,6 +30,7 @@ from pantocheck.model.dynamics.irregularity_step import (
 from pantocheck.model.dynamics.motion import Motion
 from pantocheck.model.dynamics.sweeps import NEGLIGIBLE_FORCE, maximum
 from pantocheck.model.dynamics.train import Train
+from pantocheck.model.fem.contact_wires import ContactWires, locate_contact_wires
 from pantocheck.model.fem.mesh import find_element
 from pantocheck.model.fem.residual_flexibility import residual_flexibility
 
@@ -42,21 +46,24 @@ class ContactArrays(NamedTuple):
         Time step [s].
     position : (S,) ndarray
         Positions of the stations [m].
-    row : (W,) int ndarray
-        Rows of the contact wires.
-    rest : (W, S, 2) ndarray
-        Height and slope of the contact wires in the initial state [m, -].
-    flexibility : (W, S-1, 7) ndarray
+    wires : ContactWires
+        Rows and extents of the contact wires.
+    first_column : (W,) int ndarray
+        Index of the first station of each contact wire in `columns`.
+    rest : (B, S, 2) ndarray
+        Height and slope of the rows in the initial state [m, -].
+    flexibility : (B, S-1, 7) ndarray
         Residual flexibility of the elements, see `element_flexibility` [m/N].
     irregularity : IrregularityArrays
         Additional heights of the contact wires.
-    columns : (W, S, 2, 2, 2H) ndarray
-        Columns of the inverse around every station, for a force and for a moment.
+    columns : (L, 2, 2, 2H) ndarray
+        Columns of the inverse around the stations of all contact wires, for a force and for a moment.
     """
 
     time_step: float
     position: Array
-    row: Indices
+    wires: ContactWires
+    first_column: Indices
     rest: Array
     flexibility: Array
     irregularity: IrregularityArrays
@@ -70,6 +77,10 @@ class ContactWorkspace(NamedTuple):
     ----------
     element : (P,) int ndarray
         Element above each pantograph.
+    above : (P, W) int ndarray
+        Contact wires above each pantograph, in the order of the line.
+    number_above : (P,) int ndarray
+        Their number.
     shape : (P, W, 4) ndarray
         Hermite functions at the contacts.
     stiffness : (P, W) ndarray
@@ -81,6 +92,8 @@ class ContactWorkspace(NamedTuple):
     """
 
     element: Indices
+    above: Indices
+    number_above: Indices
     shape: Array
     stiffness: Array
     overlap: Array
@@ -89,17 +102,23 @@ class ContactWorkspace(NamedTuple):
 
 def build_contact_arrays(line: DiscretisedLine, factor: Factor, time_step: float, half_width: int) -> ContactArrays:
     """Build the arrays of the contact wires for a time step [s]; `half_width` as in `inverse_columns`."""
-    row, stations = np.array(line.contact_rows, dtype=np.int64), line.mesh.position.size
-    loads = np.indices((row.size, stations, 2)).reshape(3, -1)
-    columns = inverse_columns(factor, row[loads[0]], loads[1], loads[2], half_width)
+    wires = locate_contact_wires(line)
+    count = wires.last - wires.first + 1
+    first_column = np.cumsum(count) - count
+    row = np.repeat(wires.row, count)
+    station = np.arange(row.size) + np.repeat(wires.first - first_column, count)
+    columns = inverse_columns(
+        factor, np.repeat(row, 2), np.repeat(station, 2), np.tile(np.arange(2), row.size), half_width
+    )
     return ContactArrays(
         time_step=time_step,
         position=line.mesh.position,
-        row=row,
-        rest=np.ascontiguousarray(line.state.deflection[line.contact_rows]),
-        flexibility=np.ascontiguousarray(line.beams.flexibility[line.contact_rows]),
+        wires=wires,
+        first_column=first_column,
+        rest=np.ascontiguousarray(line.state.deflection),
+        flexibility=line.beams.flexibility,
         irregularity=build_irregularity_arrays(line.catenary.contact_wires),
-        columns=columns.reshape(row.size, stations, 2, 2, 2 * half_width),
+        columns=columns.reshape(row.size, 2, 2, 2 * half_width),
     )
 
 
@@ -107,8 +126,9 @@ def allocate_contact_workspace(train: Train) -> ContactWorkspace:
     """Allocate the scratch arrays for the simulation of a train."""
     pantographs, wires = train.contact.shape
     stiffness, overlap, compliance = (np.zeros((pantographs, wires)) for _ in range(3))
-    element, shape = np.zeros(pantographs, dtype=np.int64), np.zeros((pantographs, wires, 4))
-    return ContactWorkspace(element, shape, stiffness, overlap, compliance)
+    element, number_above = (np.zeros(pantographs, dtype=np.int64) for _ in range(2))
+    above, shape = np.zeros((pantographs, wires), dtype=np.int64), np.zeros((pantographs, wires, 4))
+    return ContactWorkspace(element, above, number_above, shape, stiffness, overlap, compliance)
 
 
 @njit(cache=True)
@@ -123,12 +143,13 @@ def predict_train(contact: ContactArrays, motion: Motion, train: Train, work: Co
         holding = (1 + math.cos(math.pi * train.elapsed[0] / train.ramp[0])) / 2
     for p in range(train.position.size):
         train.position[p] += dt * train.speed[0]
+        _find_wires_above(contact, train, work, p)
         for i in range(unknowns):
             train.z[0, p, i] += dt * train.z[1, p, i] + dt * dt / 4 * train.z[2, p, i]
             train.z[1, p, i] += dt / 2 * train.z[2, p, i]
         contact_force = 0.0
-        for wire in range(train.contact.shape[1]):
-            contact_force += train.contact[p, wire]
+        for n in range(work.number_above[p]):
+            contact_force += train.contact[p, work.above[p, n]]
         contact_force += holding * train.held[p]
         head, compliance = 0.0, 0.0
         for i in range(unknowns):
@@ -143,8 +164,21 @@ def predict_train(contact: ContactArrays, motion: Motion, train: Train, work: Co
             head += train.head[p, i] * train.z[0, p, i]
         work.overlap[p] = head
         work.compliance[p] = compliance
-        for wire in range(train.contact.shape[1]):
-            _predict_contact(contact, motion, train, work, p, wire)
+        for n in range(work.number_above[p]):
+            _predict_contact(contact, motion, train, work, p, work.above[p, n])
+
+
+@njit(cache=True)
+def _find_wires_above(contact: ContactArrays, train: Train, work: ContactWorkspace, p: int) -> None:
+    """Find the element and the contact wires above pantograph p; a wire that it has left presses no more."""
+    e, _, _ = _find_element(contact.position, train.position[p])
+    work.element[p], work.number_above[p] = e, 0
+    for wire in range(train.contact.shape[1]):
+        if contact.wires.first[wire] <= e < contact.wires.last[wire]:
+            work.above[p, work.number_above[p]] = wire
+            work.number_above[p] += 1
+        else:
+            train.contact[p, wire] = 0.0
 
 
 @njit(cache=True)
@@ -152,26 +186,26 @@ def _predict_contact(
     contact: ContactArrays, motion: Motion, train: Train, work: ContactWorkspace, p: int, wire: int
 ) -> None:
     """Complete overlap and compliance of pantograph p, so far those of its head, by those of a contact wire."""
-    half_width = contact.columns.shape[4] // 2
-    row, n = contact.row[wire], work.shape[p, wire]
+    half_width = contact.columns.shape[3] // 2
+    row, n = contact.wires.row[wire], work.shape[p, wire]
     e, h, s = _find_element(contact.position, train.position[p])
     # Hermite functions, as in `beam.shape`.
     n[0], n[1] = (1 + 2 * s) * (1 - s) ** 2, h * s * (1 - s) ** 2
     n[2], n[3] = s * s * (3 - 2 * s), h * s * s * (s - 1)
+    first_column = contact.first_column[wire] + e - contact.wires.first[wire]
     height, compliance = 0.0, work.compliance[p, wire]
     for i in range(2):
-        height += n[2 * i] * (contact.rest[wire, e + i, 0] + motion.w[0, row, e + i])
-        height += n[2 * i + 1] * (contact.rest[wire, e + i, 1] + motion.r[0, row, e + i])
+        height += n[2 * i] * (contact.rest[row, e + i, 0] + motion.w[0, row, e + i])
+        height += n[2 * i + 1] * (contact.rest[row, e + i, 1] + motion.r[0, row, e + i])
         motion.w[2, row, e + i] += n[2 * i] * train.contact[p, wire]
         motion.r[2, row, e + i] += n[2 * i + 1] * train.contact[p, wire]
         for j in range(2):
             for slope in range(2):
-                column = contact.columns[wire, e + j, slope]
+                column = contact.columns[first_column + j, slope]
                 station = half_width + i - j
                 compliance += n[2 * j + slope] * (n[2 * i] * column[0, station] + n[2 * i + 1] * column[1, station])
-    work.element[p] = e
     work.stiffness[p, wire] = 1 / (
-        1 / train.contact_stiffness[p] + residual_flexibility(contact.flexibility[wire, e], s)
+        1 / train.contact_stiffness[p] + residual_flexibility(contact.flexibility[row, e], s)
     )
     work.overlap[p, wire] -= height + height_of_irregularity(contact.irregularity, wire, train.position[p])
     work.compliance[p, wire] = compliance
@@ -187,8 +221,9 @@ def sweep_contacts(
     largest = 0.0
     for p in range(train.position.size):
         e = work.element[p]
-        for wire in range(train.contact.shape[1]):
-            row, n, k = contact.row[wire], work.shape[p, wire], work.stiffness[p, wire]
+        for number in range(work.number_above[p]):
+            wire = work.above[p, number]
+            row, n, k = contact.wires.row[wire], work.shape[p, wire], work.stiffness[p, wire]
             approach = 0.0
             for i in range(train.z.shape[2]):
                 approach += train.head[p, i] * train.z[2, p, i]
@@ -200,9 +235,10 @@ def sweep_contacts(
             change = force - train.contact[p, wire]
             if abs(change) > NEGLIGIBLE_FORCE:
                 train.contact[p, wire] = force
+                first_column = contact.first_column[wire] + e - contact.wires.first[wire]
                 for i in range(2):
                     for j in range(2):
-                        column, value = contact.columns[wire, e + i, j], n[2 * i + j] * change
+                        column, value = contact.columns[first_column + i, j], n[2 * i + j] * change
                         add_column(w[row], r[row], column, e + i, value, window)
                 for i in range(train.z.shape[2]):
                     for j in range(train.z.shape[2]):

@@ -27,7 +27,7 @@ def _inverse_column(factor: Factor, row: int, station: int, slope: int, column: 
     column[slope, half_width] = 1.0
     first, last = max(0, station - half_width), min(stations, station + half_width)
     inside = slice(first + half_width - station, last + half_width - station)
-    solve_row(factor, row, first, column[0, inside], column[1, inside])
+    solve_row(factor, row, first, (last - first) // 2, column[0, inside], column[1, inside])
     size = np.abs(column[0]) + np.abs(column[1])
     tail = 0.0
     if first == station - half_width:

@@ -21,6 +21,7 @@ from pantocheck.model.dynamics.modal_step import ModalArrays, build_modal_arrays
 from pantocheck.model.dynamics.stretch_step import StretchArrays, build_stretch_arrays
 from pantocheck.model.dynamics.train import Train
 from pantocheck.model.dynamics.wire_step import WireArrays, WireWorkspace, allocate_wire_workspace, build_wire_arrays
+from pantocheck.model.fem.contact_wires import locate_contact_wires
 from pantocheck.model.modal.modal_damping import build_modal_terms
 
 
@@ -117,7 +118,9 @@ def build_kernel_arrays(
     terms = build_modal_terms(line)
     moves_as_a_whole = terms.damping.size > 0 or line.stretches.stiffness.size > 0
     stations = line.mesh.position.size
-    contact_loads = [(row, s) for row in line.contact_rows for s in range(stations)]
+    contact_loads = [
+        (row, s) for row, first, last in np.transpose(locate_contact_wires(line)) for s in range(first, last + 1)
+    ]
     sample = contact_loads[:: max(1, stations // 200)]
     half_width = column_half_width(factor, connector_ends(line.connectors) + sample)
     return KernelArrays(

@@ -107,7 +107,7 @@ def simulate_mass_drop(
     weight = -test.mass * GRAVITY
     hanging = StaticSolver(line).deflection(weight * point_load(line, load.row, test.position))
     motion = motion_at_rest(hanging, kernel.modal.damping.size, kernel.stretches.stiffness.size)
-    train = build_empty_train(len(line.contact_rows))
+    train = build_empty_train(len(catenary.contact_wires))
     before, after = (round(duration / test.time_step) for duration in (test.hanging, test.duration))
     time: Array = test.time_step * np.arange(1 - before, after + 1).astype(np.float64)
     recording = allocate_recording(line, test.sensors, time.size, pantographs=0)

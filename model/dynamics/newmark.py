@@ -13,7 +13,7 @@ which is Newmark with gamma = 1/2, beta = 1/12 (Fox-Goodwin) on the string part.
 from numba import njit
 
 from pantocheck.model.dynamics.active_window import active_window, pin_neighbours
-from pantocheck.model.dynamics.block_tridiagonal import solve_line
+from pantocheck.model.dynamics.block_tridiagonal import solve_wires
 from pantocheck.model.dynamics.connector_step import predict_connectors, sweep_connectors
 from pantocheck.model.dynamics.contact_step import correct_train, predict_train, sweep_contacts
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, Workspace
@@ -47,7 +47,7 @@ def step(kernel: KernelArrays, motion: Motion, train: Train, work: Workspace) ->
     """
     dt = kernel.time_step
     window = active_window(kernel.window, train)
-    predict_wires(dt, motion, window)
+    predict_wires(dt, kernel.wires.extents, motion, window)
     apply_wire_forces(kernel.wires, motion, work.wires, window)
     pin_neighbours(motion, window)
     predict_connectors(kernel.connectors, motion, work.tension, window)
@@ -55,7 +55,7 @@ def step(kernel: KernelArrays, motion: Motion, train: Train, work: Workspace) ->
     motion.w[2, kernel.load.row, kernel.load.station] += motion.load[0]
     predict_stretches(kernel.stretches, motion, work.elongation)
     predict_modes(kernel.modal, motion, work.modal_velocity)
-    solve_line(kernel.factor, window.first, window.last, motion.w[2], motion.r[2])
+    solve_wires(kernel.factor, kernel.wires.extents, window, motion.w[2], motion.r[2])
     sweeps = 0
     while sweeps < MAX_SWEEPS:
         sweeps += 1
@@ -65,7 +65,7 @@ def step(kernel: KernelArrays, motion: Motion, train: Train, work: Workspace) ->
         largest = maximum(largest, sweep_modes(kernel.modal, motion, work.modal_velocity))
         if largest < FORCE_TOLERANCE:
             break
-    correct_wires(dt, motion, window)
+    correct_wires(dt, kernel.wires.extents, motion, window)
     correct_train(dt, train)
     # This comparison is false for NaN, too.
     return sweeps if largest < FORCE_TOLERANCE else 0

@@ -17,6 +17,7 @@ from pantocheck.model.dynamics.train import Train, build_train
 from pantocheck.model.failures import ImpossiblePassage
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.assembly import point_load
+from pantocheck.model.fem.contact_wires import locate_contact_wires, touched_wires
 from pantocheck.model.fem.mesh import find_element
 from pantocheck.model.fem.residual_flexibility import residual_flexibility
 from pantocheck.model.statics.static_solver import StaticSolver
@@ -76,23 +77,27 @@ def _check_passage(line: DiscretisedLine, passage: Passage) -> None:
 
 def start_motion(line: DiscretisedLine, kernel: KernelArrays, passage: Passage) -> tuple[Motion, Train]:
     """Compute line and pantographs at rest, each pressing with its static force; before a ramp, with none."""
-    share, pressed = 1 / len(line.contact_rows), float(passage.ramp == 0)
+    wires, pressed = locate_contact_wires(line), float(passage.ramp == 0)
+    touched = np.zeros((len(passage.pantographs), wires.row.size), dtype=np.bool_)
     load = np.zeros(line.beams.free.size)
-    for pantograph, x in zip(passage.pantographs, passage.start, strict=True):
-        for row in line.contact_rows:
-            load += share * pressed * pantograph.static_force * point_load(line, row, x)
+    for p, (pantograph, x) in enumerate(zip(passage.pantographs, passage.start, strict=True)):
+        under = touched_wires(line, x)
+        touched[p, under] = True
+        for row in wires.row[under]:
+            load += 1 / under.size * pressed * pantograph.static_force * point_load(line, row, x)
     deflection = StaticSolver(line).deflection(load)
-    profile = kernel.contact.rest + deflection.displacement[line.contact_rows]
-    contacts = np.array(
-        [[_contact_point(kernel.contact, wire, k, x) for k, wire in enumerate(profile)] for x in passage.start]
-    )
-    train = build_train(passage, contacts[..., 0], contacts[..., 1])
+    profile = kernel.contact.rest + deflection.displacement
+    height, flexibility = np.zeros(touched.shape), np.zeros(touched.shape)
+    for p, wire in np.argwhere(touched):
+        height[p, wire], flexibility[p, wire] = _contact_point(kernel.contact, profile, wire, passage.start[p])
+    train = build_train(passage, touched, height, flexibility)
     return motion_at_rest(deflection, kernel.modal.damping.size, kernel.stretches.stiffness.size), train
 
 
 def _contact_point(contact: ContactArrays, profile: Array, wire: int, position: float) -> tuple[float, float]:
     """Height of a contact wire with its irregularity, and its residual flexibility, at a position [m, m/N]."""
     element, length, s = find_element(contact.position, position)
-    height = float(beam.shape(s, length) @ profile[element : element + 2].ravel())
+    row = contact.wires.row[wire]
+    height = float(beam.shape(s, length) @ profile[row, element : element + 2].ravel())
     height += height_of_irregularity(contact.irregularity, wire, position)
-    return height, residual_flexibility(contact.flexibility[wire, element], s)
+    return height, residual_flexibility(contact.flexibility[row, element], s)

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pantocheck.model.arrays import Array
 from pantocheck.model.dynamics.passage import Passage
@@ -10,7 +11,7 @@ from pantocheck.model.pantograph import equilibrium
 
 
 class Train(NamedTuple):
-    """Pantographs and their state; P pantographs of at most n unknowns, each touching W contact wires.
+    """Pantographs and their state; P pantographs of at most n unknowns, W contact wires of the line.
 
     Parameters
     ----------
@@ -60,17 +61,21 @@ def build_empty_train(contact_wires: int) -> Train:
     return _allocate(0, 1, contact_wires)
 
 
-def build_train(passage: Passage, wire_height: Array, flexibility: Array) -> Train:
+def build_train(passage: Passage, touched: NDArray[np.bool_], wire_height: Array, flexibility: Array) -> Train:
     """Build the pantographs at rest, each pressing with its static force, or held down if the passage has a ramp.
+
+    The touched contact wires share the force equally.
 
     Parameters
     ----------
     passage : Passage
         Pantographs, positions, speed, time step and ramp.
+    touched : (P, W) ndarray of bool
+        Whether each head touches each contact wire at the start.
     wire_height : (P, W) ndarray
-        Height of each contact wire at the position of each head in the state at the start [m].
+        Height of each touched contact wire at the position of each head in the state at the start [m].
     flexibility : (P, W) ndarray
-        Residual flexibility of each contact wire there [m/N].
+        Residual flexibility of each touched contact wire there [m/N].
 
     Returns
     -------
@@ -88,10 +93,10 @@ def build_train(passage: Passage, wire_height: Array, flexibility: Array) -> Tra
         train.damping[p, :n, :n], train.stiffness[p, :n, :n] = pantograph.damping, pantograph.stiffness
         train.head[p, :n], train.force[p, :n] = pantograph.head, pantograph.force
         train.contact_stiffness[p] = pantograph.contact_stiffness
-        if passage.ramp == 0:
-            train.contact[p] = pantograph.static_force / wires
-        overlap = train.contact[p, 0] * (1 / pantograph.contact_stiffness + float(flexibility[p].mean()))
-        train.z[0, p, :n], force_down = equilibrium(pantograph, float(wire_height[p].mean()) + overlap)
+        share = pantograph.static_force / touched[p].sum() if passage.ramp == 0 else 0.0
+        train.contact[p, touched[p]] = share
+        overlap = share * (1 / pantograph.contact_stiffness + float(flexibility[p, touched[p]].mean()))
+        train.z[0, p, :n], force_down = equilibrium(pantograph, float(wire_height[p, touched[p]].mean()) + overlap)
         train.held[p] = force_down if passage.ramp > 0 else 0.0
     return train
 

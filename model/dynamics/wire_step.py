@@ -27,11 +27,12 @@ from numba import njit
 
 from pantocheck.model.arrays import Array, Indices
 from pantocheck.model.dynamics.active_window import Window
+from pantocheck.model.dynamics.extents import Extents, clip_extent, find_extents
 from pantocheck.model.dynamics.motion import Motion
 from pantocheck.model.fem.beams import Beams, element_stiffness
 
 PIECE = 256
-"""Number of elements of a row that are processed together, so that they stay in the fastest cache."""
+"""Number of elements of a wire that are processed together, so that they stay in the fastest cache."""
 
 # Consistent mass over m_l h / 420 in the splitting above; a slope counts times h.
 MASS_SHEAR, MASS_SHEAR_TILT, MASS_TILT = 51.0, 4.5, 0.5
@@ -43,6 +44,8 @@ class WireArrays(NamedTuple):
 
     Parameters
     ----------
+    extents : Extents
+        Extents of the wires.
     length : (S-1,) ndarray
         Lengths of the elements [m].
     stiffness : (B, 4, S-1) ndarray
@@ -57,6 +60,7 @@ class WireArrays(NamedTuple):
         Their coefficients [N/m, N s/m].
     """
 
+    extents: Extents
     length: Array
     stiffness: Array
     damped_mass: Array
@@ -109,6 +113,7 @@ def build_wire_arrays(beams: Beams) -> WireArrays:
     lumped = np.nonzero((beams.lumped_stiffness != 0) | (beams.lumped_damping != 0))
     lumped_row, lumped_station = (np.ascontiguousarray(index) for index in lumped)
     return WireArrays(
+        extents=find_extents(beams),
         length=beams.length,
         stiffness=np.stack([k11, k12, (k22 + k24) / 2, (k22 - k24) / 2], axis=1),
         damped_mass=beams.mass_coefficient[:, None] * beams.mass_per_length * beams.length / 420,
@@ -128,11 +133,11 @@ def allocate_wire_workspace() -> WireWorkspace:
 
 
 @njit(cache=True)
-def predict_wires(dt: float, motion: Motion, window: Window) -> None:
+def predict_wires(dt: float, extents: Extents, motion: Motion, window: Window) -> None:
     """Replace displacement and velocity of the active stations by Newmark's predictors."""
     for field in (motion.w, motion.r):
-        for b in range(field.shape[1]):
-            q, v, a = _active(field, b, window)
+        for n in range(extents.row.size):
+            q, v, a = _active(field, extents, n, window)
             for s in range(q.size):
                 q[s] += dt * v[s] + dt * dt / 4 * a[s]
             for s in range(q.size):
@@ -140,11 +145,11 @@ def predict_wires(dt: float, motion: Motion, window: Window) -> None:
 
 
 @njit(cache=True)
-def correct_wires(dt: float, motion: Motion, window: Window) -> None:
+def correct_wires(dt: float, extents: Extents, motion: Motion, window: Window) -> None:
     """Complete the predictors with the accelerations at the end of the step."""
     for field in (motion.w, motion.r):
-        for b in range(field.shape[1]):
-            q, v, a = _active(field, b, window)
+        for n in range(extents.row.size):
+            q, v, a = _active(field, extents, n, window)
             for s in range(q.size):
                 q[s] += dt * dt / 4 * a[s]
             for s in range(q.size):
@@ -152,9 +157,10 @@ def correct_wires(dt: float, motion: Motion, window: Window) -> None:
 
 
 @njit(cache=True)
-def _active(field: Array, row: int, window: Window) -> tuple[Array, Array, Array]:
-    """Displacement, velocity and acceleration of the active stations of a row."""
-    first, end = window.first, window.last + 1
+def _active(field: Array, extents: Extents, n: int, window: Window) -> tuple[Array, Array, Array]:
+    """Displacement, velocity and acceleration of the active stations of a wire."""
+    row, active = extents.row[n], clip_extent(extents, n, window)
+    first, end = active.first, max(active.last + 1, active.first)
     return field[0, row, first:end], field[1, row, first:end], field[2, row, first:end]
 
 
@@ -162,13 +168,17 @@ def _active(field: Array, row: int, window: Window) -> tuple[Array, Array, Array
 def apply_wire_forces(wires: WireArrays, motion: Motion, work: WireWorkspace, window: Window) -> None:
     """Store forces and moments of wires and lumped parts on the active stations in place of their accelerations.
 
-    The rows are processed in pieces that stay in the fastest cache, and every loop fills one or two arrays from a few
+    The wires are processed in pieces that stay in the fastest cache, and every loop fills one or two arrays from a few
     others: in this form they compile to vector instructions. One more station on either side, at rest, holds the
     active part.
     """
-    first, last = max(window.first - 1, 0), min(window.last + 1, motion.w.shape[2] - 1)
+    widened = Window(window.first - 1, window.last + 1)
     forces = work.forces
-    for b in range(motion.w.shape[1]):
+    for wire in range(wires.extents.row.size):
+        b = wires.extents.row[wire]
+        first, last = clip_extent(wires.extents, wire, widened)
+        if first >= last:
+            continue
         for force in forces:
             force[:] = 0.0  # there is no element before the first
         for start in range(first, last, PIECE):

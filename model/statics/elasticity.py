@@ -2,9 +2,10 @@
 
 import numpy as np
 
-from pantocheck.model.arrays import Array
+from pantocheck.model.arrays import Array, Indices
 from pantocheck.model.discretised_line import DiscretisedLine
 from pantocheck.model.fem.assembly import point_load
+from pantocheck.model.fem.contact_wires import touched_rows, touched_wires
 from pantocheck.model.fem.mesh import find_element
 from pantocheck.model.fem.residual_flexibility import residual_flexibility
 from pantocheck.model.irregularity_spline import NO_IRREGULARITY, irregularity_height
@@ -21,21 +22,21 @@ def static_uplift(line: DiscretisedLine, position: Array, force: float) -> Array
     position : (n,) ndarray
         Positions of the force [m].
     force : float
-        Force upwards, shared by the contact wires [N].
+        Force upwards, shared by the contact wires that a head touches there [N].
 
     Returns
     -------
     (n,) ndarray
-        Uplift at the force, mean over the contact wires [m].
+        Uplift at the force, mean over these contact wires [m].
     """
     statics = StaticSolver(line)
-    rows = line.contact_rows
     uplift = np.empty(len(position))
     for i, x in enumerate(position):
+        rows = touched_rows(line, float(x))
         loads = [point_load(line, row, float(x)) for row in rows]
         displacement = statics.deflection(force / len(rows) * np.sum(loads, axis=0)).displacement
         flat = displacement.transpose(1, 0, 2).ravel()
-        uplift[i] = np.mean([load @ flat for load in loads]) + force / len(rows) * _mean_residual(line, float(x))
+        uplift[i] = np.mean([load @ flat for load in loads]) + force / len(rows) * _mean_residual(line, rows, float(x))
     return uplift
 
 
@@ -52,11 +53,11 @@ def rest_height(line: DiscretisedLine, position: Array) -> Array:
     Returns
     -------
     (n,) ndarray
-        Height above the datum of the line, mean over the contact wires [m].
+        Height above the datum of the line, mean over the contact wires that a head touches there [m].
     """
     deflection = line.state.deflection.transpose(1, 0, 2).ravel()
-    heights = [[point_load(line, row, float(x)) @ deflection for row in line.contact_rows] for x in position]
-    return np.asarray(np.mean(heights, axis=1))
+    heights = [np.mean([point_load(line, row, x) @ deflection for row in touched_rows(line, x)]) for x in position]
+    return np.array(heights)
 
 
 def height_under_forces(line: DiscretisedLine, position: Array, force: Array) -> Array:
@@ -69,32 +70,39 @@ def height_under_forces(line: DiscretisedLine, position: Array, force: Array) ->
     position : (n,) ndarray
         Positions of the forces [m].
     force : (n,) ndarray
-        Forces upwards, each shared by the contact wires [N].
+        Forces upwards, each shared by the contact wires that a head touches there [N].
 
     Returns
     -------
     (n,) ndarray
-        Height, mean over the contact wires [m].
+        Height, mean over these contact wires [m].
     """
-    rows = line.contact_rows
-    shapes = [np.mean([point_load(line, row, float(x)) for row in rows], axis=0) for x in position]
+    rows = [touched_rows(line, float(x)) for x in position]
+    shapes = [
+        np.mean([point_load(line, row, float(x)) for row in under], axis=0)
+        for x, under in zip(position, rows, strict=True)
+    ]
     displacement = StaticSolver(line).deflection(np.sum([f * n for f, n in zip(force, shapes, strict=True)], axis=0))
     height = (line.state.deflection + displacement.displacement).transpose(1, 0, 2).ravel()
-    residual = [f / len(rows) * _mean_residual(line, float(x)) for x, f in zip(position, force, strict=True)]
+    residual = [
+        f / len(under) * _mean_residual(line, under, float(x))
+        for x, f, under in zip(position, force, rows, strict=True)
+    ]
     return np.asarray(np.array([shape @ height for shape in shapes]) + residual + _mean_irregularity(line, position))
 
 
-def _mean_residual(line: DiscretisedLine, position: float) -> float:
-    """Residual flexibility at a position, mean over the contact wires [m/N]."""
+def _mean_residual(line: DiscretisedLine, rows: Indices, position: float) -> float:
+    """Residual flexibility at a position, mean over rows of contact wires [m/N]."""
     element, _, s = find_element(line.mesh.position, position)
-    return float(np.mean([residual_flexibility(line.beams.flexibility[r, element], s) for r in line.contact_rows]))
+    return float(np.mean([residual_flexibility(line.beams.flexibility[row, element], s) for row in rows]))
 
 
 def _mean_irregularity(line: DiscretisedLine, position: Array) -> Array:
-    """Irregularity at positions, mean over the contact wires [m]."""
+    """Irregularity at positions, mean over the contact wires that a head touches there [m]."""
     wires = line.catenary.contact_wires
     heights = [irregularity_height(wire.irregularity or NO_IRREGULARITY, position) for wire in wires]
-    return np.asarray(np.mean(heights, axis=0))
+    touched = [touched_wires(line, float(x)) for x in position]
+    return np.array([np.mean([heights[wire][n] for wire in under]) for n, under in enumerate(touched)])
 
 
 def non_uniformity(elasticity: Array) -> float:

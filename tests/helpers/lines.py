@@ -17,6 +17,7 @@ from pantocheck.model import (
     Wire,
     chain,
 )
+from pantocheck.model.sections import join_sections, place_section
 
 Array = NDArray[np.float64]
 
@@ -64,6 +65,30 @@ def simple_line(
         messenger_supports=tuple(MessengerSupport(number * span, "messenger", 1.2, 5e4) for number in range(spans + 1)),
         damping=damping or {},
     )
+
+
+def overlapping_line(
+    sections: int = 2, spans: int = 2, overlap: int = 1, rise: float = 0.3, section: Catenary | None = None
+) -> Catenary:
+    """Sections of `simple_line` or of another line; over the overlaps [spans] the wires rise to their anchors [m].
+
+    The rise is a parabola that begins at the first support behind the middle of the overlap, seen from the anchor.
+    """
+    section = section or simple_line(spans)
+    length = section.wires[0].end
+    span = length / spans
+    reach, step = (overlap + 1) // 2 * span, length - overlap * span
+
+    def place(number: int) -> Catenary:
+        """Section by its number; the first anchor and the last one of the line are not raised."""
+        start = number * step
+        anchors = [start] * (number > 0) + [start + length] * (number < sections - 1)
+        return place_section(
+            section, f"section {number + 1}", start,
+            lambda x: sum(rise * max(0.0, 1 - abs(x - anchor) / reach) ** 2 for anchor in anchors),
+        )  # fmt: skip
+
+    return join_sections([place(number) for number in range(sections)])
 
 
 def fix_along_track(catenary: Catenary, axial_stiffness: float = 13.8e6) -> Catenary:

@@ -98,13 +98,13 @@ class PlainNewmark:
         places = [x + self.passage.speed * state.time for x in self.passage.start]
         stiff = np.array(
             [
-                contact_stiffness(self.line, row, place, pantograph.contact_stiffness)
+                contact_stiffness(self.line, row, place, pantograph.contact_stiffness) if covers else 0.0
                 for pantograph, place in zip(self.passage.pantographs, places, strict=True)
-                for row in self.line.contact_rows
+                for row, covers in self._contact_wires(place)
             ]
         )
         taut = ~line.unilateral | (state.tension > 0)
-        touching = state.contact > 0
+        touching = (state.contact > 0) & (stiff > 0)
         for _ in range(100):
             k, c, kc = line.stiffness * taut, line.damping * taut, stiff * touching
             K = self.K + (bars * k) @ bars.T + (closing * kc) @ closing.T
@@ -125,20 +125,29 @@ class PlainNewmark:
 
     def _closing(self, time: float) -> tuple[Array, Array]:
         """Overlap of each head and wire per unknown, and the height of the wire at rest, at a time."""
-        pairs = [(p, row) for p in range(len(self.pantograph_slices)) for row in self.line.contact_rows]
+        places = [x + self.passage.speed * time for x in self.passage.start]
+        pairs = [(p, *wire) for p, place in enumerate(places) for wire in self._contact_wires(place)]
         closing, height = np.zeros((self.M.shape[0], len(pairs))), np.zeros(len(pairs))
-        for n, (p, row) in enumerate(pairs):
-            share = point_load(self.line, row, self.passage.start[p] + self.passage.speed * time)
-            closing[: self.free.size, n] = -share[self.free]
-            closing[self.pantograph_slices[p], n] = self.passage.pantographs[p].head
-            height[n] = share @ self.rest + self._irregularity(n % len(self.line.contact_rows), time, p)
+        wires = len(self.line.catenary.contact_wires)
+        for n, (p, row, covers) in enumerate(pairs):
+            if covers:
+                share = point_load(self.line, row, places[p])
+                closing[: self.free.size, n] = -share[self.free]
+                closing[self.pantograph_slices[p], n] = self.passage.pantographs[p].head
+                height[n] = share @ self.rest + self._irregularity(n % wires, places[p])
         return closing, height
 
-    def _irregularity(self, wire: int, time: float, p: int) -> float:
-        """Irregularity of a contact wire under a pantograph; beyond its points the height of the nearest end."""
+    def _contact_wires(self, place: float) -> list[tuple[int, bool]]:
+        """Row of every contact wire, and whether the wire covers a place."""
+        return [
+            (self.line.mesh.row_of[wire.name, "z"], wire.start < place <= wire.end)
+            for wire in self.line.catenary.contact_wires
+        ]
+
+    def _irregularity(self, wire: int, place: float) -> float:
+        """Irregularity of a contact wire at a place; beyond its points the height of the nearest end."""
         irregularity = self.line.catenary.contact_wires[wire].irregularity
         if irregularity is None:
             return 0.0
         spline = CubicSpline(irregularity.position, irregularity.height, bc_type=((1, 0.0), (1, 0.0)))
-        place = self.passage.start[p] + self.passage.speed * time
         return float(spline(min(max(place, irregularity.position[0]), irregularity.position[-1])))

@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import splu
 
-from helpers.lines import DAMPED, Array, bare_wire, simple_line, without_connectors
+from helpers.lines import DAMPED, Array, bare_wire, overlapping_line, simple_line, without_connectors
 from pantocheck.model.discretised_line import DiscretisedLine, discretise
-from pantocheck.model.dynamics.block_tridiagonal import solve_line
+from pantocheck.model.dynamics.active_window import Window
+from pantocheck.model.dynamics.block_tridiagonal import solve_wires
 from pantocheck.model.dynamics.effective_matrix import factorise
+from pantocheck.model.dynamics.extents import find_extents
 from pantocheck.model.dynamics.inverse_columns import column_half_width, inverse_columns
 from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, stepping_mass
 
@@ -73,15 +75,42 @@ def test_columns_near_an_anchor_are_as_wide_as_elsewhere(load: int) -> None:
     assert column_half_width(factor, [(0, load % stations)]) == column_half_width(factor, [(0, stations // 2)]) > 8
 
 
-def test_solve_line_agrees_with_a_sparse_solver(line_and_step: tuple[DiscretisedLine, float]) -> None:
-    """A random load on the whole line: 1e-12 of the peak allows for the growth of rounding along a row."""
-    line, time_step = line_and_step
+@pytest.mark.parametrize("sections", [1, 3])
+def test_solve_wires_agrees_with_a_sparse_solver(sections: int) -> None:
+    """A random load on the whole line: 1e-12 of the peak allows for the growth of rounding along a row.
+
+    Of three sections the first and the third share a row, and the eliminations meet in the second.
+    """
+    line, time_step = discretise(overlapping_line(sections, 3, section=simple_line(3, damping=DAMPED)), 0.8), 1e-3
     inverse, factor = inverse_of_assembled(line, time_step), factorise(line.beams, time_step)
     load = np.random.default_rng(1).normal(size=line.beams.free.shape)
     load[~line.beams.free] = 0.0
     w, r = load[..., 0].copy(), load[..., 1].copy()
-    solve_line(factor, 0, w.shape[1] - 1, w, r)
-    for row in range(2):
+    solve_wires(factor, find_extents(line.beams), Window(0, w.shape[1] - 1), w, r)
+    for row in range(line.mesh.rows):
         expected = np.einsum("siab,ab->si", inverse[row, :, :, row], load[row])
         computed = np.stack([w[row], r[row]], axis=1)
         np.testing.assert_allclose(computed, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("share", [0.1, 0.35, 0.5, 0.65, 0.9])
+def test_solve_wires_leaves_everything_outside_of_the_window(share: float) -> None:
+    """A window of 30 m somewhere in three sections, loaded 10 m around its middle: the solution, or untouched."""
+    line, time_step = discretise(overlapping_line(3, 3, section=simple_line(3, damping=DAMPED)), 0.8), 1e-3
+    inverse, factor = inverse_of_assembled(line, time_step), factorise(line.beams, time_step)
+    x = line.mesh.position
+    middle = share * x[-1]
+    window = Window(int(np.searchsorted(x, middle - 15.0)), int(np.searchsorted(x, middle + 15.0)))
+    load = np.random.default_rng(2).normal(size=line.beams.free.shape)
+    load[~line.beams.free] = 0.0
+    load[:, np.abs(x - middle) > 5.0] = 0.0
+    w, r = load[..., 0].copy(), load[..., 1].copy()
+    w[:, : window.first], w[:, window.last + 1 :] = 7.0, 7.0
+    solve_wires(factor, find_extents(line.beams), window, w, r)
+    assert (w[:, : window.first] == 7.0).all()
+    assert (w[:, window.last + 1 :] == 7.0).all()
+    inside = slice(window.first, window.last + 1)
+    for row in range(line.mesh.rows):
+        expected = np.einsum("siab,ab->si", inverse[row, :, :, row], load[row])[inside]
+        computed = np.stack([w[row], r[row]], axis=1)[inside]
+        np.testing.assert_allclose(computed, expected, rtol=0, atol=1e-12 * np.abs(load).max())

@@ -5,7 +5,7 @@ import numpy as np
 from helpers.lines import DAMPED, simple_line
 from pantocheck.model.discretised_line import DiscretisedLine, discretise
 from pantocheck.model.dynamics.active_window import Window
-from pantocheck.model.dynamics.block_tridiagonal import solve_line
+from pantocheck.model.dynamics.block_tridiagonal import solve_wires
 from pantocheck.model.dynamics.connector_step import connector_ends, predict_connectors, sweep_connectors
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, build_kernel_arrays
 from pantocheck.model.dynamics.motion import Motion
@@ -25,7 +25,7 @@ def swept_state() -> tuple[DiscretisedLine, KernelArrays, Motion, int]:
     motion = Motion(w, r, line.connectors.preload.copy(), np.zeros(0), np.zeros(1), np.zeros(0))
     window, predicted = Window(0, stations - 1), np.zeros(line.connectors.station.size)
     predict_connectors(kernel.connectors, motion, predicted, window)
-    solve_line(kernel.factor, 0, stations - 1, w[2], r[2])
+    solve_wires(kernel.factor, kernel.wires.extents, Window(0, stations - 1), w[2], r[2])
     sweeps = 1
     while sweep_connectors(kernel.connectors, motion, predicted, window) > FORCE_TOLERANCE:
         sweeps += 1
@@ -56,7 +56,7 @@ def test_accelerations_balance_the_tensions() -> None:
     w, r = np.zeros_like(motion.w[2]), np.zeros_like(motion.r[2])
     for n, station in enumerate(line.connectors.station):
         w[:, station] -= line.connectors.coefficient[n] * (motion.tension[n] - line.connectors.preload[n])
-    solve_line(kernel.factor, 0, w.shape[1] - 1, w, r)
+    solve_wires(kernel.factor, kernel.wires.extents, Window(0, w.shape[1] - 1), w, r)
     np.testing.assert_allclose(motion.w[2], w, rtol=0, atol=1e-9 * np.abs(w).max())
 
 

@@ -7,8 +7,8 @@ import pytest
 
 from helpers.lines import DAMPED, PANTOGRAPH_2002, Array, bare_wire, fix_along_track, simple_line
 from pantocheck.model import Catenary, Kind, ModalBand, Passage, discretise
-from pantocheck.model.dynamics.active_window import build_window_arrays, max_wave_speed
-from pantocheck.model.dynamics.block_tridiagonal import solve_line
+from pantocheck.model.dynamics.active_window import Window, build_window_arrays, max_wave_speed
+from pantocheck.model.dynamics.block_tridiagonal import solve_wires
 from pantocheck.model.dynamics.inverse_columns import column_half_width
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, build_kernel_arrays, build_workspace
 from pantocheck.model.dynamics.train import build_empty_train
@@ -41,7 +41,7 @@ def test_self_compliance_is_the_response_of_a_connector_to_its_own_tension() -> 
     station, coefficient = line.connectors.station[number], line.connectors.coefficient[number]
     w, r = np.zeros(line.beams.free.shape[:2]), np.zeros(line.beams.free.shape[:2])
     w[:, station] = coefficient
-    solve_line(kernel.factor, 0, w.shape[1] - 1, w, r)
+    solve_wires(kernel.factor, kernel.wires.extents, Window(0, w.shape[1] - 1), w, r)
     response = kernel.connectors.tension_per_acceleration[number] * (coefficient @ w[:, station])
     assert kernel.connectors.self_compliance[number] == pytest.approx(response, rel=1e-10)
 

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from helpers.lines import DAMPED, PANTOGRAPH_2002, bare_wire, fix_along_track, simple_line
+from helpers.lines import DAMPED, PANTOGRAPH_2002, bare_wire, fix_along_track, overlapping_line, simple_line
 from helpers.step_differences import THREE_MASSES, largest_differences
 from pantocheck.model import Catenary, Kind, Passage, Rayleigh, chain
 from pantocheck.model.discretised_line import discretise
@@ -100,6 +100,33 @@ def test_step_equals_the_plain_implementation_under_two_contact_wires() -> None:
     lost = contact_force == 0.0
     assert (lost[:, 0::2] != lost[:, 1::2]).any()
     assert max(difference.values()) < 1e-9, difference
+
+
+def test_step_equals_the_plain_implementation_through_an_overlap() -> None:
+    """Two heads change from wire to wire, and a third wire shares the row of the first; tolerance as above.
+
+    The wires cross in the middle of the overlap from 80 m to 120 m. The first wire ends only 0.15 m higher, so that the
+    second head, which starts upwards at 2 m/s, still presses on it there.
+    """
+    section = simple_line(spans=3, span=40.0, droppers=(5.0, 15.0, 25.0, 35.0), damping=DAMPED)
+    catenary = overlapping_line(sections=3, spans=3, overlap=1, rise=0.15, section=section)
+    line = discretise(catenary, 5.0)
+    rows = [line.mesh.row_of[wire.name, "z"] for wire in catenary.contact_wires]
+    assert rows[0] == rows[2] != rows[1]
+    passage = Passage((PANTOGRAPH_2002, THREE_MASSES), (86.0, 74.0), 90.0, 0.6, 2e-3)
+    difference, tension, contact = largest_differences(line, passage, 300, drop=-2.0)
+    assert max(difference.values()) < 1e-9, difference
+    assert (tension == 0.0).any()
+    place = np.array(passage.start) + passage.speed * passage.time_step * np.arange(1, 301)[:, None]
+    for p in range(2):
+        first, second, third = contact[:, 3 * p : 3 * p + 3].T
+        assert ((first > 0) & (second > 0)).any()
+        assert first[place[:, p] > 120.0].max() == 0.0
+        print("END", first[(place[:, p] > 112)][:20].round(1), second[place[:, p] < 88][:15].round(1), place[0])
+        assert second[place[:, p] <= 80.0].max(initial=0.0) == 0.0
+        assert third.max() == 0.0
+    at_end = (place[:, 1] > 115.0) & (place[:, 1] <= 120.0)
+    assert contact[at_end, 3].max() > 50.0
 
 
 damping_coefficients = st.builds(Rayleigh, st.floats(0.0, 0.5), st.floats(0.0, 2e-3))
