@@ -1,6 +1,7 @@
 """`pantocheck show`: content of a case and the provenance of each number."""
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
@@ -15,12 +16,16 @@ from pantocheck.conformance.command_line.rest_tables import build_rest_tables
 from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.simulation.line_drawing import draw_line
+from pantocheck.conformance.simulation.drawing_marks import list_marks
+from pantocheck.conformance.simulation.line_drawing import LineDrawing, draw_line_pdf, draw_line_svg
 from pantocheck.conformance.systems.command.case_message import build_case_message
 from pantocheck.model import discretise
 
-DRAWN_SPANS = 6
-"""Spans of a drawing: all spans are alike, so a few show the line."""
+DRAWING_FORMATS: dict[str, Callable[[LineDrawing], bytes]] = {
+    ".svg": lambda drawing: draw_line_svg(drawing).encode(),
+    ".pdf": draw_line_pdf,
+}
+"""Writer of a drawing by the suffix of its file."""
 
 
 def show_command(
@@ -37,7 +42,8 @@ def show_command(
         Path | None, typer.Option(help="JSON file for one case, as a program receives it (docs/systems.md).")
     ] = None,
     drawing: Annotated[
-        Path | None, typer.Option(help="SVG file for a drawing of the line to scale, in elevation and in plan.")
+        Path | None,
+        typer.Option(help="SVG or PDF file for a drawing of the whole line to scale, in elevation and in plan."),
     ] = None,
 ) -> None:
     """Show the inputs, the limits and the notes of a case with their trust and source.
@@ -55,6 +61,10 @@ def show_command(
     if request is not None:
         _write_request(cases, request)
     if drawing is not None:
+        if drawing.suffix.lower() not in DRAWING_FORMATS:
+            raise InputError(
+                str(drawing), f"format '{drawing.suffix}' cannot be written", f"Write {' or '.join(DRAWING_FORMATS)}."
+            )
         if any(each.line != cases[0].line for each in cases):
             raise InputError(f"case '{case}'", "the cases have different lines", "Give the id of one case.")
         _draw(cases[0], drawing)
@@ -82,7 +92,9 @@ def _write_request(cases: list[Case], path: Path) -> None:
 
 
 def _draw(case: Case, path: Path) -> None:
+    draw = DRAWING_FORMATS[path.suffix.lower()]
     check_writable(path.parent)
-    short = case.line.model_copy(update={"geometry": case.line.geometry.shorten(DRAWN_SPANS)})
-    line = discretise(build_catenary(short), case.file.discretisation.element_m)
-    write_atomically(path, draw_line(line, short.title, short.geometry).encode())
+    line = discretise(build_catenary(case.line), case.file.discretisation.element_m)
+    write_atomically(
+        path, draw(LineDrawing(line, case.line.title, case.line.geometry, list_marks(case, line.catenary)))
+    )

@@ -1,91 +1,260 @@
-"""Drawing of a line at rest: side view and plan view."""
+"""Drawing of a whole line at rest: side view and plan view in rows of a few spans, at one scale."""
+
+from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.geometry import Geometry
-from pantocheck.conformance.reports.figures.figure_style import FULL, GREY, INK, render_svg
+from pantocheck.conformance.reports.figures.figure_style import GREY, INK, PALE, render_pdf_pages, render_svg
+from pantocheck.conformance.simulation.drawing_marks import DrawnMark
+from pantocheck.conformance.simulation.drawing_rows import (
+    FILLED,
+    HEADING,
+    LEFT,
+    PLAN_VIEW,
+    RIGHT,
+    SHEET,
+    SIDE_VIEW,
+    DrawingRow,
+    divide_into_pages,
+    divide_into_rows,
+    row_height,
+)
 from pantocheck.model import DiscretisedLine, Kind, Wire
 
-EXAGGERATED = 10
-"""Scale of heights and lateral positions relative to lengths along the track."""
-WIDTHS = {Kind.CONTACT_WIRE: 1.8, Kind.MESSENGER_WIRE: 1.2, Kind.STITCH_WIRE: 0.9}
+WIDTHS = {Kind.CONTACT_WIRE: 1.6, Kind.MESSENGER_WIRE: 1.0, Kind.STITCH_WIRE: 0.7}
+SYMBOLS = {"messenger support": "^", "steady arm": "o", "sensor": "s", "mass": "v"}
+"""Marker of each part that is drawn as a point."""
+LABEL_OFFSET = 0.42
+"""Distance of the names of the vertical axes from the axes [in]."""
+MARK_SPACE = 0.3
+"""Distance below which two marks of a wire share one text [in]."""
+LABEL_SPACE = 0.085
+"""Smallest distance between the lengths of two droppers [in]."""
 
 
-@render_svg
-def draw_line(line: DiscretisedLine, title: str, geometry: Geometry) -> Figure:
-    """Side view and plan view of two spans and half a span on either side.
+@dataclass(frozen=True)
+class LineDrawing:
+    """Content of a drawing.
 
     Parameters
     ----------
     line : DiscretisedLine
-        Discretised line.
+        Line at rest.
     title : str
-        Title of the figure.
+        Title of the line.
     geometry : Geometry
         Spans of the line.
+    marks : tuple of DrawnMark
+        Sensors and masses.
     """
-    before = round(geometry.spans / 2)
-    first, last = before - 1, before + 2
-    shown = (
-        geometry.mid_span(first) if first >= 1 else 0.0,
-        geometry.mid_span(last) if last <= geometry.spans else geometry.length,
-    )
-    labelled = geometry.span(min(before + 1, geometry.spans))
-    lateral = line.catenary.has_lateral_field
-    figure = Figure(figsize=(FULL, 3.6 if lateral else 2.4))
-    axes = figure.subplots(2 if lateral else 1, 1, sharex=True, squeeze=False)[:, 0]
-    _view(axes[0], line, "z", shown, labelled)
-    axes[0].set_ylabel("height [m]")
-    axes[0].set_title(f"{title}: side view", fontsize=8, loc="left")
-    if lateral:
-        _view(axes[1], line, "y", shown, labelled)
-        axes[1].set_ylabel("lateral [m]")
-        axes[1].set_title("plan view", fontsize=8, loc="left")
-    axes[-1].set_xlabel(f"along the track [m]; heights and lateral positions {EXAGGERATED} times enlarged")
+
+    line: DiscretisedLine
+    title: str
+    geometry: Geometry
+    marks: tuple[DrawnMark, ...] = ()
+
+    @property
+    def rows(self) -> tuple[DrawingRow, ...]:
+        """Rows of the whole line."""
+        return divide_into_rows(self.geometry)
+
+    @property
+    def scale(self) -> float:
+        """Inches per metre along the track, the same in all rows."""
+        return (SHEET[0] - LEFT - RIGHT) / max(row.end - row.start for row in self.rows)
+
+    def deflection(self, wire: str, field: str, position: float) -> float:
+        """Height (`z`) or lateral position (`y`) of a wire [m]."""
+        row, x = self.line.mesh.row_of[wire, field], self.line.mesh.position
+        return float(np.interp(position, x, self.line.state.deflection[row, :, 0]))
+
+    def shape(self, wire: Wire, field: str, row: DrawingRow) -> tuple[RealArray, RealArray]:
+        """Positions and deflections of a wire inside a row [m]."""
+        x = self.line.mesh.position
+        start, end = max(wire.start, row.start), min(wire.end, row.end)
+        inside = (x >= start - 1e-6) & (x <= end + 1e-6)
+        return x[inside], self.line.state.deflection[self.line.mesh.row_of[wire.name, field], inside, 0]
+
+    def extent(self, field: str) -> tuple[float, float]:
+        """Lowest and highest deflection of all wires, with a margin [m]."""
+        whole = DrawingRow(1, self.geometry.spans, 0.0, self.geometry.length)
+        values = np.concatenate([self.shape(wire, field, whole)[1] for wire in self.line.catenary.wires])
+        size = max(float(np.ptp(values)), 0.1)
+        return float(values.min()) - 0.4 * size, float(values.max()) + 0.15 * size
+
+
+def draw_line_svg(drawing: LineDrawing) -> str:
+    """SVG text of a drawing with all rows below each other."""
+    height = HEADING + len(drawing.rows) * row_height(drawing.line.catenary.has_lateral_field)
+    return render_svg(paint_rows)(drawing, drawing.rows, height)
+
+
+def draw_line_pdf(drawing: LineDrawing) -> bytes:
+    """PDF of a drawing on pages of A4 in landscape."""
+    pages = divide_into_pages(drawing.rows, drawing.line.catenary.has_lateral_field)
+    return render_pdf_pages(lambda rows: paint_rows(drawing, rows, SHEET[1]), pages)
+
+
+def paint_rows(drawing: LineDrawing, rows: tuple[DrawingRow, ...], height: float) -> Figure:
+    """Paint rows of a drawing below each other.
+
+    Parameters
+    ----------
+    drawing : LineDrawing
+        The drawing.
+    rows : tuple of DrawingRow
+        Rows of this sheet.
+    height : float
+        Height of the sheet [in].
+    """
+    lateral = drawing.line.catenary.has_lateral_field
+    figure = Figure(figsize=(SHEET[0], height))
+    figure.set_layout_engine("none")  # the place of every view is given
+    _write_heading(figure, drawing, height)
+    for n, row in enumerate(rows):
+        top = height - HEADING - n * row_height(lateral)
+        side = _add_view(figure, drawing, row, "z", top - SIDE_VIEW)
+        _name_spans(side, drawing, row)
+        _write_dropper_lengths(side, drawing, row)
+        _draw_marks(side, drawing, row)
+        if lateral:
+            side.tick_params(labelbottom=False)
+            plan = _add_view(figure, drawing, row, "y", top - SIDE_VIEW - PLAN_VIEW)
+            _draw_arms(plan, drawing, row)
     return figure
 
 
-def _view(
-    axes: Axes, line: DiscretisedLine, field: str, shown: tuple[float, float], labelled: tuple[float, float]
-) -> None:
-    start, end = shown
-    for wire in line.catenary.wires:
-        if wire.end < start or end < wire.start:
+def _write_heading(figure: Figure, drawing: LineDrawing, height: float) -> None:
+    """Title, scales and symbols."""
+    views = {"z": (SIDE_VIEW, "heights")}
+    if drawing.line.catenary.has_lateral_field:
+        views["y"] = (PLAN_VIEW, "lateral positions")
+    scales = [
+        f"{name} {FILLED * size / np.ptp(drawing.extent(field)) / drawing.scale:.0f} times"
+        for field, (size, name) in views.items()
+    ]
+    place = LEFT / SHEET[0]
+    figure.text(place, 1 - 0.2 / height, drawing.title, fontsize=9, va="center")
+    text = f"side view{' and plan view' if len(views) > 1 else ''}; along the track [m]; {', '.join(scales)} enlarged"
+    figure.text(place, 1 - 0.4 / height, text, fontsize=7, color=GREY, va="center")
+    shown = {"messenger support", "steady arm", *(mark.symbol for mark in drawing.marks)}
+    handles = [
+        Line2D(
+            [], [], linestyle="", marker=marker, color=INK, markersize=4, label=name, markerfacecolor=_fill_colour(name)
+        )
+        for name, marker in SYMBOLS.items()
+        if name in shown
+    ]
+    figure.legend(
+        handles=handles, loc="upper right", bbox_to_anchor=(1 - RIGHT / SHEET[0], 1 - 0.05 / height),
+        ncols=len(handles), borderaxespad=0.0,
+    )  # fmt: skip
+
+
+def _fill_colour(name: str) -> str:
+    return "white" if name == "steady arm" else INK
+
+
+def _add_view(figure: Figure, drawing: LineDrawing, row: DrawingRow, field: str, bottom: float) -> Axes:
+    """Axes of one view of a row, with wires, droppers and supports; `bottom` is the lower edge [in]."""
+    width, height = figure.get_size_inches()
+    size = drawing.scale * (row.end - row.start)
+    view = SIDE_VIEW if field == "z" else PLAN_VIEW
+    axes = figure.add_axes((LEFT / width, bottom / height, size / width, FILLED * view / height))
+    axes.set(xlim=(row.start, row.end), ylim=drawing.extent(field), ylabel="height [m]" if field == "z" else "y [m]")
+    axes.yaxis.set_label_coords(-LABEL_OFFSET / size, 0.5)
+    axes.set_xticks([x for x in drawing.geometry.span_limits if row.start <= x <= row.end])
+    axes.xaxis.set_major_formatter(lambda x, _: f"{x:g}")
+    axes.grid(axis="x", color=PALE)
+    catenary = drawing.line.catenary
+    for wire in catenary.wires:
+        x, w = drawing.shape(wire, field, row)
+        if x.size > 1:
+            axes.plot(x, w, color=INK, linewidth=WIDTHS[wire.kind], solid_capstyle="butt")
+    for dropper in catenary.droppers:
+        if row.start <= dropper.position <= row.end:
+            ends = [drawing.deflection(name, field, dropper.position) for name in (dropper.lower, dropper.upper)]
+            axes.plot([dropper.position] * 2, ends, color=GREY, linewidth=0.7)
+    for name, parts in (("messenger support", catenary.messenger_supports), ("steady arm", catenary.steady_arms)):
+        for part in parts:
+            if row.start <= part.position <= row.end:
+                height = drawing.deflection(part.wire, field, part.position)
+                axes.plot(
+                    part.position, height, SYMBOLS[name], color=INK, markersize=3, clip_on=False,
+                    markerfacecolor=_fill_colour(name),
+                )  # fmt: skip
+    return axes
+
+
+def _name_spans(axes: Axes, drawing: LineDrawing, row: DrawingRow) -> None:
+    """Number and length of each span below its contact wire, and the number of each support above it."""
+    limits = drawing.geometry.span_limits
+    for number in range(row.first, row.last + 1):
+        start, end = drawing.geometry.span(number)
+        axes.annotate(
+            f"span {number}: {end - start:g} m", ((start + end) / 2, 0), xycoords=("data", "axes fraction"),
+            xytext=(0, 2), textcoords="offset points", ha="center", fontsize=6, color=INK,
+        )  # fmt: skip
+    for number, x in enumerate(limits):
+        if row.start <= x <= row.end:
+            text = "end" if number in (0, len(limits) - 1) else f"support {number}"
+            axes.annotate(
+                text, (x, 1), xycoords=("data", "axes fraction"), xytext=(0, 2), textcoords="offset points",
+                ha="center", fontsize=5.5, color=GREY, annotation_clip=False,
+            )  # fmt: skip
+
+
+def _write_dropper_lengths(axes: Axes, drawing: LineDrawing, row: DrawingRow) -> None:
+    """Lengths of the droppers [m] beside them, as far as there is room."""
+    last = -np.inf
+    droppers = zip(drawing.line.catenary.droppers, drawing.line.state.dropper_length, strict=True)
+    for dropper, length in sorted(droppers, key=lambda item: item[0].position):
+        inside = row.start <= dropper.position <= row.end
+        if not inside or drawing.scale * (dropper.position - last) < LABEL_SPACE:
             continue
-        x, w = _shape(line, wire, field)
-        axes.plot(x, w, color=INK, linewidth=WIDTHS[wire.kind])
-    for n, dropper in enumerate(line.catenary.droppers):
-        if not start <= dropper.position <= end:
-            continue
-        ends = [_deflection(line, name, field, dropper.position) for name in (dropper.lower, dropper.upper)]
-        axes.plot([dropper.position] * 2, ends, color=GREY, linewidth=0.8)
-        if field == "z" and labelled[0] <= dropper.position < labelled[1]:
-            length = f"{line.state.dropper_length[n]:.3f}"
-            axes.annotate(length, (dropper.position, sum(ends) / 2), fontsize=5, rotation=90, ha="right", va="center")
-    for support in line.catenary.messenger_supports:
-        if not start <= support.position <= end:
-            continue
-        axes.plot(support.position, _deflection(line, support.wire, field, support.position), "^", color=INK)
-    for arm, force in zip(line.catenary.steady_arms, line.state.arm_force, strict=True):
-        if not start <= arm.position <= end:
-            continue
-        claw = _deflection(line, arm.wire, field, arm.position)
-        axes.plot(arm.position, claw, "o", color=INK, markersize=3, markerfacecolor="white")
-        if field == "y" and force[0] != 0.0 and arm.length is not None:
+        last = dropper.position
+        heights = [drawing.deflection(name, "z", last) for name in (dropper.lower, dropper.upper)]
+        axes.annotate(
+            f"{length:.3f}", (last, sum(heights) / 2), xytext=(-1, 0), textcoords="offset points", fontsize=4.5,
+            rotation=90, ha="right", va="center", color=INK,
+        )  # fmt: skip
+
+
+def _draw_marks(axes: Axes, drawing: LineDrawing, row: DrawingRow) -> None:
+    """Sensors and masses; neighbouring texts stand together, below the contact wire or above another wire."""
+    marks = sorted(
+        (mark for mark in drawing.marks if row.start <= mark.position <= row.end),
+        key=lambda mark: (mark.wire, mark.position),
+    )
+    labels: list[tuple[DrawnMark, list[str]]] = []
+    for mark in marks:
+        height = drawing.deflection(mark.wire, "z", mark.position)
+        axes.plot(mark.position, height, SYMBOLS[mark.symbol], color=INK, markersize=4, clip_on=False, zorder=5)
+        last = labels[-1][0] if labels else None
+        if last and last.wire == mark.wire and drawing.scale * (mark.position - last.position) < MARK_SPACE:
+            labels[-1][1].append(mark.text)
+        else:
+            labels.append((mark, [mark.text]))
+    contact_wires = {wire.name for wire in drawing.line.catenary.contact_wires}
+    for mark, texts in labels:
+        below = mark.wire in contact_wires
+        axes.annotate(
+            ", ".join(texts), (mark.position, drawing.deflection(mark.wire, "z", mark.position)),
+            xytext=(0, -5 if below else 5), textcoords="offset points", fontsize=5.5, ha="center",
+            va="top" if below else "bottom", color=INK, bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.3},
+        )  # fmt: skip
+
+
+def _draw_arms(axes: Axes, drawing: LineDrawing, row: DrawingRow) -> None:
+    """Steady arms in the plan view, from the claw to the hinge."""
+    for arm, force in zip(drawing.line.catenary.steady_arms, drawing.line.state.arm_force, strict=True):
+        if row.start <= arm.position <= row.end and force[0] != 0.0 and arm.length is not None:
+            claw = drawing.deflection(arm.wire, "y", arm.position)
             # An arm that pulls has its hinge on the side of its force; an arm that pushes, on the other side.
             towards = np.sign(force[0]) * (1 if arm.acts == "pull" else -1)
             axes.plot([arm.position] * 2, [claw, claw + towards * arm.length], color=INK, linewidth=1.0)
-    axes.set_xlim(start, end)
-    axes.set_aspect(EXAGGERATED, adjustable="datalim" if field == "y" else "box")
-
-
-def _shape(line: DiscretisedLine, wire: Wire, field: str) -> tuple[RealArray, RealArray]:
-    inside = (line.mesh.position >= wire.start - 1e-6) & (line.mesh.position <= wire.end + 1e-6)
-    return line.mesh.position[inside], line.state.deflection[line.mesh.row_of[wire.name, field], inside, 0]
-
-
-def _deflection(line: DiscretisedLine, wire: str, field: str, position: float) -> float:
-    return float(line.state.deflection[line.mesh.row_of[wire, field], line.mesh.station(position), 0])

@@ -1,13 +1,14 @@
 """One style for all figures: SVG, letters as paths, no dates, the same bytes every time."""
 
 import io
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cache, wraps
 from importlib.resources import as_file
-from typing import Any, ParamSpec
+from typing import Any, ParamSpec, TypeVar
 
 import matplotlib
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_pdf import FigureCanvasPdf, PdfPages
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
@@ -24,6 +25,7 @@ FULL, HALF = 6.9, 3.4
 """Widths of a figure [in]: the text of an A4 page, and half of it."""
 
 Arguments = ParamSpec("Arguments")
+Content = TypeVar("Content")
 
 
 @cache
@@ -51,6 +53,27 @@ def render_svg(paint: Callable[Arguments, Figure]) -> Callable[Arguments, str]:
         return text[text.index("<svg") :]
 
     return render
+
+
+def render_pdf_pages(paint: Callable[[Content], Figure], contents: Iterable[Content]) -> bytes:
+    """Render figures in the common style as the pages of a PDF; equal figures give equal bytes.
+
+    Parameters
+    ----------
+    paint : callable
+        Function that paints one page.
+    contents : iterable
+        Argument of the function for each page.
+    """
+    buffer = io.BytesIO()
+    with (
+        matplotlib.rc_context(_read_style()),
+        PdfPages(buffer, metadata=dict.fromkeys(("Creator", "Producer", "CreationDate"))) as pages,
+    ):
+        for content in contents:
+            FigureCanvasPdf(figure := paint(content))
+            pages.savefig(figure)
+    return buffer.getvalue()
 
 
 def add_legend(axes: Axes, columns: int = 5) -> None:

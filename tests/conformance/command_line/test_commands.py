@@ -314,7 +314,7 @@ def test_drawing_in_a_folder_that_cannot_be_made_is_noticed_before_it_is_drawn(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "file").write_text("")
-    monkeypatch.setattr(show_command, "draw_line", lambda *_: pytest.fail("drawn"))
+    monkeypatch.setattr(show_command, "discretise", lambda *_: pytest.fail("drawn"))
     result = pantocheck("show", "en50318-2002/250", "--drawing", tmp_path / "file" / "line.svg")
     assert result.exit_code == 2
     assert "cannot be written" in result.stderr

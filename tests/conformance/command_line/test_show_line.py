@@ -2,8 +2,8 @@
 
 import json
 from pathlib import Path
-from xml.etree import ElementTree
 
+import pytest
 from typer.testing import CliRunner
 
 from pantocheck.conformance.cases.library import select_cases
@@ -11,14 +11,19 @@ from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.systems.command.case_message import build_case_message
 
 
-def test_drawing_is_a_valid_svg_and_deterministic(tmp_path: Path) -> None:
-    files = [tmp_path / name for name in ("one.svg", "two.svg")]
-    for file in files:
-        result = CliRunner().invoke(app, ["show", "en50318-2018/ac-stitched/static", "--drawing", str(file)])
-        assert result.exit_code == 0, result.output
-    assert files[0].read_bytes() == files[1].read_bytes()
-    root = ElementTree.fromstring(files[0].read_text())
-    assert root.tag.endswith("svg")
+@pytest.mark.parametrize("suffix", ["svg", "pdf"])
+def test_drawing_of_the_whole_line_is_written(tmp_path: Path, suffix: str) -> None:
+    file = tmp_path / f"line.{suffix}"
+    result = CliRunner().invoke(app, ["show", "vovan2015/mass-drop/printed", "--drawing", str(file)])
+    assert result.exit_code == 0, result.output
+    assert file.read_bytes().startswith({"svg": b"<svg", "pdf": b"%PDF"}[suffix])
+
+
+def test_drawing_in_another_format_is_refused(tmp_path: Path) -> None:
+    result = CliRunner().invoke(app, ["show", "en50318-2002/250", "--drawing", str(tmp_path / "line.png")])
+    assert result.exit_code == 2
+    assert "format '.png' cannot be written" in result.output
+    assert "Write .svg or .pdf." in result.output
 
 
 def test_line_at_rest_and_apparent_mass_are_printed() -> None:

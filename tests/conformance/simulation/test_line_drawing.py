@@ -1,17 +1,26 @@
-"""Drawing of a line at rest: its section, its parts, and the hinges of its steady arms."""
+"""Drawing of a line at rest: its rows, its parts, and the hinges of its steady arms."""
 
 from dataclasses import replace
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from pantocheck.conformance.cases.geometry import Geometry
+from pantocheck.conformance.cases.geometry import Geometry, ListedSpans
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.simulation.line_drawing import draw_line
-from pantocheck.model import DiscretisedLine, Kind, discretise
+from pantocheck.conformance.simulation.drawing_marks import DrawnMark, list_marks
+from pantocheck.conformance.simulation.drawing_rows import ROW_LENGTH, divide_into_pages, divide_into_rows
+from pantocheck.conformance.simulation.line_drawing import (
+    LABEL_SPACE,
+    LineDrawing,
+    draw_line_pdf,
+    draw_line_svg,
+    paint_rows,
+)
+from pantocheck.model import DiscretisedLine, Kind, PointMass, discretise
 
 
 def build_line(name: str, spans: int) -> tuple[DiscretisedLine, Geometry]:
@@ -20,77 +29,107 @@ def build_line(name: str, spans: int) -> tuple[DiscretisedLine, Geometry]:
     return discretise(build_catenary(line), 2.0), line.geometry
 
 
-def paint(line: DiscretisedLine, geometry: Geometry) -> Figure:
-    figure = draw_line.__wrapped__(line, "Line", geometry)  # type: ignore[attr-defined]
-    assert isinstance(figure, Figure)
-    return figure
+def paint(line: DiscretisedLine, geometry: Geometry, marks: tuple[DrawnMark, ...] = ()) -> Figure:
+    drawing = LineDrawing(line, "Line", geometry, marks)
+    return paint_rows(drawing, drawing.rows, 10.0)
 
 
-def marks(axes: Axes, marker: str) -> list[float]:
-    """Positions of the marks of a kind along the track [m]."""
+def points(axes: Axes, marker: str) -> list[float]:
+    """Positions of the points of a kind along the track [m]."""
     return sorted(float(drawn.get_xdata()[0]) for drawn in axes.lines if drawn.get_marker() == marker)
+
+
+def texts(axes: Axes) -> list[str]:
+    return [text.get_text() for text in axes.texts]
 
 
 @pytest.fixture(scope="module")
 def staggered() -> tuple[DiscretisedLine, Geometry]:
-    """Six spans; the first steady arm pushes instead of pulling, as drawn only."""
-    line, geometry = build_line("en50318-2018/ac-simple/static", 6)
+    """Eight spans of 55 m in two rows; every second steady arm pushes instead of pulling, as drawn only."""
+    line, geometry = build_line("en50318-2018/ac-simple/static", 8)
     arms = line.catenary.steady_arms
     arms = tuple(replace(arm, acts="push" if i % 2 else "pull") for i, arm in enumerate(arms))
     return replace(line, catenary=replace(line.catenary, steady_arms=arms)), geometry
 
 
-def test_two_spans_and_half_a_span_on_either_side_are_shown(staggered: tuple[DiscretisedLine, Geometry]) -> None:
-    """Of six spans: from the middle of the second to the middle of the fifth; supports and arms at their ends."""
+def test_all_spans_supports_and_droppers_stand_in_rows(staggered: tuple[DiscretisedLine, Geometry]) -> None:
+    """Two rows of four spans, side view above plan view, at one scale; the support between them is in both rows."""
     line, geometry = staggered
-    side, plan = paint(line, geometry).axes
-    span = geometry.span_lengths[0]
-    assert side.get_xlim() == pytest.approx((1.5 * span, 4.5 * span))
-    assert side.get_shared_x_axes().joined(side, plan)
-    for axes in (side, plan):
-        assert marks(axes, "^") == pytest.approx([2 * span, 3 * span, 4 * span])
-        assert marks(axes, "o") == pytest.approx([2 * span, 3 * span, 4 * span])
-        assert all(0 < drawn.get_markersize() <= 6 for drawn in axes.lines)
-    assert (side.get_ylabel(), plan.get_ylabel()) == ("height [m]", "lateral [m]")
-    assert (side.get_title("left"), plan.get_title("left")) == ("Line: side view", "plan view")
-    assert plan.get_xlabel().startswith("along the track [m]; heights and lateral positions 10 times")
-    droppers = [d.position for d in line.catenary.droppers if 1.5 * span <= d.position <= 4.5 * span]
-    vertical = sorted(float(d.get_xdata()[0]) for d in side.lines if len(d.get_xdata()) == 2)
-    assert vertical == pytest.approx(sorted(droppers))
+    views = paint(line, geometry).axes
+    assert len(views) == 4
+    limits = geometry.span_limits
+    for first, (side, plan) in zip((0, 4), (views[:2], views[2:]), strict=True):
+        inside = [x for x in geometry.supports if limits[first] <= x <= limits[first + 4]]
+        for axes in (side, plan):
+            assert axes.get_xlim() == pytest.approx((limits[first], limits[first + 4]))
+            assert points(axes, "^") == pytest.approx(inside)
+            assert points(axes, "o") == pytest.approx(inside)
+            assert axes.get_position().width == pytest.approx(views[0].get_position().width)
+        droppers = [d.position for d in line.catenary.droppers if limits[first] <= d.position <= limits[first + 4]]
+        vertical = sorted(float(d.get_xdata()[0]) for d in side.lines if len(d.get_xdata()) == 2)
+        assert vertical == pytest.approx(sorted(droppers))
+        assert [text for text in texts(side) if text.startswith("span")] == [
+            f"span {n}: {geometry.span_lengths[0]:g} m" for n in range(first + 1, first + 5)
+        ]
+    assert [text for text in texts(views[0]) if text.startswith(("support", "end"))] == [
+        "end", "support 1", "support 2", "support 3", "support 4"
+    ]  # fmt: skip
+    assert (views[0].get_ylabel(), views[1].get_ylabel()) == ("height [m]", "y [m]")
 
 
-def test_lengths_of_one_span_are_written_at_its_droppers(staggered: tuple[DiscretisedLine, Geometry]) -> None:
+def test_stated_enlargement_is_that_of_the_axes(staggered: tuple[DiscretisedLine, Geometry]) -> None:
+    """Inches per metre upwards over inches per metre along the track, rounded."""
     line, geometry = staggered
-    side, plan = paint(line, geometry).axes
-    start, end = geometry.span(4)
+    figure = paint(line, geometry)
+    heading = figure.texts[1].get_text()
+    for axes, name in zip(figure.axes, ("heights", "lateral positions"), strict=False):
+        size = figure.get_size_inches() * (axes.get_position().width, axes.get_position().height)
+        along, upward = size / (np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim()))
+        stated = float(heading.split(f"{name} ")[1].split(" ")[0])
+        assert upward / along == pytest.approx(stated, abs=0.51)
+
+
+def test_lengths_are_written_at_the_droppers(staggered: tuple[DiscretisedLine, Geometry]) -> None:
+    line, geometry = staggered
+    side = paint(line, geometry).axes[0]
     expected = {
         d.position: f"{length:.3f}"
         for d, length in zip(line.catenary.droppers, line.state.dropper_length, strict=True)
-        if start <= d.position < end
+        if d.position <= geometry.span_limits[4]
     }
-    assert {text.xy[0]: text.get_text() for text in side.texts} == expected
-    assert not plan.texts
-    for text in side.texts:
-        drawn = next(d for d in side.lines if len(d.get_xdata()) == 2 and d.get_xdata()[0] == text.xy[0])
-        assert text.xy[1] == pytest.approx(np.mean(drawn.get_ydata()))
+    written = {text.xy[0]: text.get_text() for text in side.texts if text.get_rotation() == 90}
+    assert written == expected
+
+
+def test_lengths_that_would_overlap_are_left_out() -> None:
+    """Spans of 10 m with a dropper every metre: 400 m in a row, so that not every dropper has its length."""
+    line = select_cases(["en50318-2002/250"])[0].line
+    geometry = line.geometry.model_copy(update={"span_m": 10.0, "spans": 40})
+    droppers = line.droppers.model_copy(update={"x_m": tuple(range(1, 10)), "presag_m": None, "length_m": None})
+    short = line.model_copy(update={"geometry": geometry, "droppers": droppers})
+    drawing = LineDrawing(discretise(build_catenary(short), 2.0), "Line", geometry)
+    (side,) = paint_rows(drawing, drawing.rows, 10.0).axes
+    places = np.array([text.xy[0] for text in side.texts if text.get_rotation() == 90])
+    assert 40 < places.size < len(drawing.line.catenary.droppers)
+    assert np.diff(places).min() * drawing.scale >= LABEL_SPACE
 
 
 def test_wires_have_their_shape_and_width(staggered: tuple[DiscretisedLine, Geometry]) -> None:
     """The width of a line tells contact wire, messenger wire and stitch wire apart, the contact wire the thickest."""
     line, geometry = staggered
-    side, plan = paint(line, geometry).axes
+    side, plan = paint(line, geometry).axes[:2]
+    inside = line.mesh.position <= geometry.span_limits[4] + 1e-6
     for axes, field in ((side, "z"), (plan, "y")):
         wires = [drawn for drawn in axes.lines if len(drawn.get_xdata()) > 2]
         assert len(wires) == len(line.catenary.wires)
         for drawn, wire in zip(wires, line.catenary.wires, strict=True):
-            assert drawn.get_xdata() == pytest.approx(line.mesh.position)
-            assert drawn.get_ydata() == pytest.approx(line.state.deflection[line.mesh.row_of[wire.name, field], :, 0])
+            assert drawn.get_xdata() == pytest.approx(line.mesh.position[inside])
+            row = line.mesh.row_of[wire.name, field]
+            assert drawn.get_ydata() == pytest.approx(line.state.deflection[row, inside, 0])
     stitched, geometry = build_line("en50318-2018/ac-stitched/static", 4)
     widths: dict[Kind, set[float]] = {}
     drawn_wires = [drawn for drawn in paint(stitched, geometry).axes[0].lines if len(drawn.get_xdata()) > 2]
-    start, end = 0.5 * geometry.span_lengths[0], 3.5 * geometry.span_lengths[0]
-    inside = [wire for wire in stitched.catenary.wires if wire.end >= start and wire.start <= end]
-    for drawn, wire in zip(drawn_wires, inside, strict=True):
+    for drawn, wire in zip(drawn_wires, stitched.catenary.wires, strict=True):
         assert drawn.get_xdata()[[0, -1]] == pytest.approx([wire.start, wire.end])
         widths.setdefault(wire.kind, set()).add(drawn.get_linewidth())
     order = [widths[kind].pop() for kind in (Kind.STITCH_WIRE, Kind.MESSENGER_WIRE, Kind.CONTACT_WIRE)]
@@ -102,11 +141,11 @@ def test_hinge_of_an_arm_lies_on_the_side_of_a_pull_and_opposite_a_push(
     staggered: tuple[DiscretisedLine, Geometry],
 ) -> None:
     line, geometry = staggered
-    _, plan = paint(line, geometry).axes
-    span, row = geometry.span_lengths[0], line.mesh.row_of[line.catenary.contact_wires[0].name, "y"]
+    _, plan = paint(line, geometry).axes[:2]
+    row = line.mesh.row_of[line.catenary.contact_wires[0].name, "y"]
     seen = set()
     for arm, force in zip(line.catenary.steady_arms, line.state.arm_force, strict=True):
-        if not 1.5 * span <= arm.position <= 4.5 * span:
+        if arm.position > geometry.span_limits[4]:
             continue
         claw = line.state.deflection[row, line.mesh.station(arm.position), 0]
         (drawn,) = (
@@ -123,16 +162,76 @@ def test_hinge_of_an_arm_lies_on_the_side_of_a_pull_and_opposite_a_push(
 def test_arm_without_a_lateral_force_has_no_hinge(staggered: tuple[DiscretisedLine, Geometry]) -> None:
     """A force of half a newton still gives its side, no force does not."""
     line, geometry = staggered
-    count = [d.get_linewidth() for d in paint(line, geometry).axes[1].lines].count(1.0)
-    for factor, left in ((0.0, 0), (0.5 / np.abs(line.state.arm_force[:, 0]).max(), count)):
+
+    def count_hinges(factor: float) -> int:
         weak = replace(line, state=replace(line.state, arm_force=factor * line.state.arm_force))
-        assert [d.get_linewidth() for d in paint(weak, geometry).axes[1].lines].count(1.0) == left
-    assert count == 3
+        lines = paint(weak, geometry).axes[1].lines
+        return sum(len(drawn.get_xdata()) == 2 and drawn.get_linewidth() == 1.0 for drawn in lines)
+
+    half_a_newton = 0.5 / np.abs(line.state.arm_force[:, 0]).max()
+    assert [count_hinges(factor) for factor in (1.0, half_a_newton, 0.0)] == [4, 4, 0]
 
 
-@pytest.mark.parametrize(("spans", "ends"), [(2, (0.0, 2.0)), (3, (0.5, 3.0))])
-def test_short_line_is_shown_to_its_ends(spans: int, ends: tuple[float, float]) -> None:
-    line, geometry = build_line("en50318-2002/250", spans)
-    (side,) = paint(line, geometry).axes
-    assert side.get_xlim() == pytest.approx(np.array(ends) * geometry.span_lengths[0])
-    assert side.get_xlabel() != ""
+def test_masses_and_sensors_stand_on_their_wires_with_their_texts() -> None:
+    """A section insulator of the line, and the sensors and drops of a case; neighbours share one text."""
+    (case,) = select_cases(["vovan2015/mass-drop/printed"])
+    catenary = build_catenary(case.line)
+    insulator = PointMass(100.0, catenary.contact_wires[0].name, 12.0)
+    line = discretise(replace(catenary, point_masses=(insulator,)), 2.0)
+    marks = list_marks(case, line.catenary)
+    assert marks[0] == DrawnMark("mass", insulator.wire, 100.0, "12 kg")
+    (side,) = paint(line, case.line.geometry, marks).axes
+    drops = case.file.mass_drop
+    assert drops is not None
+    assert points(side, "s") == sorted(sensor.x_m for sensor in drops.sensor)
+    assert points(side, "v") == sorted([100.0, *(drop.x_m for drop in drops.drop)])
+    drawn = [(d.get_xdata()[0], d.get_ydata()[0]) for d in side.lines if d.get_marker() in {"s", "v"}]
+    written = [text for name in texts(side) for text in name.split(", ")]
+    for mark in marks:
+        assert mark.text in written
+        row = line.mesh.row_of[mark.wire, "z"]
+        height = np.interp(mark.position, line.mesh.position, line.state.deflection[row, :, 0])
+        assert (mark.position, pytest.approx(height)) in drawn
+
+
+@pytest.mark.parametrize(("spans", "rows", "pages"), [(1, 1, 1), (6, 1, 1), (20, 4, 2), (66, 11, 4)])
+def test_long_line_is_broken_into_rows_and_pages(spans: int, rows: int, pages: int) -> None:
+    """Spans of 65 m: six in 400 m. Rows follow each other without gap, with nearly equal numbers of spans."""
+    geometry = select_cases(["en50318-2018/ac-stitched/static"])[0].line.geometry
+    geometry = geometry.model_copy(update={"spans": spans})
+    divided = divide_into_rows(geometry)
+    assert len(divided) == rows
+    assert len(divide_into_pages(divided, plan_view=True)) == pages
+    assert [row.first for row in divided] == [1, *(row.last + 1 for row in divided[:-1])]
+    assert divided[-1].last == spans
+    assert np.ptp([row.last - row.first for row in divided]) <= 1
+    assert all(row.end - row.start <= ROW_LENGTH for row in divided)
+
+
+def test_listed_spans_keep_one_scale() -> None:
+    """Nine spans in two rows of different length."""
+    (case,) = select_cases(["en50318-2002/250"])
+    geometry = ListedSpans.model_validate(
+        {
+            "span_list": [{"length_m": 63.0}] * 5 + [{"length_m": 54.0}] * 4,
+            "encumbrance_m": 1.2,
+            "trust": "provisional",
+            "source": "assumed",
+        }
+    )
+    few_droppers = {"x_m": (10.0, 25.0, 40.0), "presag_m": None, "length_m": None}
+    droppers = case.line.droppers.model_copy(update=few_droppers)
+    line = case.line.model_copy(update={"geometry": geometry, "droppers": droppers})
+    views = paint(discretise(build_catenary(line), 2.0), geometry).axes
+    per_metre = [axes.get_position().width / np.ptp(axes.get_xlim()) for axes in views]
+    assert per_metre == pytest.approx([per_metre[0]] * len(views))
+
+
+def test_files_are_valid_and_the_same_every_time(staggered: tuple[DiscretisedLine, Geometry]) -> None:
+    drawing = LineDrawing(staggered[0], "Line", staggered[1])
+    first, second = draw_line_svg(drawing), draw_line_svg(drawing)
+    assert first == second
+    assert ElementTree.fromstring(first).tag.endswith("svg")
+    pages = draw_line_pdf(drawing)
+    assert pages == draw_line_pdf(drawing)
+    assert pages.startswith(b"%PDF")
