@@ -7,13 +7,11 @@ from functools import cache
 from pathlib import Path
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.case_file import CaseFile
-from pantocheck.conformance.cases.damping_file import Damping, DampingFile, overlay_damping
+from pantocheck.conformance.cases.case_agreement import find_disagreements
+from pantocheck.conformance.cases.case_parts import list_part_errors, read_parts
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.limits import Limit, LimitOverride, LimitsFile
-from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.cases.pantograph_file import PantographFile
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.input_error import InputError, join_errors
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.toml_file import read_model, read_toml
 
@@ -102,93 +100,16 @@ def load_case(path: Path) -> Case:
     Raises
     ------
     InputError
-        A file cannot be read, or is invalid.
+        A file cannot be read or is invalid, or the files do not agree. The error lists all problems.
     """
-    file = read_model(path, CaseFile, "case")
-    line = read_model(_locate(path, file.line, "line"), LineFile, "reference line")
-    if file.damping is not None:
-        damping = _read_damping(path, file.damping, "damping") if isinstance(file.damping, str) else file.damping
-        line = line.model_copy(update={"damping": overlay_damping(line.damping, damping)})
-    pantographs = tuple(
-        _read_pantograph(path, use.model, f"pantograph[{i}].model") for i, use in enumerate(file.pantograph, 1)
-    )
-    static_pantograph = None
-    if file.apparent_mass is not None:
-        static_pantograph = _read_pantograph(path, file.apparent_mass.model, "apparent_mass.model")
-    models = dict(file.mass_drop.compared) if file.mass_drop is not None else {}
-    models |= getattr(file.study, "models", {}) | getattr(file.study, "before", {})
-    dampings = {name: _read_damping(path, model, f"damping model {name!r}") for name, model in models.items()}
-    case = Case(file, line, pantographs, file.limit, static_pantograph, dampings)
-    _check_geometry(case, f"case '{path.name}', key ")
-    _check_drops(case, f"case '{path.name}', key mass_drop.")
+    tree = read_toml(path, "case")
+    try:
+        case = read_parts(path, tree)
+    except InputError as error:
+        raise join_errors([error, *list_part_errors(path, tree)]) from None
+    if disagreements := [*find_disagreements(case, f"case '{path.name}'")]:
+        raise join_errors(disagreements)
     return case
-
-
-def _read_damping(case_path: Path, name: str, key: str) -> Damping:
-    return read_model(_locate(case_path, name, key), DampingFile, "damping").damping
-
-
-def _read_pantograph(case_path: Path, name: str, key: str) -> PantographFile:
-    return read_model(_locate(case_path, name, key), PantographFile, "pantograph")
-
-
-def _locate(case_path: Path, name: str, key: str) -> Path:
-    """Path of a file named in a case: relative to the case file, or else to the library."""
-    for folder in (case_path.parent, library_folder()):
-        if (folder / name).is_file():
-            return folder / name
-    raise InputError(
-        f"case '{case_path.name}', key {key}",
-        f"there is no file {name!r}",
-        f"Name a file relative to {case_path.parent} or to the library, e.g. en50318-2002/line.toml .",
-    )
-
-
-def _check_geometry(case: Case, where: str) -> None:
-    if case.is_static:
-        return
-    geometry = case.line.geometry
-    for key in ("evaluated_spans", "compared_spans"):
-        last = (getattr(case.file, key) or (1,))[-1]
-        if last > geometry.spans:
-            raise InputError(f"{where}{key}", f"span {last} does not exist", f"The line has {geometry.spans} spans.")
-    if case.start >= case.recorded_section[0]:
-        raise InputError(
-            f"{where}start_m",
-            f"the last pantograph starts at {case.start:g} m, but the evaluated spans begin at "
-            f"{case.recorded_section[0]:g} m",
-            "Reduce start_m, or evaluate later spans.",
-        )
-    front = case.end_positions[0]
-    if front >= geometry.length:
-        raise InputError(
-            f"{where}run_out_m",
-            f"the first pantograph would run to {front:g} m, but the line is {geometry.length:g} m long",
-            "Reduce run_out_m, evaluate earlier spans, or add spans to the line.",
-        )
-
-
-def _check_drops(case: Case, where: str) -> None:
-    drops = case.file.mass_drop
-    if drops is None:
-        return
-    length = case.line.geometry.length
-    positions = {"drop": [drop.x_m for drop in drops.drop], "sensor": [sensor.x_m for sensor in drops.sensor]}
-    for name, along in positions.items():
-        for i, x in enumerate(along, 1):
-            if not 0 < x < length:
-                raise InputError(
-                    f"{where}{name}[{i}].x_m",
-                    f"{x:g} m is not on the line",
-                    f"Give a position between 0 and {length:g} m, the ends of the line.",
-                )
-    step, every = case.file.discretisation.time_step_s, 1 / drops.rate_Hz
-    if abs(every / step - round(every / step)) > 1e-6:
-        raise InputError(
-            f"{where}rate_Hz",
-            f"the sampling interval of {every:g} s is not a multiple of the time step of {step:g} s",
-            f"Give {1 / step:g} Hz divided by a whole number, e.g. {1 / step / max(1, round(every / step)):g} .",
-        )
 
 
 def read_limits(path: Path) -> tuple[LimitOverride, ...]:

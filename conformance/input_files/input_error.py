@@ -59,6 +59,7 @@ class InputError(ValueError):
 
 
 def join_errors(errors: Sequence[InputError]) -> InputError:
-    """One error that reports several, in their order."""
-    first, *others = (problem for error in errors for problem in error.problems)
+    """One error that reports several, in their order and each once."""
+    problems = {problem.message: problem for error in errors for problem in error.problems}
+    first, *others = (InputError(problem.where, problem.found, problem.hint) for problem in problems.values())
     return InputError(first.where, first.found, first.hint, others)

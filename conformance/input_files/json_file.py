@@ -5,9 +5,10 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
+from pydantic_core import ErrorDetails
 
 from pantocheck.conformance.input_files.bounded_file import read_bytes
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.input_error import InputError, join_errors
 
 T = TypeVar("T")
 
@@ -74,18 +75,20 @@ def validate_json(data: Any, model: TypeAdapter[T], where: str, hint: str) -> T:
     Raises
     ------
     InputError
-        The data do not fit the model; the message names the first key at fault.
+        The data do not fit the model; there is one message for each key at fault.
     """
     try:
         return model.validate_python(data)
     except ValidationError as error:
-        first = error.errors()[0]
-        # Items of a list are numbered from 1, as in messages about TOML files.
-        parts = (f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in first["loc"])
-        key = "".join(parts).removeprefix(".")
-        raise InputError(
-            f"{where}, key {_clean(key) or 'top level'}", _clean(first["msg"][:1].lower() + first["msg"][1:]), hint
-        ) from None
+        raise join_errors([_explain(detail, where, hint) for detail in error.errors(include_url=False)]) from None
+
+
+def _explain(detail: ErrorDetails, where: str, hint: str) -> InputError:
+    # Items of a list are numbered from 1, as in messages about TOML files.
+    parts = (f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in detail["loc"])
+    key = "".join(parts).removeprefix(".")
+    message = detail["msg"]
+    return InputError(f"{where}, key {_clean(key) or 'top level'}", _clean(message[:1].lower() + message[1:]), hint)
 
 
 def _clean(text: str) -> str:

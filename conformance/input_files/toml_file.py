@@ -45,8 +45,31 @@ def read_model(path: Path, model: type[T], kind: str) -> T:
     InputError
         The file cannot be read, is not TOML or does not fit the model.
     """
-    where = f"{kind} '{path.name}'"
-    tree = read_toml(path, kind)
+    return validate_model(read_toml(path, kind), model, f"{kind} '{path.name}'")
+
+
+def validate_model(tree: dict[str, Any], model: type[T], where: str) -> T:
+    """Validate the content of a TOML file.
+
+    Parameters
+    ----------
+    tree : dict
+        Content of the file.
+    model : type of BaseModel
+        Required structure.
+    where : str
+        Name of the file in messages, e.g. `reference line 'line.toml'`.
+
+    Returns
+    -------
+    T
+        Validated content.
+
+    Raises
+    ------
+    InputError
+        The content does not fit the model; the error lists all problems.
+    """
     try:
         return model.model_validate(tree)
     except ValidationError as error:

@@ -1,0 +1,76 @@
+"""Agreement of the files of a case: positions of a case lie on its line, and rates fit its time step."""
+
+from collections.abc import Iterator
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.input_files.input_error import InputError
+
+
+def find_disagreements(case: Case, where: str) -> Iterator[InputError]:
+    """Disagreements between a case and its line.
+
+    Parameters
+    ----------
+    case : Case
+        Case whose files are valid, each by itself.
+    where : str
+        Name of the case file in messages.
+
+    Yields
+    ------
+    InputError
+        One disagreement.
+    """
+    where = f"{where}, key "
+    if not case.is_static:
+        outside = [*_find_spans_outside(case, where)]
+        yield from outside or _find_positions_outside(case, where)
+    yield from _find_wrong_drops(case, f"{where}mass_drop.")
+
+
+def _find_spans_outside(case: Case, where: str) -> Iterator[InputError]:
+    geometry = case.line.geometry
+    for key in ("evaluated_spans", "compared_spans"):
+        last = (getattr(case.file, key) or (1,))[-1]
+        if last > geometry.spans:
+            yield InputError(f"{where}{key}", f"span {last} does not exist", f"The line has {geometry.spans} spans.")
+
+
+def _find_positions_outside(case: Case, where: str) -> Iterator[InputError]:
+    if case.start >= case.recorded_section[0]:
+        yield InputError(
+            f"{where}start_m",
+            f"the last pantograph starts at {case.start:g} m, but the evaluated spans begin at "
+            f"{case.recorded_section[0]:g} m",
+            "Reduce start_m, or evaluate later spans.",
+        )
+    front, length = case.end_positions[0], case.line.geometry.length
+    if front >= length:
+        yield InputError(
+            f"{where}run_out_m",
+            f"the first pantograph would run to {front:g} m, but the line is {length:g} m long",
+            "Reduce run_out_m, evaluate earlier spans, or add spans to the line.",
+        )
+
+
+def _find_wrong_drops(case: Case, where: str) -> Iterator[InputError]:
+    drops = case.file.mass_drop
+    if drops is None:
+        return
+    length = case.line.geometry.length
+    positions = {"drop": [drop.x_m for drop in drops.drop], "sensor": [sensor.x_m for sensor in drops.sensor]}
+    for name, along in positions.items():
+        for i, x in enumerate(along, 1):
+            if not 0 < x < length:
+                yield InputError(
+                    f"{where}{name}[{i}].x_m",
+                    f"{x:g} m is not on the line",
+                    f"Give a position between 0 and {length:g} m, the ends of the line.",
+                )
+    step, every = case.file.discretisation.time_step_s, 1 / drops.rate_Hz
+    if abs(every / step - round(every / step)) > 1e-6:
+        yield InputError(
+            f"{where}rate_Hz",
+            f"the sampling interval of {every:g} s is not a multiple of the time step of {step:g} s",
+            f"Give {1 / step:g} Hz divided by a whole number, e.g. {1 / step / max(1, round(every / step)):g} .",
+        )

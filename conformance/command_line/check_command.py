@@ -1,0 +1,40 @@
+"""`pantocheck check`: check of input files, with all their problems."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pantocheck.conformance.command_line.console import console, escape_text
+from pantocheck.conformance.command_line.guard import BAD_INPUT, strip_control_characters
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.own_files.file_check import check_input_file, list_input_files
+from pantocheck.conformance.schemas import READ_FORMATS
+
+
+def check_command(
+    files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="Files of any kind, or folders with them.")],
+    kind: Annotated[
+        str | None,
+        typer.Option(help=f"Kind of the files: {', '.join(READ_FORMATS)}.", show_default="recognised by the keys"),
+    ] = None,
+) -> None:
+    """Check input files and report all their problems at once.
+
+    Examples:
+
+    pantocheck check my-line.toml my-case.toml
+
+    pantocheck check records
+    """
+    output, problems, faulty = console(), 0, 0
+    paths = [file for name in files for file in (list_input_files(name) if name.is_dir() else (name,))]
+    for path in paths:
+        try:
+            output.print(escape_text(f"{path}: valid {check_input_file(path, kind)}"), soft_wrap=True)
+        except InputError as error:
+            typer.echo(strip_control_characters(str(error)), err=True)
+            problems, faulty = problems + len(error.problems), faulty + 1
+    if faulty:
+        typer.echo(f"{problems} problem(s) in {faulty} of {len(paths)} file(s)", err=True)
+        raise typer.Exit(BAD_INPUT)

@@ -1,0 +1,1 @@
+"""Files of a user: check of existing files, and templates of new ones."""

@@ -1,0 +1,148 @@
+"""Check of input files of any kind: every problem of a file is reported."""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from pydantic import TypeAdapter
+
+from pantocheck.conformance.cases.library import load_case
+from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.json_file import read_json, validate_json
+from pantocheck.conformance.input_files.suggestions import suggest_names
+from pantocheck.conformance.input_files.table_formats import TABLE_FORMATS
+from pantocheck.conformance.input_files.toml_file import read_model, read_toml
+from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
+from pantocheck.conformance.mass_drops.drop_sidecar import DropSidecar
+from pantocheck.conformance.own_files.file_kinds import list_keys, recognise_json, recognise_toml
+from pantocheck.conformance.records.record_reading import RECORD_SCHEMAS, read_samples
+from pantocheck.conformance.results.results_reading import MAX_RESULTS_BYTES
+from pantocheck.conformance.schemas import READ_FORMATS, WRITTEN_FORMATS
+
+TABLE_SUFFIXES = tuple(suffix for table_format in TABLE_FORMATS for suffix in table_format.suffixes)
+
+
+def check_input_file(path: Path, kind: str | None = None) -> str:
+    """Check an input file with the files that it names.
+
+    Parameters
+    ----------
+    path : Path
+        TOML file, JSON file, or table of a record.
+    kind : str or None
+        Kind of a TOML file, a key of `READ_FORMATS`; None: it is recognised by its keys.
+
+    Returns
+    -------
+    str
+        Kind and size of the valid content, for one line of output.
+
+    Raises
+    ------
+    InputError
+        The file is invalid; the error lists all problems.
+    """
+    suffix = path.suffix.lower()
+    if suffix in TABLE_SUFFIXES:
+        return _check_table(path)
+    if suffix == ".json":
+        return _check_json(path)
+    where = f"file '{path.name}'"
+    if kind is None:
+        kind = recognise_toml(read_toml(path, "file"), where)
+    elif kind not in READ_FORMATS:
+        raise InputError("option --kind", f"there is no kind {kind!r}", suggest_names(kind, list(READ_FORMATS)))
+    return _CHECKS[kind](path) if kind in _CHECKS else _check_model(path, kind)
+
+
+def list_input_files(folder: Path) -> Iterator[Path]:
+    """List the input files of a folder and of the folders below it.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder.
+
+    Yields
+    ------
+    Path
+        TOML file with a key of any kind of input file, or that cannot be read. A sidecar stands for its table.
+
+    Raises
+    ------
+    InputError
+        There is no such file.
+    """
+    known = set().union(*map(list_keys, READ_FORMATS.values()))
+    count = 0
+    for path in sorted(folder.rglob("*.toml")):
+        try:
+            is_input = bool(read_toml(path, "file").keys() & known)
+        except InputError:
+            is_input = True
+        if is_input:
+            yield path
+            count += 1
+    if count == 0:
+        raise InputError(f"folder '{folder}'", "there is no input file in it", "Give a folder with TOML files.")
+
+
+def _check_model(path: Path, kind: str) -> str:
+    read_model(path, READ_FORMATS[kind], kind)
+    return f"{kind} file"
+
+
+def _check_case(path: Path) -> str:
+    case = load_case(path)
+    speed = "line at rest" if case.file.speed_km_h is None else f"{case.file.speed_km_h:g} km/h"
+    pantographs = [f"{len(case.pantographs)} pantograph(s)"] if case.pantographs else []
+    return f"case {case.id}: {', '.join([speed, *pantographs])}; line: {_describe_line(case.line)}"
+
+
+def _check_line(path: Path) -> str:
+    return f"line: {_describe_line(read_model(path, LineFile, 'line'))}"
+
+
+def _describe_line(line: LineFile) -> str:
+    return f"{line.geometry.spans} spans, {line.geometry.length:g} m"
+
+
+def _check_record(path: Path) -> str:
+    samples, sidecar, table = read_samples(path)
+    rows, n = samples.force.shape
+    return f"record: {n} samples of {rows} pantograph(s) in {table.name}, {sidecar.speed_km_h:g} km/h"
+
+
+def _check_drop_sidecar(path: Path) -> str:
+    tables = [table for suffix in TABLE_SUFFIXES if (table := path.with_suffix(suffix)).is_file()]
+    if not tables:
+        read_model(path, DropSidecar, "sidecar")
+        return "sidecar of a mass-drop record; its table is not beside it"
+    return "; ".join(map(_check_drops, tables))
+
+
+def _check_drops(path: Path) -> str:
+    records = read_drop_records(path)
+    return f"mass-drop record: {len(records)} run(s) in {path.name}"
+
+
+def _check_table(path: Path) -> str:
+    sidecar = path.with_suffix(".toml")
+    is_record = sidecar.is_file() and read_toml(sidecar, "sidecar").get("schema") in RECORD_SCHEMAS
+    return _check_record(sidecar) if is_record else _check_drops(path)
+
+
+def _check_json(path: Path) -> str:
+    where = f"file '{path.name}'"
+    content = read_json(path, "file", MAX_RESULTS_BYTES)
+    kind = recognise_json(content, where)
+    validate_json(content, TypeAdapter(WRITTEN_FORMATS[kind]), where, f"See `pantocheck schema {kind}`.")
+    return f"{kind} file"
+
+
+_CHECKS: dict[str, Callable[[Path], str]] = {
+    "case": _check_case,
+    "line": _check_line,
+    "record": _check_record,
+    "mass-drop": _check_drop_sidecar,
+}

@@ -1,0 +1,159 @@
+"""Check of input files: the kind is recognised, valid files give one line, and all problems of all files are listed."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from helpers.case_fixtures import EditedCase
+from helpers.drop_records import build_drop_record
+from helpers.toml_edit import edit_toml
+from pantocheck.conformance.cases.library_folder import library_folder
+from pantocheck.conformance.command_line.app import app
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.toml_file import read_toml
+from pantocheck.conformance.mass_drops.drop_writing import write_drop_csv, write_drop_sidecar
+from pantocheck.conformance.own_files.file_kinds import recognise_json, recognise_toml
+from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.records.record_writing import write_record
+
+
+def check(*arguments: object) -> Result:
+    """Run `pantocheck check`."""
+    return CliRunner().invoke(app, ["check", *map(str, arguments)])
+
+
+@pytest.mark.parametrize(
+    ("name", "kind"),
+    [
+        ("en50318-2002/250.toml", "case"),
+        ("en50318-2002/line.toml", "line"),
+        ("en50318-2018/pantograph.toml", "pantograph"),
+        ("mass-drop-line/line.toml", "line"),
+        ("vovan2015/damping/updated.toml", "damping"),
+        ("profiles/line-test.toml", "profile"),
+        ("en50318-2002/known-passing-code/250.toml", "summary"),
+        ("converged/en50318-2002/250.toml", "converged"),
+        ("model_uncertainty.toml", "model-uncertainty"),
+    ],
+)
+def test_kinds_of_the_library_are_recognised(name: str, kind: str) -> None:
+    assert recognise_toml(read_toml(library_folder() / name, "file"), name) == kind
+
+
+@pytest.mark.parametrize(
+    ("text", "kind"),
+    [
+        ('[[limit]]\nquantity = "mean_force_N"\nupper = 130.0\n', "limits"),
+        ('system = "builtin"\ncases = ["en50318-2002/250"]\n', "plan"),
+        ('schema = "pantocheck.record/1"\nspeed_km_h = 250.0\n', "record"),
+        ('schema = "pantocheck.summary/1"\nspeed_km_h = 250.0\n', "summary"),
+        ("[record]\nsampling_rate_hz = 100.0\n[[channel]]\ncolumn = 1\n", "mass-drop"),
+        ('id = "own/a"\nlin = "line.toml"\nspeed_kmh = 250.0\n', "case"),
+        ('title = "T"\n[geometry]\nspan_m = 60.0\n[damping]\n', "line"),
+    ],
+)
+def test_kind_of_an_incomplete_file_is_recognised(text: str, kind: str, tmp_path: Path) -> None:
+    (tmp_path / "a.toml").write_text(text)
+    assert recognise_toml(read_toml(tmp_path / "a.toml", "file"), "a.toml") == kind
+
+
+def test_unknown_kind_names_the_option() -> None:
+    with pytest.raises(InputError, match="--kind with one of case, line, pantograph"):
+        recognise_toml({"tool": {}}, "a.toml")
+    with pytest.raises(InputError, match=r"Known are pantocheck\.results/1"):
+        recognise_json({"schema": "other"}, "a.json")
+
+
+def test_valid_files_give_one_line_each(edited_case: EditedCase) -> None:
+    folder = edited_case("250.toml", {}).parent
+    result = check(folder / "250.toml", folder / "line.toml", folder / "pantograph.toml")
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert [line.removeprefix(f"{folder}/") for line in result.stdout.splitlines()] == [
+        "250.toml: valid case en50318-2002/250: 250 km/h, 1 pantograph(s); line: 10 spans, 600 m",
+        "line.toml: valid line: 10 spans, 600 m",
+        "pantograph.toml: valid pantograph file",
+    ]
+
+
+def test_problems_of_all_files_of_a_case_are_listed(edited_case: EditedCase) -> None:
+    path = edited_case("250.toml", {"speed_km_h": 900.0, "filter.order": 5})
+    edit_toml(path.with_name("line.toml"), {"geometry.span_m": 600.0, "messenger_wire.number": 2})
+    edit_toml(path.with_name("pantograph.toml"), {"chain.masses_kg": [-1.0, 7.0]})
+    result = check(path)
+    assert (result.exit_code, result.stdout) == (2, "")
+    messages = result.stderr.splitlines()
+    assert [line.partition(":")[0] for line in messages[:-1:2]] == [
+        "case '250.toml', key speed_km_h",
+        "case '250.toml', key filter.order",
+        "reference line 'line.toml', key geometry.span_m",
+        "reference line 'line.toml', key messenger_wire.number",
+        "pantograph 'pantograph.toml', key chain.masses_kg[1]",
+    ]
+    assert messages[-1] == "5 problem(s) in 1 of 1 file(s)"
+
+
+def test_positions_outside_the_line_are_listed_together(edited_case: EditedCase) -> None:
+    result = check(edited_case("250.toml", {"start_m": 240.0, "run_out_m": 240.0}))
+    assert "key start_m: the last pantograph starts at 240 m" in result.stderr
+    assert "key run_out_m: the first pantograph would run to 600 m" in result.stderr
+
+
+def test_valid_and_faulty_files_are_reported_together(edited_case: EditedCase) -> None:
+    folder = edited_case("line.toml", {"contact_wire.tension_N": -1.0}).parent
+    result = check(folder / "pantograph.toml", folder / "none.toml", folder / "line.toml")
+    assert result.exit_code == 2
+    assert result.stdout.splitlines() == [f"{folder}/pantograph.toml: valid pantograph file"]
+    assert "file 'none.toml': cannot be read" in result.stderr
+    assert "key contact_wire.tension_N: -1 must be greater than 0.0" in result.stderr
+    assert "Allowed: a number greater than 0, at most 200000." in result.stderr
+    assert "2 problem(s) in 2 of 3 file(s)" in result.stderr
+
+
+def test_folder_of_records_is_checked(tmp_path: Path, two_pantograph_record: Record) -> None:
+    write_record(tmp_path / "a.csv", two_pantograph_record)
+    write_record(tmp_path / "b.h5", two_pantograph_record)
+    (tmp_path / "pyproject.toml").write_text("[tool.other]\n")
+    result = check(tmp_path)
+    assert result.exit_code == 0
+    assert result.stdout.splitlines() == [
+        f"{tmp_path}/{name}.toml: valid record: 400 samples of 2 pantograph(s) in {name}.{suffix}, 216 km/h"
+        for name, suffix in (("a", "csv"), ("b", "h5"))
+    ]
+    edit_toml(tmp_path / "a.toml", {"spacing_m": [1.0, 2.0], "pantographs": 0})
+    (tmp_path / "b.h5").unlink()
+    result = check(tmp_path)
+    assert result.exit_code == 2
+    assert "key pantographs: 0 must be at least 1" in result.stderr
+    assert "record 'b.h5': cannot be read" in result.stderr
+
+
+def test_mass_drop_record_is_checked(tmp_path: Path) -> None:
+    write_drop_csv(build_drop_record(), tmp_path / "drop.csv")
+    write_drop_sidecar(build_drop_record(), tmp_path / "drop.toml")
+    for path in (tmp_path / "drop.csv", tmp_path / "drop.toml"):
+        assert "valid mass-drop record: 1 run(s) in drop.csv" in check(path).stdout
+    edit_toml(tmp_path / "drop.toml", {"record.sampling_rate_hz": -1.0, "channel.0.column": 0})
+    result = check(tmp_path / "drop.csv")
+    assert result.exit_code == 2
+    assert "key record.sampling_rate_hz: -1 must be greater than 0" in result.stderr
+    assert "key channel[1].column: 0 must be at least 1" in result.stderr
+
+
+def test_json_files_are_checked(tmp_path: Path) -> None:
+    (tmp_path / "modes.json").write_text("[{}]")
+    result = check(tmp_path / "modes.json")
+    assert result.exit_code == 2
+    assert "file 'modes.json', key [1].frequency_Hz: field required" in result.stderr
+
+
+def test_kind_can_be_stated(tmp_path: Path) -> None:
+    shutil.copy(library_folder() / "en50318-2002" / "line.toml", tmp_path / "a.toml")
+    assert check(tmp_path / "a.toml", "--kind", "line").exit_code == 0
+    assert "unknown key" in check(tmp_path / "a.toml", "--kind", "pantograph").stderr
+    assert "Did you mean line or limits ?" in check(tmp_path / "a.toml", "--kind", "lime").stderr
+
+
+def test_folder_without_input_files_is_refused(tmp_path: Path) -> None:
+    assert check(tmp_path).exit_code == 2
