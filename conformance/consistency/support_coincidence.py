@@ -1,9 +1,9 @@
 """Contact height and uplift at the supports: while there is contact, the contact point lies on the wire.
 
-When a pantograph passes a support, the contact height z, the uplift u of this support and the penetration F / k differ
-by a constant, the datum of the height:
+When a pantograph passes a support, the contact height z, the uplift u of this support, the height z0 of the wire there
+at rest and the penetration F / k differ by a constant, the datum of the height:
 
-    z - F / k - u  =  constant        (z - u if z is the height of the wire)
+    z - F / k - u - z0  =  constant        (z - u - z0 if z is the height of the wire)
 
 The constant is the same at every support, and for every pantograph of the same kind and uplift force. A channel that is
 frozen, of another support or of another passage, and positions that are shifted, scatter. A gain of the uplift shows as
@@ -20,6 +20,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.consistency.check import Check, Finding, worst_finding
 from pantocheck.conformance.consistency.force_dynamics import TINY
 from pantocheck.conformance.consistency.rounding import COARSEST_STEP_M, rounding_step
+from pantocheck.conformance.consistency.support_heights import rest_heights
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.record_signals import RecordSignals
 
@@ -52,7 +53,7 @@ class _Passages:
     uplift : (m,) ndarray
         Uplift of the support at its passage [m].
     wire : (m,) ndarray
-        Height of the wire from the contact height [m].
+        Height of the wire from the contact height, less its height at rest [m].
     kink : float
         Largest change of the uplift by the kink within one sample, or within the rounding by a stated filter [m].
     """
@@ -101,9 +102,9 @@ def _find_passages(case: Case, signals: RecordSignals, number: int) -> _Passages
             moment = np.interp(support, position, record.time)
             at_passage = [float(np.interp(moment, record.time, channel)) for channel in (force, height, uplift)]
             rows.append((float(support), *at_passage))
-    load, z, u = (np.array([row[i] for row in rows]) for i in (1, 2, 3))
-    support = np.array([row[0] for row in rows])
+    support, load, z, u = (np.array([row[i] for row in rows]) for i in range(4))
     touching = load > 0
+    z = z - rest_heights(case, support)
     candidates = [z - load / stiffness, z]
     spreads = [np.ptp((candidate - u)[touching]) if touching.any() else 0.0 for candidate in candidates]
     best = candidates[int(np.argmin(spreads))]

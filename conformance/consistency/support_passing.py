@@ -27,6 +27,7 @@ from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.consistency.check import Check, Finding
 from pantocheck.conformance.consistency.force_dynamics import TINY
+from pantocheck.conformance.consistency.support_heights import rest_heights
 from pantocheck.conformance.quantities.filters import is_observable
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.record_signals import RecordSignals
@@ -142,12 +143,12 @@ class _Passages:
         if record.contact_height is None:
             return False
         height, force = record.contact_height[number - 1], record.force[number - 1]
-        differences = []
-        for support, uplift in zip(self._supports, self._uplift, strict=True):
+        rest, differences = rest_heights(self._case, self._supports), []
+        for support, uplift, rest_height in zip(self._supports, self._uplift, rest, strict=True):
             moment = self._moment(number, support)
             load = np.interp(moment, record.time, force)
             gap = np.interp(moment, record.time, height) - np.interp(moment, record.time, uplift)
-            gap -= load / file.contact.stiffness_N_m
+            gap -= load / file.contact.stiffness_N_m + rest_height
             differences.append(np.where(np.isfinite(moment) & (load > 0), gap, np.nan))
         scatter = _scatter(np.array(differences))
         at_passage = scatter[np.abs(self.shifts) <= COINCIDENCE_TOLERANCE_M]

@@ -131,8 +131,9 @@ def build_passage(
 
 def _build_pantographs(case: Case, line: DiscretisedLine, uplift_forces: tuple[float, ...]) -> tuple[Pantograph, ...]:
     """Pantographs of a case, each with its working height under its uplift force."""
+    nominal = nominal_wire_height(case)
     return tuple(
-        build_pantograph(file, force, compute_working_height(case, line, file, force))
+        build_pantograph(file, force, compute_working_height(case, line, file, force), nominal)
         for file, force in zip(case.pantographs, uplift_forces, strict=True)
     )
 
@@ -159,10 +160,15 @@ def working_height_positions(case: Case) -> RealArray:
     return sample_span(*case.line.geometry.span((case.file.evaluated_spans or (1,))[0]))
 
 
-def compute_working_height(case: Case, line: DiscretisedLine, file: PantographFile, uplift_force: float) -> float:
-    """Static height of a head under its uplift force: mean uplift of the wire plus the contact spring [m].
+def nominal_wire_height(case: Case) -> float:
+    """Nominal height of the contact wire at the same positions: mean of the straight lines between the supports [m]."""
+    return float(case.line.layout.chord_height(working_height_positions(case)).mean())
 
-    The height counts from the contact wire at the supports; the pre-sag of the line at rest is left out.
+
+def compute_working_height(case: Case, line: DiscretisedLine, file: PantographFile, uplift_force: float) -> float:
+    """Static height of a head under its uplift force: nominal height of the wire, mean uplift, and contact spring [m].
+
+    The pre-sag of the line at rest is left out.
 
     Parameters
     ----------
@@ -176,7 +182,7 @@ def compute_working_height(case: Case, line: DiscretisedLine, file: PantographFi
         Its uplift force [N].
     """
     uplift = static_uplift(line, working_height_positions(case), uplift_force)
-    return float(uplift.mean()) + uplift_force / file.contact.stiffness_N_m
+    return nominal_wire_height(case) + (float(uplift.mean()) + uplift_force / file.contact.stiffness_N_m)
 
 
 def start_forces(case: Case) -> tuple[float, ...]:

@@ -5,7 +5,12 @@ import numpy as np
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.quantities.bands import BANDS
-from pantocheck.conformance.simulation.case_run import compute_working_height, start_forces, working_height_positions
+from pantocheck.conformance.simulation.case_run import (
+    compute_working_height,
+    nominal_wire_height,
+    start_forces,
+    working_height_positions,
+)
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.simulation.derived_format import (
     Derived,
@@ -82,7 +87,7 @@ def _pantographs(case: Case, line: DiscretisedLine, heights: RealArray) -> tuple
     ):
         contact, share = file.contact.stiffness_N_m, 1 / touched_rows(line, start).size
         working_height = compute_working_height(case, line, file, force)
-        model = build_pantograph(file, force, working_height)
+        model = build_pantograph(file, force, working_height, nominal_wire_height(case))
         displacement, _ = equilibrium(model, float(height) + force * share / contact)
         pantographs.append(
             DerivedPantograph(

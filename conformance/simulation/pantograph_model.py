@@ -8,7 +8,9 @@ from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.model.pantograph import Pantograph, chain, from_matrices, from_modes, preload_springs
 
 
-def build_pantograph(file: PantographFile, uplift_force: float, working_height: float) -> Pantograph:
+def build_pantograph(
+    file: PantographFile, uplift_force: float, working_height: float, wire_height: float = 0.0
+) -> Pantograph:
     """Pantograph with an uplift force and a static working height.
 
     One convention holds for chains, matrices and modes: displacements count from the static working height of the
@@ -22,7 +24,9 @@ def build_pantograph(file: PantographFile, uplift_force: float, working_height: 
     uplift_force : float
         Uplift force [N].
     working_height : float
-        Static height of the head under this force, above the contact wire at the supports [m].
+        Static height of the head under this force [m].
+    wire_height : float
+        Nominal height of the contact wire [m].
 
     Returns
     -------
@@ -40,7 +44,7 @@ def build_pantograph(file: PantographFile, uplift_force: float, working_height: 
             parts.uplift_mass,
             contact,
         )
-        unstretched = working_height if parts.base_spring_unstretched == "working_height" else 0.0
+        unstretched = working_height if parts.base_spring_unstretched == "working_height" else wire_height
         return preload_springs(model, np.full(len(parts.masses_kg), unstretched))
     if file.matrices is not None:
         table = file.matrices

@@ -100,7 +100,8 @@ def _element(line: DiscretisedLine) -> float:
 def _presag(file: LineFile, line: DiscretisedLine) -> tuple[float, ...]:
     droppers = [line.catenary.droppers[i] for i in _droppers(file, line.catenary)]
     height = [line.state.deflection[line.mesh.row_of[d.lower, "z"], line.mesh.station(d.position), 0] for d in droppers]
-    return tuple(float(-1e3 * z) for z in height)
+    chord = file.layout.chord_height(np.array([dropper.position for dropper in droppers]))
+    return tuple(float(1e3 * (straight - z)) for straight, z in zip(chord, height, strict=True))
 
 
 def _dropper_lengths(file: LineFile, line: DiscretisedLine) -> dict[str, Value]:

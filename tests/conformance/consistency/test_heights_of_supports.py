@@ -1,0 +1,59 @@
+"""Checks of records on a line whose contact wire is not equally high at its supports."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from helpers.extreme_runs import build_case, simulate
+from helpers.listed_spans import list_spans
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.library_folder import library_folder
+from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.consistency.record_checks import check_record
+from pantocheck.conformance.consistency.support_heights import rest_heights
+from pantocheck.conformance.input_files.toml_file import read_toml
+from pantocheck.conformance.records.record_signals import RecordSignals
+from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.model import discretise
+
+
+@pytest.fixture(scope="module")
+def uneven() -> Case:
+    """The AC simple line on a ramp of 2 per mille from 250 m on; two supports differ in height, two in their arms.
+
+    In span 7, the first dropper is 3 m from the support in place of 4.5 m.
+    """
+    tables: dict[str, Any] = list_spans(
+        read_toml(library_folder() / "en50318-2018" / "ac-simple" / "line.toml", "line")
+    )
+    geometry = tables["geometry"]
+    geometry["span_list"] = geometry["span_list"][:10]
+    presag = list(tables["droppers"]["presag_m"])
+    near = {"x_m": [3.0, *tables["droppers"]["x_m"][1:]], "presag_m": presag}
+    geometry["span_list"][6] = {"length_m": 55.0, "droppers": near}
+    level = {"steady_arm": {"static_share": "level"}}
+    geometry["support"] = [{"number": 5, "contact_wire_height_m": 0.015} | level, {"number": 7} | level]
+    geometry["gradient"] = [{"from_m": 250.0, "to_m": 500.0, "slope": 0.002}]
+    return replace(build_case(), line=LineFile.model_validate(tables))
+
+
+def test_heights_at_rest_are_those_of_the_statics(uneven: Case) -> None:
+    """Exact where the arm carries its share; elsewhere bending leaves 1 mm of a sag of 7 mm, alike at each support."""
+    line = discretise(build_catenary(uneven.line), 0.5)
+    supports = np.array(uneven.line.geometry.supports)
+    exact = line.state.deflection[0, [line.mesh.station(x) for x in supports], 0]
+    difference = rest_heights(uneven, supports) - exact
+    np.testing.assert_allclose(difference[[4, 6]], 0.0, atol=1e-12)
+    np.testing.assert_allclose(difference[[2, 3, 5, 7]], difference[2], atol=2e-4)
+    assert abs(difference[2]) < 1.5e-3
+
+
+def test_record_of_an_uneven_line_is_free_of_findings(uneven: Case) -> None:
+    """Two pantographs; without the heights at rest, coincidence finds 15 mm. Shifted by 10 m the record is refuted."""
+    record = simulate(uneven)
+    supports = uneven.line.geometry.supports
+    assert check_record(uneven, RecordSignals(record, uneven.file.filter.low_pass, supports)) == {}
+    shifted = replace(record, position=record.position + np.array([[0.0], [10.0]]))
+    assert check_record(uneven, RecordSignals(shifted, uneven.file.filter.low_pass, supports)) != {}
