@@ -131,7 +131,8 @@ class Table:
     caption: str = ""
     """Text above the table; empty if the heading of its section says enough."""
     layout: Literal["text", "grid", "cards"] = "text"
-    """Rows with a heading cell; a dense grid of values; rows that become cards on a narrow screen."""
+    """Rows with a heading cell; a dense grid of values; criteria with drawings. On a narrow screen, all but the grid
+    become cards."""
 
 
 @dataclass(frozen=True)

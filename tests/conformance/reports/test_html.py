@@ -109,6 +109,18 @@ def test_html_states_self_declaration_and_no_certification(page_text: str) -> No
     assert "not a certification" in page_text
 
 
+def test_tables_become_cards_on_a_narrow_screen(page_text: str) -> None:
+    """Tables are wider than 390 px; only a dense grid scrolls. Without headings every cell names its column."""
+    narrow = page_text[page_text.index("@media (max-width: 44rem)") : page_text.index("@page")]
+    stacked = re.search(r":is\((.+?)\), :is\(.+?\) :is\(caption, tbody, tr, th, td\) { display: block", narrow)
+    assert stacked is not None
+    layouts = {str(attrs["class"]) for tag, attrs in Outline(page_text).tags if tag == "table"}
+    assert {f".{layout}" for layout in layouts - {"grid"}} == set(stacked[1].split(", "))
+    cells = [attrs for tag, attrs in Outline(page_text).tags if tag == "td"]
+    assert len(cells) > 100
+    assert all("data-label" in attrs for attrs in cells)
+
+
 def luminance(colour: str) -> float:
     """Relative luminance of a colour [-], WCAG 2.1."""
     channels = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
