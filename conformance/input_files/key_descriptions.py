@@ -1,6 +1,6 @@
 """Description of a key for messages: its meaning and its allowed values."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import Any
 
@@ -58,6 +58,10 @@ def _list_allowed(schema: dict[str, Any]) -> Iterator[str]:
         items = schema.get("prefixItems", [schema.get("items", {})])[0]
         yield f"a list{size} with " + (" or ".join(_list_allowed(items)) or "any values")
     elif schema.get("type") in _TYPES:
-        bounds = [f"{words} {schema[key]:g}" for key, words in _BOUNDS.items() if key in schema]
         pattern = [f"of the form {schema['pattern']}"] if "pattern" in schema else []
-        yield " ".join([_TYPES[schema["type"]], ", ".join([*bounds, *pattern])]).strip()
+        yield " ".join([_TYPES[schema["type"]], ", ".join([*list_bounds(schema), *pattern])]).strip()
+
+
+def list_bounds(schema: Mapping[str, Any]) -> list[str]:
+    """Bounds of a number in words, from its JSON Schema."""
+    return [f"{words} {schema[key]:.15g}" for key, words in _BOUNDS.items() if key in schema]
