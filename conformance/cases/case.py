@@ -168,6 +168,8 @@ class Case:
     def sourced_tables(self) -> dict[str, SourcedTable]:
         """All tables with a source, of the case, its line and its pantographs, by dotted name."""
         tables: dict[str, object] = {"case": self.file} | _tables("line", self.line)
+        tables |= {f"line.point_mass {i}": mass for i, mass in enumerate(self.line.point_mass, 1)}
+        tables["line.contact_wire.irregularity"] = self.line.contact_wire.irregularity
         for i, (use, model) in enumerate(zip(self.file.pantograph, self.pantographs, strict=True), 1):
             tables |= {f"pantograph {i}": use} | _tables(f"pantograph {i}", model)
         tables |= {"mass_drop": self.file.mass_drop, "study": self.file.study}

@@ -14,14 +14,29 @@ from pantocheck.conformance.cases.dropper_schedule import (
     find_schedule_problems,
 )
 from pantocheck.conformance.cases.geometry import GeometryTable, ListedSpans
+from pantocheck.conformance.cases.irregularity_table import IrregularityTable, SpectralIrregularity
 from pantocheck.conformance.cases.line_layout import LineLayout, build_layout
 from pantocheck.conformance.cases.support_tables import ClampMass, MessengerSupportTable, SteadyArmTable
+from pantocheck.conformance.cases.wire_changes import (
+    MOST_CHANGES,
+    BendingStiffness,
+    ContactWireChange,
+    MassPerLength,
+    PointMassTable,
+    Tension,
+    WireChange,
+    check_changes,
+    check_point_masses,
+)
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.sourced_table import InputTable, Positive, SourcedTable, validation_problem
+from pantocheck.conformance.input_files.sourced_table import (
+    InputTable,
+    Positive,
+    SourcedTable,
+    is_absent,
+    validation_problem,
+)
 
-Tension = Annotated[float, Field(gt=0, le=200e3, description="axial tension of one wire [N]")]
-MassPerLength = Annotated[float, Field(gt=0, le=20, description="mass per length of one wire [kg/m]")]
-BendingStiffness = Annotated[float, Field(ge=0, le=1e5, description="bending stiffness EI of one wire [N m2]")]
 Area = Annotated[float | None, Field(gt=0, le=1000, description="cross-section [mm2]")]
 
 
@@ -38,6 +53,19 @@ class WireTable(SourcedTable):
     area_mm2: Area = None
 
 
+class ContactWireTable(WireTable):
+    """Contact wire; the values are those of one wire, also of two parallel wires."""
+
+    change: Annotated[
+        tuple[ContactWireChange, ...],
+        Field(strict=False, max_length=MOST_CHANGES, description="worn or other stretches", exclude_if=is_absent),
+    ] = ()
+    irregularity: Annotated[
+        IrregularityTable | None,
+        Field(description="heights that a pantograph feels in addition to those at rest", exclude_if=is_absent),
+    ] = None
+
+
 class MessengerWireTable(WireTable):
     """Messenger wire; the values are those of one wire, also of two parallel wires."""
 
@@ -45,6 +73,10 @@ class MessengerWireTable(WireTable):
         float | None,
         Field(gt=0, le=1e9, description="axial stiffness EA; needed with messenger_support.along_track = 'fixed' [N]"),
     ] = None
+    change: Annotated[
+        tuple[WireChange, ...],
+        Field(strict=False, max_length=MOST_CHANGES, description="other stretches", exclude_if=is_absent),
+    ] = ()
 
 
 class StitchWireTable(SourcedTable):
@@ -109,13 +141,17 @@ class LineFile(InputTable):
 
     title: Annotated[str, Field(description="title in reports", max_length=200)]
     geometry: GeometryTable
-    contact_wire: WireTable
+    contact_wire: ContactWireTable
     messenger_wire: MessengerWireTable
     stitch_wire: StitchWireTable | None = None
     droppers: DropperTable
     steady_arm: SteadyArmTable
     messenger_support: MessengerSupportTable
     damping: Damping
+    point_mass: Annotated[
+        tuple[PointMassTable, ...],
+        Field(strict=False, max_length=MOST_CHANGES, description="masses on the wires", exclude_if=is_absent),
+    ] = ()
     note: Annotated[str | None, Field(description="remark for the reader", max_length=4000)] = None
 
     @property
@@ -170,6 +206,21 @@ class LineFile(InputTable):
                 f"support {holding[0]} holds the messenger wire along the track, but its axial stiffness is not given",
                 "Give messenger_wire.axial_stiffness_EA_N, or set messenger_support.along_track = 'free'.",
             )
+
+    @cross_check
+    def _check_changes(self) -> Problems:
+        yield from check_changes("contact_wire.change", self.contact_wire.change, self.geometry.length)
+        yield from check_changes("messenger_wire.change", self.messenger_wire.change, self.geometry.length)
+
+    @cross_check
+    def _check_point_masses(self) -> Problems:
+        yield from check_point_masses(self.point_mass, self.geometry.length)
+
+    @cross_check
+    def _check_irregularity(self) -> Problems:
+        table = self.contact_wire.irregularity
+        if isinstance(table, SpectralIrregularity):
+            yield from table.check_resolution(self.geometry.length)
 
     def _schedule_key(self, number: int) -> str:
         """Key of the dropper schedule of a span."""

@@ -26,6 +26,11 @@ NO_TRUST: Trust = "provisional"
 """Trust in a table without the key `trust`: the lowest one."""
 
 
+def is_absent(value: object) -> bool:
+    """Whether an optional key is not given: a later key of a file is left out of its digest then."""
+    return value is None or value == ()
+
+
 class InputTable(BaseModel):
     """Table of an input file: unknown keys, NaN and infinity are refused."""
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 from pantocheck.conformance.cases.damping_file import ComponentDamping
 from pantocheck.conformance.cases.line_file import LineFile, WireTable
 from pantocheck.conformance.cases.line_layout import LineLayout, SpanLimit
+from pantocheck.conformance.simulation.line_details import add_details
 from pantocheck.model import (
     Catenary,
     Clamp,
@@ -60,6 +61,7 @@ def build_catenary(line: LineFile) -> Catenary:
         damping={kind: _rayleigh(getattr(line.damping, key)) for kind, key in _DAMPING_KEYS.items()},
         modal_damping=tuple(ModalBand(band.from_Hz, band.to_Hz, band.damping_ratio) for band in line.damping.modal),
     )
+    catenary = add_details(catenary, line)
     if not line.droppers.mass_kg_m:
         return catenary
     # The lengths depend slightly on the weights: after two passes they are accurate to 0.1 mm.

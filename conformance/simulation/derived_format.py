@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from pantocheck.conformance.input_files.sourced_table import InputTable
+from pantocheck.conformance.input_files.sourced_table import InputTable, is_absent
 from pantocheck.conformance.records.sidecar_tables import StartTable
 
 Numbers = Annotated[tuple[float, ...], Field(strict=False)]
@@ -19,6 +19,33 @@ MassCoefficient = Annotated[
     float, Field(description="damper to the ground over mass, of every lumped mass of this table [1/s]")
 ]
 StiffnessCoefficient = Annotated[float, Field(description="damper over stiffness, of the springs of this table [s]")]
+
+
+class DerivedStretch(InputTable):
+    """Stretch of a wire with constant properties."""
+
+    from_m: Annotated[float, Field(description="start [m]")]
+    to_m: Annotated[float, Field(description="end [m]")]
+    tension_N: Annotated[float, Field(description="tension [N]")]
+    mass_kg_m: Annotated[float, Field(description="mass per length [kg/m]")]
+    bending_stiffness_N_m2: Annotated[float, Field(description="bending stiffness EI [N m2]")]
+
+
+class DerivedIrregularity(InputTable):
+    """Heights that a head feels in addition to those of the wire: a cubic spline with zero slope at both ends."""
+
+    x_m: Annotated[Numbers, Field(description="positions of the points [m]")]
+    height_m: Annotated[Numbers, Field(description="heights [m]; beyond the points that of the nearest end")]
+
+
+class DerivedPointMass(InputTable):
+    """Mass on a wire; it hangs on the wire at rest, and moves with it in both directions."""
+
+    position_m: Annotated[float, Field(description="position [m]")]
+    wire: Annotated[Literal["contact_wire", "messenger_wire"], Field(description="kind of wire")]
+    number: Annotated[int, Field(description="number of the wire among the parallel ones, from 1")]
+    mass_kg: Annotated[float, Field(description="mass [kg]")]
+    mass_coefficient_1_s: MassCoefficient
 
 
 class DerivedWire(InputTable):
@@ -45,6 +72,22 @@ class DerivedWire(InputTable):
             "null: motion in the vertical plane only",
         ),
     ]
+    stretches: Annotated[
+        tuple[DerivedStretch, ...],
+        Field(
+            strict=False,
+            exclude_if=is_absent,
+            description="properties from end to end, in place of those of the line; absent: those of the line",
+        ),
+    ] = ()
+
+
+class DerivedContactWire(DerivedWire):
+    """Contact wire; parallel wires differ in their lateral positions only."""
+
+    irregularity: Annotated[
+        DerivedIrregularity | None, Field(exclude_if=is_absent, description="absent: a smooth wire")
+    ] = None
 
 
 class DerivedStitchWires(InputTable):
@@ -155,12 +198,16 @@ class DerivedLine(InputTable):
     span_limits_m: Annotated[
         Numbers, Field(description="positions of both anchors, and of the supports between them [m]")
     ]
-    contact_wire: DerivedWire
+    contact_wire: DerivedContactWire
     messenger_wire: DerivedWire
     stitch_wires: DerivedStitchWires | None
     droppers: DerivedDroppers
     steady_arms: DerivedSteadyArms
     messenger_supports: DerivedMessengerSupports
+    point_masses: Annotated[
+        tuple[DerivedPointMass, ...],
+        Field(strict=False, exclude_if=is_absent, description="masses on the wires; absent: none"),
+    ] = ()
 
 
 class DerivedPantograph(InputTable):

@@ -1,6 +1,6 @@
 """Derived values of a line at rest, from its fine finite elements; `derived_format` defines them."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from itertools import accumulate
 from typing import TypeVar
 
@@ -8,7 +8,13 @@ import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.simulation.derived_details import (
+    derive_irregularity,
+    derive_point_masses,
+    derive_stretches,
+)
 from pantocheck.conformance.simulation.derived_format import (
+    DerivedContactWire,
     DerivedDroppers,
     DerivedLine,
     DerivedMessengerSupports,
@@ -16,34 +22,13 @@ from pantocheck.conformance.simulation.derived_format import (
     DerivedStitchWires,
     DerivedWire,
 )
+from pantocheck.conformance.simulation.derived_rounding import round_number, round_numbers, round_positions
 from pantocheck.model import Catenary, DiscretisedLine, Kind, Wire
 from pantocheck.model.catenary import GRAVITY
 from pantocheck.model.fem.beam import wave_speed
 from pantocheck.model.fem.connectors import arm_direction
 
 Entry = TypeVar("Entry")
-
-DIGITS = 6
-"""Significant digits of derived values; the elements leave an error in the sixth."""
-DECIMALS = 9
-"""Decimals of derived values, so that rounding errors of a zero do not appear."""
-POSITION_DECIMALS = 6
-"""Decimals of positions along the track in metres."""
-
-
-def round_number(value: float) -> float:
-    """Value with `DIGITS` significant digits."""
-    return round(float(f"{value:.{DIGITS}g}"), DECIMALS) + 0.0  # -0.0 becomes 0.0
-
-
-def round_numbers(values: Iterable[float]) -> tuple[float, ...]:
-    """Values with `DIGITS` significant digits."""
-    return tuple(map(round_number, values))
-
-
-def round_positions(positions: Iterable[float]) -> tuple[float, ...]:
-    """Positions along the track with `POSITION_DECIMALS` decimals [m]."""
-    return tuple(round(float(x), POSITION_DECIMALS) for x in positions)
 
 
 def build_derived_line(file: LineFile, line: DiscretisedLine) -> DerivedLine:
@@ -59,12 +44,15 @@ def build_derived_line(file: LineFile, line: DiscretisedLine) -> DerivedLine:
     return DerivedLine(
         gravity_m_s2=GRAVITY,
         span_limits_m=round_positions(file.geometry.span_limits),
-        contact_wire=_wire(file, line, Kind.CONTACT_WIRE),
+        contact_wire=DerivedContactWire(
+            **_wire(file, line, Kind.CONTACT_WIRE).model_dump(), irregularity=derive_irregularity(line.catenary)
+        ),
         messenger_wire=_wire(file, line, Kind.MESSENGER_WIRE),
         stitch_wires=_stitch_wires(line.catenary),
         droppers=_droppers(file, line),
         steady_arms=_steady_arms(file, line),
         messenger_supports=_messenger_supports(file, line.catenary),
+        point_masses=derive_point_masses(line.catenary),
     )
 
 
@@ -79,6 +67,7 @@ def _wire(file: LineFile, line: DiscretisedLine, kind: Kind) -> DerivedWire:
         wave_speed_m_s=round_number(wave_speed(first.tension, first.mass_per_length)),
         height_m=round_numbers(line.state.deflection[row, stations, 0]),
         lateral_position_m=tuple(round_numbers(y for _, y in stagger) for stagger in staggers) or None,
+        stretches=derive_stretches(file, line, first),
     )
 
 

@@ -19,12 +19,8 @@ from pantocheck.conformance.simulation.derived_format import (
     DerivedStart,
     DerivedTrain,
 )
-from pantocheck.conformance.simulation.derived_line import (
-    build_derived_line,
-    round_number,
-    round_numbers,
-    round_positions,
-)
+from pantocheck.conformance.simulation.derived_line import build_derived_line
+from pantocheck.conformance.simulation.derived_rounding import round_number, round_numbers, round_positions
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 from pantocheck.conformance.simulation.uplift_tuning import TOLERANCE
 from pantocheck.model import DiscretisedLine, discretise
