@@ -64,7 +64,7 @@ def compare(name: str, coarse: float, fine: float) -> Comparison:
 
 def uplift_forces(case: Case) -> tuple[float, ...]:
     """Uplift forces of the case; where it has none, those to which the reference simulator tunes its default mesh."""
-    forces = [use.uplift_force_N for use in case.file.pantograph]
+    forces = [lift.stated_uplift_force for lift in case.lift_forces]
     if None not in forces:
         return tuple(map(float, forces))
     discretisation = case.file.discretisation

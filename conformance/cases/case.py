@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from pantocheck.conformance.cases.case_file import CaseFile
+from pantocheck.conformance.cases.case_file import CaseFile, PantographByLaw
 from pantocheck.conformance.cases.damping_file import Damping, overlay_damping
+from pantocheck.conformance.cases.lift_force import LiftForce, resolve_lift_force
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.pantograph_file import PantographFile
@@ -104,6 +105,19 @@ class Case:
         if self.file.compared_spans is None:
             return self.analysis_section
         return self.line.geometry.section(*self.file.compared_spans)
+
+    @property
+    def lift_forces(self) -> tuple[LiftForce, ...]:
+        """Lift force of every pantograph of the run: stated in the case, or from the force law of its file."""
+        speed = self.file.speed_km_h or 0.0
+        uses = zip(self.file.pantograph, self.pantographs, strict=True)
+        return tuple(resolve_lift_force(use, pantograph, speed) for use, pantograph in uses)
+
+    @property
+    def law_forces(self) -> dict[int, LiftForce]:
+        """Lift force of every pantograph whose force law applies, by its number from 1."""
+        parts = enumerate(zip(self.file.pantograph, self.lift_forces, strict=True), 1)
+        return {number: lift for number, (use, lift) in parts if isinstance(use, PantographByLaw)}
 
     @property
     def offsets(self) -> tuple[float, ...]:
@@ -211,8 +225,14 @@ class Case:
         return replace(self, file=file, line=line, limits=(), dampings={})
 
 
-def _tables(prefix: str, file: InputTable) -> dict[str, object]:
-    return {f"{prefix}.{name}": getattr(file, name) for name in type(file).model_fields}
+def _tables(prefix: str, table: InputTable) -> dict[str, object]:
+    """Keys of a table with their content, by dotted name; those of a sourced table follow it."""
+    tables: dict[str, object] = {}
+    for name in type(table).model_fields:
+        content = tables[f"{prefix}.{name}"] = getattr(table, name)
+        if isinstance(content, SourcedTable):
+            tables |= _tables(f"{prefix}.{name}", content)
+    return tables
 
 
 def _numbers(table: InputTable, exclude: set[str] | None = None) -> object:

@@ -1,8 +1,10 @@
-"""Agreement of the files of a case: positions of a case lie on its line, and rates fit its time step."""
+"""Agreement of the files of a case: positions lie on the line, rates fit the time step, force laws fit the speed."""
 
 from collections.abc import Iterator
 
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.force_law import LawInvalid
+from pantocheck.conformance.cases.lift_force import resolve_lift_force
 from pantocheck.conformance.input_files.input_error import InputError
 
 
@@ -22,10 +24,21 @@ def find_disagreements(case: Case, where: str) -> Iterator[InputError]:
         One disagreement.
     """
     where = f"{where}, key "
+    yield from _find_invalid_laws(case, where)
     if not case.is_static:
         outside = [*_find_spans_outside(case, where)]
         yield from outside or _find_positions_outside(case, where)
     yield from _find_wrong_drops(case, f"{where}mass_drop.")
+
+
+def _find_invalid_laws(case: Case, where: str) -> Iterator[InputError]:
+    speed = case.file.speed_km_h or 0.0
+    for i, (use, pantograph) in enumerate(zip(case.file.pantograph, case.pantographs, strict=True), 1):
+        try:
+            resolve_lift_force(use, pantograph, speed)
+        except LawInvalid as error:
+            hint = "Give uplift_force_N or target_mean_force_N in place of force_from, or another force law or speed."
+            yield InputError(f"{where}pantograph[{i}].force_from", str(error), hint)
 
 
 def _find_spans_outside(case: Case, where: str) -> Iterator[InputError]:

@@ -1,11 +1,12 @@
 """Case files: line, pantographs, analysis section and limits."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import Discriminator, Field, Tag, model_validator
 
 from pantocheck.conformance.cases.damping_file import Damping
 from pantocheck.conformance.cases.drop_test import MassDrop
+from pantocheck.conformance.cases.force_law import FASTEST_KM_H, LARGEST_FORCE_N
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.study_tables import Study
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
@@ -15,16 +16,24 @@ from pantocheck.conformance.quantities.filters import LowPass
 FileName = Annotated[str, Field(min_length=1, max_length=500)]
 
 
-class PantographUse(SourcedTable):
-    """Pantograph of a run."""
+PantographName = Annotated[FileName, Field(description="pantograph file, relative to the case file")]
 
-    model: Annotated[FileName, Field(description="pantograph file, relative to the case file")]
+
+class PantographUse(SourcedTable):
+    """Pantograph of a run, with a stated force."""
+
+    model: PantographName
     uplift_force_N: Annotated[
         float | None,
-        Field(gt=0, le=2000, description="constant uplift force, or start value of its tuning to the mean force [N]"),
+        Field(
+            gt=0,
+            le=LARGEST_FORCE_N,
+            description="constant uplift force, or start value of its tuning to the mean force [N]",
+        ),
     ] = None
     target_mean_force_N: Annotated[
-        float | None, Field(gt=0, le=2000, description="mean contact force to which the uplift force is tuned [N]")
+        float | None,
+        Field(gt=0, le=LARGEST_FORCE_N, description="mean contact force to which the uplift force is tuned [N]"),
     ] = None
 
     @cross_check
@@ -33,8 +42,39 @@ class PantographUse(SourcedTable):
             yield validation_problem(
                 "uplift_force_N",
                 "missing",
-                "Give uplift_force_N, or target_mean_force_N for an uplift force tuned to a mean force.",
+                "Give uplift_force_N, or target_mean_force_N for an uplift force tuned to a mean force, or force_from "
+                '= "law" for the force law of the pantograph.',
             )
+
+
+class PantographByLaw(SourcedTable):
+    """Pantograph of a run, with the force law of its file at the speed of the case."""
+
+    model: PantographName
+    force_from: Annotated[
+        Literal["law"], Field(description="law: mean contact force or applied forces from the file of the pantograph")
+    ]
+
+    @model_validator(mode="before")
+    @classmethod
+    def _states_no_force(cls, content: Any) -> Any:
+        for key in ("uplift_force_N", "target_mean_force_N"):
+            if isinstance(content, dict) and key in content:
+                raise validation_problem("force_from", f"stands beside {key}", f"Give either force_from or {key}.")
+        return content
+
+
+def _name_force(pantograph: Any) -> str:
+    """Name of the model of a pantograph, which pydantic validates and reports alone."""
+    by_law = isinstance(pantograph, PantographByLaw) or (isinstance(pantograph, dict) and "force_from" in pantograph)
+    return "PantographByLaw" if by_law else "PantographUse"
+
+
+CasePantograph = Annotated[
+    Annotated[PantographUse, Tag("PantographUse")] | Annotated[PantographByLaw, Tag("PantographByLaw")],
+    Discriminator(_name_force),
+]
+"""Pantograph of a run."""
 
 
 class Filter(InputTable):
@@ -115,7 +155,7 @@ class CaseFile(SourcedTable):
         tuple[str, ...],
         Field(strict=False, max_length=100, description="ids of the cases that must pass before this case counts"),
     ] = ()
-    speed_km_h: Annotated[float | None, Field(ge=1, le=600, description="speed of the train [km/h]")] = None
+    speed_km_h: Annotated[float | None, Field(ge=1, le=FASTEST_KM_H, description="speed of the train [km/h]")] = None
     evaluated_spans: Annotated[
         tuple[int, ...] | None,
         Field(
@@ -144,7 +184,7 @@ class CaseFile(SourcedTable):
     spacing_m: Annotated[
         PositiveList | None, Field(description="distances between successive pantographs, in running order [m]")
     ] = None
-    pantograph: Annotated[tuple[PantographUse, ...], Field(strict=False, max_length=20)] = ()
+    pantograph: Annotated[tuple[CasePantograph, ...], Field(strict=False, max_length=20)] = ()
     mass_drop: Annotated[MassDrop | None, Field(description="mass drops instead of a train")] = None
     study: Annotated[Study | None, Field(description="comparison of several runs")] = None
     apparent_mass: ApparentMass | None = None

@@ -8,6 +8,7 @@ from typing import Any
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import CaseFile
 from pantocheck.conformance.cases.damping_file import Damping, DampingFile, overlay_damping
+from pantocheck.conformance.cases.force_rules import resolve_rule
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.pantograph_file import PantographFile
@@ -96,7 +97,8 @@ def _read_damping(case_path: Path, name: str, key: str) -> Damping:
 
 
 def _read_pantograph(case_path: Path, name: str, key: str) -> PantographFile:
-    return read_model(_locate(case_path, name, key), PantographFile, "pantograph")
+    path = _locate(case_path, name, key)
+    return resolve_rule(read_model(path, PantographFile, "pantograph"), f"pantograph '{path.name}'")
 
 
 def _locate(case_path: Path, name: str, key: str) -> Path:

@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
+from pantocheck.conformance.cases.force_law import AppliedForceLaw, ForceLaw
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.sourced_table import (
     InputTable,
@@ -13,6 +14,7 @@ from pantocheck.conformance.input_files.sourced_table import (
     Positive,
     PositiveList,
     SourcedTable,
+    is_absent,
     validation_problem,
 )
 
@@ -50,22 +52,26 @@ class ChainTable(SourcedTable):
     def _consistent(self) -> Problems:
         lists = ("stiffness_N_m", "damping_N_s_m", "names")
         yield from _find_wrong_lengths(self, lists, len(self.masses_kg), "mass", "masses")
-        on, names = self.uplift_force_on, self.names or ()
-        if isinstance(on, str) and on not in names:
+        yield from self.find_wrong_mass("uplift_force_on", self.uplift_force_on)
+
+    def find_wrong_mass(self, key: str, mass: int | str) -> Problems:
+        """Problem of a mass, by number from the base or by name, that the chain does not have; `key` states it."""
+        names = self.names or ()
+        if isinstance(mass, str) and mass not in names:
             yield validation_problem(
-                "uplift_force_on", f"there is no mass {on!r}", f"Known names are {', '.join(names) or 'not given'}."
+                key, f"there is no mass {mass!r}", f"Known names are {', '.join(names) or 'not given'}."
             )
-        if isinstance(on, int) and not 1 <= on <= len(self.masses_kg):
-            yield validation_problem(
-                "uplift_force_on", f"there is no mass {on}", f"Give a number from 1 to {len(self.masses_kg)}."
-            )
+        if isinstance(mass, int) and not 1 <= mass <= len(self.masses_kg):
+            yield validation_problem(key, f"there is no mass {mass}", f"Give a number from 1 to {len(self.masses_kg)}.")
+
+    def mass_index(self, mass: int | str) -> int:
+        """Index from 0 at the base of a mass, by number from the base, from 1, or by name."""
+        return (self.names or ()).index(mass) if isinstance(mass, str) else mass - 1
 
     @property
     def uplift_mass(self) -> int:
         """Index of the mass on which the uplift force acts, from 0 at the base."""
-        if isinstance(self.uplift_force_on, str):
-            return (self.names or ()).index(self.uplift_force_on)
-        return self.uplift_force_on - 1
+        return self.mass_index(self.uplift_force_on)
 
 
 Matrix = Annotated[tuple[NumberList, ...], Field(strict=False, min_length=1, max_length=50)]
@@ -147,13 +153,21 @@ class ModesTable(SourcedTable):
 
 
 class PantographFile(InputTable):
-    """Content of a pantograph file: contact, and one of the tables chain, matrices and modes."""
+    """Content of a pantograph file: contact, one of the tables chain, matrices and modes, and its force law."""
 
     title: Annotated[str, Field(description="title in reports", max_length=200)]
     chain: ChainTable | None = None
     matrices: MatricesTable | None = None
     modes: ModesTable | None = None
     contact: ContactTable
+    force_law: Annotated[
+        ForceLaw | None,
+        Field(
+            exclude_if=is_absent,
+            description="mean contact force or applied forces as a function of speed, for cases with "
+            "force_from = 'law'; default: every case states a force",
+        ),
+    ] = None
     note: Annotated[str | None, Field(description="remark for the reader", max_length=4000)] = None
 
     @cross_check
@@ -164,6 +178,25 @@ class PantographFile(InputTable):
             yield validation_problem("chain", "missing", hint)
         if len(models) > 1:
             yield validation_problem(models[-1], f"the pantograph has {len(models)} models: {', '.join(models)}", hint)
+
+    @cross_check
+    def _law_fits_the_model(self) -> Problems:
+        if isinstance(self.force_law, AppliedForceLaw):
+            yield from self._find_wrong_point("force_law.aerodynamic_force.on", self.force_law.aerodynamic_force.on)
+
+    def _find_wrong_point(self, key: str, point: int | str | tuple[float, ...]) -> Problems:
+        """Problem of a point of application that does not have the form of the model."""
+        if self.chain is not None:
+            if isinstance(point, tuple):
+                yield validation_problem(key, "found a list", "Give the mass of the chain, by number or name.")
+            else:
+                yield from self.chain.find_wrong_mass(key, point)
+            return
+        size = len(self.matrices.head if self.matrices is not None else self.modes.head_shape if self.modes else ())
+        if not isinstance(point, tuple) or len(point) != size:
+            yield validation_problem(
+                key, "does not fit the model", f"Give the displacement of the point in each of its {size} unknowns."
+            )
 
 
 def _find_wrong_lengths(table: InputTable, keys: tuple[str, ...], n: int, item: str, items: str) -> Problems:

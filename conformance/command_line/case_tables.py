@@ -11,8 +11,9 @@ from rich.text import Text
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.command_line.console import build_table, escape_text, format_number
-from pantocheck.conformance.input_files.sourced_table import PROVENANCE
+from pantocheck.conformance.input_files.sourced_table import PROVENANCE, SourcedTable
 from pantocheck.conformance.quantities.limit_text import name_value
+from pantocheck.conformance.results.lift_force_facts import list_law_forces
 
 OTHER_TABLES = {"id", "title", "line", "model", "requires", "limit", "pantograph", "mass_drop", "study"}
 """Keys of a case file that are no inputs, or that have a table of their own."""
@@ -31,6 +32,8 @@ def build_case_tables(case: Case) -> list[RenderableType]:
     if not case.is_static:
         start, end = case.analysis_section
         parts.append(escape_text(f"{case.file.speed_km_h:g} km/h, analysis section {start:g} m to {end:g} m"))
+    for number, force in list_law_forces(case).items():
+        parts.append(escape_text(f"force law of pantograph {number}: {force.text}"))
     parts.append(escape_text(f"mesh of the reference simulator: {mesh.element_m:g} m, {mesh.time_step_s:g} s"))
     parts.append(Text(case.digest, overflow="fold"))
     blocks: list[RenderableType] = [_build_input_table(case)]
@@ -49,6 +52,7 @@ def _build_input_table(case: Case) -> Table:
     for name, sourced in case.sourced_tables.items():
         source = escape_text(", ".join(_source_keys(sourced.source)))
         excluded = {*PROVENANCE, *OTHER_TABLES, "discretisation"}
+        excluded |= {key for key, content in sourced if isinstance(content, SourcedTable)}
         # Defaults have no source, so only the keys that the file gives are shown.
         values = sourced.model_dump(mode="json", exclude=excluded, exclude_unset=True)
         for path, inputs in _split_tables(name, values):

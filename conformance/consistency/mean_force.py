@@ -13,7 +13,7 @@ contact height measure. The other checks compare changes of the force; this one 
 import numpy as np
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.case_file import PantographUse
+from pantocheck.conformance.cases.lift_force import LiftForce
 from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.consistency.check import Check, Finding, worst_finding
 from pantocheck.conformance.quantities.signals import PantographSignals
@@ -31,25 +31,25 @@ LIFTS = 2.0
 def _check_mean_force(case: Case, signals: RecordSignals) -> Finding | None:
     try:
         uplift = signals.line.largest_uplift
-        parts = zip(signals.pantographs.items(), case.pantographs, case.file.pantograph, strict=True)
+        parts = zip(signals.pantographs.items(), case.pantographs, case.lift_forces, strict=True)
         return worst_finding(
             finding
-            for (number, pantograph), file, use in parts
-            if (finding := _compare(number, pantograph, file, use, uplift)) is not None
+            for (number, pantograph), file, lift in parts
+            if (finding := _compare(number, pantograph, file, lift, uplift)) is not None
         )
     except QuantityUnavailable:
         return None  # other checks state which channel is missing
 
 
 def _compare(
-    number: int, pantograph: PantographSignals, file: PantographFile, use: PantographUse, uplift: float
+    number: int, pantograph: PantographSignals, file: PantographFile, lift: LiftForce, uplift: float
 ) -> Finding | None:
     force, height, rate = pantograph.delivered, pantograph.height, pantograph.force.rate
-    expected = use.target_mean_force_N or use.uplift_force_N
-    if expected is None or height.size < 3:
+    expected = lift.target_mean_force or lift.uplift_force
+    if height.size < 3:
         return None
     tolerance = SHARE * expected
-    if use.target_mean_force_N is None:
+    if lift.target_mean_force is None:
         model = build_pantograph(file, 0.0, 0.0)
         rigid = np.ones(model.head.size) if file.chain is not None else model.head / (model.head @ model.head)
         mass, damping, stiffness = (

@@ -147,8 +147,8 @@ def _compare_supports(number: int, passages: _Passages) -> Finding | None:
 
 def _compare_datums(case: Case, passages: dict[int, _Passages]) -> Finding | None:
     """Compare the constants of pantographs of the same kind and uplift force."""
-    uses = case.file.pantograph
-    kinds = [(file, use.uplift_force_N) for file, use in zip(case.pantographs, uses, strict=True)]
+    parts = zip(case.pantographs, case.lift_forces, strict=True)
+    kinds = [(file, lift.stated_uplift_force) for file, lift in parts]
     for number, passed in passages.items():
         for other in range(1, number):
             if not (passed.support.size and passages[other].support.size):

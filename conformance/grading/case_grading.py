@@ -13,6 +13,7 @@ from pantocheck.conformance.grading.extended_band import extended_band_warnings
 from pantocheck.conformance.grading.validity_warnings import validity_warnings
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.results.lift_force_facts import list_law_forces
 from pantocheck.conformance.results.outcome import Delivered, Errored, Outcome, Skipped
 from pantocheck.conformance.results.results_building import describe_uncertainty, key_by_owner, select_finite
 from pantocheck.conformance.results.results_format import (
@@ -140,6 +141,7 @@ def _build_result(case: Case, delivered: Delivered, notes: Sequence[str], **part
                 rate_Hz=None if record is None else float(f"{record.rate:.9g}"),
                 filter=FilterFacts(**file.filter.model_dump()),
                 evaluated_m=None if case.is_static else case.analysis_section,
+                law_forces=list_law_forces(case),
             ),
             **_EMPTY,
             **parts,
@@ -148,10 +150,10 @@ def _build_result(case: Case, delivered: Delivered, notes: Sequence[str], **part
 
 
 def _list_steps(case: Case, library: LibraryIdentity) -> list[Step]:
-    """Steps of the procedure that a case belongs to; a passage on an own line is not a reference model."""
+    """Steps of the procedure that a case belongs to; an own case, or one of no edition, is not a reference model."""
     file = case.file
     if file.mass_drop is not None or not isinstance(file.study, DampingSensitivity | None):
         return []
     if not case.is_static:
-        return [] if library == "own" else ["reference_models"]
+        return [] if library == "own" or file.edition is None else ["reference_models"]
     return ["static_check"] if file.apparent_mass is None else ["pantograph_model", "static_check"]

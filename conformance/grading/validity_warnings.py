@@ -6,6 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.lift_force import AppliedForces
 from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph
@@ -60,10 +61,10 @@ def _speed_warnings(case: Case) -> Iterator[str]:
 
 def _working_height_warnings(case: Case) -> Iterator[str]:
     """Warn of an untuned pantograph whose static contact force at the working height is not its uplift force."""
-    for number, (use, file) in enumerate(zip(case.file.pantograph, case.pantographs, strict=True), 1):
-        uplift_force = use.uplift_force_N
-        if use.target_mean_force_N is not None or uplift_force is None:
+    for number, (lift, file) in enumerate(zip(case.lift_forces, case.pantographs, strict=True), 1):
+        if not isinstance(lift, AppliedForces):
             continue
+        uplift_force = lift.uplift_force
         prefix, remedy = f"working height of pantograph {number}", "Give target_mean_force_N to be independent of it"
         if file.chain is not None and file.chain.base_spring_unstretched == "wire_height":
             stiffness = file.chain.stiffness_N_m[0]
@@ -79,7 +80,7 @@ def _working_height_warnings(case: Case) -> Iterator[str]:
                 "target_mean_force_N"
             )
         else:
-            contact = _static_contact_force(file, uplift_force)
+            contact = _static_contact_force(file, lift)
             if abs(contact / uplift_force - 1) > LARGEST_STATIC_DIFFERENCE:
                 yield (
                     f"{prefix}: with the head there, the static contact force is {contact:.4g} N, the uplift force "
@@ -88,10 +89,12 @@ def _working_height_warnings(case: Case) -> Iterator[str]:
                 )
 
 
-def _static_contact_force(file: PantographFile, uplift_force: float) -> float:
+def _static_contact_force(file: PantographFile, lift: AppliedForces) -> float:
     """Contact force with the head at the working height [N]; NaN for a mechanism, which has no static state."""
     try:
-        return equilibrium(build_pantograph(file, uplift_force, 0.0), 0.0)[1]
+        return equilibrium(
+            build_pantograph(file, lift.uplift_force, 0.0, aerodynamic_force=lift.aerodynamic_force), 0.0
+        )[1]
     except np.linalg.LinAlgError:
         return math.nan
 

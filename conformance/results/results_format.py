@@ -12,6 +12,7 @@ from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.results.criterion_format import CaseVerification, ComponentName, Criterion
 from pantocheck.conformance.results.figure_data import Chart, TextTable, Traces, UpliftTrace
+from pantocheck.conformance.results.lift_force_facts import LawForces
 from pantocheck.conformance.results.record_facts import RecordFacts
 from pantocheck.conformance.results.results_part import Number, Owner, ResultsPart
 
@@ -80,6 +81,7 @@ class RunFacts(ResultsPart):
     rate_Hz: float | None
     filter: FilterFacts
     evaluated_m: tuple[float, float] | None
+    law_forces: LawForces = {}
 
 
 LibraryIdentity = Literal["identical", "modified", "own"]

@@ -72,7 +72,6 @@ def run_passage(
     TuningFailed
         No uplift force gives the mean contact force that the case requires.
     """
-    uses = case.file.pantograph
     start = uplift_forces or start_forces(case)
     # The computing time must not include the compilation of the kernels.
     simulate_passage(line, replace(build_passage(case, line, discretisation, start), duration=0.0))
@@ -80,7 +79,7 @@ def run_passage(
         lambda forces: _run_once(case, line, discretisation, forces),
         lambda passage_run: _mean_forces(case, passage_run.record),
         start,
-        [None if uplift_forces else use.target_mean_force_N for use in uses],
+        [None if uplift_forces else lift.target_mean_force for lift in case.lift_forces],
     )
 
 
@@ -133,8 +132,8 @@ def _build_pantographs(case: Case, line: DiscretisedLine, uplift_forces: tuple[f
     """Pantographs of a case, each with its working height under its uplift force."""
     nominal = nominal_wire_height(case)
     return tuple(
-        build_pantograph(file, force, compute_working_height(case, line, file, force), nominal)
-        for file, force in zip(case.pantographs, uplift_forces, strict=True)
+        build_pantograph(file, force, compute_working_height(case, line, file, force), nominal, lift.aerodynamic_force)
+        for file, lift, force in zip(case.pantographs, case.lift_forces, uplift_forces, strict=True)
     )
 
 
@@ -187,7 +186,7 @@ def compute_working_height(case: Case, line: DiscretisedLine, file: PantographFi
 
 def start_forces(case: Case) -> tuple[float, ...]:
     """Uplift force of every pantograph, or start value of its tuning [N]."""
-    return tuple(use.uplift_force_N or use.target_mean_force_N or 0.0 for use in case.file.pantograph)
+    return tuple(lift.uplift_force for lift in case.lift_forces)
 
 
 def _watched_supports(case: Case, line: DiscretisedLine) -> tuple[tuple[str, float], ...]:

@@ -78,12 +78,13 @@ def _train(case: Case, line: DiscretisedLine) -> DerivedTrain:
 
 def _pantographs(case: Case, line: DiscretisedLine, heights: RealArray) -> tuple[DerivedPantograph, ...]:
     pantographs = []
-    for file, force, start, height in zip(
-        case.pantographs, start_forces(case), case.start_positions, heights, strict=True
+    for file, lift, start, height in zip(
+        case.pantographs, case.lift_forces, case.start_positions, heights, strict=True
     ):
+        force = lift.uplift_force
         contact, share = file.contact.stiffness_N_m, 1 / touched_rows(line, start).size
         working_height = compute_working_height(case, line, file, force)
-        model = build_pantograph(file, force, working_height, nominal_wire_height(case))
+        model = build_pantograph(file, force, working_height, nominal_wire_height(case), lift.aerodynamic_force)
         displacement, _ = equilibrium(model, float(height) + force * share / contact)
         pantographs.append(
             DerivedPantograph(

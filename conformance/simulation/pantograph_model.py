@@ -4,12 +4,18 @@ from dataclasses import replace
 
 import numpy as np
 
-from pantocheck.conformance.cases.pantograph_file import PantographFile
+from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.cases.force_law import AppliedForceLaw
+from pantocheck.conformance.cases.pantograph_file import ChainTable, PantographFile
 from pantocheck.model.pantograph import Pantograph, chain, from_matrices, from_modes, preload_springs
 
 
 def build_pantograph(
-    file: PantographFile, uplift_force: float, working_height: float, wire_height: float = 0.0
+    file: PantographFile,
+    uplift_force: float,
+    working_height: float,
+    wire_height: float = 0.0,
+    aerodynamic_force: float = 0.0,
 ) -> Pantograph:
     """Pantograph with an uplift force and a static working height.
 
@@ -27,12 +33,21 @@ def build_pantograph(
         Static height of the head under this force [m].
     wire_height : float
         Nominal height of the contact wire [m].
+    aerodynamic_force : float
+        Part of the uplift force that acts at the point of the aerodynamic force [N].
 
     Returns
     -------
     Pantograph
         Pantograph for the simulator.
     """
+    model = _build_model(file, uplift_force, working_height, wire_height)
+    shift = _aerodynamic_point(file) - _uplift_point(file)
+    return replace(model, force=model.force + aerodynamic_force * shift)
+
+
+def _build_model(file: PantographFile, uplift_force: float, working_height: float, wire_height: float) -> Pantograph:
+    """Pantograph whose whole uplift force acts at one point."""
     contact = file.contact.stiffness_N_m
     if file.chain is not None:
         parts = file.chain
@@ -50,7 +65,7 @@ def build_pantograph(
         table = file.matrices
         matrices = (np.array(table.mass_kg), np.array(table.damping_N_s_m), np.array(table.stiffness_N_m))
         model = from_matrices(*matrices, np.array(table.head), uplift_force, contact)
-        model = replace(model, force=uplift_force * np.array(table.uplift_force_on or table.head))
+        model = replace(model, force=uplift_force * _uplift_point(file))
         # Any displacement with the head at the working height is suitable: its spring forces become preload.
         return preload_springs(model, model.head * working_height / (model.head @ model.head))
     modes = file.modes
@@ -58,5 +73,33 @@ def build_pantograph(
         raise ValueError("a pantograph without a model")  # No valid file has this content.
     omega, shape = 2 * np.pi * np.array(modes.frequency_Hz), np.array(modes.head_shape)
     preload = omega**2 * shape * working_height / (shape @ shape)
-    force = uplift_force * np.array(modes.uplift_force_on or modes.head_shape) + preload
+    force = uplift_force * _uplift_point(file) + preload
     return from_modes(np.array(modes.frequency_Hz), np.array(modes.damping_ratio), shape, force, uplift_force, contact)
+
+
+def _uplift_point(file: PantographFile) -> RealArray:
+    """Displacement of the point of the uplift force per unit of each unknown."""
+    if file.chain is not None:
+        return _choose_mass(file.chain, file.chain.uplift_force_on)
+    if file.matrices is not None:
+        return np.array(file.matrices.uplift_force_on or file.matrices.head)
+    if file.modes is not None:
+        return np.array(file.modes.uplift_force_on or file.modes.head_shape)
+    raise ValueError("a pantograph without a model")  # No valid file has this content.
+
+
+def _aerodynamic_point(file: PantographFile) -> RealArray:
+    """Displacement of the point of the aerodynamic force per unit of each unknown; without a law as `_uplift_point`."""
+    if not isinstance(file.force_law, AppliedForceLaw):
+        return _uplift_point(file)
+    point = file.force_law.aerodynamic_force.on
+    if isinstance(point, tuple):
+        return np.array(point)
+    if file.chain is None:
+        raise ValueError("a mass of a pantograph without masses")  # No valid file has this content.
+    return _choose_mass(file.chain, point)
+
+
+def _choose_mass(chain_table: ChainTable, mass: int | str) -> RealArray:
+    """Unit displacement of one mass of a chain."""
+    return np.asarray(np.eye(len(chain_table.masses_kg))[chain_table.mass_index(mass)])

@@ -4,6 +4,7 @@ from typing import Any
 
 from pantocheck.conformance.reports.document import Facts
 from pantocheck.conformance.reports.page_text import format_plain, format_value
+from pantocheck.conformance.results.results_format import RunFacts
 
 
 def list_suite_facts(results: dict[str, Any]) -> Facts:
@@ -43,6 +44,7 @@ def list_case_facts(case: dict[str, Any]) -> Facts:
     return Facts(
         _drop_empty(
             ("Speed", _with_unit(run["speed_km_h"], "km/h")),
+            *_list_law_forces(run),
             ("Analysis section", f"{format_plain(section[0])} m to {format_plain(section[1])} m" if section else None),
             ("Filter", _describe_filter(run["filter"])),
             ("Sampling rate of the record", _with_unit(run["rate_Hz"], "samples per second")),
@@ -62,6 +64,11 @@ def list_case_facts(case: dict[str, Any]) -> Facts:
             ("Wall time / simulated time", format_value(wall / simulated, 3) if wall and simulated else None),
         ),
     )
+
+
+def _list_law_forces(run: dict[str, Any]) -> list[tuple[str, str]]:
+    facts = RunFacts.model_validate(run).law_forces
+    return [(f"Force law of pantograph {number}", force.text) for number, force in facts.items()]
 
 
 def _describe_filter(settings: dict[str, Any]) -> str:

@@ -63,7 +63,7 @@ def run_dropper_damping(case: Case, study: DropperDamping) -> Delivered:
     begin = time.perf_counter()
     discretisation, line = case.file.discretisation, build_catenary(case.line)
     dropper = _find_dropper(line, study, case.id)
-    forces = tuple(use.uplift_force_N or 0.0 for use in case.file.pantograph)
+    forces = tuple(lift.stated_uplift_force or 0.0 for lift in case.lift_forces)
     if not all(forces):
         raise InputError(
             f"case '{case.id}', key pantograph", "no uplift_force_N", "Give uplift_force_N of every pantograph."

@@ -3,8 +3,11 @@
 from typing import Any, cast
 
 from pantocheck.conformance.cases.case import Case, drop_keys
+from pantocheck.conformance.cases.force_law import AppliedForceLaw
+from pantocheck.conformance.cases.lift_force import AppliedForces
 from pantocheck.conformance.input_files.sourced_table import PROVENANCE
 from pantocheck.conformance.simulation.derived_values import build_derived
+from pantocheck.conformance.systems.command.protocol_messages import RequestedAppliedForces
 
 
 def build_case_message(case: Case) -> dict[str, Any]:
@@ -29,16 +32,30 @@ def build_case_message(case: Case) -> dict[str, Any]:
         "line": case.line.model_dump(mode="json"),
         "pantographs": [
             {
-                **model.model_dump(mode="json", exclude={"title"}),
-                "uplift_force_N": use.uplift_force_N,
-                "target_mean_force_N": use.target_mean_force_N,
+                **model.model_dump(mode="json", exclude={"title", "force_law"}),
+                "uplift_force_N": lift.stated_uplift_force,
+                "target_mean_force_N": lift.target_mean_force,
+                **_applied_forces(case, number),
                 "start_m": start,
                 "end_m": end,
             }
-            for use, model, start, end in zip(
-                file.pantograph, case.pantographs, case.start_positions, case.end_positions, strict=True
+            for number, (lift, model, start, end) in enumerate(
+                zip(case.lift_forces, case.pantographs, case.start_positions, case.end_positions, strict=True), 1
             )
         ],
         "derived": build_derived(case).model_dump(mode="json"),
     }
     return cast(dict[str, Any], drop_keys(content, PROVENANCE))
+
+
+def _applied_forces(case: Case, number: int) -> dict[str, Any]:
+    """Key `applied_forces` of a pantograph whose force law gives them, or no key."""
+    lift, law = case.law_forces.get(number), case.pantographs[number - 1].force_law
+    if not (isinstance(lift, AppliedForces) and isinstance(law, AppliedForceLaw)):
+        return {}
+    forces = RequestedAppliedForces(
+        static_force_N=lift.static_force,
+        aerodynamic_force_N=lift.aerodynamic_force,
+        aerodynamic_force_on=law.aerodynamic_force.on,
+    )
+    return {"applied_forces": forces.model_dump(mode="json")}

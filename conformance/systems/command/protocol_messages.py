@@ -7,9 +7,10 @@ from pydantic import Field, TypeAdapter, ValidationError
 from pydantic.json_schema import GenerateJsonSchema
 
 from pantocheck.conformance.cases.case_file import Discretisation, Filter
+from pantocheck.conformance.cases.force_law import PointOfForce
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.pantograph_file import ChainTable, ContactTable, MatricesTable, ModesTable
-from pantocheck.conformance.input_files.sourced_table import PROVENANCE, InputTable
+from pantocheck.conformance.input_files.sourced_table import PROVENANCE, InputTable, is_absent
 from pantocheck.conformance.simulation.derived_format import Derived
 
 PROTOCOL: Final = "pantocheck.command/1"
@@ -29,6 +30,14 @@ class Start(InputTable):
     suite_version: Annotated[str, Field(description="version of Pantocheck")]
 
 
+class RequestedAppliedForces(InputTable):
+    """Applied forces from the force law of a pantograph at the speed of the case; their sum is the uplift force."""
+
+    static_force_N: Annotated[float, Field(description="static force, at uplift_force_on of the model [N]")]
+    aerodynamic_force_N: Annotated[float, Field(description="mean aerodynamic force [N]")]
+    aerodynamic_force_on: PointOfForce
+
+
 class RequestedPantograph(InputTable):
     """Pantograph of a run, in running order. One of chain, matrices and modes describes it."""
 
@@ -43,6 +52,13 @@ class RequestedPantograph(InputTable):
         float | None,
         Field(description="mean contact force over the analysis section for the tuning [N]; null: no tuning"),
     ]
+    applied_forces: Annotated[
+        RequestedAppliedForces | None,
+        Field(
+            exclude_if=is_absent,
+            description="parts of the uplift force with different points of application; default: one point",
+        ),
+    ] = None
     start_m: Annotated[float, Field(description="position at the start of the run [m]")]
     end_m: Annotated[float, Field(description="position at the end of the run [m]")]
 
