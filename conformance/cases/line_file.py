@@ -1,6 +1,7 @@
 """Line files: geometry, wires, connectors and damping of a line."""
 
-from typing import Annotated, Literal
+from itertools import pairwise
+from typing import Annotated, Literal, Self
 
 from pydantic import Field
 
@@ -16,7 +17,14 @@ from pantocheck.conformance.cases.dropper_schedule import (
 from pantocheck.conformance.cases.geometry import GeometryTable, ListedSpans
 from pantocheck.conformance.cases.irregularity_table import IrregularityTable, SpectralIrregularity
 from pantocheck.conformance.cases.line_layout import LineLayout, build_layout
-from pantocheck.conformance.cases.support_tables import ClampMass, MessengerSupportTable, SteadyArmTable
+from pantocheck.conformance.cases.section_tables import (
+    OverlapTable,
+    SectionPlace,
+    SectionTable,
+    find_span_problems,
+    place_sections,
+)
+from pantocheck.conformance.cases.support_tables import MOST_SPANS, ClampMass, MessengerSupportTable, SteadyArmTable
 from pantocheck.conformance.cases.wire_changes import (
     MOST_CHANGES,
     BendingStiffness,
@@ -152,7 +160,35 @@ class LineFile(InputTable):
         tuple[PointMassTable, ...],
         Field(strict=False, max_length=MOST_CHANGES, description="masses on the wires", exclude_if=is_absent),
     ] = ()
+    section: Annotated[
+        tuple[SectionTable, ...] | None,
+        Field(
+            strict=False,
+            min_length=2,
+            max_length=MOST_SPANS,
+            description="tension sections in running order; default: one section from end to end",
+            exclude_if=is_absent,
+        ),
+    ] = None
+    overlap: Annotated[OverlapTable | None, Field(exclude_if=is_absent)] = None
     note: Annotated[str | None, Field(description="remark for the reader", max_length=4000)] = None
+
+    @property
+    def section_places(self) -> tuple[SectionPlace, ...]:
+        """Places of the tension sections; one from end to end if the file has none."""
+        if self.section is None or self.overlap is None:
+            return (SectionPlace(1, 0, self.geometry.spans),)
+        return place_sections(self.section, self.overlap.spans)
+
+    @property
+    def overlaps(self) -> tuple[tuple[float, float], ...]:
+        """Start and end of every overlap [m, m]."""
+        limits = self.geometry.span_limits
+        return tuple((limits[after.first], limits[before.last]) for before, after in pairwise(self.section_places))
+
+    def shorten(self, spans: int) -> Self:
+        """Same line with the first spans only, as one tension section."""
+        return self.model_copy(update={"geometry": self.geometry.shorten(spans), "section": None, "overlap": None})
 
     @property
     def dropper_schedules(self) -> tuple[DropperSchedule, ...]:
@@ -221,6 +257,17 @@ class LineFile(InputTable):
         table = self.contact_wire.irregularity
         if isinstance(table, SpectralIrregularity):
             yield from table.check_resolution(self.geometry.length)
+
+    @cross_check
+    def _check_overlap(self) -> Problems:
+        if (self.section is None) != (self.overlap is None):
+            key, other = ("overlap", "section") if self.overlap is None else ("section", "overlap")
+            yield validation_problem(key, f"the table is missing beside {other}", "Give both, or none of them.")
+
+    @cross_check
+    def _check_sections(self) -> Problems:
+        if self.section is not None and self.overlap is not None:
+            yield from find_span_problems(self.section, self.overlap.spans, self.geometry.spans)
 
     def _schedule_key(self, number: int) -> str:
         """Key of the dropper schedule of a span."""

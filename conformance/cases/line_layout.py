@@ -6,7 +6,7 @@ number      0          1          2          3  = number of spans
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -97,21 +97,24 @@ class LineLayout:
         Spans.
     supports : tuple of SupportLayout
         Supports between the ends of the line.
+    has_stagger : bool
+        Whether a wire of the whole line lies beside the centre line at a support.
     """
 
     limits: tuple[SpanLimit, ...]
     spans: tuple[SpanLayout, ...]
     supports: tuple[SupportLayout, ...]
+    has_stagger: bool
 
     @property
     def supports_fixed_along_track(self) -> tuple[int, ...]:
         """Numbers of the supports that hold the messenger wire along the track."""
         return tuple(s.limit.number for s in self.supports if s.messenger_support.along_track == "fixed")
 
-    @property
-    def has_stagger(self) -> bool:
-        """Whether a wire lies beside the centre line at a support."""
-        return any(limit.contact_wire_stagger or limit.messenger_wire_stagger for limit in self.limits)
+    def part(self, first: int, last: int) -> "LineLayout":
+        """Part of the line between two span limits, with the supports between them."""
+        supports = tuple(support for support in self.supports if first < support.limit.number < last)
+        return replace(self, limits=self.limits[first : last + 1], spans=self.spans[first:last], supports=supports)
 
     @cached_property
     def _chords(self) -> tuple[list[float], list[float]]:
@@ -147,7 +150,8 @@ def build_layout(
         arm = overlay_changes(steady_arm, changes.steady_arm)
         supports.append(SupportLayout(limit, arm, overlay_changes(messenger_support, changes.messenger_support)))
     spans = zip(limits[:-1], limits[1:], schedules, strict=True)
-    return LineLayout(limits, tuple(_build_span(*span) for span in spans), tuple(supports))
+    has_stagger = any(limit.contact_wire_stagger or limit.messenger_wire_stagger for limit in limits)
+    return LineLayout(limits, tuple(_build_span(*span) for span in spans), tuple(supports), has_stagger)
 
 
 def _build_limit(geometry: Geometry, number: int, position: float, own: Mapping[int, SupportTable]) -> SpanLimit:

@@ -20,6 +20,7 @@ from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 from pantocheck.conformance.simulation.static_quantities import sample_span
 from pantocheck.conformance.simulation.uplift_tuning import tune_uplift
 from pantocheck.model import DiscretisedLine, History, Pantograph, Passage, simulate_passage
+from pantocheck.model.fem.contact_wires import touched_wires
 from pantocheck.model.statics.elasticity import static_uplift
 
 KEPT_SPANS = 1.5
@@ -190,14 +191,13 @@ def start_forces(case: Case) -> tuple[float, ...]:
 
 
 def _watched_supports(case: Case, line: DiscretisedLine) -> tuple[tuple[str, float], ...]:
-    """First contact wire and position of every support of the recorded section, its ends included."""
-    first, last = case.recorded_section
-    wire = line.catenary.contact_wires[0].name
-    return tuple(
-        (wire, arm.position)
-        for arm in line.catenary.steady_arms
-        if arm.wire == wire and first - 1e-6 <= arm.position <= last + 1e-6
-    )
+    """Contact wire and position of every support of the recorded section, its ends included.
+
+    It is the first one of parallel wires; in an overlap it is the lowest wire, which the pantograph lifts.
+    """
+    (first, last), wires = case.recorded_section, line.catenary.contact_wires
+    supports = [x for x in case.line.geometry.supports if first - 1e-6 <= x <= last + 1e-6]
+    return tuple((wires[touched_wires(line, x)[0]].name, x) for x in supports)
 
 
 def record_passage(case: Case, passage: Passage, history: History) -> Record:

@@ -7,6 +7,7 @@ from pantocheck.conformance.cases.damping_file import ComponentDamping
 from pantocheck.conformance.cases.line_file import LineFile, WireTable
 from pantocheck.conformance.cases.line_layout import LineLayout, SpanLimit
 from pantocheck.conformance.simulation.line_details import add_details
+from pantocheck.conformance.simulation.section_model import join_line
 from pantocheck.model import (
     Catenary,
     Clamp,
@@ -48,19 +49,8 @@ def build_catenary(line: LineFile) -> Catenary:
         Catenary for the simulator.
     """
     layout = line.layout
-    catenary = Catenary(
-        wires=(
-            *_wires(line, layout, Kind.CONTACT_WIRE),
-            *_wires(line, layout, Kind.MESSENGER_WIRE),
-            *(wire for _, wire in _stitch_wires(line)),
-        ),
-        droppers=tuple(_droppers(line, layout)),
-        steady_arms=tuple(_steady_arms(line, layout)),
-        messenger_supports=tuple(_messenger_supports(line, layout)),
-        clamps=tuple(_clamps(line)),
-        damping={kind: _rayleigh(getattr(line.damping, key)) for kind, key in _DAMPING_KEYS.items()},
-        modal_damping=tuple(ModalBand(band.from_Hz, band.to_Hz, band.damping_ratio) for band in line.damping.modal),
-    )
+    sections = [_build_section(line, layout.part(place.first, place.last)) for place in line.section_places]
+    catenary = sections[0] if line.overlap is None else join_line(line, line.overlap, sections)
     catenary = add_details(catenary, line)
     if not line.droppers.mass_kg_m:
         return catenary
@@ -70,6 +60,23 @@ def build_catenary(line: LineFile) -> Catenary:
         droppers = zip(catenary.droppers, masses, strict=True)
         catenary = replace(catenary, droppers=tuple(replace(dropper, mass=float(mass)) for dropper, mass in droppers))
     return catenary
+
+
+def _build_section(line: LineFile, layout: LineLayout) -> Catenary:
+    """Tension section of a line between the first and the last span limit of a layout."""
+    return Catenary(
+        wires=(
+            *_wires(line, layout, Kind.CONTACT_WIRE),
+            *_wires(line, layout, Kind.MESSENGER_WIRE),
+            *(wire for _, wire in _stitch_wires(line, layout)),
+        ),
+        droppers=tuple(_droppers(line, layout)),
+        steady_arms=tuple(_steady_arms(line, layout)),
+        messenger_supports=tuple(_messenger_supports(line, layout)),
+        clamps=tuple(_clamps(line, layout)),
+        damping={kind: _rayleigh(getattr(line.damping, key)) for kind, key in _DAMPING_KEYS.items()},
+        modal_damping=tuple(ModalBand(band.from_Hz, band.to_Hz, band.damping_ratio) for band in line.damping.modal),
+    )
 
 
 def _names(line: LineFile, kind: Kind) -> list[str]:
@@ -90,7 +97,8 @@ def _wires(line: LineFile, layout: LineLayout, kind: Kind) -> Iterator[Wire]:
         if stitch is not None:
             # The messenger and the stitch wire share the tension between the clamps.
             half = stitch.length_m / 2
-            changes = tuple(TensionChange(x - half, x + half, -stitch.tension_N) for x in line.geometry.supports)
+            masts = [support.limit.position for support in layout.supports]
+            changes = tuple(TensionChange(x - half, x + half, -stitch.tension_N) for x in masts)
     places = [_wire_place(limit, kind) for limit in layout.limits]
     for i, name in enumerate(_names(line, kind)):
         offset = (table.spacing_m or 0.0) * (i - (table.number - 1) / 2)
@@ -98,8 +106,8 @@ def _wires(line: LineFile, layout: LineLayout, kind: Kind) -> Iterator[Wire]:
         yield Wire(
             name,
             kind,
-            0.0,
-            line.geometry.length,
+            layout.limits[0].position,
+            layout.limits[-1].position,
             table.tension_N,
             table.mass_kg_m,
             table.bending_stiffness_N_m2,
@@ -117,29 +125,30 @@ def _wire_place(limit: SpanLimit, kind: Kind) -> tuple[float, float]:
     return limit.messenger_wire_stagger, limit.messenger_wire_height
 
 
-def _stitch_wires(line: LineFile) -> list[tuple[str, Wire]]:
+def _stitch_wires(line: LineFile, layout: LineLayout) -> list[tuple[str, Wire]]:
     """Stitch wires, each with the name of its messenger."""
     stitch = line.stitch_wire
     if stitch is None:
         return []
     half = stitch.length_m / 2
     section = (stitch.tension_N, stitch.mass_kg_m, stitch.bending_stiffness_N_m2)
+    masts = [(support.limit.number, support.limit.position) for support in layout.supports]
     return [
         (messenger, Wire(f"stitch wire of {messenger} at support {i}", Kind.STITCH_WIRE, x - half, x + half, *section))
         for messenger in _names(line, Kind.MESSENGER_WIRE)
-        for i, x in enumerate(line.geometry.supports, 1)
+        for i, x in masts
     ]
 
 
-def _clamps(line: LineFile) -> Iterator[Clamp]:
+def _clamps(line: LineFile, layout: LineLayout) -> Iterator[Clamp]:
     if line.stitch_wire is not None:
-        for messenger, wire in _stitch_wires(line):
+        for messenger, wire in _stitch_wires(line, layout):
             for end in (wire.start, wire.end):
                 yield Clamp(end, messenger, wire.name, line.stitch_wire.clamp_kg)
 
 
 def _droppers(line: LineFile, layout: LineLayout) -> Iterator[Dropper]:
-    table, messengers, stitch_wires = line.droppers, _names(line, Kind.MESSENGER_WIRE), _stitch_wires(line)
+    table, messengers, stitch_wires = line.droppers, _names(line, Kind.MESSENGER_WIRE), _stitch_wires(line, layout)
     for span in layout.spans:
         for position, height in zip(span.dropper_position.tolist(), span.contact_wire_height.tolist(), strict=True):
             for i, contact in enumerate(_names(line, Kind.CONTACT_WIRE)):

@@ -71,13 +71,13 @@ def simulate_drop(
         discretisation.element_m,
         MassDropSetup(
             mass=drop.mass_kg,
-            wire=_first_wire(catenary, drop.wire),
+            wire=_first_wire(catenary, drop.wire, drop.x_m),
             position=drop.x_m,
             release_duration=drop.release_s,
             hanging=mass_drop.hanging_s,
             duration=mass_drop.record_s,
             time_step=discretisation.time_step_s,
-            sensors=tuple((_first_wire(catenary, sensor.wire), sensor.x_m) for sensor in mass_drop.sensor),
+            sensors=tuple((_first_wire(catenary, sensor.wire, sensor.x_m), sensor.x_m) for sensor in mass_drop.sensor),
         ),
         progress,
     )
@@ -129,8 +129,9 @@ def decimate(signals: RealArray, every: int) -> RealArray:
     return np.asarray(resample_poly(signals, 1, every, axis=0, window=taps, padtype="line"))
 
 
-def _first_wire(catenary: Catenary, kind: str) -> str:
-    return next(wire.name for wire in catenary.wires if wire.kind is Kind(kind))
+def _first_wire(catenary: Catenary, kind: str, x: float) -> str:
+    """First wire of a kind at a position; in an overlap it is that of the outgoing section."""
+    return next(wire.name for wire in catenary.wires if wire.kind is Kind(kind) and wire.start <= x <= wire.end)
 
 
 def _build_record(case: Case, number: int, signals: RealArray) -> DropRecord:

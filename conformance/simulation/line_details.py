@@ -26,6 +26,8 @@ _KINDS = {"contact_wire": Kind.CONTACT_WIRE, "messenger_wire": Kind.MESSENGER_WI
 def add_details(catenary: Catenary, line: LineFile) -> Catenary:
     """Add point masses, changes of wires and the irregularity to a catenary of uniform wires.
 
+    In an overlap of tension sections they hold for the wires of both.
+
     Parameters
     ----------
     catenary : Catenary
@@ -53,7 +55,7 @@ def add_details(catenary: Catenary, line: LineFile) -> Catenary:
             PointMass(mass.x_m, wire.name, mass.mass_kg)
             for mass in line.point_mass
             for wire in wires
-            if wire.kind is _KINDS[mass.wire] and mass.x_m < wire.end
+            if wire.kind is _KINDS[mass.wire] and wire.start < mass.x_m < wire.end
         ),
     )
 
@@ -62,9 +64,9 @@ def _change_wire(wire: Wire, changes: Sequence[WireChange]) -> Wire:
     """Wire with its stretches of other properties."""
     sections, tensions = list(wire.section_changes), list(wire.tension_changes)
     for change in changes:
-        start, end = change.from_m, min(change.to_m, wire.end)
+        start, end = max(change.from_m, wire.start), min(change.to_m, wire.end)
         if start >= end:
-            continue  # beyond the end of a line of which only the first spans are built
+            continue  # on another tension section, or beyond the end of a shortened line
         mass, stiffness = _mass_and_stiffness(wire, change)
         if (mass, stiffness) != (wire.mass_per_length, wire.bending_stiffness):
             added = (mass - wire.mass_per_length, stiffness - wire.bending_stiffness)

@@ -74,8 +74,7 @@ def first_modes(line: LineFile, element: float) -> Modes:
     Modes
         Modes of the first spans of the line.
     """
-    few_spans = line.model_copy(update={"geometry": line.geometry.shorten(SPANS_OF_MODES)})
-    short = discretise(build_catenary(few_spans), element)
+    short = discretise(build_catenary(line.shorten(SPANS_OF_MODES)), element)
     lateral = [row for row in range(short.mesh.rows) if short.mesh.row_field[row] == "y"]
     count = MODES * (2 if lateral else 1)
     while True:
