@@ -14,6 +14,7 @@ from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.simulation.model_uncertainty import list_model_uncertainty
 from pantocheck.conformance.simulation.resolution import resolution_warnings
 from pantocheck.conformance.simulation.static_quantities import compute_static_quantities
+from pantocheck.conformance.simulation.window_warning import window_warnings
 from pantocheck.model import discretise
 from pantocheck.model.failures import SimulationError
 
@@ -69,7 +70,7 @@ def _deliver(
         passage.record,
         static,
         passage.run,
-        warnings=resolution_warnings(case, discretisation),
+        warnings=(*resolution_warnings(case, discretisation), *window_warnings(case, line, discretisation)),
         model_uncertainty=list_model_uncertainty(case),
         start=case.start_table,
     )
