@@ -32,8 +32,10 @@ class SpanLimit:
         Number from 0, the start of the line.
     position : float
         Position along the track [m].
-    contact_wire_height, messenger_wire_height : float
-        Heights of the wires above the datum [m].
+    contact_wire_height : float
+        Height of the contact wire above the datum [m].
+    encumbrance : float
+        Vertical distance between messenger wire and contact wire [m].
     contact_wire_stagger, messenger_wire_stagger : float
         Lateral positions of the wires, signed [m].
     """
@@ -41,9 +43,14 @@ class SpanLimit:
     number: int
     position: float
     contact_wire_height: float
-    messenger_wire_height: float
+    encumbrance: float
     contact_wire_stagger: float
     messenger_wire_stagger: float
+
+    @property
+    def messenger_wire_height(self) -> float:
+        """Height of the messenger wire above the datum [m]."""
+        return self.contact_wire_height + self.encumbrance
 
 
 @dataclass(frozen=True)
@@ -169,7 +176,7 @@ def _build_limit(geometry: Geometry, number: int, position: float, own: Mapping[
         number=number,
         position=position,
         contact_wire_height=height,
-        messenger_wire_height=height + _first(here.encumbrance_m, level.encumbrance_m, geometry.encumbrance_m),
+        encumbrance=_first(here.encumbrance_m, level.encumbrance_m, geometry.encumbrance_m),
         contact_wire_stagger=_first(here.stagger_contact_wire_m, side * geometry.stagger_contact_wire_m),
         messenger_wire_stagger=_first(here.stagger_messenger_m, side * geometry.stagger_messenger_m),
     )

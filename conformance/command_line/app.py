@@ -21,6 +21,8 @@ COMMANDS = {
     "drop": "Simulate the mass drops of a case and write their records.",
     "identify": "Identify frequencies, damping ratios and mode shapes from mass-drop records.",
     "fit-damping": "Fit a damping model of a line to identified modes.",
+    "import-line": "Write a line file from tables of its supports and droppers.",
+    "export-line": "Write the supports and droppers of a line as tables for a spreadsheet.",
     "compare-statics": "Compare elasticities and contact wire heights measured along a line with its model.",
     "verify": "Check that the verdict of a certificate follows from its numbers.",
     "schema": "Print or write the JSON Schema of a file format, for editors and validators.",

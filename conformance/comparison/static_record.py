@@ -15,7 +15,7 @@ from pantocheck.conformance.input_files.measured_table import MeasuredTable
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.table_formats import CSV, HDF5, read_tables
 from pantocheck.conformance.input_files.toml_file import read_model
-from pantocheck.conformance.input_files.units import find_key_units, suggest_key
+from pantocheck.conformance.input_files.units import convert_key, suggest_key
 from pantocheck.conformance.records.record_reading import locate_table, record_digest
 
 StaticValue = Literal["elasticity", "contact_wire_height"]
@@ -134,12 +134,12 @@ def _read_columns(tables: list[MeasuredTable]) -> dict[str, RealArray]:
 
 def _find_column(name: str, place: str) -> tuple[str, float]:
     """Name of a column without its unit, and the factor to its SI unit."""
-    for stem, unit in COLUMN_UNITS.items():
-        factor = find_key_units(unit).get(name.removeprefix(f"{stem}_"))
-        if name.startswith(f"{stem}_") and factor is not None:
-            return stem, factor
-    hint = suggest_key(name, None, USUAL_COLUMNS) or suggest_names(name, USUAL_COLUMNS)
-    raise InputError(place, "unknown column", hint)
+    stems = {f"{stem}_{unit}": stem for stem, unit in COLUMN_UNITS.items()}
+    if (converted := convert_key(name, list(stems))) is not None:
+        return stems[converted[0]], converted[1]
+    raise InputError(
+        place, "unknown column", suggest_key(name, None, USUAL_COLUMNS) or suggest_names(name, USUAL_COLUMNS)
+    )
 
 
 def _find_row_problems(

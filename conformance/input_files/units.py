@@ -1,6 +1,7 @@
 """Units at the end of keys, and units of measured channels, in one table."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -97,6 +98,38 @@ def find_key_units(suffix: str) -> dict[str, float]:
     family = next(family for known, family in _FAMILY_BY_SUFFIX if known == suffix)
     factors = {key_suffix(symbol): factor for symbol, factor in family.factors.items()}
     return {known: factor / factors[suffix] for known, factor in factors.items()}
+
+
+def find_unit(key: str) -> str | None:
+    """Unit at the end of a key, as in `key_suffix`; None if the key has no unit."""
+    return next((suffix for suffix, _ in _FAMILY_BY_SUFFIX if key.endswith(f"_{suffix}")), None)
+
+
+def convert_key(name: str, known: Sequence[str]) -> tuple[str, float] | None:
+    """Find the key of a schema that a name has in the same or in another unit.
+
+    Parameters
+    ----------
+    name : str
+        Name with its unit, such as `span_km`.
+    known : sequence of str
+        Keys of the schema, such as `span_m`.
+
+    Returns
+    -------
+    tuple of (str, float) or None
+        Key, and the factor from the unit of the name to that of the key; None if no key differs in its unit only.
+    """
+    if name in known:
+        return name, 1.0
+    for key in known:
+        if (unit := find_unit(key)) is None:
+            continue
+        stem = key.removesuffix(unit)
+        factor = find_key_units(unit).get(name.removeprefix(stem))
+        if name.startswith(stem) and factor is not None:
+            return key, factor
+    return None
 
 
 def suggest_key(key: str, value: object, known: list[str]) -> str | None:

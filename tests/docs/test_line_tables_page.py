@@ -7,12 +7,19 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from helpers.line_table_files import change_cell, export_tables
 from helpers.static_records import LINE_PATH, measure_line, read_unequal_line, write_static_record
+from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.comparison.static_criteria import CRITERIA
 from pantocheck.conformance.comparison.static_record import COLUMN_UNITS, read_static_record
 from pantocheck.conformance.comparison.static_sidecar import StaticSidecar
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.input_files.units import find_key_units
+from pantocheck.conformance.line_tables.line_columns import DROPPER_COLUMNS, SUPPORT_COLUMNS
+from pantocheck.conformance.line_tables.line_import import import_line
+from pantocheck.conformance.simulation.catenary_model import build_catenary
 
 PAGE = (Path(__file__).parents[2] / "docs" / "line-tables.md").read_text(encoding="utf-8")
 
@@ -40,6 +47,37 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     write_static_record(tmp_path, columns)
     (tmp_path / "measured.toml").write_text(blocks("toml")[0])
     return tmp_path
+
+
+def test_export_and_import_give_the_same_line(folder: Path) -> None:
+    for name in ("export-line", "import-line"):
+        done = CliRunner().invoke(app, command(name))
+        assert done.exit_code == 0, done.output
+    line = read_model(folder / "my-line.toml", LineFile, "line")
+    assert build_catenary(line) == build_catenary(read_unequal_line())
+    done = CliRunner().invoke(app, ["check", "my-line.toml"])
+    assert done.exit_code == 0, done.output
+
+
+def test_tables_of_the_page_are_a_line(folder: Path) -> None:
+    for name in ("number", "span"):
+        (folder / f"{name}.csv").write_text(next(text for text in blocks("") if text.startswith(f"{name};")))
+    tree = import_line(folder / "mass-drop-line.toml", folder / "number.csv", folder / "span.csv")
+    line = LineFile.model_validate(tree)
+    assert line.geometry.span_lengths == (63.0, 63.0, 58.5, 63.0)
+    assert [limit.contact_wire_stagger for limit in line.layout.limits] == [0.0, -0.2, 0.2, -0.2, 0.0]
+    assert line.layout.supports[1].steady_arm.acts == "push"
+    assert [len(schedule.x_m) for schedule in line.dropper_schedules] == [3, 2, 2, 1]
+    assert line.dropper_schedules[0].presag_m == (0.0, 0.02, 0.0)
+
+
+def test_message_of_the_page_is_the_one_that_is_printed(folder: Path) -> None:
+    supports, droppers = export_tables(folder, read_unequal_line())
+    change_cell(supports, 4, "encumbrance_m", "-1")
+    with pytest.raises(InputError) as caught:
+        import_line(LINE_PATH, supports, droppers)
+    (message,) = (text for text in blocks("") if text.startswith("table "))
+    assert str(caught.value).splitlines()[0] == message.strip()
 
 
 def test_comparison_runs_and_passes(folder: Path) -> None:
@@ -75,5 +113,5 @@ def test_page_names_every_key_column_and_criterion() -> None:
     for stem, unit in COLUMN_UNITS.items():
         for other in find_key_units(unit):
             assert f"`{stem}_{other}`" in PAGE or f"`_{other}`" in PAGE
-    for name in CRITERIA:
+    for name in (*SUPPORT_COLUMNS, *DROPPER_COLUMNS, *CRITERIA):
         assert f"`{name}`" in PAGE

@@ -3,7 +3,13 @@
 import pytest
 
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.units import STANDARD_GRAVITY, convert_unit, find_key_units, suggest_key
+from pantocheck.conformance.input_files.units import (
+    STANDARD_GRAVITY,
+    convert_key,
+    convert_unit,
+    find_key_units,
+    suggest_key,
+)
 
 
 @pytest.mark.parametrize(
@@ -97,3 +103,24 @@ def test_message_of_an_unknown_unit_is_short_and_lists_the_known_ones() -> None:
         convert_unit("x" * 100, "here")
     assert caught.value.found == f"has the unknown unit '{'x' * 40}'"
     assert caught.value.hint == "Known units are m/s2, mm/s2, g, mg, m/s, mm/s, km/h, mph, m, mm, cm, km."
+
+
+@pytest.mark.parametrize(
+    ("name", "key", "factor"),
+    [
+        ("span_m", "span_m", 1.0),
+        ("span_km", "span_m", 1000.0),
+        ("stagger_mm", "stagger_m", 1e-3),
+        ("stiffness_kN_mm", "stiffness_N_m", 1e6),
+        ("elasticity_mm_kN", "elasticity_m_N", 1e-6),
+    ],
+)
+def test_name_in_another_unit_is_a_key_with_a_factor(name: str, key: str, factor: float) -> None:
+    """Definitions of the SI, rounded once."""
+    converted = convert_key(name, ["number", "span_m", "stagger_m", "stiffness_N_m", "elasticity_m_N"])
+    assert converted == (key, pytest.approx(factor, rel=1e-14))
+
+
+@pytest.mark.parametrize("name", ["span", "span_N", "length_m", "number_m", "stiffness_m", ""])
+def test_other_name_is_no_key(name: str) -> None:
+    assert convert_key(name, ["number", "span_m", "stiffness_N_m"]) is None

@@ -1,0 +1,32 @@
+"""`pantocheck export-line`: tables of the supports and droppers of a line."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pantocheck.conformance.command_line.console import console, escape_text
+from pantocheck.conformance.command_line.options import read_line
+from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
+from pantocheck.conformance.line_tables.line_export import DecimalMark, export_droppers, export_supports
+
+
+def export_line_command(
+    line: Annotated[str, typer.Argument(help="Id of a case, or path of a case or line file.")],
+    out: Annotated[Path, typer.Option(help="Folder for supports.csv and droppers.csv.")],
+    decimal: Annotated[
+        DecimalMark, typer.Option(help="Decimal mark; beside commas, columns are separated by semicolons.")
+    ] = "point",
+) -> None:
+    """Write the supports and droppers of a line as tables for a spreadsheet.
+
+    `pantocheck import-line` turns the tables, with the same line file as base, into the same line.
+
+    Example: pantocheck export-line en50318-2018/ac-simple/static --out tables --decimal comma
+    """
+    line_file = read_line(line)
+    check_writable(out)
+    for name, export in (("supports.csv", export_supports), ("droppers.csv", export_droppers)):
+        # Spreadsheets recognise UTF-8 by the byte order mark.
+        write_atomically(out / name, export(line_file, decimal).encode("utf-8-sig"))
+        console().print(escape_text(str(out / name)), soft_wrap=True)

@@ -1,0 +1,39 @@
+"""`pantocheck import-line`: line file from tables of supports and droppers."""
+
+from pathlib import Path
+from typing import Annotated
+
+import tomli_w
+import typer
+
+from pantocheck.conformance.command_line.console import console, escape_text
+from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
+from pantocheck.conformance.line_tables.line_import import import_line
+
+
+def import_line_command(
+    supports: Annotated[Path, typer.Argument(help="CSV table of the supports and both ends (docs/line-tables.md).")],
+    base: Annotated[
+        Path, typer.Option(help="Line file with the wires, arms and damping, and the values of empty cells.")
+    ],
+    out: Annotated[Path, typer.Option(help="Line file to write.")],
+    droppers: Annotated[
+        Path | None, typer.Option(help="CSV table of the droppers. Default: those of [droppers] in the base file.")
+    ] = None,
+) -> None:
+    """Write a line file from tables of its supports and droppers.
+
+    All problems of all files are reported at once, with file, row and column.
+
+    Example: pantocheck import-line supports.csv --droppers droppers.csv --base base.toml --out my-line.toml
+
+    Then: pantocheck check my-line.toml
+    """
+    tree = import_line(base, supports, droppers)
+    check_writable(out.parent)
+    names = ", ".join(path.name for path in (supports, droppers, base) if path is not None)
+    head = f"# Written by `pantocheck import-line` from {names}.\n"
+    write_atomically(out, (head + tomli_w.dumps(tree)).encode())
+    geometry = tree["geometry"]
+    text = f"{out}: {len(geometry['span_list'])} spans, {sum(span['length_m'] for span in geometry['span_list']):g} m"
+    console().print(escape_text(text), soft_wrap=True)

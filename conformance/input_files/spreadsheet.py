@@ -1,0 +1,132 @@
+"""Tables of text cells, as spreadsheets export them: CSV with commas, semicolons or tabs, in common encodings."""
+
+import codecs
+import csv
+import io
+from dataclasses import dataclass
+from pathlib import Path
+
+from pantocheck.conformance.input_files.bounded_file import read_bytes
+from pantocheck.conformance.input_files.input_error import InputError, join_errors
+
+MAX_SPREADSHEET_BYTES = 10_000_000
+"""Largest table that is read [bytes]: a line of 1000 spans with 30 droppers each takes 2 MB."""
+
+DELIMITERS = (";", "\t", ",")
+"""Separators of columns; a head line with a semicolon or a tab is not separated by commas."""
+
+
+@dataclass(frozen=True)
+class SpreadsheetRow:
+    """Row of a table.
+
+    Parameters
+    ----------
+    number : int
+        Number of its line in the file, from 1.
+    cells : tuple of str
+        Texts of its cells, without spaces around them.
+    """
+
+    number: int
+    cells: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Spreadsheet:
+    """Table of text cells below one head line.
+
+    Parameters
+    ----------
+    where : str
+        Name of the file in messages.
+    delimiter : str
+        Separator of its columns.
+    head : SpreadsheetRow
+        Names of the columns.
+    rows : tuple of SpreadsheetRow
+        Rows below the head line; empty rows are left out.
+    """
+
+    where: str
+    delimiter: str
+    head: SpreadsheetRow
+    rows: tuple[SpreadsheetRow, ...]
+
+    def locate(self, row: SpreadsheetRow, column: int) -> str:
+        """Place of a cell in messages; columns count from 0."""
+        return f"{self.where}, row {row.number}, column {self.head.cells[column][:80]!r}"
+
+
+def read_spreadsheet(path: Path) -> Spreadsheet:
+    """Read a table of text cells.
+
+    The encoding is UTF-8 or UTF-16 with a byte order mark, or else UTF-8 or Windows-1252. Lines before the head line
+    that begin with `#` or `sep=` are skipped.
+
+    Parameters
+    ----------
+    path : Path
+        CSV file.
+
+    Returns
+    -------
+    Spreadsheet
+        The table.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, is no text, has no row, or has rows of another width than its head line.
+    """
+    where = f"table '{path.name}'"
+    text = _decode(read_bytes(path, where, MAX_SPREADSHEET_BYTES), where)
+    lines = text.splitlines()
+    start = next((i for i, line in enumerate(lines) if line.strip() and not _is_preface(line)), len(lines))
+    if start == len(lines):
+        raise InputError(where, "is empty", "Write the names of the columns in the first row.")
+    delimiter = next((mark for mark in DELIMITERS if mark in lines[start]), ",")
+    reader = csv.reader(io.StringIO("\n".join(lines[start:])), delimiter=delimiter, strict=True)
+    try:
+        rows = [SpreadsheetRow(start + reader.line_num, tuple(cell.strip() for cell in cells)) for cells in reader]
+    except csv.Error as error:
+        raise InputError(f"{where}, row {start + reader.line_num}", str(error), "Export the table again.") from None
+    head, *body = (row for row in rows if any(row.cells))
+    if not body:
+        raise InputError(where, "has a head line but no rows", "Export the table again.")
+    _check_widths(where, head, body)
+    return Spreadsheet(where, delimiter, head, tuple(body))
+
+
+def _decode(content: bytes, where: str) -> str:
+    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        encodings = ["utf-16"]
+    else:
+        encodings = ["utf-8-sig", "cp1252"]
+    for encoding in encodings:
+        try:
+            text = content.decode(encoding)
+        except UnicodeDecodeError:
+            continue
+        if "\0" not in text:
+            return text
+    raise InputError(where, "is not text", "Export the table as CSV (UTF-8), not as a workbook.")
+
+
+def _is_preface(line: str) -> bool:
+    return line.lstrip().startswith(("#", "sep="))
+
+
+def _check_widths(where: str, head: SpreadsheetRow, body: list[SpreadsheetRow]) -> None:
+    width = len(head.cells)
+    errors = [
+        InputError(
+            f"{where}, row {row.number}",
+            f"has {len(row.cells)} cells, expected {width}",
+            "If columns are separated by commas, write decimals with points.",
+        )
+        for row in body
+        if len(row.cells) != width
+    ]
+    if errors:
+        raise join_errors(errors)

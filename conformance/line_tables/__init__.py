@@ -1,0 +1,1 @@
+"""Tables of supports and droppers: lines from spreadsheets and back."""

@@ -1,0 +1,92 @@
+"""Rows of the table of droppers: the schedule of every span."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.line_tables.line_columns import DROPPER_KEYS
+from pantocheck.conformance.line_tables.typed_rows import TypedRow
+
+SpanRows = dict[int, list[TypedRow]]
+"""Rows of the droppers by number of their span, from 1."""
+
+
+def group_by_span(rows: list[TypedRow], spans: int, where: str, problems: list[InputError]) -> SpanRows:
+    """Rows of every span.
+
+    Parameters
+    ----------
+    rows : list of TypedRow
+        Rows of the table.
+    spans : int
+        Number of spans of the line.
+    where : str
+        Name of the table in messages.
+    problems : list of InputError
+        List to which every problem is added: a row without its span, a span that does not exist or has no row, and a
+        span in which a value is given for some of the droppers only.
+
+    Returns
+    -------
+    dict of int to list of TypedRow
+        Rows with a position by number of their span, from 1.
+    """
+    groups: SpanRows = {number: [] for number in range(1, spans + 1)}
+    for row in rows:
+        number = row.values.get("span")
+        if isinstance(number, int) and number in groups:
+            groups[number].append(row)
+        else:
+            place = row.places.get("span", row.place)
+            found = "the number of the span is missing" if number is None else f"there is no span {number}"
+            problems.append(InputError(place, found, f"The line has spans 1 to {spans}."))
+    empty = [str(number) for number, group in groups.items() if not group]
+    if empty:
+        spans_text = f"span{'s' if len(empty) > 1 else ''} {', '.join(empty[:20])}{', ...' if len(empty) > 20 else ''}"
+        problems.append(InputError(where, f"has no row for {spans_text}", "Give the droppers of every span."))
+    for number, group in groups.items():
+        for key in DROPPER_KEYS:
+            missing = [row for row in group if key not in row.values]
+            if missing and (key == "x_m" or len(missing) < len(group)):
+                problems.extend(
+                    InputError(
+                        row.places.get(key, row.place),
+                        f"{key} is missing",
+                        "Give it." if key == "x_m" else f"Other droppers of span {number} have it: give it for all.",
+                    )
+                    for row in missing
+                )
+    return {number: [row for row in group if "x_m" in row.values] for number, group in groups.items()}
+
+
+def find_droppers_outside(groups: SpanRows, lengths: Sequence[float | None]) -> Iterator[InputError]:
+    """Droppers behind the end of their span; the line file has the same rule, and checks it for valid spans only."""
+    for number, group in groups.items():
+        length = lengths[number - 1]
+        for row in group:
+            x = row.number("x_m")
+            if x is not None and length is not None and x >= length:
+                yield InputError(
+                    row.places["x_m"],
+                    f"{x:g} m is not inside the span of {length:g} m",
+                    f"Give positions between 0 and {length:g} m, from the start of the span.",
+                )
+
+
+def build_schedule(group: list[TypedRow]) -> dict[str, Any]:
+    """Schedule of one span as a table of a line file."""
+    schedule = {key: [row.number(key) for row in group] for key in DROPPER_KEYS}
+    return {key: values for key, values in schedule.items() if None not in values and values}
+
+
+def locate_droppers(groups: SpanRows) -> dict[str, str]:
+    """Place in the table by key of the line file, for messages."""
+    places: dict[str, str] = {}
+    for number, group in groups.items():
+        table = f"geometry.span_list[{number}].droppers"
+        for i, row in enumerate(group, 1):
+            places.setdefault(table, row.place)
+            for key in DROPPER_KEYS:
+                places[f"{table}.{key}[{i}]"] = row.places.get(key, row.place)
+                places.setdefault(f"{table}.{key}", row.places.get(key, row.place))
+    return places

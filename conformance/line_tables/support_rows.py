@@ -1,0 +1,124 @@
+"""Rows of the table of supports: lengths of the spans, and the values of every support."""
+
+from decimal import Decimal
+from itertools import pairwise
+from typing import Any
+
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.line_tables.line_columns import POSITION, SPAN_LENGTH, SUPPORT_KEYS
+from pantocheck.conformance.line_tables.typed_rows import CellValue, TypedRow
+
+LARGEST_DISAGREEMENT = Decimal("0.001")
+"""Largest difference between a span length and the distance of two positions, both rounded to a millimetre [m]."""
+
+
+def read_span_lengths(rows: list[TypedRow], where: str, problems: list[InputError]) -> list[float | None]:
+    """Lengths of the spans, from their own column or from the positions of the supports.
+
+    Parameters
+    ----------
+    rows : list of TypedRow
+        Rows of the table, ends of the line included.
+    where : str
+        Name of the table in messages.
+    problems : list of InputError
+        List to which every problem is added.
+
+    Returns
+    -------
+    list of float or None
+        Length of the span behind every row but the last [m]; None where there is none.
+    """
+    if len(rows) < 2:
+        problems.append(InputError(where, "has one row", "Give a row per support, and one for each end of the line."))
+    _check_numbers(rows, problems)
+    by_length = any(SPAN_LENGTH in row.values for row in rows)
+    if not by_length and not any(POSITION in row.values for row in rows):
+        problems.append(
+            InputError(where, f"has neither {SPAN_LENGTH} nor {POSITION}", "Give the spans, or the positions.")
+        )
+        return [None] * (len(rows) - 1)
+    if by_length and SPAN_LENGTH in rows[-1].values:
+        problems.append(
+            InputError(
+                rows[-1].places[SPAN_LENGTH],
+                "a span begins at the end of the line",
+                f"{SPAN_LENGTH} is the length of the span that begins at the support: leave the last cell empty. A row "
+                "without any value is skipped, so give the last row its number.",
+            )
+        )
+    lengths = []
+    for here, behind in pairwise(rows):
+        length = _read_length(here, behind, SPAN_LENGTH if by_length else POSITION, problems)
+        lengths.append(None if length is None else float(length))
+    return lengths
+
+
+def _check_numbers(rows: list[TypedRow], problems: list[InputError]) -> None:
+    if not any("number" in row.values for row in rows):
+        return
+    for number, row in enumerate(rows):
+        found = row.values.get("number", "an empty cell")
+        if found != number:
+            hint = "Number the rows in running order: 0 is the start of the line, the last row its end."
+            problems.append(InputError(row.places["number"], f"found {found}, expected {number}", hint))
+
+
+def _read_length(here: TypedRow, behind: TypedRow, column: str, problems: list[InputError]) -> Decimal | None:
+    """Length of the span between two rows; None if it is missing or not positive."""
+    distance = _subtract(behind.values.get(POSITION), here.values.get(POSITION))
+    if column == POSITION:
+        if distance is None:
+            missing = here if POSITION not in here.values else behind
+            problems.append(InputError(missing.places[POSITION], "the position is missing", "Give every position."))
+            return None
+        if distance <= 0:
+            hint = "List the supports in running order."
+            problems.append(InputError(behind.places[POSITION], "the position does not increase", hint))
+            return None
+        return distance
+    length = here.values.get(SPAN_LENGTH)
+    if not isinstance(length, Decimal):
+        problems.append(InputError(here.places[SPAN_LENGTH], "the span length is missing", "Give the length."))
+        return None
+    if distance is not None and abs(distance - length) > LARGEST_DISAGREEMENT:
+        problems.append(
+            InputError(
+                here.places[SPAN_LENGTH],
+                f"the span is {length.normalize():f} m, but the positions are {distance.normalize():f} m apart",
+                f"Correct one of them, or leave out the column {POSITION}.",
+            )
+        )
+    return length
+
+
+def _subtract(end: CellValue | None, start: CellValue | None) -> Decimal | None:
+    return end - start if isinstance(end, Decimal) and isinstance(start, Decimal) else None
+
+
+def build_support_tables(rows: list[TypedRow]) -> list[dict[str, Any]]:
+    """Tables `geometry.support` with the filled cells of every row."""
+    tables = []
+    for number, row in enumerate(rows):
+        table: dict[str, Any] = {"number": number}
+        for column, path in SUPPORT_KEYS.items():
+            if (value := row.values.get(column)) is not None:
+                inner = table if len(path) == 1 else table.setdefault(path[0], {})
+                inner[path[-1]] = float(value) if isinstance(value, Decimal) else value
+        tables.append(table)
+    return tables
+
+
+def locate_supports(rows: list[TypedRow]) -> dict[str, str]:
+    """Place in the table by key of the line file, for messages."""
+    places: dict[str, str] = {}
+    for i, row in enumerate(rows, 1):
+        length = row.places.get(SPAN_LENGTH, row.places.get(POSITION, row.place))
+        places |= {f"geometry.span_list[{i}]": length, f"geometry.span_list[{i}].length_m": length}
+        places[f"geometry.support[{i}]"] = row.place
+        for column, path in SUPPORT_KEYS.items():
+            key = ".".join((f"geometry.support[{i}]", *path))
+            places[key] = row.places.get(column, row.place)
+            if column in row.values:
+                places.setdefault(key.rpartition(".")[0], places[key])  # the first value of an inner table
+    return places
