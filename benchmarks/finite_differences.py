@@ -87,7 +87,7 @@ def reference_quantities(case: Case, element: float, step: float, forces: tuple[
 
 def _elasticity(case: Case, line: DiscretisedLine) -> list[float]:
     """Uplift per force in mid-span and at the support [mm/N]."""
-    start, end = case.line.geometry.span((case.file.evaluated_spans or (1,))[0])
+    start, end = case.line.geometry.span(case.analysed_spans[0])
     return [1e3 * float(u) for u in static_uplift(line, np.array([(start + end) / 2, start]), 1.0)]
 
 

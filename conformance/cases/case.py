@@ -87,8 +87,15 @@ class Case:
     @property
     def analysis_section(self) -> tuple[float, float]:
         """Start and end of the analysis section [m]; the line begins at 0."""
+        return self.file.evaluated_m or self.line.geometry.section(*self.analysed_spans)
+
+    @property
+    def analysed_spans(self) -> tuple[int, int]:
+        """First and last span of which the analysis section has a part; of a case without a section all spans."""
+        if self.file.evaluated_m is not None:
+            return self.line.geometry.spans_of_section(*self.file.evaluated_m)
         spans = self.file.evaluated_spans or (1, self.line.geometry.spans)
-        return self.line.geometry.section(spans[0], spans[-1])
+        return spans[0], spans[-1]
 
     @property
     def shifted_sections(self) -> tuple[tuple[float, float], ...]:
@@ -136,7 +143,7 @@ class Case:
         geometry, (_, section_end) = self.line.geometry, self.recorded_section
         if self.file.run_out_m is not None:
             return section_end + self.file.run_out_m
-        last_start, last_end = geometry.span((self.file.compared_spans or self.file.evaluated_spans or (1,))[-1])
+        last_start, last_end = geometry.span((self.file.compared_spans or self.analysed_spans)[-1])
         # The first pantograph stops half a span before the end of the line.
         furthest = geometry.mid_span(geometry.spans) - self.offsets[-1]
         return max(section_end, min(section_end + last_end - last_start, furthest))

@@ -47,22 +47,28 @@ def _find_spans_outside(case: Case, where: str) -> Iterator[InputError]:
         last = (getattr(case.file, key) or (1,))[-1]
         if last > geometry.spans:
             yield InputError(f"{where}{key}", f"span {last} does not exist", f"The line has {geometry.spans} spans.")
+    if case.file.evaluated_m is not None and case.file.evaluated_m[1] > geometry.length:
+        yield InputError(
+            f"{where}evaluated_m",
+            f"the analysis section ends at {case.file.evaluated_m[1]:g} m",
+            f"The line ends at {geometry.length:g} m.",
+        )
 
 
 def _find_positions_outside(case: Case, where: str) -> Iterator[InputError]:
     if case.start >= case.recorded_section[0]:
         yield InputError(
             f"{where}start_m",
-            f"the last pantograph starts at {case.start:g} m, but the evaluated spans begin at "
+            f"the last pantograph starts at {case.start:g} m, but the analysis section begins at "
             f"{case.recorded_section[0]:g} m",
-            "Reduce start_m, or evaluate later spans.",
+            "Reduce start_m, or evaluate a later section.",
         )
     front, length = case.end_positions[0], case.line.geometry.length
     if front >= length:
         yield InputError(
             f"{where}run_out_m",
             f"the first pantograph would run to {front:g} m, but the line is {length:g} m long",
-            "Reduce run_out_m, evaluate earlier spans, or add spans to the line.",
+            "Reduce run_out_m, evaluate an earlier section, or add spans to the line.",
         )
 
 

@@ -10,7 +10,14 @@ from pantocheck.conformance.cases.force_law import FASTEST_KM_H, LARGEST_FORCE_N
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.study_tables import Study
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.sourced_table import InputTable, PositiveList, SourcedTable, validation_problem
+from pantocheck.conformance.input_files.sourced_table import (
+    InputTable,
+    NonNegative,
+    Positive,
+    PositiveList,
+    SourcedTable,
+    validation_problem,
+)
 from pantocheck.conformance.quantities.filters import LowPass
 
 FileName = Annotated[str, Field(min_length=1, max_length=500)]
@@ -165,6 +172,14 @@ class CaseFile(SourcedTable):
             description="spans of the analysis section, numbered from 1: first and last span, or all spans",
         ),
     ] = None
+    evaluated_m: Annotated[
+        tuple[NonNegative, Positive] | None,
+        Field(
+            strict=False,
+            description="start and end of the analysis section, in place of evaluated_spans [m]",
+            exclude_if=lambda section: section is None,
+        ),
+    ] = None
     compared_spans: Annotated[
         tuple[int, int] | None,
         Field(
@@ -224,9 +239,11 @@ class CaseFile(SourcedTable):
             )
         elif not self.pantograph:
             yield validation_problem("pantograph", "missing", "A run needs at least one [[pantograph]] table.")
-        if self.pantograph and self.evaluated_spans is None:
+        if self.pantograph and self.evaluated_spans is None and self.evaluated_m is None:
             yield validation_problem(
-                "evaluated_spans", "missing", "Give the spans of the analysis section, e.g. evaluated_spans = [5, 6] ."
+                "evaluated_spans",
+                "missing",
+                "Give the spans of the analysis section, e.g. evaluated_spans = [5, 6] , or its ends as evaluated_m.",
             )
 
     @cross_check
@@ -236,6 +253,21 @@ class CaseFile(SourcedTable):
                 "spacing_m",
                 f"{len(self.spacing_m or ())} distances for {len(self.pantograph)} pantographs",
                 "Give the distances between successive pantographs, in running order.",
+            )
+
+    @cross_check
+    def _check_section(self) -> Problems:
+        if self.evaluated_m is None:
+            return
+        for key in ("evaluated_spans", "compared_spans"):
+            if getattr(self, key) is not None:
+                yield validation_problem(
+                    "evaluated_m", f"stands beside {key}", f"Leave out {key}, or state the section by evaluated_spans."
+                )
+        start, end = self.evaluated_m
+        if end <= start:
+            yield validation_problem(
+                "evaluated_m", f"the end {end:g} m is not greater than the start {start:g} m", "Give [start, end]."
             )
 
     @cross_check

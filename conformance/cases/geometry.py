@@ -1,6 +1,7 @@
 """Geometry of a line: spans, heights and stagger; the spans are equal, or listed one by one."""
 
 from abc import abstractmethod
+from bisect import bisect_left, bisect_right
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache
@@ -87,6 +88,11 @@ class SpanPositions:
     def section(self, first: int, last: int) -> tuple[float, float]:
         """Start of the first span and end of the last span of a section, numbered from 1 [m]."""
         return self.span_limits[first - 1], self.span_limits[last]
+
+    def spans_of_section(self, start: float, end: float) -> tuple[int, int]:
+        """Numbers of the first and the last span of which a section has a part, from 1; its ends are positions [m]."""
+        inner = self.span_limits[1:-1]
+        return bisect_right(inner, start) + 1, bisect_left(inner, end) + 1
 
 
 class EqualSpans(SpanPositions, SourcedTable):

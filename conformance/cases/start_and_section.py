@@ -4,7 +4,6 @@ After a short run-in, the response to the start is still part of the results. Ru
 a long run-in, the same run contains earlier sections with a shorter run-in.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -73,10 +72,13 @@ def list_earlier_sections(case: Case) -> tuple[tuple[float, float], ...]:
 
     After a short run-in, no earlier section is settled: only the sections that the case itself compares are returned.
     """
-    if has_short_run_in(case) or case.file.evaluated_spans is None:
+    if has_short_run_in(case):
         return case.shifted_sections
-    first, last = case.file.evaluated_spans[0], case.file.evaluated_spans[-1]
     farthest = int((1 - SMALLEST_SHARE_OF_RUN_IN) * run_in_spans(case))
+    if case.file.evaluated_m is not None:
+        (start, end), span = case.file.evaluated_m, span_length(case)
+        return tuple((start - k * span, end - k * span) for k in range(1, farthest + 1))
+    first, last = case.analysed_spans
     return tuple(case.line.geometry.section(first - k, last - k) for k in range(1, farthest + 1))
 
 
@@ -88,5 +90,5 @@ def shift_section(section: tuple[float, float], span_m: float) -> tuple[tuple[fl
 
 def span_length(case: Case) -> float:
     """Mean length of the spans of the analysis section [m]."""
-    spans: Sequence[int] = case.file.evaluated_spans or (1,)
-    return float(np.mean(case.line.geometry.span_lengths[spans[0] - 1 : spans[-1]]))
+    first, last = case.analysed_spans
+    return float(np.mean(case.line.geometry.span_lengths[first - 1 : last]))

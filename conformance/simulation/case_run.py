@@ -157,7 +157,7 @@ def _place_train(
 
 def working_height_positions(case: Case) -> RealArray:
     """Positions of the mean uplift for the working height: those of the first span of the analysis section [m]."""
-    return sample_span(*case.line.geometry.span((case.file.evaluated_spans or (1,))[0]))
+    return sample_span(*case.line.geometry.span(case.analysed_spans[0]))
 
 
 def nominal_wire_height(case: Case) -> float:

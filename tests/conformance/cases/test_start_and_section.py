@@ -82,3 +82,30 @@ def test_section_is_shifted_by_quarters_of_a_span(case_250: Case) -> None:
     shifted = shift_section(case_250.analysis_section, span_length(case_250))
     assert [start for start, _ in shifted] == pytest.approx([195.0, 210.0, 225.0, 255.0, 270.0, 285.0])
     assert {end - start for start, end in shifted} == {120.0}
+
+
+def test_section_in_metres_is_that_of_its_spans(case_250: Case) -> None:
+    """Spans 5 and 6 of 60 m; other starts and the end of the run are the same."""
+    metres = with_keys(case_250, evaluated_spans=None, evaluated_m=(240.0, 360.0))
+    assert (metres.analysis_section, metres.analysed_spans) == (case_250.analysis_section, (5, 6))
+    assert (metres.end, span_length(metres)) == (case_250.end, 60.0)
+    assert [other.case.start for other in list_other_starts(metres)] == [
+        other.case.start for other in list_other_starts(case_250)
+    ]
+
+
+@pytest.mark.parametrize(
+    ("section", "spans"), [((230.0, 250.0), (4, 5)), ((241.0, 290.0), (5, 5)), ((0.0, 600.0), (1, 10))]
+)
+def test_section_in_metres_has_parts_of_spans(
+    case_250: Case, section: tuple[float, float], spans: tuple[int, int]
+) -> None:
+    assert with_keys(case_250, evaluated_spans=None, evaluated_m=section).analysed_spans == spans
+
+
+def test_earlier_sections_of_a_section_in_metres_are_a_mean_span_apart() -> None:
+    """Section from the middle of span 30 to that of span 40: its mean span is 55 m."""
+    case = case_named("en50318-2018/ac-simple/320")
+    metres = with_keys(case, evaluated_spans=None, compared_spans=None, evaluated_m=(1622.5, 2172.5))
+    assert list_earlier_sections(metres)[:2] == ((1567.5, 2117.5), (1512.5, 2062.5))
+    assert len(list_earlier_sections(metres)) == int(run_in_spans(metres) / 2)

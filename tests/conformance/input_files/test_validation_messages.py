@@ -148,7 +148,7 @@ LINE, PANTOGRAPH, CASE = "line.toml", "pantograph.toml", "250.toml"
         (
             CASE,
             {"evaluated_spans": [1, 6]},
-            ("case '250.toml', key start_m: the last pantograph starts at 60 m, but the evaluated spans begin at 0 m"),
+            ("case '250.toml', key start_m: the last pantograph starts at 60 m, but the analysis section begins"),
         ),
         (CASE, {"filter.order": 5}, ("case '250.toml', key filter.order: 5 is odd.")),
         (
