@@ -16,6 +16,7 @@ from pantocheck.conformance.input_files.sourced_table import (
     Positive,
     PositiveList,
     SourcedTable,
+    is_absent,
     validation_problem,
 )
 from pantocheck.conformance.quantities.filters import LowPass
@@ -177,7 +178,7 @@ class CaseFile(SourcedTable):
         Field(
             strict=False,
             description="start and end of the analysis section, in place of evaluated_spans [m]",
-            exclude_if=lambda section: section is None,
+            exclude_if=is_absent,
         ),
     ] = None
     compared_spans: Annotated[

@@ -13,6 +13,7 @@ from pantocheck.conformance.input_files.sourced_table import (
     InputTable,
     NumberList,
     PositiveList,
+    is_absent,
     validation_problem,
 )
 
@@ -25,7 +26,7 @@ DropperHeights = Annotated[
     Field(
         description="height of the contact wire at each dropper above the datum of the line, as surveyed, in place of "
         "presag_m [m]",
-        exclude_if=lambda heights: heights is None,
+        exclude_if=is_absent,
     ),
 ]
 DropperLengths = Annotated[

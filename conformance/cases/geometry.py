@@ -13,7 +13,13 @@ from pydantic import Discriminator, Field, Tag
 from pantocheck.conformance.cases.dropper_schedule import DropperSchedule
 from pantocheck.conformance.cases.support_tables import MOST_SPANS, Encumbrance, Height, SupportTable
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.sourced_table import InputTable, NonNegative, SourcedTable, validation_problem
+from pantocheck.conformance.input_files.sourced_table import (
+    InputTable,
+    NonNegative,
+    SourcedTable,
+    is_absent,
+    validation_problem,
+)
 from pantocheck.conformance.input_files.suggestions import suggest_names
 
 SpanLength = Annotated[float, Field(ge=10, le=120)]
@@ -176,7 +182,7 @@ class ListedSpans(SpanPositions, SourcedTable):
             strict=False,
             max_length=MOST_SPANS + 1,
             description="supports and ends of the line with their own values",
-            exclude_if=lambda supports: not supports,
+            exclude_if=is_absent,
         ),
     ] = ()
     gradient: Annotated[
@@ -185,7 +191,7 @@ class ListedSpans(SpanPositions, SourcedTable):
             strict=False,
             max_length=MOST_SPANS,
             description="gradients of the contact wire; they add to the heights of the supports",
-            exclude_if=lambda gradients: not gradients,
+            exclude_if=is_absent,
         ),
     ] = ()
 

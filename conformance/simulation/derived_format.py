@@ -1,7 +1,7 @@
 """Derived values of a case: the conventions of its equations as numbers, sent to programs beside the inputs.
 
 Lists follow the order of the line: parts of parallel wires follow each other at one position, wire 1 first. Lists of
-droppers have one list per span.
+droppers have one list per span. Values of arms and supports are one number if they are all equal, and else a list.
 """
 
 from typing import Annotated, Literal
@@ -13,6 +13,7 @@ from pantocheck.conformance.records.sidecar_tables import StartTable
 
 Numbers = Annotated[tuple[float, ...], Field(strict=False)]
 BySpan = Annotated[tuple[Numbers, ...], Field(strict=False)]
+BySupport = float | Numbers
 WireNumbers = Annotated[tuple[int, ...], Field(strict=False)]
 
 MassCoefficient = Annotated[
@@ -123,7 +124,11 @@ class DerivedDroppers(InputTable):
         Field(strict=False, description="true: the upper end is on a stitch wire; false: on the messenger wire"),
     ]
     contact_wire_height_m: Annotated[
-        BySpan, Field(description="prescribed height of the contact wire at rest, minus the pre-sag [m]")
+        BySpan,
+        Field(
+            description="prescribed height of the contact wire at rest [m]: the straight line between supports, less "
+            "the pre-sag"
+        ),
     ]
     length_m: Annotated[BySpan, Field(description="length at rest, between the axes of the wires [m]")]
     height_m: Annotated[BySpan, Field(description="vertical part of the length [m]")]
@@ -159,11 +164,12 @@ class DerivedSteadyArms(InputTable):
         Field(description="force / length, across the force [N/m]; null: vertical_stiffness_N_m acts"),
     ]
     vertical_stiffness_N_m: Annotated[
-        float | None, Field(description="vertical spring to the ground [N/m]; null: transverse_stiffness_N_m acts")
+        BySupport | None, Field(description="vertical spring to the ground [N/m]; null: transverse_stiffness_N_m acts")
     ]
-    vertical_damper_N_s_m: Annotated[float, Field(description="vertical damper to the ground [N s/m]")]
+    vertical_damper_N_s_m: Annotated[BySupport, Field(description="vertical damper to the ground [N s/m]")]
     mass_kg: Annotated[
-        float, Field(description="mass on the contact wire, in both directions: a third of the bar, and the clamp [kg]")
+        BySupport,
+        Field(description="mass on the contact wire, in both directions: a third of the bar, and the clamp [kg]"),
     ]
     mass_coefficient_1_s: MassCoefficient
     stiffness_coefficient_s: StiffnessCoefficient
@@ -173,26 +179,32 @@ class DerivedMessengerSupports(InputTable):
     """Supports of the messenger wires: springs and dampers to the ground, whose force is zero at rest."""
 
     position_m: Annotated[Numbers, Field(description="position [m]")]
-    height_m: Annotated[float, Field(description="height of the messenger wire at rest [m]")]
-    vertical_stiffness_N_m: Annotated[float, Field(description="vertical spring [N/m]")]
-    lateral_stiffness_N_m: Annotated[float | None, Field(description="lateral spring [N/m]; null: vertical plane only")]
-    vertical_damper_N_s_m: Annotated[float, Field(description="vertical damper [N s/m]")]
+    height_m: Annotated[BySupport, Field(description="height of the messenger wire at rest [m]")]
+    vertical_stiffness_N_m: Annotated[BySupport, Field(description="vertical spring [N/m]")]
+    lateral_stiffness_N_m: Annotated[
+        BySupport | None, Field(description="lateral spring [N/m]; null: vertical plane only")
+    ]
+    vertical_damper_N_s_m: Annotated[BySupport, Field(description="vertical damper [N s/m]")]
     lateral_damper_N_s_m: Annotated[
-        float | None, Field(description="lateral damper [N s/m]; null: vertical plane only")
+        BySupport | None, Field(description="lateral damper [N s/m]; null: vertical plane only")
+    ]
+    held_along_track: Annotated[
+        bool | tuple[bool, ...],
+        Field(description="whether a support holds the wire along the track, so that its tension is not constant"),
     ]
     mass_kg: Annotated[float, Field(description="moving mass of a support [kg]")] = 0.0
 
 
 class DerivedLine(InputTable):
-    """Line at rest: x counts from the first anchor, y from the centre line, z from the contact wire at the supports."""
+    """Line at rest: x counts from the first anchor, y from the centre line, z from the datum of the line."""
 
     gravity_m_s2: Annotated[float, Field(description="acceleration of gravity [m/s2]")]
     origin_x_m: Annotated[float, Field(description="position of the first anchor of the line [m]")] = 0.0
     zero_height_m: Annotated[
         float,
         Field(
-            description="height of the contact wire at anchors, and at supports whose arm keeps it level [m]; all "
-            "heights count from there"
+            description="datum of all heights [m]; on a level line the height of the contact wire at anchors, and at "
+            "supports whose arm keeps it level"
         ),
     ] = 0.0
     span_limits_m: Annotated[
@@ -225,7 +237,7 @@ class DerivedPantograph(InputTable):
         float,
         Field(
             description="static height of the head under the uplift force: mean uplift of the contact wire over "
-            "working_height_positions_m, plus uplift force / contact stiffness [m]"
+            "working_height_positions_m, plus its nominal height, plus uplift force / contact stiffness [m]"
         ),
     ]
     constant_force: Annotated[

@@ -1,6 +1,6 @@
 """Derived values of a line at rest, from its fine finite elements; `derived_format` defines them."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import accumulate
 from typing import TypeVar
 
@@ -50,8 +50,8 @@ def build_derived_line(file: LineFile, line: DiscretisedLine) -> DerivedLine:
         messenger_wire=_wire(file, line, Kind.MESSENGER_WIRE),
         stitch_wires=_stitch_wires(line.catenary),
         droppers=_droppers(file, line),
-        steady_arms=_steady_arms(file, line),
-        messenger_supports=_messenger_supports(file, line.catenary),
+        steady_arms=_steady_arms(line),
+        messenger_supports=_messenger_supports(line.catenary),
         point_masses=derive_point_masses(line.catenary),
     )
 
@@ -131,32 +131,44 @@ def _split(values: Sequence[Entry], counts: Sequence[int]) -> tuple[tuple[Entry,
     return tuple(tuple(values[end - count : end]) for count, end in zip(counts, accumulate(counts), strict=True))
 
 
-def _steady_arms(file: LineFile, line: DiscretisedLine) -> DerivedSteadyArms:
+def _join(values: Iterable[Entry]) -> Entry | tuple[Entry, ...]:
+    """One value if all are equal, or else all values."""
+    listed = tuple(values)
+    return listed if len(set(listed)) != 1 else listed[0]
+
+
+def _steady_arms(line: DiscretisedLine) -> DerivedSteadyArms:
     catenary, force = line.catenary, line.state.arm_force
-    arms, rayleigh, table = catenary.steady_arms, catenary.rayleigh(Kind.STEADY_ARM), file.steady_arm
+    arms, rayleigh = catenary.steady_arms, catenary.rayleigh(Kind.STEADY_ARM)
     tensions = [arm_direction(arm, f)[2] for arm, f in zip(arms, force, strict=True)]
     across = [arm.transverse_stiffness(tension) for arm, tension in zip(arms, tensions, strict=True)]
-    hinged = catenary.has_lateral_field and table.vertical_stiffness_N_m is None
+    hinged = [catenary.has_lateral_field and arm.vertical_stiffness is None for arm in arms]
     return DerivedSteadyArms(
         position_m=round_positions(arm.position for arm in arms),
         lateral_force_N=round_numbers(force[:, 0]),
         vertical_force_N=round_numbers(force[:, 1]),
-        transverse_stiffness_N_m=round_numbers(across) if hinged else None,
-        vertical_stiffness_N_m=None if hinged else table.vertical_stiffness_N_m or 0.0,
-        vertical_damper_N_s_m=table.vertical_damper_N_s_m,
-        mass_kg=round_number(arms[0].mass if arms else 0.0),
+        transverse_stiffness_N_m=round_numbers(across) if any(hinged) else None,
+        vertical_stiffness_N_m=None if all(hinged) else _join(arm.vertical_stiffness or 0.0 for arm in arms),
+        vertical_damper_N_s_m=_join(arm.vertical_damper for arm in arms),
+        mass_kg=_join(round_number(arm.mass) for arm in arms),
         mass_coefficient_1_s=rayleigh.mass_coefficient,
         stiffness_coefficient_s=rayleigh.stiffness_coefficient,
     )
 
 
-def _messenger_supports(file: LineFile, catenary: Catenary) -> DerivedMessengerSupports:
-    table, lateral = file.messenger_support, catenary.has_lateral_field
+def _messenger_supports(catenary: Catenary) -> DerivedMessengerSupports:
+    """Supports of the first messenger wire; those of the others are equal."""
+    first = _wires_of(catenary, Kind.MESSENGER_WIRE)[0].name
+    supports = [support for support in catenary.messenger_supports if support.wire == first]
+    stiffness = _join(support.stiffness for support in supports)
+    damper = _join(support.damping for support in supports)
+    lateral = catenary.has_lateral_field
     return DerivedMessengerSupports(
-        position_m=round_positions(np.unique([support.position for support in catenary.messenger_supports])),
-        height_m=file.geometry.encumbrance_m,
-        vertical_stiffness_N_m=table.stiffness_N_m,
-        lateral_stiffness_N_m=table.stiffness_N_m if lateral else None,
-        vertical_damper_N_s_m=table.damping_N_s_m,
-        lateral_damper_N_s_m=table.damping_N_s_m if lateral else None,
+        position_m=round_positions(support.position for support in supports),
+        height_m=_join(support.height for support in supports),
+        vertical_stiffness_N_m=stiffness,
+        lateral_stiffness_N_m=stiffness if lateral else None,
+        vertical_damper_N_s_m=damper,
+        lateral_damper_N_s_m=damper if lateral else None,
+        held_along_track=_join(support.along_track == "fixed" for support in supports),
     )

@@ -16,12 +16,11 @@ import sys
 from itertools import pairwise
 from pathlib import Path
 
-PROTOCOL = "pantocheck.command/1"
-PROVENANCE = {"trust": "provisional", "source": "received over the protocol"}
+PROTOCOL = "pantocheck.command/2"
 
 
 def toml_lines(table, path=()):
-    """Lines of TOML of nested tables: plain values first, then tables, then lists of tables."""
+    """Lines of TOML of nested tables: plain values first, then tables, then lists of tables. Null is left out."""
     tables = {key: value for key, value in table.items() if isinstance(value, dict)}
     lists = {
         key: value for key, value in table.items() if isinstance(value, list) and value and isinstance(value[0], dict)
@@ -30,47 +29,43 @@ def toml_lines(table, path=()):
         if key not in tables and key not in lists and value is not None:
             yield f"{key} = {json.dumps(value)}"
     for key, value in tables.items():
-        yield f"[{'.'.join((*path, key))}]"
+        yield f"[{join_keys(*path, key)}]"
         yield from toml_lines(value, (*path, key))
     for key, values in lists.items():
         for value in values:
-            yield f"[[{'.'.join((*path, key))}]]"
+            yield f"[[{join_keys(*path, key)}]]"
             yield from toml_lines(value, (*path, key))
 
 
-def add_provenance(table):
-    """Add trust and source to every table, because the program requires them."""
-    return {key: {**value, **PROVENANCE} if isinstance(value, dict) else value for key, value in table.items()}
+def join_keys(*keys):
+    """Dotted key of TOML; a name of the user, such as that of a dropper schedule, is quoted."""
+    return ".".join(key if key.isidentifier() and key.isascii() else json.dumps(key) for key in keys)
 
 
 def write_input(case):
     """Write the case, its line and its pantographs as files."""
-    Path("line.toml").write_text("\n".join(toml_lines(add_provenance(case["line"]))), encoding="utf-8")
+    Path("line.toml").write_text("\n".join(toml_lines(case["line"])), encoding="utf-8")
     uses = []
     for i, train in enumerate(case["pantographs"], 1):
         parts = {key: train[key] for key in ("chain", "matrices", "modes", "contact") if train[key] is not None}
         model = {"title": f"pantograph {i}", **parts}
-        Path(f"pantograph{i}.toml").write_text("\n".join(toml_lines(add_provenance(model))), encoding="utf-8")
+        Path(f"pantograph{i}.toml").write_text("\n".join(toml_lines(model)), encoding="utf-8")
         forces = {key: train[key] for key in ("uplift_force_N", "target_mean_force_N")}
-        uses.append({"model": f"pantograph{i}.toml", **forces, **PROVENANCE})
-    span, starts = case["line"]["geometry"]["span_m"], [train["start_m"] for train in case["pantographs"]]
-    first, last = case["evaluated_m"]
+        uses.append({"model": f"pantograph{i}.toml", **forces})
+    starts = [train["start_m"] for train in case["pantographs"]]
     content = {
         "id": case["id"],
         "title": case["title"],
         "line": "line.toml",
         "speed_km_h": case["speed_km_h"],
-        "evaluated_spans": [round(first / span) + 1, round(last / span)],
+        "evaluated_m": case["evaluated_m"],
         "start_m": starts[-1],
-        "run_out_m": case["pantographs"][-1]["end_m"] - last,
+        "run_out_m": case["pantographs"][-1]["end_m"] - case["evaluated_m"][1],
         "spacing_m": [a - b for a, b in pairwise(starts)] or None,
-        **PROVENANCE,
         "filter": case["filter"],
         "discretisation": case["discretisation"],
         "pantograph": uses,
     }
-    if content["evaluated_spans"][0] == content["evaluated_spans"][1]:
-        content["evaluated_spans"].pop()
     Path("case.toml").write_text("\n".join(toml_lines(content)), encoding="utf-8")
 
 

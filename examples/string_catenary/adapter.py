@@ -8,13 +8,13 @@ import json
 import sys
 import time
 
-PROTOCOL = "pantocheck.command/1"
+PROTOCOL = "pantocheck.command/2"
 NAME, VERSION = "string catenary", "1.0"
 
 
 def reason_to_skip(case):
     """Reason why the simulator does not support a case; None if it does. A skipped case does not count as a failure."""
-    line, trains = case["line"], case["pantographs"]
+    line, derived, trains = case["line"], case["derived"]["line"], case["pantographs"]
     if case["speed_km_h"] is None:
         return "checks of the line at rest are not supported"
     if len(trains) != 1:
@@ -27,14 +27,12 @@ def reason_to_skip(case):
         return "only a base spring that is unstretched at the working height is supported"
     if line["stitch_wire"] or line["contact_wire"]["number"] > 1 or line["damping"]["modal"]:
         return "stitch wires, twin contact wires and modal damping are not supported"
-    if "span_list" in line["geometry"]:
-        return "only lines of equal spans are supported"
-    if line["geometry"]["stagger_contact_wire_m"] or line["geometry"]["stagger_messenger_m"]:
+    if derived["contact_wire"]["lateral_position_m"] is not None:
         return "stagger is not supported: only the vertical plane is simulated"
-    if line["droppers"]["stiffness_N_m"] is None or line["droppers"]["mass_kg_m"]:
-        return "only droppers with stiffness_N_m and without mass_kg_m are supported"
-    if line["steady_arm"]["vertical_stiffness_N_m"] is None or line["steady_arm"]["vertical_damper_N_s_m"]:
-        return "only steady arms with a vertical stiffness and without a damper are supported"
+    if derived["steady_arms"]["vertical_damper_N_s_m"] != 0:
+        return "dampers of steady arms are not supported"
+    if derived["messenger_supports"]["held_along_track"] is not False:
+        return "messenger wires that are held along the track are not supported"
     return None
 
 

@@ -70,32 +70,30 @@ class Wire:
 class Line:
     """Contact wire, messenger wire, droppers, steady arms and messenger supports."""
 
-    def __init__(self, data, h):
-        geometry, droppers = data["geometry"], data["droppers"]
-        span, spans, damping = geometry["span_m"], geometry["spans"], data["damping"]
-        cells = round(span * spans / h)
-        self.h = span * spans / cells
+    def __init__(self, data, derived, h):
+        droppers, arms, supports = (derived[key] for key in ("droppers", "steady_arms", "messenger_supports"))
+        damping, length = data["damping"], derived["contact_wire"]["end_m"]
+        cells = round(length / h)
+        self.h = length / cells
         self.contact = Wire(data["contact_wire"], damping["contact_wire"], cells + 1, self.h)
         self.messenger = Wire(data["messenger_wire"], damping["messenger_wire"], cells + 1, self.h)
-        self.supports = span * np.arange(1, spans)
-        self.arms = self.messenger_supports = self.locate(self.supports)
-        x = np.concatenate([span * i + np.array(droppers["x_m"]) for i in range(spans)])
-        self.droppers = self.locate(x)
-        self.stiffness, self.dropper_beta = droppers["stiffness_N_m"], damping["droppers"]["stiffness_coefficient_s"]
-        half = (droppers["mass_kg"] or 0.0) / 2
-        self.droppers.distribute(self.contact.mass, np.full(x.size, half + droppers["clamp_on_contact_kg"]))
-        self.droppers.distribute(self.messenger.mass, np.full(x.size, half + droppers["clamp_on_messenger_kg"]))
-        arm = data["steady_arm"]
-        self.arm_stiffness, self.arm_beta = (
-            arm["vertical_stiffness_N_m"],
-            damping["steady_arms"]["stiffness_coefficient_s"],
+        self.supports = np.array(arms["position_m"])
+        self.arms, self.messenger_supports = self.locate(self.supports), self.locate(supports["position_m"])
+        # The derived values of droppers have one list per span.
+        x, half, height, self.stiffness = (
+            np.concatenate([np.array(span) for span in droppers[key]])
+            for key in ("position_m", "mass_kg", "contact_wire_height_m", "stiffness_N_m")
         )
-        claw_mass = arm["mass_kg_m"] * (arm["length_m"] or 0.0) / 3 + arm["clamp_kg"]
-        self.arms.distribute(self.contact.mass, np.full(self.supports.size, claw_mass))
-        self.support_stiffness = data["messenger_support"]["stiffness_N_m"]
-        self.support_damping = data["messenger_support"]["damping_N_s_m"]
-        sag = np.tile(droppers["presag_m"] or [0.0] * len(droppers["x_m"]), spans)
-        self.height, self.preload = self.solve_initial_state(-sag, arm["static_share"] == "level")
+        self.droppers, half = self.locate(x), half / 2
+        self.droppers.distribute(self.contact.mass, half + droppers["lower_clamp_kg"])
+        self.droppers.distribute(self.messenger.mass, half + droppers["upper_clamp_kg"])
+        self.dropper_beta, self.arm_beta = (part["stiffness_coefficient_s"] for part in (droppers, arms))
+        # A value of arms or supports is one number, or a list if they differ.
+        self.arm_stiffness = np.array(arms["vertical_stiffness_N_m"])
+        self.arms.distribute(self.contact.mass, np.broadcast_to(arms["mass_kg"], self.supports.shape))
+        self.support_stiffness = np.array(supports["vertical_stiffness_N_m"])
+        self.support_damping = np.array(supports["vertical_damper_N_s_m"])
+        self.height, self.preload = self.solve_initial_state(height, derived)
 
     def locate(self, x):
         """Points of the grid at positions along the track [m]."""
@@ -106,13 +104,15 @@ class Line:
         """Number of grid points of the contact wire."""
         return self.contact.w.size
 
-    def solve_initial_state(self, height, arms_carry):
+    def solve_initial_state(self, height, derived):
         """Height of the contact wire under its weight [m] and tensions of the droppers [N].
 
-        The height is prescribed at the droppers, and at the steady arms if they carry a share of the weight.
+        The height is prescribed at the anchors, at the droppers, and at steady arms that carry a share of the weight.
         """
         n, count = self.contact_nodes(), self.droppers.node.size
-        supported = [self.droppers, self.arms] if arms_carry else [self.droppers]
+        carrying = np.array(derived["steady_arms"]["vertical_force_N"]) != 0
+        supported = [self.droppers, Points(self.arms.node[carrying], self.arms.weight[carrying])]
+        at_limits = np.array(derived["contact_wire"]["height_m"])
         node, weight = (np.concatenate([getattr(p, name) for p in supported]) for name in ("node", "weight"))
         constraint = np.zeros((node.size, n))
         constraint[np.arange(node.size), node], constraint[np.arange(node.size), node + 1] = 1 - weight, weight
@@ -122,16 +122,17 @@ class Line:
         stiffness = self.contact.bending * second @ second - self.contact.tension * second
         stiffness[[0, -1]] = np.eye(n)[[0, -1]]
         load = -GRAVITY * self.contact.mass
-        load[[0, -1]] = 0.0
+        load[[0, -1]] = at_limits[[0, -1]]
         constraint[:, [0, -1]] = 0.0
         system = np.block([[stiffness, -constraint.T], [constraint, np.zeros((node.size, node.size))]])
-        prescribed = np.concatenate([height, np.zeros(node.size - count)])
+        prescribed = np.concatenate([height, at_limits[1:-1][carrying]])
         solution = np.linalg.solve(system, np.concatenate([load, prescribed]))
         return solution[:n], solution[n : n + count]
 
     def stable_step(self, contact_stiffness):
         """Largest stable time step [s], with a margin."""
-        point = self.stiffness + max(self.arm_stiffness, self.support_stiffness, contact_stiffness)
+        points = (self.arm_stiffness, self.support_stiffness, contact_stiffness)
+        point = self.stiffness.max() + max(np.max(stiffness) for stiffness in points)
         wires = (self.contact, self.messenger)
         return 0.5 / math.sqrt(max((wire.largest_stiffness() + 2 * point) / wire.mass.min() for wire in wires))
 
@@ -171,18 +172,17 @@ def simulate(case):
     """
     train, speed = case["pantographs"][0], case["speed_km_h"] / 3.6
     chain, contact_stiffness, uplift_force = train["chain"], train["contact"]["stiffness_N_m"], train["uplift_force_N"]
-    line = Line(case["line"], case["discretisation"]["element_m"])
+    derived = case["derived"]
+    line = Line(case["line"], derived["line"], case["discretisation"]["element_m"])
     step = case["discretisation"]["time_step_s"]
     substeps = math.ceil(step / line.stable_step(contact_stiffness))
-    dt, span = step / substeps, case["line"]["geometry"]["span_m"]
-    # The second call leaves the line at rest with the force at the start position.
-    mid_span_height = settle_line(line, train["start_m"] + span / 2, uplift_force, dt)
+    dt = step / substeps
     start_height = settle_line(line, train["start_m"], uplift_force, dt)
     k, c, m = (np.array(chain[key]) for key in ("stiffness_N_m", "damping_N_s_m", "masses_kg"))
     uplift_mass = chain["uplift_force_on"]
     uplift = np.zeros(m.size)
     uplift[chain["names"].index(uplift_mass) if isinstance(uplift_mass, str) else uplift_mass - 1] = uplift_force
-    working_height = (mid_span_height + start_height) / 2 + uplift_force / contact_stiffness
+    working_height = derived["train"]["pantographs"][0]["working_height_m"]
     z, v = np.zeros(m.size), np.zeros(m.size)
     z[-1] = start_height + uplift_force / contact_stiffness
     for i in range(m.size - 1, 0, -1):

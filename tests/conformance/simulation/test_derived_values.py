@@ -8,8 +8,12 @@ import numpy as np
 import pytest
 from scipy.signal import butter, sosfiltfilt
 
+from helpers.listed_spans import list_spans
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.cases.library_folder import library_folder
+from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.input_files.toml_file import read_toml
 from pantocheck.conformance.simulation.case_run import build_passage, start_forces
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.simulation.derived_format import Derived, DerivedTrain
@@ -170,3 +174,24 @@ def test_parallel_contact_wires_follow_each_other_at_every_dropper() -> None:
 def test_line_at_rest_has_no_train() -> None:
     case = library_case("en50318-2018/ac-simple/static")
     assert build_derived(replace(case, line=shorten(case, 2).line)).train is None
+
+
+def test_values_of_arms_and_supports_are_lists_where_they_differ() -> None:
+    """Support 2 of four spans has its own height, encumbrance, arm and messenger support; all others are alike."""
+    tables = list_spans(read_toml(library_folder() / "en50318-2002" / "line.toml", "line"))
+    tables["geometry"]["span_list"] = tables["geometry"]["span_list"][:4]
+    own = {"contact_wire_height_m": 0.02, "encumbrance_m": 1.1, "messenger_support": {"stiffness_N_m": 2e5}}
+    arm = {"vertical_stiffness_N_m": 600.0, "clamp_kg": 0.3, "static_share": "none"}
+    tables["geometry"]["support"] = [{"number": 2, "steady_arm": arm} | own]
+    case = shorten(library_case("en50318-2002/250"), 4)
+    line = build_derived(replace(case, line=LineFile.model_validate(tables))).line
+    arms, supports = line.steady_arms, line.messenger_supports
+    assert arms.vertical_stiffness_N_m == (300.0, 600.0, 300.0)
+    assert (arms.mass_kg, arms.vertical_damper_N_s_m) == ((0.0, 0.3, 0.0), 0.0)
+    assert [force > 0 for force in arms.vertical_force_N] == [True, False, True]
+    assert supports.height_m == pytest.approx((1.2, 1.12, 1.2))
+    assert supports.vertical_stiffness_N_m == (5e4, 2e5, 5e4)
+    assert (supports.vertical_damper_N_s_m, supports.held_along_track) == (0.0, False)
+    assert line.messenger_wire.height_m == pytest.approx((1.2, 1.2, 1.12, 1.2, 1.2), abs=1e-6)
+    rising = [0.02 * x / 60 for x in case.line.droppers.x_m]
+    assert line.droppers.contact_wire_height_m[1] == pytest.approx(rising, abs=1e-6)

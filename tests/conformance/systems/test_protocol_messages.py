@@ -50,7 +50,7 @@ def test_answer_without_results_has_defaults() -> None:
 @pytest.mark.parametrize(
     ("message", "place"),
     [
-        ({"message": "finished", "id": 3}, "message of pantocheck.command/1: Input tag 'finished'"),
+        ({"message": "finished", "id": 3}, "message of pantocheck.command: Input tag 'finished'"),
         ({"id": 3}, "Unable to extract tag"),
         ({"message": "skipped", "id": 3, "reason": ""}, ": skipped.reason: "),
         ({"message": "skipped", "id": 3, "reason": "x" * 2001}, ": skipped.reason: "),
