@@ -10,6 +10,7 @@ from typing import Annotated
 from pydantic import Field
 
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.input_changes import parse_changes
 from pantocheck.conformance.cases.library import overlay_limits, read_limits, select_cases
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.grading.baseline import compare_with_baseline, read_baseline
@@ -40,6 +41,10 @@ class Plan(InputTable):
             description="ids, globs or paths of cases; default: cases whose limits count, and with verification cases "
             "that have converged values"
         ),
+    ] = ()
+    set: Annotated[
+        Names,
+        Field(description='changed inputs of the cases, e.g. "speed_km_h=300" or "line.contact_wire.tension_N=22e3"'),
     ] = ()
     system: Annotated[str, Field(description="builtin, record:DIR or command:PROGRAM ARGUMENTS")] = "builtin"
     information: Annotated[
@@ -124,7 +129,9 @@ def prepare_plan(plan: Plan) -> PreparedPlan:
     InputError
         A case, the limits, the baseline or a format is wrong.
     """
-    cases = select_cases(plan.cases or ["*"])
+    if plan.set and not plan.cases:
+        raise InputError("option --set", "no case is named", "Name the cases whose inputs you want to change.")
+    cases = select_cases(plan.cases or ["*"], parse_changes(plan.set))
     if plan.limits is not None:
         cases = overlay_limits(cases, read_limits(Path(plan.limits)))
     requested = choose_verdicts(plan.verdicts, plan.system, [case.id for case in cases])

@@ -55,6 +55,8 @@ class Case:
         Pantograph whose apparent mass a static case computes.
     dampings : mapping of str to Damping
         Further damping models of a study or a comparison, by name.
+    changes : tuple of str
+        Inputs that were changed on the command line, with the values of the files.
     """
 
     file: CaseFile
@@ -63,6 +65,7 @@ class Case:
     limits: tuple[Limit, ...]
     static_pantograph: PantographFile | None = None
     dampings: Mapping[str, Damping] = field(default_factory=dict)
+    changes: tuple[str, ...] = ()
 
     @property
     def pantograph_files(self) -> tuple[PantographFile, ...]:

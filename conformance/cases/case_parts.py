@@ -1,104 +1,124 @@
-"""Files of a case: case file, line, pantographs and damping models."""
+"""Files of a case: case file, line, pantographs and damping models, with changes of the command line."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
+
+from pydantic import BaseModel
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import CaseFile
 from pantocheck.conformance.cases.damping_file import Damping, DampingFile, overlay_damping
 from pantocheck.conformance.cases.force_rules import resolve_rule
+from pantocheck.conformance.cases.input_changes import InputChange, change_case, change_tree
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.toml_file import read_model, validate_model
+from pantocheck.conformance.input_files.toml_file import read_model, read_toml, validate_model
+
+T = TypeVar("T", bound=BaseModel)
 
 LONGEST_NAME = 200
 """Largest number of characters of a file name that is looked up in an invalid case file."""
 
 
-def read_parts(path: Path, tree: dict[str, Any]) -> Case:
-    """Read the files of a case.
+@dataclass(frozen=True)
+class CaseFiles:
+    """Files of a case, read with changes of the command line.
 
     Parameters
     ----------
     path : Path
         Case file.
     tree : dict
-        Its content.
-
-    Returns
-    -------
-    Case
-        Case whose files are valid, each by itself.
-
-    Raises
-    ------
-    InputError
-        A file cannot be read or is invalid; the error is that of the first such file.
+        Content of the case file.
+    changes : tuple of InputChange
+        Changes of this case.
     """
-    file = _validate_case(path, tree)
-    line = _read_line(path, file.line)
-    if file.damping is not None:
-        damping = _read_damping(path, file.damping, "damping") if isinstance(file.damping, str) else file.damping
-        line = line.model_copy(update={"damping": overlay_damping(line.damping, damping)})
-    pantographs = tuple(
-        _read_pantograph(path, use.model, f"pantograph[{i}].model") for i, use in enumerate(file.pantograph, 1)
-    )
-    static_pantograph = None
-    if file.apparent_mass is not None:
-        static_pantograph = _read_pantograph(path, file.apparent_mass.model, "apparent_mass.model")
-    models = dict(file.mass_drop.compared) if file.mass_drop is not None else {}
-    models |= getattr(file.study, "models", {}) | getattr(file.study, "before", {})
-    dampings = {name: _read_damping(path, model, f"damping model {name!r}") for name, model in models.items()}
-    return Case(file, line, pantographs, file.limit, static_pantograph, dampings)
+
+    path: Path
+    tree: dict[str, Any]
+    changes: tuple[InputChange, ...] = ()
+
+    def read(self) -> Case:
+        """Read all files, each valid by itself.
+
+        Raises
+        ------
+        InputError
+            A file cannot be read or is invalid; the error is that of the first such file.
+        """
+        path = self.path
+        file, case_changes = self._read_case()
+        line, line_changes = self._read_line(file.line)
+        if file.damping is not None:
+            damping = _read_damping(path, file.damping, "damping") if isinstance(file.damping, str) else file.damping
+            line = line.model_copy(update={"damping": overlay_damping(line.damping, damping)})
+        pantographs = [self._read_pantograph(use.model, i) for i, use in enumerate(file.pantograph)]
+        static_pantograph = None
+        if file.apparent_mass is not None:
+            static_pantograph = _read_pantograph(_locate(path, file.apparent_mass.model, "apparent_mass.model"), ())[0]
+        models = dict(file.mass_drop.compared) if file.mass_drop is not None else {}
+        models |= getattr(file.study, "models", {}) | getattr(file.study, "before", {})
+        dampings = {name: _read_damping(path, model, f"damping model {name!r}") for name, model in models.items()}
+        descriptions = (*case_changes, *line_changes, *(text for _, texts in pantographs for text in texts))
+        return Case(
+            file,
+            line,
+            tuple(pantograph for pantograph, _ in pantographs),
+            file.limit,
+            static_pantograph,
+            dampings,
+            tuple(dict.fromkeys(descriptions)),
+        )
+
+    def list_errors(self) -> Iterator[InputError]:
+        """Errors of the line and of the pantographs that the case file names, whether or not it is valid."""
+        uses = self.tree.get("pantograph")
+        readings: list[tuple[Callable[[str], object], object]] = [(self._read_line, self.tree.get("line"))]
+        for i, use in enumerate(uses if isinstance(uses, list) else ()):
+            if isinstance(use, dict):
+                readings.append((partial(self._read_pantograph, index=i), use.get("model")))
+        for read, name in readings:
+            if isinstance(name, str) and 0 < len(name) <= LONGEST_NAME:
+                try:
+                    read(name)
+                except InputError as error:
+                    yield error
+
+    def _read_case(self) -> tuple[CaseFile, tuple[str, ...]]:
+        tree, case_changes = change_case(self.tree, self.changes)
+        return validate_model(tree, CaseFile, _name_file("case", self.path, case_changes)), case_changes
+
+    def _read_line(self, name: str) -> tuple[LineFile, tuple[str, ...]]:
+        changes = [change for change in self.changes if change.part == "line"]
+        return _read_changed(_locate(self.path, name, "line"), LineFile, "reference line", changes)
+
+    def _read_pantograph(self, name: str, index: int) -> tuple[PantographFile, tuple[str, ...]]:
+        changes = [c for c in self.changes if c.part == "pantograph" and c.pantograph in (None, index)]
+        return _read_pantograph(_locate(self.path, name, f"pantograph[{index + 1}].model"), changes)
 
 
-def list_part_errors(path: Path, tree: dict[str, Any]) -> Iterator[InputError]:
-    """Errors of the line and the pantographs that a case file names, whether or not the case file is valid.
-
-    Parameters
-    ----------
-    path : Path
-        Case file.
-    tree : dict
-        Its content.
-
-    Yields
-    ------
-    InputError
-        Error of one file.
-    """
-    uses = tree.get("pantograph")
-    readings: list[tuple[Callable[[str], object], object]] = [(partial(_read_line, path), tree.get("line"))]
-    for i, use in enumerate(uses if isinstance(uses, list) else (), 1):
-        if isinstance(use, dict):
-            readings.append((partial(_read_pantograph, path, key=f"pantograph[{i}].model"), use.get("model")))
-    for read, name in readings:
-        if isinstance(name, str) and 0 < len(name) <= LONGEST_NAME:
-            try:
-                read(name)
-            except InputError as error:
-                yield error
+def _read_pantograph(path: Path, changes: Sequence[InputChange]) -> tuple[PantographFile, tuple[str, ...]]:
+    file, descriptions = _read_changed(path, PantographFile, "pantograph", changes)
+    return resolve_rule(file, _name_file("pantograph", path, descriptions)), descriptions
 
 
-def _validate_case(path: Path, tree: dict[str, Any]) -> CaseFile:
-    return validate_model(tree, CaseFile, f"case '{path.name}'")
+def _read_changed(path: Path, model: type[T], kind: str, changes: Sequence[InputChange]) -> tuple[T, tuple[str, ...]]:
+    """Read a file with changes; the texts describe those that differ from the file."""
+    tree, descriptions = change_tree(read_toml(path, kind), model, changes)
+    return validate_model(tree, model, _name_file(kind, path, descriptions)), descriptions
 
 
-def _read_line(case_path: Path, name: str) -> LineFile:
-    return read_model(_locate(case_path, name, "line"), LineFile, "reference line")
+def _name_file(kind: str, path: Path, descriptions: Sequence[str]) -> str:
+    return f"{kind} '{path.name}'" + (f" with --set {'; '.join(descriptions)}" if descriptions else "")
 
 
 def _read_damping(case_path: Path, name: str, key: str) -> Damping:
     return read_model(_locate(case_path, name, key), DampingFile, "damping").damping
-
-
-def _read_pantograph(case_path: Path, name: str, key: str) -> PantographFile:
-    path = _locate(case_path, name, key)
-    return resolve_rule(read_model(path, PantographFile, "pantograph"), f"pantograph '{path.name}'")
 
 
 def _locate(case_path: Path, name: str, key: str) -> Path:

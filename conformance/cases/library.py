@@ -1,14 +1,15 @@
 """Library of reference cases, and reading of case files by id, pattern or path."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fnmatch import fnmatchcase
 from functools import cache
 from pathlib import Path
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_agreement import find_disagreements
-from pantocheck.conformance.cases.case_parts import list_part_errors, read_parts
+from pantocheck.conformance.cases.case_parts import CaseFiles
+from pantocheck.conformance.cases.input_changes import InputChange
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.limits import Limit, LimitOverride, LimitsFile
 from pantocheck.conformance.input_files.input_error import InputError, join_errors
@@ -29,13 +30,15 @@ def list_library(folder: Path) -> dict[str, Path]:
     }
 
 
-def select_cases(patterns: Sequence[str]) -> list[Case]:
+def select_cases(patterns: Sequence[str], changes: Sequence[InputChange] = ()) -> list[Case]:
     """Read cases by id, pattern or path, in this order, each after the cases that it requires.
 
     Parameters
     ----------
     patterns : sequence of str
         Ids, patterns with `*` and `?`, and paths of case files.
+    changes : sequence of InputChange
+        Changes of the selected cases; those of the line apply to the required cases, too.
 
     Returns
     -------
@@ -48,10 +51,15 @@ def select_cases(patterns: Sequence[str]) -> list[Case]:
         A pattern matches no case, or a file is invalid.
     """
     known = list_library(library_folder())
+    named = {path: load_case(path, changes) for pattern in patterns for path in _match_pattern(pattern, known)}
+    of_line = [change for change in changes if change.part == "line"]
+
+    def load_required(path: Path) -> Case:
+        return named[path] if path in named else load_case(path, of_line)
+
     chosen: dict[str, Case] = {}
-    for pattern in patterns:
-        for path in _match_pattern(pattern, known):
-            _add(load_case(path), known, chosen, ())
+    for case in named.values():
+        _add(case, known, chosen, load_required, ())
     return list(chosen.values())
 
 
@@ -70,7 +78,9 @@ def _match_pattern(pattern: str, known: dict[str, Path]) -> list[Path]:
     return matches
 
 
-def _add(case: Case, known: dict[str, Path], chosen: dict[str, Case], above: tuple[str, ...]) -> None:
+def _add(
+    case: Case, known: dict[str, Path], chosen: dict[str, Case], load: Callable[[Path], Case], above: tuple[str, ...]
+) -> None:
     """Add a case after all cases that it requires; `above` holds the ids of the cases that require it."""
     where = f"case '{case.id}', key requires"
     if case.id in above:
@@ -79,18 +89,20 @@ def _add(case: Case, known: dict[str, Path], chosen: dict[str, Case], above: tup
     for required in case.file.requires:
         if required not in known:
             raise InputError(where, f"there is no case {required!r}", suggest_names(required, list(known)))
-        _add(load_case(known[required]), known, chosen, (*above, case.id))
+        _add(load(known[required]), known, chosen, load, (*above, case.id))
     if chosen.setdefault(case.id, case) != case:
         raise InputError(f"case '{case.id}'", "two different files have this id", "Give each case a different id.")
 
 
-def load_case(path: Path) -> Case:
+def load_case(path: Path, changes: Sequence[InputChange] = ()) -> Case:
     """Read a case file with its line and pantographs, and check that they agree.
 
     Parameters
     ----------
     path : Path
         Case file.
+    changes : sequence of InputChange
+        Changes of the case, its line and its pantographs.
 
     Returns
     -------
@@ -102,11 +114,11 @@ def load_case(path: Path) -> Case:
     InputError
         A file cannot be read or is invalid, or the files do not agree. The error lists all problems.
     """
-    tree = read_toml(path, "case")
+    files = CaseFiles(path, read_toml(path, "case"), tuple(changes))
     try:
-        case = read_parts(path, tree)
+        case = files.read()
     except InputError as error:
-        raise join_errors([error, *list_part_errors(path, tree)]) from None
+        raise join_errors([error, *files.list_errors()]) from None
     if disagreements := [*find_disagreements(case, f"case '{path.name}'")]:
         raise join_errors(disagreements)
     return case

@@ -1,6 +1,6 @@
 """Options, and the choice of a case or line, that several commands share."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -8,6 +8,7 @@ import typer
 from pydantic import ValidationError
 
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.input_changes import InputChange
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.input_files.input_error import InputError
@@ -15,6 +16,14 @@ from pantocheck.conformance.input_files.toml_file import read_model, read_toml
 from pantocheck.conformance.input_files.validation_messages import build_input_error
 from pantocheck.conformance.plan import Plan, read_plan
 
+SetOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help="Change an input of the case, its line or its pantographs; repeat the option for several.",
+    ),
+]
 OutOption = Annotated[Path | None, typer.Option(help="Folder for the results.", show_default="report")]
 FormatsOption = Annotated[
     str | None,
@@ -73,7 +82,7 @@ def build_options(plan: Path | None = None, formats: str | None = None, **option
         raise build_input_error(error, Plan, "command line") from None
 
 
-def choose_case(name: str, accept: Callable[[Case], bool], kind: str) -> Case:
+def choose_case(name: str, accept: Callable[[Case], bool], kind: str, changes: Sequence[InputChange] = ()) -> Case:
     """Find the only case of a kind.
 
     Parameters
@@ -84,13 +93,15 @@ def choose_case(name: str, accept: Callable[[Case], bool], kind: str) -> Case:
         Condition on a case.
     kind : str
         Condition in words, for the message.
+    changes : sequence of InputChange
+        Changes of the inputs of the case.
 
     Raises
     ------
     InputError
         No case, or several cases, meet the condition.
     """
-    cases = [case for case in select_cases([name]) if accept(case)]
+    cases = [case for case in select_cases([name], changes) if accept(case)]
     if len(cases) != 1:
         ids = ", ".join(case.id for case in cases) or "none"
         raise InputError(f"case '{name}'", f"expected one case {kind}, found {ids}", "Give the id of one case.")

@@ -43,7 +43,8 @@ def print_results(results: Results, files: Sequence[Path]) -> None:
         output.print()
         output.print(style_verdict(case.verdict), escape_text(f" {name_case(case.id, case.library)}  {case.title}"))
         record = None if case.record is None or case.reason else describe_record(case.model_dump())
-        changes = [f"limits file: {'; '.join(case.limit_changes)}"] if case.limit_changes else []
+        changes = [f"inputs changed with --set: {'; '.join(case.changes)}"] if case.changes else []
+        changes += [f"limits file: {'; '.join(case.limit_changes)}"] if case.limit_changes else []
         for line in filter(
             None, [case.reason, record, *changes, *(f"warning: {warning}" for warning in case.warnings)]
         ):

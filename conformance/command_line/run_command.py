@@ -11,6 +11,7 @@ from pantocheck.conformance.command_line.options import (
     DriftOption,
     FormatsOption,
     OutOption,
+    SetOption,
     TrustOption,
     VerdictsOption,
     build_options,
@@ -33,6 +34,7 @@ def run_command(
         str | None,
         typer.Option(help="System under test: builtin, record:DIR or command:PROGRAM.", show_default="builtin"),
     ] = None,
+    changed: SetOption = None,
     out: OutOption = None,
     formats: FormatsOption = None,
     trust: TrustOption = None,
@@ -64,11 +66,14 @@ def run_command(
 
     pantocheck run 'en50318-2002/*' --system 'command:python3 adapter.py'
 
+    pantocheck run my-case.toml --set speed_km_h=300 --set line.contact_wire.tension_N=22e3
+
     pantocheck run --plan conformance.toml --baseline results.json --drift 2
     """
     options = build_options(
         plan,
         cases=tuple(case) if case else None,
+        set=tuple(changed) if changed else None,
         system=system,
         out=out,
         formats=formats,

@@ -5,8 +5,9 @@ from typing import Annotated
 
 import typer
 
+from pantocheck.conformance.cases.input_changes import parse_changes
 from pantocheck.conformance.command_line.console import console, escape_text
-from pantocheck.conformance.command_line.options import choose_case
+from pantocheck.conformance.command_line.options import SetOption, choose_case
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record_writing import check_record_path, write_record
@@ -21,13 +22,18 @@ def simulate_command(
     system: Annotated[
         str, typer.Option(help="System that simulates: builtin (reference simulator) or command:PROGRAM ARGUMENTS.")
     ] = "builtin",
+    changed: SetOption = None,
 ) -> None:
     """Simulate a case and write its record.
 
-    Example: pantocheck simulate en50318-2002/250 --out 250.csv
+    Examples:
+
+    pantocheck simulate en50318-2002/250 --out 250.csv
+
+    pantocheck simulate my-case.toml --set speed_km_h=300 --out 300.csv
     """
     check_record_path(out)
-    chosen = choose_case(case, lambda each: not each.is_static, "with a train")
+    chosen = choose_case(case, lambda each: not each.is_static, "with a train", parse_changes(changed or ()))
     simulator = choose_system(system)
     check_writable(out.parent)
     # A record holds one run, so the refined run of the reference simulator is not needed.
@@ -46,6 +52,7 @@ def simulate_command(
         run=outcome.run.model_dump(),
         further={
             "case_digest": outcome.case_digest if simulator.kind == "record" else chosen.digest,
+            "changes": list(chosen.changes) or None,
             "start": None if outcome.start is None else outcome.start.model_dump(),
             "line": {"span_m": chosen.line.geometry.longest_span},
         },

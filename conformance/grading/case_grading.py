@@ -128,6 +128,7 @@ def _build_result(case: Case, delivered: Delivered, notes: Sequence[str], **part
             "model_uncertainty": list(delivered.model_uncertainty),
             "inputs": inputs,
             "input_digest": case.digest,
+            "changes": list(case.changes),
             "limits_digest": limits_digest(case.limits),
             "stated_limits_digest": limits_digest(case.file.limit),
             "limit_changes": list_limit_changes(case),

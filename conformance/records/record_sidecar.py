@@ -32,6 +32,10 @@ class RecordSidecar(InputTable):
     ]
     case: CaseName = None
     case_digest: CaseDigest | None = None
+    changes: Annotated[
+        tuple[str, ...],
+        Field(strict=False, max_length=100, description="inputs of the case that were changed with --set"),
+    ] = ()
     file: TableName
     sha256: TableDigest = None
     speed_km_h: Speed

@@ -130,6 +130,10 @@ class CaseResult(ResultsPart):
     warnings: list[str]
     inputs: list[InputGroup]
     input_digest: str
+    changes: Annotated[
+        list[str],
+        Field(description="inputs that were changed on the command line, with the values of the files"),
+    ] = []
     limits_digest: Annotated[
         str | None, Field(description="SHA-256 of the limits, those of a limits file included")
     ] = None

@@ -19,6 +19,7 @@ from pantocheck.conformance.reports.certificate.quantity_tables import (
 )
 from pantocheck.conformance.reports.certificate.scope_page import (
     build_scope_section,
+    describe_changes,
     describe_origin,
     list_identity_warnings,
     prepare_results,
@@ -115,7 +116,8 @@ def _case_section(case: dict[str, Any], anchor: str) -> doc.Section:
     ]
     if record := describe_record(case):
         blocks.append(doc.Paragraph(record))
-    warnings = (*(f"Limits file: {change}." for change in case["limit_changes"]), *case["warnings"])
+    changes = [f"{text}."] if (text := describe_changes(case)) else []
+    warnings = (*changes, *(f"Limits file: {change}." for change in case["limit_changes"]), *case["warnings"])
     if warnings:
         blocks.append(doc.WarningBox(warnings))
     if case["criteria"]:

@@ -27,22 +27,30 @@ def prepare_results(results: dict[str, Any]) -> dict[str, Any]:
 
 
 def list_identity_warnings(results: dict[str, Any]) -> tuple[str, ...]:
-    """Warnings on modified copies of library cases and on limits that a limits file weakens."""
+    """Warnings on modified copies of library cases, changed inputs and limits that a limits file weakens."""
     copies = [
         f"The {case['id']} has other inputs, limits or sources than the library {_kind(case)}."
         for case in results["cases"]
         if case["library"] == "modified"
     ]
-    return (*copies, *(warn_of_changes(case) for case in results["cases"] if case["limit_changes"]))
+    inputs = [f"{text} in {case['id']}." for case in results["cases"] if (text := describe_changes(case))]
+    return (*copies, *inputs, *(warn_of_changes(case) for case in results["cases"] if case["limit_changes"]))
 
 
 def summarise_identity(results: dict[str, Any]) -> list[str]:
-    """Sentences for the headline on modified copies and weakened limits."""
+    """Sentences for the headline on modified copies, changed inputs and weakened limits."""
     copies = sum(case["library"] == "modified" for case in results["cases"])
     changed = sum(bool(case["limit_changes"]) for case in results["cases"])
+    inputs = sum(bool(case["changes"]) for case in results["cases"])
     sentences = [f"Modified copies of the library: {copies}."] if copies else []
+    sentences += [f"Cases with inputs changed with --set: {inputs}."] if inputs else []
     cases = "1 case" if changed == 1 else f"{changed} cases"
     return [*sentences, f"The limits file weakens limits or changes their trust in {cases}."] if changed else sentences
+
+
+def describe_changes(case: dict[str, Any]) -> str:
+    """Inputs of a case that were changed on the command line; empty if there are none."""
+    return f"Inputs changed with --set: {'; '.join(case['changes'])}" if case["changes"] else ""
 
 
 def warn_of_changes(case: dict[str, Any]) -> str:

@@ -56,6 +56,7 @@ def _suite(case: dict[str, Any], results: dict[str, Any]) -> ElementTree.Element
         "input_digest": case["input_digest"],
         "limits_digest": case["limits_digest"],
         "limit_changes": "; ".join(case["limit_changes"]),
+        "changes": "; ".join(case["changes"]),
         **{f"platform_{name}": text for name, text in results["platform"].items()},
     }.items():
         if value:

@@ -1,4 +1,4 @@
-"""List of all quantities as a table of comma-separated values: value, uncertainty by component, limits and verdict."""
+"""List of all quantities as comma-separated values: value, uncertainty by component, limits, verdict, input changes."""
 
 import csv
 import io
@@ -11,7 +11,7 @@ from pantocheck.conformance.results.criterion_format import COMPONENT_NAMES
 COLUMNS = (
     *("case", "pantograph", "quantity", "item", "value", "unit", "uncertainty"),
     *COMPONENT_NAMES,
-    *("lower", "upper", "verdict"),
+    *("lower", "upper", "verdict", "changes"),
 )
 NOT_KNOWN = "NA"
 """Cell of a value that is not known: it is not zero."""
@@ -39,6 +39,7 @@ def _list_rows(case: dict[str, Any]) -> Iterator[list[Any]]:
                     *(case["id"], key, name, "" if item is None else item, number, quantity_unit(name)),
                     *(_select_item(width, item) for width in widths),
                     *(_blank(criterion.get(part)) for part in ("lower", "upper", "verdict")),
+                    "; ".join(case["changes"]),
                 ]
 
 

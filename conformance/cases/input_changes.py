@@ -1,0 +1,212 @@
+"""Changes of the inputs of a case on the command line: `--set KEY=VALUE`.
+
+A changed case is a copy with another content: its digest, its comparison with the library and its converged values
+are those of a case whose files state the new values.
+"""
+
+import copy
+import json
+import re
+import tomllib
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+from pydantic import BaseModel
+
+from pantocheck.conformance.cases.case_file import CaseFile, PantographByLaw, PantographUse
+from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.cases.pantograph_file import PantographFile
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.key_paths import (
+    KeyPath,
+    check_path,
+    find_holders,
+    follow_path,
+    list_dotted_keys,
+    parse_key,
+)
+from pantocheck.conformance.input_files.sourced_table import PROVENANCE, SourcedTable
+from pantocheck.conformance.input_files.table_models import find_field
+
+ChangedPart = Literal["case", "use", "line", "pantograph"]
+"""Case file, [[pantograph]] table of the case file, line file or pantograph file."""
+
+USES = (PantographUse, PantographByLaw)
+"""Models of the [[pantograph]] tables of a case file."""
+
+MODELS_BY_PREFIX: dict[str, tuple[type[BaseModel], ...]] = {
+    "": (CaseFile,),
+    "line": (LineFile,),
+    "pantograph": (*USES, PantographFile),
+}
+"""Models of the keys on the command line, by the first part of these keys."""
+
+FIXED_KEYS = {"id", "title", "edition", "superseded_by", "on_request", "requires"}
+"""Keys of a case that name it or place it in the library."""
+
+_PLAIN_WORD = re.compile(r"[A-Za-z][A-Za-z0-9_./-]*")
+
+
+@dataclass(frozen=True)
+class InputChange:
+    """New value of one key.
+
+    Parameters
+    ----------
+    key : str
+        Dotted key as the user wrote it.
+    part : ChangedPart
+        Part of the case that holds the key.
+    pantograph : int or None
+        Index of the pantograph in running order, from 0; None: all of them, or no key of a pantograph.
+    path : KeyPath
+        Path of the key in this part.
+    value : object
+        New value.
+    """
+
+    key: str
+    part: ChangedPart
+    pantograph: int | None
+    path: KeyPath
+    value: object
+
+    @property
+    def where(self) -> str:
+        """Name of the change in messages."""
+        return f"option --set, key {self.key}"
+
+
+def parse_changes(texts: Sequence[str]) -> tuple[InputChange, ...]:
+    """Parse changes of the form `KEY=VALUE`.
+
+    Parameters
+    ----------
+    texts : sequence of str
+        Dotted keys of the case, of its line (`line.contact_wire.tension_N`) or of its pantographs
+        (`pantograph[1].chain.masses_kg`; without a number, of all pantographs), with values as in TOML.
+
+    Returns
+    -------
+    tuple of InputChange
+        The changes in their order.
+
+    Raises
+    ------
+    InputError
+        A text is no assignment, a key does not exist, or its value cannot be changed.
+    """
+    return tuple(map(_parse_change, texts))
+
+
+def _parse_change(text: str) -> InputChange:
+    key, equals, value = (part.strip() for part in text.partition("="))
+    parts = parse_key(key)
+    if not equals or parts is None:
+        raise InputError(f"option --set {text[:80]!r}", "is no assignment", "Write KEY=VALUE, e.g. speed_km_h=300 .")
+    change = _locate(key, parts, _parse_value(value, f"option --set, key {key}"))
+    names = {part for part in parts if isinstance(part, str)}
+    if names & PROVENANCE or parts[0] in FIXED_KEYS:
+        raise InputError(change.where, "cannot be changed on the command line", "Copy the file and edit the copy.")
+    if parts[0] == "limit":
+        raise InputError(change.where, "is a limit", "Give your limits in a file with --limits.")
+    models = MODELS_BY_PREFIX[str(parts[0]) if change.part != "case" else ""]
+    everywhere = [
+        key for prefix, files in MODELS_BY_PREFIX.items() for model in files for key in list_dotted_keys(model, prefix)
+    ]
+    check_path(models, change.path, change.value, change.where, everywhere)
+    return change
+
+
+def _locate(key: str, parts: KeyPath, value: object) -> InputChange:
+    """Part of the case that a key belongs to, and its path there."""
+    if len(parts) > 1 and parts[0] == "line":
+        return InputChange(key, "line", None, parts[1:], value)
+    if len(parts) > 1 and parts[0] == "pantograph":
+        index, path = (parts[1], parts[2:]) if isinstance(parts[1], int) else (None, parts[1:])
+        of_use = bool(path) and any(find_field(model, str(path[0])) is not None for model in USES)
+        return InputChange(key, "use" if of_use else "pantograph", index, path, value)
+    return InputChange(key, "case", None, parts, value)
+
+
+def _parse_value(text: str, where: str) -> object:
+    """Value of TOML; a plain word is text, because a shell removes quotes."""
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except (ValueError, RecursionError):
+        if _PLAIN_WORD.fullmatch(text):
+            return text
+        hint = "Write a value as in TOML, e.g. 22e3, [5, 6], true or text."
+        raise InputError(where, f"{text[:60]!r} is not a value", hint) from None
+
+
+def change_case(tree: dict[str, Any], changes: Sequence[InputChange]) -> tuple[dict[str, Any], tuple[str, ...]]:
+    """Apply changes to the content of a case file; returns and errors as in `change_tree`."""
+    uses = tree.get("pantograph")
+    count = len(uses) if isinstance(uses, list) else 0
+    assigned: list[InputChange] = []
+    for change in changes:
+        if change.part == "case":
+            assigned.append(change)
+        elif change.part != "line" and (count == 0 or (change.pantograph or 0) >= count):
+            hint = "Pantographs are numbered from 1 in running order."
+            raise InputError(change.where, f"the case has {count} pantographs", hint)
+        elif change.part == "use":
+            numbers = range(count) if change.pantograph is None else (change.pantograph,)
+            assigned += [replace(change, part="case", path=("pantograph", i, *change.path)) for i in numbers]
+    return change_tree(tree, CaseFile, assigned)
+
+
+def change_tree(
+    tree: dict[str, Any], model: type[BaseModel], changes: Sequence[InputChange]
+) -> tuple[dict[str, Any], tuple[str, ...]]:
+    """Apply changes to the content of a file.
+
+    Parameters
+    ----------
+    tree : dict
+        Content of the file.
+    model : type of BaseModel
+        Model of the file.
+    changes : sequence of InputChange
+        Changes of this file.
+
+    Returns
+    -------
+    tree : dict
+        Changed content. Changed keys count as `provisional`, because the source of their table does not state them.
+    descriptions : tuple of str
+        One text per value that differs, with the value of the file.
+
+    Raises
+    ------
+    InputError
+        A table or a list item does not exist.
+    """
+    changed = copy.deepcopy(tree)
+    descriptions = []
+    for change in changes:
+        holder, part, before = follow_path(changed, change.path, change.where)
+        if before == change.value and isinstance(before, bool) == isinstance(change.value, bool):
+            continue
+        holder[part] = change.value
+        _mark_provisional(changed, model, change)
+        stated = "not in the file" if before is None else f"file: {_show(before)}"
+        descriptions.append(f"{change.key} = {_show(change.value)} ({stated})")
+    return changed, tuple(dict.fromkeys(descriptions))
+
+
+def _mark_provisional(tree: dict[str, Any], model: type[BaseModel], change: InputChange) -> None:
+    """Add a changed key to the key `provisional` of its sourced table."""
+    holders = find_holders(model, change.path)
+    sourced = [i for i, table in enumerate(holders) if table is not None and issubclass(table, SourcedTable)]
+    if sourced:
+        table, key, _ = follow_path(tree, change.path[: sourced[-1] + 1], change.where)
+        marked = table.get("provisional", [])
+        table["provisional"] = list(dict.fromkeys([*marked, key])) if isinstance(marked, list) else marked
+
+
+def _show(value: object) -> str:
+    text = json.dumps(value, default=str)
+    return text if len(text) <= 200 else text[:197] + "..."

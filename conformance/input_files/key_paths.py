@@ -1,0 +1,150 @@
+"""Paths of keys: parsing of dotted keys, and steps through models and through the content of files."""
+
+import re
+import typing
+from collections.abc import Iterator, Sequence
+from types import NoneType, UnionType
+from typing import Annotated, Any
+
+from pydantic import BaseModel
+
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.suggestions import suggest_names
+from pantocheck.conformance.input_files.table_models import find_field
+from pantocheck.conformance.input_files.units import suggest_key
+
+KeyPath = tuple[str | int, ...]
+"""Names of keys, and indices of list items from 0."""
+
+_PART = re.compile(r"""(?:^|\.)(?:([A-Za-z0-9_-]+)|"([^"]*)")((?:\[[0-9]{1,6}\])*)""")
+
+
+def parse_key(text: str) -> KeyPath | None:
+    """Parse a dotted key with list items numbered from 1, such as `droppers.x_m[3]`; None if it is not one."""
+    matches = list(_PART.finditer(text))
+    if not matches or "".join(match.group() for match in matches) != text:
+        return None
+    parts: list[str | int] = []
+    for match in matches:
+        parts.append(match.group(2) if match.group(1) is None else match.group(1))
+        parts += [int(number) - 1 for number in re.findall("[0-9]+", match.group(3))]
+    return None if -1 in parts else tuple(parts)
+
+
+def find_holders(model: type[BaseModel], path: KeyPath) -> list[type[BaseModel] | None]:
+    """Model of the table that holds each part of a path; None for list items and freely named tables.
+
+    The list is shorter than the path if a part does not exist.
+    """
+    annotation: Any = model
+    holders: list[type[BaseModel] | None] = []
+    for part in path:
+        steps = [step for each in _list_alternatives(annotation) if (step := _step(each, part)) is not None]
+        if not steps:
+            return holders
+        holder, annotation = steps[0]
+        holders.append(holder)
+    return holders
+
+
+def check_path(
+    models: Sequence[type[BaseModel]], path: KeyPath, value: object, where: str, everywhere: list[str]
+) -> None:
+    """Check that a key exists.
+
+    Parameters
+    ----------
+    models : sequence of type of BaseModel
+        Models of the tables that may hold the key.
+    path : KeyPath
+        Path of the key.
+    value : object
+        New value, for a suggestion in another unit.
+    where : str
+        Name of the key in messages.
+    everywhere : list of str
+        Dotted keys of all files, for a suggestion.
+
+    Raises
+    ------
+    InputError
+        A part does not exist; the hint suggests keys.
+    """
+    found = max(len(find_holders(model, path)) for model in models)
+    if found == len(path):
+        return
+    part = path[found]
+    if isinstance(part, int):
+        raise InputError(where, "is no list", f"Leave out [{part + 1}].")
+    above = join_path(path[:found])
+    below = [key for model in models for key in list_dotted_keys(model) if key.startswith(above)]
+    names = list(dict.fromkeys(key.removeprefix(f"{above}.").partition(".")[0] for key in below))
+    hint = suggest_key(part, value, names) or suggest_names(part, names)
+    elsewhere = list(dict.fromkeys(key for key in everywhere if f".{key}".endswith("." + join_path(path))))
+    raise InputError(where, "unknown key", f"Did you mean {' or '.join(elsewhere)} ?" if elsewhere else hint)
+
+
+def follow_path(tree: dict[str, Any], path: KeyPath, where: str) -> tuple[Any, str | int, Any]:
+    """Table or list that holds the last part of a path, this part, and its value (None: not in the file).
+
+    Missing tables are added.
+
+    Raises
+    ------
+    InputError
+        A list item does not exist, or a part above the last one is neither a table nor a list.
+    """
+    node: Any = tree
+    for i, part in enumerate(path):
+        if isinstance(part, int):
+            if not isinstance(node, list) or part >= len(node):
+                found = f"has {len(node)} items" if isinstance(node, list) else "is not in the file"
+                raise InputError(where, f"{join_path(path[:i])} {found}", "Items are numbered from 1.")
+        elif not isinstance(node, dict):
+            raise InputError(where, f"{join_path(path[:i])} is not a table in this file", "Set the whole value.")
+        if i == len(path) - 1:
+            break
+        node = node[part] if isinstance(part, int) else node.setdefault(part, {})
+    return node, path[-1], node[path[-1]] if isinstance(path[-1], int) else node.get(path[-1])
+
+
+def join_path(path: KeyPath) -> str:
+    """Dotted key of a path, with list items numbered from 1."""
+    return "".join(f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in path).removeprefix(".")
+
+
+def list_dotted_keys(model: type[BaseModel], prefix: str = "") -> list[str]:
+    """Dotted keys of a file at all levels, without those of tables in lists and of freely named tables."""
+    return list(dict.fromkeys(_iterate_keys(model, prefix)))
+
+
+def _iterate_keys(model: type[BaseModel], prefix: str) -> Iterator[str]:
+    for name, field in model.model_fields.items():
+        key = f"{prefix}.{field.alias or name}".removeprefix(".")
+        yield key
+        for member in _list_alternatives(field.annotation):
+            if isinstance(member, type) and issubclass(member, BaseModel):
+                yield from _iterate_keys(member, key)
+
+
+def _list_alternatives(annotation: Any) -> list[Any]:
+    """Members of a union, without None and annotations."""
+    origin = typing.get_origin(annotation)
+    if origin is Annotated:
+        return _list_alternatives(typing.get_args(annotation)[0])
+    if origin in (typing.Union, UnionType):
+        return [each for member in typing.get_args(annotation) for each in _list_alternatives(member)]
+    return [] if annotation is NoneType else [annotation]
+
+
+def _step(annotation: Any, part: str | int) -> tuple[type[BaseModel] | None, Any] | None:
+    """Holder and annotation of a part of a path; None if the annotation has no such part."""
+    origin, arguments = typing.get_origin(annotation), typing.get_args(annotation)
+    if isinstance(part, int):
+        return (None, arguments[0]) if origin in (tuple, list) else None
+    if origin is dict:
+        return None, arguments[1]
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        name = find_field(annotation, part)
+        return None if name is None else (annotation, annotation.model_fields[name].annotation)
+    return None
