@@ -95,6 +95,6 @@ def _draw(case: Case, path: Path) -> None:
     draw = DRAWING_FORMATS[path.suffix.lower()]
     check_writable(path.parent)
     line = discretise(build_catenary(case.line), case.file.discretisation.element_m)
-    write_atomically(
-        path, draw(LineDrawing(line, case.line.title, case.line.geometry, list_marks(case, line.catenary)))
-    )
+    marks = list_marks(case, line.catenary)
+    drawing = LineDrawing(line, case.line.title, case.line.geometry, marks, case.line.section_places)
+    write_atomically(path, draw(drawing))

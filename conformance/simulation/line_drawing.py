@@ -1,5 +1,6 @@
 """Drawing of a whole line at rest: side view and plan view in rows of a few spans, at one scale."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,7 @@ from matplotlib.lines import Line2D
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.geometry import Geometry
+from pantocheck.conformance.cases.section_tables import SectionPlace
 from pantocheck.conformance.reports.figures.figure_style import GREY, INK, PALE, render_pdf_pages, render_svg
 from pantocheck.conformance.simulation.drawing_marks import DrawnMark
 from pantocheck.conformance.simulation.drawing_rows import (
@@ -24,10 +26,10 @@ from pantocheck.conformance.simulation.drawing_rows import (
     divide_into_rows,
     row_height,
 )
-from pantocheck.model import DiscretisedLine, Kind, Wire
+from pantocheck.model import Catenary, DiscretisedLine, Kind, Wire
 
 WIDTHS = {Kind.CONTACT_WIRE: 1.6, Kind.MESSENGER_WIRE: 1.0, Kind.STITCH_WIRE: 0.7}
-SYMBOLS = {"messenger support": "^", "steady arm": "o", "sensor": "s", "mass": "v"}
+SYMBOLS = {"messenger support": "^", "steady arm": "o", "anchor": "D", "sensor": "s", "mass": "v"}
 """Marker of each part that is drawn as a point."""
 LABEL_OFFSET = 0.42
 """Distance of the names of the vertical axes from the axes [in]."""
@@ -51,12 +53,15 @@ class LineDrawing:
         Spans of the line.
     marks : tuple of DrawnMark
         Sensors and masses.
+    sections : tuple of SectionPlace
+        Tension sections; empty: one section.
     """
 
     line: DiscretisedLine
     title: str
     geometry: Geometry
     marks: tuple[DrawnMark, ...] = ()
+    sections: tuple[SectionPlace, ...] = ()
 
     @property
     def rows(self) -> tuple[DrawingRow, ...]:
@@ -142,7 +147,7 @@ def _write_heading(figure: Figure, drawing: LineDrawing, height: float) -> None:
     figure.text(place, 1 - 0.2 / height, drawing.title, fontsize=9, va="center")
     text = f"side view{' and plan view' if len(views) > 1 else ''}; along the track [m]; {', '.join(scales)} enlarged"
     figure.text(place, 1 - 0.4 / height, text, fontsize=7, color=GREY, va="center")
-    shown = {"messenger support", "steady arm", *(mark.symbol for mark in drawing.marks)}
+    shown = {"messenger support", "steady arm", "anchor", *(mark.symbol for mark in drawing.marks)}
     handles = [
         Line2D(
             [], [], linestyle="", marker=marker, color=INK, markersize=4, label=name, markerfacecolor=_fill_colour(name)
@@ -180,15 +185,22 @@ def _add_view(figure: Figure, drawing: LineDrawing, row: DrawingRow, field: str,
         if row.start <= dropper.position <= row.end:
             ends = [drawing.deflection(name, field, dropper.position) for name in (dropper.lower, dropper.upper)]
             axes.plot([dropper.position] * 2, ends, color=GREY, linewidth=0.7)
-    for name, parts in (("messenger support", catenary.messenger_supports), ("steady arm", catenary.steady_arms)):
-        for part in parts:
-            if row.start <= part.position <= row.end:
-                height = drawing.deflection(part.wire, field, part.position)
-                axes.plot(
-                    part.position, height, SYMBOLS[name], color=INK, markersize=3, clip_on=False,
-                    markerfacecolor=_fill_colour(name),
-                )  # fmt: skip
+    for symbol, wire_name, position in _list_points(catenary):
+        if row.start <= position <= row.end:
+            axes.plot(
+                position, drawing.deflection(wire_name, field, position), SYMBOLS[symbol], color=INK, markersize=3,
+                clip_on=False, markerfacecolor=_fill_colour(symbol),
+            )  # fmt: skip
     return axes
+
+
+def _list_points(catenary: Catenary) -> Iterator[tuple[str, str, float]]:
+    """Symbol, wire and position of every anchor, messenger support and steady arm."""
+    for wire in catenary.wires:
+        if wire.kind is not Kind.STITCH_WIRE:
+            yield from (("anchor", wire.name, end) for end in (wire.start, wire.end))
+    yield from (("messenger support", support.wire, support.position) for support in catenary.messenger_supports)
+    yield from (("steady arm", arm.wire, arm.position) for arm in catenary.steady_arms)
 
 
 def _name_spans(axes: Axes, drawing: LineDrawing, row: DrawingRow) -> None:
@@ -196,8 +208,10 @@ def _name_spans(axes: Axes, drawing: LineDrawing, row: DrawingRow) -> None:
     limits = drawing.geometry.span_limits
     for number in range(row.first, row.last + 1):
         start, end = drawing.geometry.span(number)
+        sections = [str(place.number) for place in drawing.sections if place.first < number <= place.last]
+        section = f", section {' and '.join(sections)}" if len(drawing.sections) > 1 else ""
         axes.annotate(
-            f"span {number}: {end - start:g} m", ((start + end) / 2, 0), xycoords=("data", "axes fraction"),
+            f"span {number}: {end - start:g} m{section}", ((start + end) / 2, 0), xycoords=("data", "axes fraction"),
             xytext=(0, 2), textcoords="offset points", ha="center", fontsize=6, color=INK,
         )  # fmt: skip
     for number, x in enumerate(limits):

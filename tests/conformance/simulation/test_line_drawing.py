@@ -8,6 +8,7 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from helpers.section_lines import section_line
 from pantocheck.conformance.cases.geometry import Geometry, ListedSpans
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.simulation.catenary_model import build_catenary
@@ -192,6 +193,20 @@ def test_masses_and_sensors_stand_on_their_wires_with_their_texts() -> None:
         row = line.mesh.row_of[mark.wire, "z"]
         height = np.interp(mark.position, line.mesh.position, line.state.deflection[row, :, 0])
         assert (mark.position, pytest.approx(height)) in drawn
+
+
+def test_tension_sections_are_named_and_their_anchors_marked() -> None:
+    """Two sections of six spans with an overlap of three; contact and messenger wire are anchored twice each."""
+    file = section_line()
+    line = discretise(build_catenary(file), 2.0)
+    drawing = LineDrawing(line, "Line", file.geometry, sections=file.section_places)
+    views = paint_rows(drawing, drawing.rows, 10.0).axes
+    named = [text for axes in views for text in texts(axes) if text.startswith("span")]
+    assert named[2:4] == ["span 3: 60 m, section 1", "span 4: 60 m, section 1 and 2"]
+    assert named[5:7] == ["span 6: 60 m, section 1 and 2", "span 7: 60 m, section 2"]
+    anchors = sorted({x for axes in views for x in points(axes, "D")})
+    assert anchors == pytest.approx([0.0, 180.0, 360.0, 540.0])
+    assert len(points(views[0], "D")) == 4
 
 
 @pytest.mark.parametrize(("spans", "rows", "pages"), [(1, 1, 1), (6, 1, 1), (20, 4, 2), (66, 11, 4)])
