@@ -41,7 +41,7 @@ def static_uplift(line: DiscretisedLine, position: Array, force: float) -> Array
 
 
 def rest_height(line: DiscretisedLine, position: Array) -> Array:
-    """Height of the contact wire at rest.
+    """Height of the contact wire at rest, with its irregularity.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def rest_height(line: DiscretisedLine, position: Array) -> Array:
     """
     deflection = line.state.deflection.transpose(1, 0, 2).ravel()
     heights = [np.mean([point_load(line, row, x) @ deflection for row in touched_rows(line, x)]) for x in position]
-    return np.array(heights)
+    return np.asarray(np.array(heights) + _mean_irregularity(line, position))
 
 
 def height_under_forces(line: DiscretisedLine, position: Array, force: Array) -> Array:
