@@ -63,8 +63,52 @@ class StaticRecord:
     values: dict[StaticValue, RealArray]
 
 
+def read_static_table(path: Path) -> StaticRecord:
+    """Read a static record without regard to its line.
+
+    Parameters
+    ----------
+    path : Path
+        Table, or its sidecar; both have the same stem.
+
+    Returns
+    -------
+    StaticRecord
+        The record.
+
+    Raises
+    ------
+    InputError
+        A file is missing or damaged; a column is unknown, missing, repeated or empty; a value is infinite, a position
+        is missing, or an elasticity is not positive; the sidecar lacks the force of the elasticities.
+    """
+    sidecar_path = path.with_suffix(".toml")
+    sidecar = read_model(sidecar_path, StaticSidecar, "sidecar")
+    table = locate_table(sidecar_path, sidecar.file, sidecar.sha256)
+    columns = _read_columns(read_tables(table, (), LARGEST_TABLE, (CSV, HDF5)))
+    where = f"record '{table.name}'"
+    position = columns["position"] - sidecar.line_start_m
+    values: dict[StaticValue, RealArray] = {name: columns[name] for name in STATIC_VALUES if name in columns}
+    if "contact_wire_height" in values:
+        values["contact_wire_height"] = values["contact_wire_height"] - sidecar.datum_m
+    if not values:
+        raise InputError(where, "has no measured value", f"Store {' or '.join(USUAL_COLUMNS[1:])} beside the position.")
+    problems = [*_find_force_problems(sidecar_path, sidecar, values), *_find_row_problems(where, position, values)]
+    if problems:
+        raise join_errors(problems)
+    order = np.argsort(position, kind="stable")
+    return StaticRecord(
+        table.name,
+        record_digest(sidecar_path, table),
+        sidecar,
+        order + 1,
+        position[order],
+        {name: measured[order] for name, measured in values.items()},
+    )
+
+
 def read_static_record(path: Path, geometry: Geometry) -> StaticRecord:
-    """Read a static record.
+    """Read a static record of a line.
 
     Parameters
     ----------
@@ -81,36 +125,13 @@ def read_static_record(path: Path, geometry: Geometry) -> StaticRecord:
     Raises
     ------
     InputError
-        A file is missing or damaged; a column is unknown, missing, repeated or empty; a value is infinite, an
-        elasticity is not positive, or a position is missing or outside the line; the sidecar names other spans than
-        the line has, or lacks the force of the elasticities.
+        The record is invalid (`read_static_table`), has a position outside the line, or names other spans than the
+        line has.
     """
-    sidecar_path = path.with_suffix(".toml")
-    sidecar = read_model(sidecar_path, StaticSidecar, "sidecar")
-    table = locate_table(sidecar_path, sidecar.file, sidecar.sha256)
-    columns = _read_columns(read_tables(table, (), LARGEST_TABLE, (CSV, HDF5)))
-    where = f"record '{table.name}'"
-    position = columns["position"] - sidecar.line_start_m
-    values: dict[StaticValue, RealArray] = {name: columns[name] for name in STATIC_VALUES if name in columns}
-    if "contact_wire_height" in values:
-        values["contact_wire_height"] = values["contact_wire_height"] - sidecar.datum_m
-    if not values:
-        raise InputError(where, "has no measured value", f"Store {' or '.join(USUAL_COLUMNS[1:])} beside the position.")
-    problems = [
-        *_find_sidecar_problems(f"sidecar '{sidecar_path.name}'", sidecar, values, geometry),
-        *_find_row_problems(where, position, values, geometry.length),
-    ]
-    if problems:
+    record = read_static_table(path)
+    if problems := list(_find_line_problems(path.with_suffix(".toml"), record, geometry)):
         raise join_errors(problems)
-    order = np.argsort(position, kind="stable")
-    return StaticRecord(
-        table.name,
-        record_digest(sidecar_path, table),
-        sidecar,
-        order + 1,
-        position[order],
-        {name: measured[order] for name, measured in values.items()},
-    )
+    return record
 
 
 def _read_columns(tables: list[MeasuredTable]) -> dict[str, RealArray]:
@@ -142,44 +163,43 @@ def _find_column(name: str, place: str) -> tuple[str, float]:
     )
 
 
-def _find_row_problems(
-    where: str, position: RealArray, values: dict[StaticValue, RealArray], length: float
-) -> Iterator[InputError]:
-    """Missing positions, positions outside the line, infinite values, and elasticities that are not positive."""
+def _find_row_problems(where: str, position: RealArray, values: dict[StaticValue, RealArray]) -> Iterator[InputError]:
+    """Missing positions, infinite values, and elasticities that are not positive."""
     if (missing := np.flatnonzero(~np.isfinite(position))).size:
-        yield InputError(f"{where}, {_name_rows(missing)}", "the position is missing", "Give the position of each row.")
-    if (outside := np.flatnonzero((position < 0) | (position > length))).size:
         yield InputError(
-            f"{where}, {_name_rows(outside)}",
-            f"the position is not on the line: {', '.join(f'{x:g} m' for x in position[outside][:MOST_NAMED_ROWS])} "
-            "from its start",
-            f"The line ends at {length:g} m. If the table counts from elsewhere, give line_start_m in the sidecar.",
+            f"{where}, {_name_rows(missing + 1)}", "the position is missing", "Give the position of each row."
         )
     for name, measured in values.items():
         if np.isnan(measured).all():
             yield InputError(f"{where}, {_in_words(name)}", "the column holds no value", "Remove the column.")
         if (infinite := np.flatnonzero(np.isinf(measured))).size:
             yield InputError(
-                f"{where}, {_name_rows(infinite)}", f"the {_in_words(name)} is infinite", "Write nan for no value."
+                f"{where}, {_name_rows(infinite + 1)}", f"the {_in_words(name)} is infinite", "Write nan for no value."
             )
     if (wrong := np.flatnonzero(values.get("elasticity", np.ones(1)) <= 0)).size:
         yield InputError(
-            f"{where}, {_name_rows(wrong)}",
+            f"{where}, {_name_rows(wrong + 1)}",
             "the elasticity is not positive",
             "A force lifts the wire: correct the value, or write nan for no value.",
         )
 
 
-def _find_sidecar_problems(
-    where: str, sidecar: StaticSidecar, values: dict[StaticValue, RealArray], geometry: Geometry
+def _find_force_problems(
+    path: Path, sidecar: StaticSidecar, values: dict[StaticValue, RealArray]
 ) -> Iterator[InputError]:
+    """Elasticities without the force that lifted the wire."""
     if "elasticity" in values and sidecar.force_N is None:
         yield InputError(
-            f"{where}, key force_N",
+            f"sidecar '{path.name}', key force_N",
             "missing",
             "Give the force of the elasticities, e.g. force_N = [100.0], or both forces of a difference; droppers that "
             "slacken make the elasticity depend on it.",
         )
+
+
+def _find_line_problems(path: Path, record: StaticRecord, geometry: Geometry) -> Iterator[InputError]:
+    """Positions outside the line, and data of the sidecar that do not fit its spans."""
+    where, sidecar = f"sidecar '{path.name}'", record.sidecar
     if sidecar.evaluated_spans is not None and sidecar.evaluated_spans[1] > geometry.spans:
         yield InputError(
             f"{where}, key evaluated_spans",
@@ -192,11 +212,20 @@ def _find_sidecar_problems(
             f"{sidecar.largest_distance_m:g} m is longer than the shortest span of {geometry.shortest_span:g} m",
             "Give a smaller distance: a complete record has values in every span.",
         )
+    outside = np.flatnonzero((record.position < 0) | (record.position > geometry.length))
+    if outside.size:
+        positions = ", ".join(f"{x:g} m" for x in record.position[outside][:MOST_NAMED_ROWS])
+        yield InputError(
+            f"record '{record.source}', {_name_rows(record.row[outside])}",
+            f"the position is not on the line: {positions} from its start",
+            f"The line ends at {geometry.length:g} m. If the table counts from elsewhere, give line_start_m in the "
+            "sidecar.",
+        )
 
 
 def _name_rows(rows: IntegerArray) -> str:
-    """Rows by number from 1; the first ones of many."""
-    names = ", ".join(str(row + 1) for row in rows[:MOST_NAMED_ROWS])
+    """Rows by number; the first ones of many."""
+    names = ", ".join(map(str, rows[:MOST_NAMED_ROWS]))
     further = rows.size - MOST_NAMED_ROWS
     return f"row{'s' if rows.size > 1 else ''} {names}" + (f" and {further} more" if further > 0 else "")
 

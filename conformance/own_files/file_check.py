@@ -7,6 +7,8 @@ from pydantic import TypeAdapter
 
 from pantocheck.conformance.cases.library import load_case
 from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.comparison.static_record import read_static_table
+from pantocheck.conformance.comparison.static_sidecar import STATIC_SCHEMA
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.json_file import read_json, validate_json
 from pantocheck.conformance.input_files.suggestions import suggest_names
@@ -126,10 +128,17 @@ def _check_drops(path: Path) -> str:
     return f"mass-drop record: {len(records)} run(s) in {path.name}"
 
 
+def _check_static(path: Path) -> str:
+    record = read_static_table(path)
+    return f"static record: {record.position.size} positions with {' and '.join(record.values)} in {record.source}"
+
+
 def _check_table(path: Path) -> str:
     sidecar = path.with_suffix(".toml")
-    is_record = sidecar.is_file() and read_toml(sidecar, "sidecar").get("schema") in RECORD_SCHEMAS
-    return _check_record(sidecar) if is_record else _check_drops(path)
+    schema = read_toml(sidecar, "sidecar").get("schema") if sidecar.is_file() else None
+    if schema == STATIC_SCHEMA:
+        return _check_static(sidecar)
+    return _check_record(sidecar) if schema in RECORD_SCHEMAS else _check_drops(path)
 
 
 def _check_json(path: Path) -> str:
@@ -145,4 +154,5 @@ _CHECKS: dict[str, Callable[[Path], str]] = {
     "line": _check_line,
     "record": _check_record,
     "mass-drop": _check_drop_sidecar,
+    "static": _check_static,
 }

@@ -66,11 +66,23 @@ def test_record_that_cannot_be_compared_is_refused(
         read_static_record(write_static_record(tmp_path, COLUMNS | columns, **sidecar), GEOMETRY)
 
 
-def test_all_problems_of_rows_and_sidecar_are_named_at_once(tmp_path: Path) -> None:
-    columns = COLUMNS | {"position_m": np.array([1.0, 500.0, np.nan]), "elasticity_mm_N": np.array([-1.0, 1.0, 1.0])}
+@pytest.mark.parametrize(
+    ("columns", "sidecar", "count"),
+    [
+        (
+            {"position_m": np.array([1.0, 2.0, np.nan]), "elasticity_mm_N": np.array([-1, 1, np.inf])},
+            {"force_N": None},
+            4,
+        ),
+        ({"position_m": np.array([1.0, 500.0, 2.0])}, {"evaluated_spans": [1, 9], "largest_distance_m": 99.0}, 3),
+    ],
+)
+def test_all_problems_of_rows_and_sidecar_are_named_at_once(
+    tmp_path: Path, columns: dict[str, Any], sidecar: dict[str, Any], count: int
+) -> None:
     with pytest.raises(InputError) as caught:
-        read_static_record(write_static_record(tmp_path, columns, force_N=None, evaluated_spans=[1, 9]), GEOMETRY)
-    assert len(caught.value.problems) == 5
+        read_static_record(write_static_record(tmp_path, COLUMNS | columns, **sidecar), GEOMETRY)
+    assert len(caught.value.problems) == count
 
 
 @pytest.mark.parametrize("columns", [["position_m"], ["elasticity_mm_N"]])

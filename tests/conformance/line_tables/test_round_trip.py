@@ -8,6 +8,7 @@ import tomli_w
 
 from helpers.line_table_files import export_and_import, export_tables
 from helpers.listed_spans import list_spans, list_supports
+from helpers.section_lines import section_tables
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.input_files.toml_file import read_model
@@ -72,7 +73,15 @@ def test_library_lines_keep_their_catenary(tmp_path: Path, base: Path, mark: str
     assert build_catenary(line) == build_catenary(read_model(base, LineFile, "line"))
 
 
-@pytest.mark.parametrize("write", [write_line_as_built, write_listed_supports])
+def write_line_of_sections(folder: Path) -> Path:
+    """Two tension sections with an overlap of three spans, and a section insulator."""
+    tables = section_tables("en50318-2018/ac-simple")
+    insulator = {"x_m": 92.0, "wire": "contact_wire", "mass_kg": 12.0}
+    (folder / "sections.toml").write_text(tomli_w.dumps(tables | {"point_mass": [insulator]}), encoding="utf-8")
+    return folder / "sections.toml"
+
+
+@pytest.mark.parametrize("write", [write_line_as_built, write_listed_supports, write_line_of_sections])
 def test_lines_as_built_keep_their_catenary(tmp_path: Path, write: object) -> None:
     base = write(tmp_path)  # type: ignore[operator]
     line, _ = export_and_import(tmp_path, base)

@@ -3,11 +3,13 @@
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner, Result
 
 from helpers.case_fixtures import EditedCase
 from helpers.drop_records import build_drop_record
+from helpers.static_records import write_static_record
 from helpers.toml_edit import edit_toml
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.command_line.app import app
@@ -49,6 +51,7 @@ def test_kinds_of_the_library_are_recognised(name: str, kind: str) -> None:
         ('system = "builtin"\ncases = ["en50318-2002/250"]\n', "plan"),
         ('schema = "pantocheck.record/1"\nspeed_km_h = 250.0\n', "record"),
         ('schema = "pantocheck.summary/1"\nspeed_km_h = 250.0\n', "summary"),
+        ('schema = "pantocheck.static/1"\nforce_N = [100.0]\n', "static"),
         ("[record]\nsampling_rate_hz = 100.0\n[[channel]]\ncolumn = 1\n", "mass-drop"),
         ('id = "own/a"\nlin = "line.toml"\nspeed_kmh = 250.0\n', "case"),
         ('title = "T"\n[geometry]\nspan_m = 60.0\n[damping]\n', "line"),
@@ -157,3 +160,16 @@ def test_kind_can_be_stated(tmp_path: Path) -> None:
 
 def test_folder_without_input_files_is_refused(tmp_path: Path) -> None:
     assert check(tmp_path).exit_code == 2
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".toml"])
+def test_static_record_is_checked_with_its_table(tmp_path: Path, suffix: str) -> None:
+    columns = {"position_m": np.array([1.0, 2.0]), "elasticity_mm_N": np.array([0.4, 0.5])}
+    table = write_static_record(tmp_path, columns)
+    result = check(table.with_suffix(suffix))
+    assert result.exit_code == 0, result.output
+    assert "static record: 2 positions with elasticity in measured.csv" in result.output
+    write_static_record(tmp_path, columns | {"elasticity_mm_N": np.array([0.4, -0.5])}, force_N=None)
+    result = check(table.with_suffix(suffix))
+    assert result.exit_code == 2
+    assert "2 problem(s) in 1 of 1 file(s)" in result.output
