@@ -25,6 +25,7 @@ from pantocheck.conformance.cases.section_tables import (
     place_sections,
 )
 from pantocheck.conformance.cases.support_tables import MOST_SPANS, ClampMass, MessengerSupportTable, SteadyArmTable
+from pantocheck.conformance.cases.variation import ListedLengthChanges, Variation
 from pantocheck.conformance.cases.wire_changes import (
     MOST_CHANGES,
     BendingStiffness,
@@ -171,6 +172,9 @@ class LineFile(InputTable):
         ),
     ] = None
     overlap: Annotated[OverlapTable | None, Field(exclude_if=is_absent)] = None
+    variation: Annotated[
+        Variation | None, Field(description="variation of the line after it was built", exclude_if=is_absent)
+    ] = None
     note: Annotated[str | None, Field(description="remark for the reader", max_length=4000)] = None
 
     @property
@@ -250,7 +254,7 @@ class LineFile(InputTable):
 
     @cross_check
     def _check_point_masses(self) -> Problems:
-        yield from check_point_masses(self.point_mass, self.geometry.length)
+        yield from check_point_masses(self.point_mass, self.geometry.length, self.overlaps)
 
     @cross_check
     def _check_irregularity(self) -> Problems:
@@ -268,6 +272,19 @@ class LineFile(InputTable):
     def _check_sections(self) -> Problems:
         if self.section is not None and self.overlap is not None:
             yield from find_span_problems(self.section, self.overlap.spans, self.geometry.spans)
+
+    @cross_check
+    def _check_length_changes(self) -> Problems:
+        table = None if self.variation is None else self.variation.droppers
+        if isinstance(table, ListedLengthChanges):
+            found = [len(span) for span in table.length_change_m]
+            needed = [len(schedule.x_m) for schedule in self.dropper_schedules]
+            if found != needed:
+                yield validation_problem(
+                    "variation.droppers.length_change_m",
+                    f"{len(found)} lists with {sum(found)} changes for {len(needed)} spans with {sum(needed)} droppers",
+                    "Give one list per span, with one change per dropper.",
+                )
 
     def _schedule_key(self, number: int) -> str:
         """Key of the dropper schedule of a span."""

@@ -101,11 +101,20 @@ def check_changes(key: str, changes: Sequence[WireChange], length: float) -> Pro
             )
 
 
-def check_point_masses(masses: Sequence[PointMassTable], length: float) -> Problems:
-    """Problems of the point masses of a line of a length [m]."""
+def check_point_masses(
+    masses: Sequence[PointMassTable], length: float, overlaps: Sequence[tuple[float, float]]
+) -> Problems:
+    """Problems of the point masses of a line of a length [m] with overlaps from start to end [m, m]."""
     for number, mass in enumerate(masses, 1):
         if not 0.0 < mass.x_m < length:
             yield _beyond_end(f"point_mass[{number}].x_m", mass.x_m, length)
+        for start, end in overlaps:
+            if start < mass.x_m < end:
+                yield validation_problem(
+                    f"point_mass[{number}].x_m",
+                    f"{mass.x_m:g} m lies in the overlap from {start:g} m to {end:g} m, where two sections have wires",
+                    "Give a position outside of the overlaps.",
+                )
 
 
 def _beyond_end(key: str, position: float, length: float) -> PydanticCustomError:

@@ -7,6 +7,7 @@ from pantocheck.conformance.cases.damping_file import ComponentDamping
 from pantocheck.conformance.cases.line_file import LineFile, WireTable
 from pantocheck.conformance.cases.line_layout import LineLayout, SpanLimit
 from pantocheck.conformance.simulation.line_details import add_details
+from pantocheck.conformance.simulation.line_variation import vary_catenary
 from pantocheck.conformance.simulation.section_model import join_line
 from pantocheck.model import (
     Catenary,
@@ -47,16 +48,25 @@ def build_catenary(line: LineFile) -> Catenary:
     -------
     Catenary
         Catenary for the simulator.
+
+    Raises
+    ------
+    NoInitialState
+        The varied line has no equilibrium.
     """
     layout = line.layout
     sections = [_build_section(line, layout.part(place.first, place.last)) for place in line.section_places]
     catenary = sections[0] if line.overlap is None else join_line(line, line.overlap, sections)
-    catenary = add_details(catenary, line)
-    if not line.droppers.mass_kg_m:
+    return vary_catenary(_add_dropper_masses(add_details(catenary, line), line.droppers.mass_kg_m), line)
+
+
+def _add_dropper_masses(catenary: Catenary, mass_per_length: float | None) -> Catenary:
+    """Masses of the droppers from their lengths, if a mass per length is given [kg/m]."""
+    if not mass_per_length:
         return catenary
     # The lengths depend slightly on the weights: after two passes they are accurate to 0.1 mm.
     for _ in range(2):
-        masses = line.droppers.mass_kg_m * discretise(catenary, COARSE).state.dropper_length
+        masses = mass_per_length * discretise(catenary, COARSE).state.dropper_length
         droppers = zip(catenary.droppers, masses, strict=True)
         catenary = replace(catenary, droppers=tuple(replace(dropper, mass=float(mass)) for dropper, mass in droppers))
     return catenary

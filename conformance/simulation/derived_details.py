@@ -23,7 +23,7 @@ def derive_stretches(file: LineFile, line: DiscretisedLine, wire: Wire) -> tuple
         Wire of the line.
     """
     table = file.contact_wire if wire.kind is Kind.CONTACT_WIRE else file.messenger_wire
-    if not table.change:
+    if not table.change and wire.tension == table.tension_N:
         return ()
     row, limits, beams = line.mesh.row_of[wire.name, "z"], line.mesh.position, line.beams
     inside = [e for e in range(limits.size - 1) if wire.start <= limits[e] < wire.end and beams.mass_per_length[row, e]]

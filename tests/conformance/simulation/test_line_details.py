@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from helpers.changed_lines import changed_line, changed_tables
+from helpers.section_lines import section_tables
 from helpers.toml_edit import write_toml
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.input_files.input_error import InputError
@@ -95,6 +96,14 @@ def test_first_spans_of_a_line_keep_their_details_only() -> None:
     }
     modes = [first_modes(changed_line(details, 12), 5.0).frequency for details in ({}, later)]
     assert modes[1] == pytest.approx(modes[0], rel=0.01)
+
+
+def test_mass_in_an_overlap_is_refused(tmp_path: Any) -> None:
+    """Two sections have wires there, and the table does not say which of them carries the mass."""
+    tables = section_tables() | {"point_mass": [INSULATOR | {"x_m": 250.0}]}
+    write_toml(tmp_path / "line.toml", tables)
+    with pytest.raises(InputError, match=r"point_mass\[1\].x_m: 250 m lies in the overlap from"):
+        read_model(tmp_path / "line.toml", LineFile, "line")
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,82 @@
+"""Variation of a catenary after it was built: other tensions, and droppers of other lengths.
+
+The line is built with its nominal data. Then its tensions change. Its droppers keep their unloaded lengths or change
+them by a tolerance, and the contact wire hangs at other heights.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.cases.variation import ListedLengthChanges, Variation, WireVariation
+from pantocheck.model import Catenary, Kind, Wire
+from pantocheck.model.statics.dropper_lengths import compute_unloaded_lengths, hang_on_droppers
+from pantocheck.model.statics.wire_climate import excess_lengths, fixed_tension
+
+VARIATION_ELEMENT_M = 1.0
+"""Element length for the heights of a varied line [m]; with elements of 0.25 m they change by less than 0.1 mm."""
+
+
+def vary_catenary(catenary: Catenary, line: LineFile) -> Catenary:
+    """Apply the variation of a line file to the catenary as built.
+
+    Parameters
+    ----------
+    catenary : Catenary
+        Catenary with the nominal data.
+    line : LineFile
+        Content of the line file.
+
+    Returns
+    -------
+    Catenary
+        Catenary with varied tensions and heights; the same one without a variation.
+
+    Raises
+    ------
+    NoInitialState
+        A wire would have no tension left, or a dropper would be slack at rest.
+    """
+    variation = line.variation
+    if variation is None:
+        return catenary
+    length = compute_unloaded_lengths(catenary, VARIATION_ELEMENT_M) + _length_changes(variation, catenary, line)
+    excess = excess_lengths(catenary, VARIATION_ELEMENT_M)
+    wires = tuple(_vary_tension(wire, variation, excess[wire.name]) for wire in catenary.wires)
+    return hang_on_droppers(replace(catenary, wires=wires), length, VARIATION_ELEMENT_M)
+
+
+def _vary_tension(wire: Wire, variation: Variation, excess_length: float) -> Wire:
+    """Wire with its tension after the change of temperature and with its tolerance; a stitch wire is unchanged."""
+    tables = {Kind.CONTACT_WIRE: variation.contact_wire, Kind.MESSENGER_WIRE: variation.messenger_wire}
+    table = tables.get(wire.kind, WireVariation())
+    tension = wire.tension
+    if table.ends == "fixed" and table.axial_stiffness_EA_N and table.expansion_coefficient_1_K:
+        strain = table.expansion_coefficient_1_K * variation.temperature_change_K
+        tension = fixed_tension(tension, excess_length, table.axial_stiffness_EA_N, strain)
+    return replace(wire, tension=tension * (1 + table.tension_change_share))
+
+
+def _length_changes(variation: Variation, catenary: Catenary, line: LineFile) -> RealArray:
+    """Change of the length of every dropper [m]."""
+    table = variation.droppers
+    if table is None:
+        return np.zeros(len(catenary.droppers))
+    if isinstance(table, ListedLengthChanges):
+        return np.array(_list_changes(table.length_change_m, line))
+    shares = np.random.PCG64(table.seed).random_raw(len(catenary.droppers)) / 2.0**64
+    return np.asarray(table.tolerance_m * (2 * shares - 1))
+
+
+def _list_changes(spans: Sequence[Sequence[float]], line: LineFile) -> list[float]:
+    """Listed changes of all droppers, section by section; the droppers of parallel wires at one place have the same."""
+    return [
+        change
+        for place in line.section_places
+        for span in spans[place.first : place.last]
+        for change in span
+        for _ in range(line.contact_wire.number)
+    ]
