@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from pantocheck.model.arrays import Array, Indices
 from pantocheck.model.dynamics.active_window import Window
 from pantocheck.model.dynamics.block_tridiagonal import Factor
+from pantocheck.model.dynamics.extents import active_run, find_runs
 from pantocheck.model.dynamics.inverse_columns import add_column, inverse_columns
 from pantocheck.model.dynamics.motion import Motion
 from pantocheck.model.dynamics.sweeps import NEGLIGIBLE_FORCE, maximum
@@ -25,10 +26,12 @@ from pantocheck.model.fem.connectors import Connectors
 
 
 class ConnectorArrays(NamedTuple):
-    """Connectors of a line in a time step; N connectors with at most E ends, L ends in total.
+    """Connectors of a line in a time step; N connectors in R runs with at most E ends, L ends in total.
 
     Parameters
     ----------
+    run : (R + 1,) int ndarray
+        First connector of each run (`find_runs`), and N.
     station : (N,) int ndarray
         Stations of the connectors.
     end_row, end_column : (N, E) int ndarray
@@ -47,6 +50,7 @@ class ConnectorArrays(NamedTuple):
         Whether the tension cannot be negative.
     """
 
+    run: Indices
     station: Indices
     end_row: Indices
     end_column: Indices
@@ -80,6 +84,7 @@ def build_connector_arrays(
     columns = inverse_columns(factor, row, connectors.station[number], np.zeros_like(row), half_width)
     gain = time_step**2 / 4 * connectors.stiffness + time_step / 2 * connectors.damping
     return ConnectorArrays(
+        run=find_runs(connectors.station),
         station=connectors.station,
         end_row=end_row,
         end_column=end_column,
@@ -97,18 +102,18 @@ def build_connector_arrays(
 @njit(cache=True)
 def predict_connectors(connectors: ConnectorArrays, motion: Motion, predicted: Array, window: Window) -> None:
     """Fill the predicted tensions, and load the rows with the tensions of the last step as a first guess."""
-    for n in range(connectors.station.size):
-        s = connectors.station[n]
-        if s < window.first or s > window.last:
-            continue
-        change = motion.tension[n] - connectors.preload[n]
-        elongation, rate = 0.0, 0.0
-        for e in range(connectors.end_row.shape[1]):
-            row, c = connectors.end_row[n, e], connectors.end_coefficient[n, e]
-            elongation += c * motion.w[0, row, s]
-            rate += c * motion.w[1, row, s]
-            motion.w[2, row, s] -= c * change
-        predicted[n] = connectors.preload[n] + connectors.stiffness[n] * elongation + connectors.damping[n] * rate
+    for k in range(connectors.run.size - 1):
+        first, end = active_run(connectors.station[connectors.run[k] : connectors.run[k + 1]], window)
+        for n in range(connectors.run[k] + first, connectors.run[k] + end):
+            s = connectors.station[n]
+            change = motion.tension[n] - connectors.preload[n]
+            elongation, rate = 0.0, 0.0
+            for e in range(connectors.end_row.shape[1]):
+                row, c = connectors.end_row[n, e], connectors.end_coefficient[n, e]
+                elongation += c * motion.w[0, row, s]
+                rate += c * motion.w[1, row, s]
+                motion.w[2, row, s] -= c * change
+            predicted[n] = connectors.preload[n] + connectors.stiffness[n] * elongation + connectors.damping[n] * rate
 
 
 @njit(cache=True)
@@ -116,24 +121,24 @@ def sweep_connectors(connectors: ConnectorArrays, motion: Motion, predicted: Arr
     """Solve every active connector once, all other forces held; return the largest change of a tension [N]."""
     w, r = motion.w[2], motion.r[2]
     largest = 0.0
-    for n in range(connectors.station.size):
-        s = connectors.station[n]
-        if s < window.first or s > window.last:
-            continue
-        acceleration = 0.0
-        for e in range(connectors.end_row.shape[1]):
-            acceleration += connectors.end_coefficient[n, e] * w[connectors.end_row[n, e], s]
-        linear = predicted[n] + connectors.tension_per_acceleration[n] * acceleration
-        compliance = connectors.self_compliance[n]
-        tension = (linear + compliance * motion.tension[n]) / (1 + compliance)
-        if connectors.unilateral[n] and tension < 0.0:
-            tension = 0.0
-        change = tension - motion.tension[n]
-        if abs(change) > NEGLIGIBLE_FORCE:
-            motion.tension[n] = tension
+    for k in range(connectors.run.size - 1):
+        first, end = active_run(connectors.station[connectors.run[k] : connectors.run[k + 1]], window)
+        for n in range(connectors.run[k] + first, connectors.run[k] + end):
+            s, acceleration = connectors.station[n], 0.0
             for e in range(connectors.end_row.shape[1]):
-                row, c = connectors.end_row[n, e], connectors.end_coefficient[n, e]
-                if c != 0.0:
-                    add_column(w[row], r[row], connectors.columns[connectors.end_column[n, e]], s, -c * change, window)
-        largest = maximum(largest, abs(change))
+                acceleration += connectors.end_coefficient[n, e] * w[connectors.end_row[n, e], s]
+            linear = predicted[n] + connectors.tension_per_acceleration[n] * acceleration
+            compliance = connectors.self_compliance[n]
+            tension = (linear + compliance * motion.tension[n]) / (1 + compliance)
+            if connectors.unilateral[n] and tension < 0.0:
+                tension = 0.0
+            change = tension - motion.tension[n]
+            if abs(change) > NEGLIGIBLE_FORCE:
+                motion.tension[n] = tension
+                for e in range(connectors.end_row.shape[1]):
+                    row, c = connectors.end_row[n, e], connectors.end_coefficient[n, e]
+                    if c != 0.0:
+                        column = connectors.columns[connectors.end_column[n, e]]
+                        add_column(w[row], r[row], column, s, -c * change, window)
+            largest = maximum(largest, abs(change))
     return largest

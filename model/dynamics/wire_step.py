@@ -27,7 +27,7 @@ from numba import njit
 
 from pantocheck.model.arrays import Array, Indices
 from pantocheck.model.dynamics.active_window import Window
-from pantocheck.model.dynamics.extents import Extents, clip_extent, find_extents
+from pantocheck.model.dynamics.extents import Extents, active_run, clip_extent, find_extents, find_runs
 from pantocheck.model.dynamics.motion import Motion
 from pantocheck.model.fem.beams import Beams, element_stiffness
 
@@ -54,8 +54,10 @@ class WireArrays(NamedTuple):
         Mass of each element times its mass-proportional damping, over 420 [kg/s].
     mass_coefficient, stiffness_coefficient : (B,) ndarray
         Rayleigh damping of the wires [1/s, s].
+    lumped_run : (R + 1,) int ndarray
+        First of the springs and dampers on a single row of each run (`find_runs`), and Q.
     lumped_row, lumped_station : (Q,) int ndarray
-        Positions of the springs and dampers that act on a single row.
+        Their rows and stations.
     lumped_stiffness, lumped_damping : (Q,) ndarray
         Their coefficients [N/m, N s/m].
     """
@@ -66,6 +68,7 @@ class WireArrays(NamedTuple):
     damped_mass: Array
     mass_coefficient: Array
     stiffness_coefficient: Array
+    lumped_run: Indices
     lumped_row: Indices
     lumped_station: Indices
     lumped_stiffness: Array
@@ -119,6 +122,7 @@ def build_wire_arrays(beams: Beams) -> WireArrays:
         damped_mass=beams.mass_coefficient[:, None] * beams.mass_per_length * beams.length / 420,
         mass_coefficient=beams.mass_coefficient,
         stiffness_coefficient=beams.stiffness_coefficient,
+        lumped_run=find_runs(lumped_station),
         lumped_row=lumped_row,
         lumped_station=lumped_station,
         lumped_stiffness=beams.lumped_stiffness[lumped],
@@ -211,9 +215,11 @@ def apply_wire_forces(wires: WireArrays, motion: Motion, work: WireWorkspace, wi
                 force[0] = force[n]
         motion.w[2, b, last] = forces.shear[0] - forces.drag[0]
         motion.r[2, b, last] = forces.bend[0] - forces.tilt[0]
-    for n in range(wires.lumped_row.size):
-        b, s = wires.lumped_row[n], wires.lumped_station[n]
-        if window.first <= s <= window.last:
+    for k in range(wires.lumped_run.size - 1):
+        start = wires.lumped_run[k]
+        first, end = active_run(wires.lumped_station[start : wires.lumped_run[k + 1]], window)
+        for n in range(start + first, start + end):
+            b, s = wires.lumped_row[n], wires.lumped_station[n]
             elastic, viscous = (
                 wires.lumped_stiffness[n] * motion.w[0, b, s],
                 wires.lumped_damping[n] * motion.w[1, b, s],

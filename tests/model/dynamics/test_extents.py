@@ -1,6 +1,7 @@
 """Extents of the wires: found as the wires were described, and nothing moves outside of them."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ import pytest
 from helpers.lines import DAMPED, PANTOGRAPH_2002, overlapping_line, simple_line
 from pantocheck.model import Catenary, Clamp, Kind, Passage, Wire, discretise
 from pantocheck.model.dynamics.active_window import Window
-from pantocheck.model.dynamics.extents import clip_extent, find_extents
+from pantocheck.model.dynamics.extents import active_run, clip_extent, find_extents, find_runs
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
 from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.simulation import start_motion
@@ -70,3 +71,25 @@ def test_stations_without_a_wire_never_move() -> None:
     for field in (motion.w, motion.r):
         assert not field[:, ~covered].any()
         assert np.abs(field[0]).max(axis=1).min() > 1e-6  # every row has moved
+
+
+@pytest.mark.parametrize("stations", [[], [4], [1, 3, 3, 9, 2, 5, 5, 0], [7, 6, 6, 8]])
+def test_runs_hold_the_parts_inside_a_window(stations: list[int]) -> None:
+    """In every run, the parts found by search are those found one by one; runs join to all parts."""
+    station = np.array(stations, dtype=np.int64)
+    runs = find_runs(station)
+    assert runs[-1] == station.size
+    for window in (Window(0, 9), Window(3, 5), Window(5, 5), Window(8, 8), Window(10, 12)):
+        found = []
+        for start, end in pairwise(runs.tolist()):
+            assert (np.diff(station[start:end]) >= 0).all()
+            first, last = active_run(station[start:end], window)
+            found += range(start + first, start + last)
+        assert found == [n for n, s in enumerate(stations) if window.first <= s <= window.last]
+
+
+def test_connectors_of_a_line_are_few_runs() -> None:
+    """Three sections: the droppers of each are one run; with them the rows of springs at arms and supports."""
+    kernel = build_kernel_arrays(discretise(overlapping_line(3, 3), 2.0), 1e-3)
+    assert kernel.connectors.run.tolist() == [0, 27, 54, 81]
+    assert kernel.wires.lumped_run.size - 1 == 4
