@@ -42,7 +42,8 @@ class Mesh:
 
     def station(self, position: float) -> int:
         """Index of the station at the position of a connector or another requested station [m]."""
-        nearest = int(np.argmin(np.abs(self.position - position)))
+        after = min(max(int(np.searchsorted(self.position, position)), 1), self.position.size - 1)
+        nearest = after if self.position[after] - position < position - self.position[after - 1] else after - 1
         if abs(self.position[nearest] - position) > 1e-6:
             raise KeyError(f"the mesh has no station at {position} m; the nearest is at {self.position[nearest]} m")
         return nearest

@@ -69,3 +69,13 @@ def test_find_element_returns_index_and_share_of_the_length(position: float, ele
     """Elements of 1 m and 2 m; a station belongs to the element before it, the first station to the first element."""
     index, length, s = find_element(np.array([0.0, 1.0, 3.0]), position)
     assert (index, length, s) == (element, 1.0 + element, share)
+
+
+def test_station_is_the_nearest_one() -> None:
+    """Against the distances to all stations; up to 1e-6 m away, beyond the ends as well."""
+    mesh = build_mesh(simple_line(), 3.7)
+    for shift in (-9e-7, 0.0, 9e-7):
+        for n, x in enumerate(mesh.position):
+            assert mesh.station(x + shift) == n == np.abs(mesh.position - x - shift).argmin()
+    with pytest.raises(KeyError, match="no station at"):
+        mesh.station(float(mesh.position[:2].mean()))
