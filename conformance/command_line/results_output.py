@@ -12,13 +12,20 @@ from rich.text import Text
 from pantocheck.conformance.command_line.console import build_table, console, escape_text, format_number, style_verdict
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.quantities.limit_text import format_graded, format_margin, name_value
+from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline, describe_record
 from pantocheck.conformance.results.criterion_format import Criterion
-from pantocheck.conformance.results.results_format import Results, name_case
+from pantocheck.conformance.results.results_format import CaseResult, Results, name_case
 from pantocheck.conformance.runner import Progress as ResultCallback
 
 EXIT_CODES: dict[Verdict, int] = {"pass": 0, "unverified": 1, "info": 1, "skip": 1, "fail": 1, "error": 2}
 """Exit code by verdict: 0 only for `pass`."""
+
+SHOWN_VALUES = (
+    *("mean_force_N", "std_force_N", "statistical_max_N", "statistical_min_N"),
+    *("max_force_N", "min_force_N", "contact_loss_pct", "max_uplift_at_support_mm"),
+)
+"""Values of a case without limits; all values are in the files."""
 
 LEGEND = "+-: uncertainty of the value; shift: its change when the analysis section is shifted span by span"
 
@@ -50,6 +57,8 @@ def print_results(results: Results, files: Sequence[Path]) -> None:
         ):
             output.print(escape_text(f"  {line}"))
         _print_criteria(output, case.criteria)
+        if not case.criteria and (table := _build_value_table(case)).row_count:
+            output.print(table)
         if case.verification is not None:
             output.print(escape_text("  Verification up to 50 Hz:"), style_verdict(case.verification.verdict))
             if case.verification.reason and not case.reason:
@@ -91,6 +100,21 @@ def _build_criterion_table(criteria: Sequence[Criterion]) -> Table:
             style_verdict(item.verdict),
             Text(item.trust),
         )
+    return table
+
+
+def _build_value_table(case: CaseResult) -> Table:
+    """Table of the main values of a case without limits."""
+    numbers = ("value", "+-")
+    table = build_table("quantity", *numbers, "unit", unbroken=(*numbers, "unit"), right=numbers)
+    table.padding = (0, 1, 0, 0)
+    for owner, quantities in sorted(case.quantities.items(), key=lambda item: item[0] == "0"):  # the line comes last
+        for name in SHOWN_VALUES:
+            value, width = quantities.get(name), case.uncertainty.get(owner, {}).get(name)
+            if isinstance(value, float):
+                error = width if isinstance(width, float) else None
+                text = name + (f", pantograph {owner}" if int(owner) > 1 else "")
+                table.add_row(text, format_number(value), format_number(error, 2), QUANTITIES[name].unit)
     return table
 
 

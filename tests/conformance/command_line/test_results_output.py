@@ -136,3 +136,21 @@ def test_case_without_changes_or_criteria_has_no_line_for_them(
     assert "limits file" not in text
     assert "criterion" not in text.splitlines()[3:]
     assert LEGEND not in text
+
+
+def test_values_of_a_case_without_limits_are_printed(
+    passing: dict[str, Any], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A case with limits prints its criteria, one without limits the main values with their uncertainty."""
+    passing["cases"] = passing["cases"][:1]
+    case = passing["cases"][0]
+    case["quantities"] = {"1": {"mean_force_N": 118.76543}, "2": {"mean_force_N": 119.0, "rms_0_5_N": 20.0}}
+    case["uncertainty"] = {"1": {"mean_force_N": 0.123}}
+    assert rows(printed(passing, capsys), "mean_force_N, pantograph 2")[0][3] != "119"
+    case["criteria"] = []
+    text = printed(passing, capsys)
+    assert rows(text, "mean_force_N") == [
+        ["mean_force_N", "118.8", "0.12", "N"],
+        ["mean_force_N,", "pantograph", "2", "119", "-", "N"],
+    ]
+    assert "rms_0_5_N" not in text
