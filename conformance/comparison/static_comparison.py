@@ -111,7 +111,7 @@ def _pair_values(record: StaticRecord, name: StaticValue, model: _LineModel, fin
     present = np.flatnonzero(np.isfinite(measured))
     position = record.position[present]
     computed = model.compute(name, position)
-    refuse_other_unit(record.source, name, measured[present], computed)
+    refuse_other_unit(record, name, measured[present], computed)
     return ValuePair(
         position=position,
         measured=measured[present],

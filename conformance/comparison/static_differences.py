@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pantocheck.conformance.array_types import IntegerArray, RealArray
-from pantocheck.conformance.comparison.static_record import StaticValue
+from pantocheck.conformance.comparison.static_record import StaticRecord, StaticValue
 from pantocheck.conformance.input_files.input_error import InputError
 
 OUTLIER_SCALES = 5.0
@@ -79,15 +79,24 @@ def select_section(position: RealArray, section: tuple[float, float]) -> NDArray
     return np.asarray((position >= start - SAME_POSITION_M) & (position <= end + SAME_POSITION_M))
 
 
-def refuse_other_unit(source: str, name: StaticValue, measured: RealArray, model: RealArray) -> None:
-    """Refuse values whose unit or datum is evidently not that of the table's column or sidecar.
+def refuse_other_unit(record: StaticRecord, name: StaticValue, measured: RealArray, model: RealArray) -> None:
+    """Refuse values whose unit or datum is evidently not that of the column or of the sidecar.
+
+    Parameters
+    ----------
+    record : StaticRecord
+        Record of the values.
+    name : StaticValue
+        Kind of the values.
+    measured, model : (n,) ndarray
+        Measured values, and those of the model [m/N or m].
 
     Raises
     ------
     InputError
         The median elasticity is several times that of the model, or the median height differs by decimetres.
     """
-    where = f"record '{source}', {name.replace('_', ' ')}"
+    where = f"record '{record.source}', {name.replace('_', ' ')}"
     if name == "elasticity":
         ratio = float(np.median(measured) / np.median(model))
         if not 1 / LARGEST_RATIO <= ratio <= LARGEST_RATIO:
@@ -98,10 +107,11 @@ def refuse_other_unit(source: str, name: StaticValue, measured: RealArray, model
             )
         return
     difference = float(np.median(measured - model))
+    datum = record.sidecar.datum_m + difference
     if abs(difference) > LARGEST_HEIGHT_DIFFERENCE_M:
         raise InputError(
             where,
             f"the median is {difference:.4g} m above that of the model",
-            f"Check the unit of the column, or give datum_m = {difference:.4g} in the sidecar if the table counts "
+            f"Check the unit of the column, or give datum_m = {datum:.4g} in the sidecar if the table counts "
             "heights from the rail.",
         )

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from helpers.static_records import SPACING, Array, measure_line, read_unequal_line, write_static_record
+from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.comparison.static_comparison import compare_statics
 from pantocheck.conformance.comparison.static_comparison_format import StaticComparison
 from pantocheck.conformance.comparison.static_criteria import grade_tolerance
@@ -16,6 +17,9 @@ from pantocheck.conformance.comparison.static_record import read_static_record
 from pantocheck.conformance.comparison.static_sidecar import StaticSidecar
 from pantocheck.conformance.comparison.value_pair import ValuePair
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.model import discretise
+from pantocheck.model.statics.elasticity import rest_height
 
 LINE = read_unequal_line()
 COMPLETE = {"evaluated_spans": [2, 5], "largest_distance_m": SPACING}
@@ -136,6 +140,24 @@ def test_evident_error_of_unit_or_datum_is_refused(
     columns = computed | {name: factor * computed[name] + offset}
     with pytest.raises(InputError, match=message):
         compare(tmp_path, columns, {}, **COMPLETE)
+
+
+def test_hint_on_the_datum_adds_to_the_stated_one(tmp_path: Path, computed: dict[str, Array]) -> None:
+    columns = computed | {"contact_wire_height_m": computed["contact_wire_height_m"] + 5.3}
+    with pytest.raises(InputError, match=r"the median is 4\.3 m above .*\n.* datum_m = 5\.3 "):
+        compare(tmp_path, columns, {}, **COMPLETE, datum_m=1.0)
+
+
+def test_heights_of_a_line_that_counts_from_the_rail_need_no_datum(tmp_path: Path) -> None:
+    """The line of the page on line tables, 5.3 m above the rail: every height of the model is 5.3 m greater."""
+    tables = LINE.model_dump(mode="json", exclude_none=True)
+    tables["geometry"]["contact_wire_height_m"] = 5.3
+    raised = LineFile.model_validate(tables)
+    columns = {"position_m": np.array([100.0, 150.0]), "contact_wire_height_m": np.array([5.299, 5.297])}
+    record = read_static_record(write_static_record(tmp_path, columns, force_N=None), raised.geometry)
+    (heights,) = compare_statics(record, raised, 0.5, {}).values
+    catenary = discretise(build_catenary(LINE), 0.5)
+    assert heights.model == pytest.approx(5300 + 1e3 * rest_height(catenary, columns["position_m"]), abs=1e-3)
 
 
 POSITION = np.arange(0.0, 100.1, 5.0)
