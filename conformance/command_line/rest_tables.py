@@ -1,6 +1,6 @@
 """Tables of `pantocheck show --at-rest`: the line under its weight, and the pantographs on a test rig."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from rich.console import RenderableType
@@ -15,6 +15,7 @@ from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 from pantocheck.conformance.simulation.static_quantities import compute_static_quantities, first_modes, sample_span
+from pantocheck.conformance.simulation.statics_along_line import compute_quantities_along_line
 from pantocheck.model import discretise
 from pantocheck.model.pantograph import apparent_mass
 
@@ -25,7 +26,7 @@ ALONG_SPAN = "_along_span_mm_N"
 
 
 def build_rest_tables(case: Case) -> list[RenderableType]:
-    """Quantities of the line at rest, elasticity along a span, and apparent mass of each pantograph.
+    """Quantities of the line at rest, elasticity along a span and of listed spans, apparent mass of each pantograph.
 
     Parameters
     ----------
@@ -33,11 +34,13 @@ def build_rest_tables(case: Case) -> list[RenderableType]:
         Any case, with or without a speed.
     """
     element = case.file.discretisation.element_m
-    quantities = compute_static_quantities(case, discretise(build_catenary(case.line), element))
+    line = discretise(build_catenary(case.line), element)
+    quantities = compute_static_quantities(case, line)
     quantities.setdefault("natural_frequency_Hz", tuple(map(float, first_modes(case.line, element).frequency)))
     tables = [
         _build_quantity_table(quantities),
         _build_elasticity_table(case, quantities),
+        *_build_span_tables(case, compute_quantities_along_line(case.line, line)),
         *map(_build_apparent_mass_table, dict.fromkeys(case.pantograph_files)),
     ]
     return [Padding(table, (1, 0, 0, 0)) for table in tables]
@@ -63,6 +66,20 @@ def _build_elasticity_table(case: Case, quantities: dict[str, Value]) -> Table:
     for x, at_small_load, at_large_load in zip(sample_span(0.0, end - start), small, large, strict=True):
         table.add_row(f"{x:.2f}", format_number(at_small_load), format_number(at_large_load))
     return table
+
+
+def _build_span_tables(case: Case, along_line: dict[str, Value]) -> Iterator[Table]:
+    """Elasticity of every span, if the spans of the line are listed."""
+    if not along_line:
+        return
+    names = ("elasticity", "elasticity_200_N")
+    columns = [f"{name}_{key}" for name in names for key in ("of_spans_mm_N", "non_uniformity_of_spans_pct")]
+    headings = ("small load [mm/N]", "non-uniformity [%]", "200 N [mm/N]", "non-uniformity at 200 N [%]")
+    table = _build_number_table("Largest elasticity of every span", "span", "length [m]", *headings)
+    values = (_as_sequence(along_line[column]) for column in columns)
+    for number, row in enumerate(zip(case.line.geometry.span_lengths, *values, strict=True), 1):
+        table.add_row(str(number), *map(format_number, row))
+    yield table
 
 
 def _build_apparent_mass_table(model: PantographFile) -> Table:

@@ -14,6 +14,7 @@ from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.simulation.model_uncertainty import list_model_uncertainty
 from pantocheck.conformance.simulation.resolution import resolution_warnings
 from pantocheck.conformance.simulation.static_quantities import compute_static_quantities
+from pantocheck.conformance.simulation.statics_along_line import compute_quantities_along_line
 from pantocheck.conformance.simulation.window_warning import window_warnings
 from pantocheck.model import discretise
 from pantocheck.model.failures import SimulationError
@@ -62,6 +63,7 @@ def _deliver(
     line = discretise(build_catenary(case.line), discretisation.element_m)
     static = compute_static_quantities(case, line)
     if case.is_static:
+        static |= compute_quantities_along_line(case.line, line)
         return Delivered(
             static=static, run=RunTable(dt_s=discretisation.time_step_s, element_m=discretisation.element_m)
         ), None

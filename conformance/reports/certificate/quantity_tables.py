@@ -14,6 +14,9 @@ BAND_CAPTION = (
     "criteria, and by verification where the converged solution limits it."
 )
 
+MOST_ENTRIES = 30
+"""Longest list that is printed in full: 24 positions of a span are."""
+
 
 def list_owners(case: dict[str, Any]) -> list[str]:
     """Keys of the quantities of a case: pantographs in running order, then the line as "0"."""
@@ -58,10 +61,18 @@ def build_quantity_table(case: dict[str, Any]) -> Table:
         if value is None:
             return "skipped" if quantity in case["skipped"].get(key, {}) else "–"
         error = case["uncertainty"].get(key, {}).get(quantity)
-        text = ", ".join(format_value(number, 5) for number in (value if isinstance(value, list) else [value]))
+        text = _format_list(value) if isinstance(value, list) else format_value(value, 5)
         return text if error is None or isinstance(error, list) else f"{text} ± {format_value(error, 2)}"
 
     return _table(ordered, keys, cell)
+
+
+def _format_list(values: list[float]) -> str:
+    """Values separated by commas; of a long list the first and the last ones."""
+    texts = [format_value(number, 5) for number in values]
+    if len(texts) > MOST_ENTRIES:
+        texts = [*texts[:3], f"... {len(texts)} values in results.json ...", *texts[-3:]]
+    return ", ".join(texts)
 
 
 def list_definitions(case: dict[str, Any]) -> tuple[RichText, ...]:

@@ -6,8 +6,12 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from helpers.listed_spans import list_spans
+from helpers.toml_edit import write_toml
 from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.command_line.app import app
+from pantocheck.conformance.input_files.toml_file import read_toml
 from pantocheck.conformance.systems.command.case_message import build_case_message
 
 
@@ -37,6 +41,18 @@ def test_line_at_rest_and_apparent_mass_are_printed() -> None:
     ):
         assert text in result.output
     assert "en50318-2002/300" not in result.output
+    assert "Largest elasticity of every span" not in result.output
+
+
+def test_elasticity_of_every_listed_span_is_printed(tmp_path: Path) -> None:
+    tables = list_spans(read_toml(library_folder() / "en50318-2002" / "line.toml", "line"))
+    tables["geometry"]["span_list"] = [{"length_m": length} for length in (60.0, 57.5, 60.0)]
+    write_toml(tmp_path / "line.toml", tables)
+    file = write_toml(tmp_path / "case.toml", {"id": "own", "title": "own", "line": "line.toml"})
+    result = CliRunner(env={"COLUMNS": "150"}).invoke(app, ["show", str(file), "--at-rest"])
+    assert result.exit_code == 0, result.output
+    table = result.output.split("Largest elasticity of every span")[1]
+    assert [row.split()[:2] for row in table.splitlines()[2:5]] == [["1", "60"], ["2", "57.5"], ["3", "60"]]
 
 
 def test_derived_values_are_printed_with_their_meaning() -> None:

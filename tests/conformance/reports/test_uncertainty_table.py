@@ -53,6 +53,18 @@ def test_several_values_have_the_largest_of_their_half_widths(passing: dict[str,
     assert cells[Code("presag_mm")][-1] == "20.000, 55.000"
 
 
+def test_long_list_shows_its_ends(passing: dict[str, Any]) -> None:
+    """24 positions of a span are printed, 48 positions along a line are not."""
+    case = passing["cases"][0]
+    case["quantities"]["0"] = {"elasticity_along_span_mm_N": [0.5] * 24, "elasticity_along_line_mm_N": [0.5] * 48}
+    case["uncertainty"]["0"] = {}
+    cells = {row[0][1]: row[-1] for row in build_quantity_table(case).rows}
+    assert cells[Code("elasticity_along_span_mm_N")].count("0.50000") == 24
+    assert cells[Code("elasticity_along_line_mm_N")] == (
+        "0.50000, 0.50000, 0.50000, ... 48 values in results.json ..., 0.50000, 0.50000, 0.50000"
+    )
+
+
 def test_certificate_shows_the_components_only_where_there_are_results(results: dict[str, Any]) -> None:
     sections = [block for block in build_certificate(results).blocks if isinstance(block, Section)]
     found = {
