@@ -14,7 +14,7 @@ BAND_CAPTION = (
     "criteria, and by verification where the converged solution limits it."
 )
 
-MOST_VALUES = 30
+LONGEST_PRINTED_LIST = 30
 """Longest list that is printed in full: 24 positions of a span are."""
 
 
@@ -70,7 +70,7 @@ def build_quantity_table(case: dict[str, Any]) -> Table:
 def _format_list(values: list[float]) -> str:
     """Values separated by commas; of a long list the first and the last ones."""
     texts = [format_value(number, 5) for number in values]
-    if len(texts) > MOST_VALUES:
+    if len(texts) > LONGEST_PRINTED_LIST:
         texts = [*texts[:3], f"... {len(texts)} values in results.json ...", *texts[-3:]]
     return ", ".join(texts)
 
