@@ -8,6 +8,7 @@ import typer
 
 from pantocheck.conformance.command_line.console import console, escape_text
 from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
+from pantocheck.conformance.line_tables.dropper_rows import LengthMeaning
 from pantocheck.conformance.line_tables.line_import import import_line
 
 
@@ -20,6 +21,13 @@ def import_line_command(
     droppers: Annotated[
         Path | None, typer.Option(help="CSV table of the droppers. Default: those of [droppers] in the base file.")
     ] = None,
+    dropper_lengths: Annotated[
+        LengthMeaning,
+        typer.Option(
+            help="Meaning of the column length_m: published, for comparison only; or unloaded, so that the heights of "
+            "the contact wire follow from the lengths."
+        ),
+    ] = "published",
 ) -> None:
     """Write a line file from tables of its supports and droppers.
 
@@ -29,7 +37,7 @@ def import_line_command(
 
     Then: pantocheck check my-line.toml
     """
-    tree = import_line(base, supports, droppers)
+    tree = import_line(base, supports, droppers, dropper_lengths)
     check_writable(out.parent)
     names = ", ".join(path.name for path in (supports, droppers, base) if path is not None)
     head = f"# Written by `pantocheck import-line` from {names}.\n"

@@ -1,11 +1,14 @@
 """Rows of the table of droppers: the schedule of every span."""
 
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import Any, Literal
 
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.line_tables.line_columns import DROPPER_KEYS
 from pantocheck.conformance.line_tables.typed_rows import TypedRow
+
+LengthMeaning = Literal["published", "unloaded"]
+"""Meaning of the lengths of droppers: published, for comparison only; without load, from wire to wire."""
 
 SpanRows = dict[int, list[TypedRow]]
 """Rows of the droppers by number of their span, from 1."""
@@ -59,8 +62,44 @@ def group_by_span(rows: list[TypedRow], spans: int, where: str, problems: list[I
     return {number: [row for row in group if "x_m" in row.values] for number, group in groups.items()}
 
 
+def find_height_problems(groups: SpanRows, meaning: LengthMeaning) -> Iterator[InputError]:
+    """Spans whose heights are not determined, or determined twice, by the pre-sags, heights and lengths of their rows.
+
+    Parameters
+    ----------
+    groups : dict of int to list of TypedRow
+        Rows by number of their span.
+    meaning : {"published", "unloaded"}
+        Meaning of the lengths of the droppers.
+
+    Yields
+    ------
+    InputError
+        The problem of a span, at its first row.
+    """
+    for number, group in groups.items():
+        filled = {key for row in group for key in row.values}
+        given = sorted(filled & {"presag_m", "contact_wire_height_m"})
+        place = group[0].places.get("length_m", group[0].place) if group else ""
+        if meaning == "published" and "length_m" in filled and not given:
+            yield InputError(
+                place,
+                f"span {number} has lengths, but neither pre-sags nor heights",
+                "Give presag_m (0 for a level wire) or contact_wire_height_m, or --dropper-lengths unloaded if the "
+                "lengths without load determine the heights.",
+            )
+        if meaning == "unloaded" and group and "length_m" not in filled:
+            yield InputError(place, f"span {number} has no lengths", "Give length_m for every dropper.")
+        if meaning == "unloaded" and given:
+            yield InputError(
+                group[0].places[given[0]],
+                f"{given[0]} is given, but the lengths determine the heights",
+                "Remove this column, or leave out --dropper-lengths unloaded.",
+            )
+
+
 def find_droppers_outside(groups: SpanRows, lengths: Sequence[float | None]) -> Iterator[InputError]:
-    """Droppers behind the end of their span; the line file has the same rule, and checks it for valid spans only."""
+    """Droppers behind the end of their span. The line file has the same rule, and checks it for valid spans only."""
     for number, group in groups.items():
         length = lengths[number - 1]
         for row in group:
@@ -74,9 +113,12 @@ def find_droppers_outside(groups: SpanRows, lengths: Sequence[float | None]) -> 
 
 
 def build_schedule(group: list[TypedRow]) -> dict[str, Any]:
-    """Schedule of one span as a table of a line file."""
+    """Schedule of one span as a table of a line file; pre-sags that are all zero are left out."""
     schedule = {key: [row.number(key) for row in group] for key in DROPPER_KEYS}
-    return {key: values for key, values in schedule.items() if None not in values and values}
+    filled = {key: values for key, values in schedule.items() if None not in values}
+    if not any(filled.get("presag_m", [])) and "contact_wire_height_m" not in filled:
+        filled.pop("presag_m", None)
+    return filled
 
 
 def locate_droppers(groups: SpanRows) -> dict[str, str]:

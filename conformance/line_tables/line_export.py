@@ -43,7 +43,8 @@ def export_droppers(line: LineFile, mark: DecimalMark = "point") -> str:
     """Write the table of the droppers of every span; parameters and return value as in `export_supports`."""
     rows: list[dict[str, Cell]] = []
     for number, schedule in enumerate(line.dropper_schedules, 1):
-        lists = schedule.model_dump(exclude_none=True)
+        level = {} if schedule.contact_wire_height_m is not None else {"presag_m": (0.0,) * len(schedule.x_m)}
+        lists = level | schedule.model_dump(exclude_none=True)
         rows += ({"span": number} | {key: values[i] for key, values in lists.items()} for i in range(len(schedule.x_m)))
     return _write_table(DROPPER_COLUMNS, rows, mark)
 

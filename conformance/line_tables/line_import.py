@@ -10,10 +10,13 @@ from pantocheck.conformance.input_files.input_error import InputError, join_erro
 from pantocheck.conformance.input_files.sourced_table import PROVENANCE
 from pantocheck.conformance.input_files.spreadsheet import Spreadsheet, read_spreadsheet
 from pantocheck.conformance.input_files.toml_file import read_toml, validate_model
+from pantocheck.conformance.line_tables.dropper_heights import hang_line_on_droppers
 from pantocheck.conformance.line_tables.dropper_rows import (
+    LengthMeaning,
     SpanRows,
     build_schedule,
     find_droppers_outside,
+    find_height_problems,
     group_by_span,
     locate_droppers,
 )
@@ -32,7 +35,9 @@ REPLACED = frozenset({"span_m", "spans", "span_list", "schedule", "support", "gr
 T = TypeVar("T")
 
 
-def import_line(base: Path, supports: Path, droppers: Path | None) -> dict[str, Any]:
+def import_line(
+    base: Path, supports: Path, droppers: Path | None, lengths: LengthMeaning = "published"
+) -> dict[str, Any]:
     """Import a line from tables.
 
     Parameters
@@ -43,6 +48,9 @@ def import_line(base: Path, supports: Path, droppers: Path | None) -> dict[str, 
         Table of the supports and both ends of the line.
     droppers : Path or None
         Table of the droppers; None: every span has those of the table [droppers] of the base file.
+    lengths : {"published", "unloaded"}
+        Meaning of the lengths of the droppers: published lengths do not change the line; unloaded lengths determine the
+        heights of the contact wire.
 
     Returns
     -------
@@ -63,13 +71,13 @@ def import_line(base: Path, supports: Path, droppers: Path | None) -> dict[str, 
         raise join_errors(problems)
     rows = read_typed_rows(support_table, SUPPORT_COLUMNS, problems)
     problems += _find_lost_values(base_line, f"line '{base.name}'", rows, with_droppers=droppers is not None)
-    lengths = read_span_lengths(rows, support_table.where, problems)
-    groups = {} if dropper_table is None else _read_droppers(dropper_table, len(lengths), problems)
-    problems += find_droppers_outside(groups, lengths)
+    span_lengths = read_span_lengths(rows, support_table.where, problems)
+    groups = {} if dropper_table is None else _read_droppers(dropper_table, len(span_lengths), problems)
+    problems += [*find_droppers_outside(groups, span_lengths), *find_height_problems(groups, lengths)]
     names = [path.name for path in (supports, droppers) if path is not None]
     geometry = {key: value for key, value in tree["geometry"].items() if key not in REPLACED}
     geometry["source"] = f"{' and '.join(names)}, other values from {base.name}"[:500]
-    spans: list[dict[str, Any]] = [{} if length is None else {"length_m": length} for length in lengths]
+    spans: list[dict[str, Any]] = [{} if length is None else {"length_m": length} for length in span_lengths]
     for number, group in groups.items():
         if group:
             spans[number - 1]["droppers"] = build_schedule(group)
@@ -80,6 +88,8 @@ def import_line(base: Path, supports: Path, droppers: Path | None) -> dict[str, 
     problems += _find_line_problems(line, f"line '{base.name}' with {' and '.join(names)}", places, unused)
     if problems:
         raise _join_problems(problems)
+    if dropper_table is not None and lengths == "unloaded":
+        line = hang_line_on_droppers(line, dropper_table.where)
     return shorten_line(line, base_line)
 
 
