@@ -33,6 +33,8 @@ SYMBOLS = {"messenger support": "^", "steady arm": "o", "anchor": "D", "sensor":
 """Marker of each part that is drawn as a point."""
 LABEL_OFFSET = 0.42
 """Distance of the names of the vertical axes from the axes [in]."""
+LABEL_LENGTH = 0.22
+"""Length of the text of a dropper, which stands above a shorter dropper [in]."""
 MARK_SPACE = 0.3
 """Distance below which two marks of a wire share one text [in]."""
 LABEL_SPACE = 0.085
@@ -85,12 +87,17 @@ class LineDrawing:
         inside = (x >= start - 1e-6) & (x <= end + 1e-6)
         return x[inside], self.line.state.deflection[self.line.mesh.row_of[wire.name, field], inside, 0]
 
-    def extent(self, field: str) -> tuple[float, float]:
-        """Lowest and highest deflection of all wires, with a margin [m]."""
-        whole = DrawingRow(1, self.geometry.spans, 0.0, self.geometry.length)
-        values = np.concatenate([self.shape(wire, field, whole)[1] for wire in self.line.catenary.wires])
-        size = max(float(np.ptp(values)), 0.1)
-        return float(values.min()) - 0.4 * size, float(values.max()) + 0.15 * size
+    def extent(self, field: str, row: DrawingRow) -> tuple[float, float]:
+        """Lowest and highest deflection of a view of a row, with margins; the height is the same in all rows [m]."""
+        lowest, highest = np.transpose([self._span_wires(field, other) for other in self.rows])
+        size = max(float(np.max(highest - lowest)), 0.1)
+        bottom = self._span_wires(field, row)[0] - 0.4 * size
+        return bottom, bottom + 1.55 * size
+
+    def _span_wires(self, field: str, row: DrawingRow) -> tuple[float, float]:
+        """Lowest and highest deflection of the wires in a row [m]."""
+        values = np.concatenate([self.shape(wire, field, row)[1] for wire in self.line.catenary.wires])
+        return float(values.min()), float(values.max())
 
 
 def draw_line_svg(drawing: LineDrawing) -> str:
@@ -140,7 +147,7 @@ def _write_heading(figure: Figure, drawing: LineDrawing, height: float) -> None:
     if drawing.line.catenary.has_lateral_field:
         views["y"] = (PLAN_VIEW, "lateral positions")
     scales = [
-        f"{name} {FILLED * size / np.ptp(drawing.extent(field)) / drawing.scale:.0f} times"
+        f"{name} {FILLED * size / np.ptp(drawing.extent(field, drawing.rows[0])) / drawing.scale:.0f} times"
         for field, (size, name) in views.items()
     ]
     place = LEFT / SHEET[0]
@@ -171,7 +178,9 @@ def _add_view(figure: Figure, drawing: LineDrawing, row: DrawingRow, field: str,
     size = drawing.scale * (row.end - row.start)
     view = SIDE_VIEW if field == "z" else PLAN_VIEW
     axes = figure.add_axes((LEFT / width, bottom / height, size / width, FILLED * view / height))
-    axes.set(xlim=(row.start, row.end), ylim=drawing.extent(field), ylabel="height [m]" if field == "z" else "y [m]")
+    axes.set(
+        xlim=(row.start, row.end), ylim=drawing.extent(field, row), ylabel="height [m]" if field == "z" else "y [m]"
+    )
     axes.yaxis.set_label_coords(-LABEL_OFFSET / size, 0.5)
     axes.set_xticks([x for x in drawing.geometry.span_limits if row.start <= x <= row.end])
     axes.xaxis.set_major_formatter(lambda x, _: f"{x:g}")
@@ -224,7 +233,7 @@ def _name_spans(axes: Axes, drawing: LineDrawing, row: DrawingRow) -> None:
 
 
 def _write_dropper_lengths(axes: Axes, drawing: LineDrawing, row: DrawingRow) -> None:
-    """Lengths of the droppers [m] beside them, as far as there is room."""
+    """Lengths of the droppers [m] beside them, or above short ones, as far as there is room."""
     last = -np.inf
     droppers = zip(drawing.line.catenary.droppers, drawing.line.state.dropper_length, strict=True)
     for dropper, length in sorted(droppers, key=lambda item: item[0].position):
@@ -232,10 +241,12 @@ def _write_dropper_lengths(axes: Axes, drawing: LineDrawing, row: DrawingRow) ->
         if not inside or drawing.scale * (dropper.position - last) < LABEL_SPACE:
             continue
         last = dropper.position
-        heights = [drawing.deflection(name, "z", last) for name in (dropper.lower, dropper.upper)]
+        lower, upper = (drawing.deflection(name, "z", last) for name in (dropper.lower, dropper.upper))
+        fits = FILLED * SIDE_VIEW * (upper - lower) / np.ptp(axes.get_ylim()) >= LABEL_LENGTH
         axes.annotate(
-            f"{length:.3f}", (last, sum(heights) / 2), xytext=(-1, 0), textcoords="offset points", fontsize=4.5,
-            rotation=90, ha="right", va="center", color=INK,
+            f"{length:.3f}", (last, (lower + upper) / 2 if fits else upper), xytext=(-1, 0 if fits else 2),
+            textcoords="offset points", fontsize=4.5, rotation=90, ha="right", va="center" if fits else "bottom",
+            color=INK,
         )  # fmt: skip
 
 

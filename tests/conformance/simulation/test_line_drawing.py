@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from helpers.section_lines import section_line
 from pantocheck.conformance.cases.geometry import Geometry, ListedSpans
 from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.simulation.drawing_marks import DrawnMark, list_marks
 from pantocheck.conformance.simulation.drawing_rows import ROW_LENGTH, divide_into_pages, divide_into_rows
@@ -207,6 +208,38 @@ def test_tension_sections_are_named_and_their_anchors_marked() -> None:
     anchors = sorted({x for axes in views for x in points(axes, "D")})
     assert anchors == pytest.approx([0.0, 180.0, 360.0, 540.0])
     assert len(points(views[0], "D")) == 4
+
+
+def test_rows_of_a_rising_line_keep_one_scale_and_show_their_wires() -> None:
+    """The second of two rows lies 3 m higher: its axis begins 3 m higher, but for the sag of 30 mm."""
+    tables = select_cases(["en50318-2002/250"])[0].line.model_dump(mode="json", exclude_none=True)
+    geometry = {"span_list": [{"length_m": 60.0}] * 12, "encumbrance_m": 1.2}
+    gradient = [{"from_m": 240.0, "to_m": 360.0, "slope": 0.025}]
+    file = LineFile.model_validate(tables | {"geometry": geometry | {"gradient": gradient}})
+    drawing = LineDrawing(discretise(build_catenary(file), 2.0), "Line", file.geometry)
+    first, second = paint_rows(drawing, drawing.rows, 10.0).axes
+    assert np.ptp(first.get_ylim()) == pytest.approx(np.ptp(second.get_ylim()))
+    for axes in (first, second):
+        low, high = axes.get_ylim()
+        drawn = np.concatenate([np.asarray(d.get_ydata(), dtype=float) for d in axes.lines])
+        assert low < drawn.min() < drawn.max() < high
+    assert second.get_ylim()[0] == pytest.approx(first.get_ylim()[0] + 3.0, abs=0.05)
+
+
+def test_length_of_a_short_dropper_stands_above_it() -> None:
+    """An encumbrance of 0.8 m leaves 0.1 m at mid-span: less than the text, which is then above the messenger."""
+    line = select_cases(["en50318-2002/250"])[0].line
+    geometry = line.geometry.model_copy(update={"encumbrance_m": 0.8, "spans": 2})
+    line = line.model_copy(update={"geometry": geometry})
+    drawing = LineDrawing(discretise(build_catenary(line), 2.0), "Line", geometry)
+    (side,) = paint_rows(drawing, drawing.rows, 10.0).axes
+    written = [text for text in side.texts if text.get_rotation() == 90]
+    positions = {text.get_va() for text in written}
+    assert positions == {"center", "bottom"}
+    upper = {d.position: drawing.deflection(d.upper, "z", d.position) for d in drawing.line.catenary.droppers}
+    for text in written:
+        if text.get_va() == "bottom":
+            assert text.xy[1] == pytest.approx(upper[text.xy[0]])
 
 
 @pytest.mark.parametrize(("spans", "rows", "pages"), [(1, 1, 1), (6, 1, 1), (20, 4, 2), (66, 11, 4)])
