@@ -12,8 +12,9 @@ from pantocheck.conformance.comparison.static_sidecar import STATIC_SCHEMA
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.json_file import read_json, validate_json
 from pantocheck.conformance.input_files.suggestions import suggest_names
-from pantocheck.conformance.input_files.table_formats import TABLE_FORMATS
+from pantocheck.conformance.input_files.table_formats import CSV, TABLE_FORMATS
 from pantocheck.conformance.input_files.toml_file import read_model, read_toml
+from pantocheck.conformance.line_tables.line_table_check import check_line_table, read_line_table
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
 from pantocheck.conformance.mass_drops.drop_sidecar import DropSidecar
 from pantocheck.conformance.own_files.file_kinds import list_keys, recognise_json, recognise_toml
@@ -138,6 +139,8 @@ def _check_table(path: Path) -> str:
     schema = read_toml(sidecar, "sidecar").get("schema") if sidecar.is_file() else None
     if schema == STATIC_SCHEMA:
         return _check_static(sidecar)
+    if not sidecar.is_file() and path.suffix.lower() in CSV.suffixes and (table := read_line_table(path)) is not None:
+        return check_line_table(table)
     return _check_record(sidecar) if schema in RECORD_SCHEMAS else _check_drops(path)
 
 

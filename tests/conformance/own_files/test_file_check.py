@@ -9,7 +9,8 @@ from typer.testing import CliRunner, Result
 
 from helpers.case_fixtures import EditedCase
 from helpers.drop_records import build_drop_record
-from helpers.static_records import write_static_record
+from helpers.line_table_files import change_cell, export_tables
+from helpers.static_records import read_unequal_line, write_static_record
 from helpers.toml_edit import edit_toml
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.command_line.app import app
@@ -173,3 +174,18 @@ def test_static_record_is_checked_with_its_table(tmp_path: Path, suffix: str) ->
     result = check(table.with_suffix(suffix))
     assert result.exit_code == 2
     assert "2 problem(s) in 1 of 1 file(s)" in result.output
+
+
+def test_tables_of_a_line_are_recognised_and_checked(tmp_path: Path) -> None:
+    supports, droppers = export_tables(tmp_path, read_unequal_line())
+    result = check(supports, droppers)
+    assert result.exit_code == 0, result.output
+    assert "table of 7 supports and ends" in result.output
+    assert "table of 53 droppers" in result.output
+    change_cell(supports, 3, "span_m", "58 m")
+    change_cell(supports, 4, "encumbrance_m", "?")
+    change_cell(droppers, 9, "x_m", "x")
+    result = check(supports, droppers)
+    assert result.exit_code == 2
+    for place in ("row 3, column 'span_m'", "row 4, column 'encumbrance_m'", "row 9, column 'x_m'"):
+        assert place in result.output
