@@ -120,6 +120,25 @@ def test_case_facts_show_wall_time_and_filter(passing: dict[str, Any]) -> None:
     assert dict(facts.pairs)["Filter"] == "Butterworth, order 6, −3 dB at 20 Hz, zero phase"
 
 
+def test_case_facts_state_the_forces_of_the_force_laws(passing: dict[str, Any]) -> None:
+    """Without a law, results.json has no key for it."""
+    case = passing["cases"][0]
+    assert "law_forces" not in case["run"]
+    forces = {
+        "1": {"kind": "applied_forces", "static_force_N": 70.0, "aerodynamic_force_N": 85.81},
+        "2": {"kind": "mean_force", "mean_force_N": 157.3},
+    }
+    case = Results.model_validate(
+        passing | {"cases": [case | {"run": case["run"] | {"law_forces": forces}}]}
+    ).to_dict()["cases"][0]
+    facts = dict(list_case_facts(case).pairs)
+    assert facts["Force law of pantograph 1"] == (
+        "applied forces of 155.81 N: static force 70.00 N, aerodynamic force 85.81 N; not tuned, the mean contact "
+        "force is a result"
+    )
+    assert facts["Force law of pantograph 2"] == "mean contact force of 157.30 N; the uplift force is tuned to it"
+
+
 def test_certificate_of_a_record_with_gaps(passing: dict[str, Any]) -> None:
     """A filtered or measured record lacks some traces and facts; null is not drawn."""
     case = passing["cases"][0]

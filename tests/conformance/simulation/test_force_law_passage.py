@@ -9,7 +9,9 @@ import pytest
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.force_rules import list_mean_force_rules
+from pantocheck.conformance.cases.geometry import ListedSpans
 from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.pantograph_file import MatricesTable, PantographFile
 from pantocheck.conformance.schemas import build_schema
 from pantocheck.conformance.simulation.case_run import run_passage
@@ -50,6 +52,17 @@ def short_case(speed_km_h: float, pantographs: int = 1) -> Case:
     )
 
 
+def raise_wire(case: Case, slope: float) -> Case:
+    """Case on the same line, whose contact wire rises by a slope over its whole length."""
+    geometry = case.line.geometry
+    tables = geometry.model_dump(exclude={"span_m", "spans", "provisional"}) | {
+        "span_list": [{"length_m": length} for length in geometry.span_lengths],
+        "gradient": [{"from_m": 0.0, "to_m": geometry.length, "slope": slope}],
+    }
+    line = LineFile.model_validate(dict(case.line) | {"geometry": ListedSpans.model_validate(tables)})
+    return replace(case, line=line)
+
+
 def mean_forces(case: Case) -> tuple[np.ndarray, tuple[float, ...]]:
     """Mean contact forces over the analysis section, and uplift forces [N]."""
     run = run_passage(case, discretise(build_catenary(case.line), 2.0), case.file.discretisation)
@@ -65,6 +78,17 @@ def test_mean_force_of_a_dsa380_is_the_sum_of_its_applied_forces(speed: float, s
     means, uplift = mean_forces(short_case(speed))
     assert uplift == (pytest.approx(sum_of_forces, abs=1e-9),)
     assert abs(means[0] - sum_of_forces) < 0.5
+
+
+@pytest.mark.parametrize("slope", [-0.004, 0.004])
+def test_base_damper_carries_the_rise_of_the_wire(slope: float) -> None:
+    """By the balance of momentum, the damper of 70 N s/m takes 19.4 N at 250 km/h off the 129.6 N, or adds it.
+
+    To 0.5 N as on the level line; the base spring of 0.1 N/m changes the force by less than 0.1 N.
+    """
+    case = raise_wire(short_case(250.0, pantographs=2), slope)
+    means, _ = mean_forces(case)
+    assert means == pytest.approx(2 * [129.6 - 70.0 * slope * 250 / 3.6], abs=0.5)
 
 
 def test_second_pantograph_has_a_law_of_its_own() -> None:
