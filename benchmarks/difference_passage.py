@@ -79,13 +79,12 @@ def build_heads(
     stiffness = case["pantographs"][0]["contact"]["stiffness_N_m"]
     unstretched, height, uplift = [], [], []
     cache: dict[float, float] = {}
-    for chain, x, force in zip(chains, starts, uplift_forces, strict=True):
+    for pantograph, chain, x, force in zip(case["pantographs"], chains, starts, uplift_forces, strict=True):
         if chain["base_spring_unstretched"] == "working_height":
             free = cache.setdefault(force, working_height(case, model, force, stiffness))
         else:
             free = 0.0
-        load = np.zeros(len(chain["masses_kg"]))
-        load[_uplift_mass(chain)] = force
+        load = _place_forces(pantograph, chain, force)
         head = model.lift(x, model.rest.shape + displacement) + force * (1 / stiffness - model.contact.excess_at(x))
         unstretched.append(free)
         uplift.append(load)
@@ -111,9 +110,18 @@ def _chain(pantograph: CaseData) -> CaseData:
     return chain
 
 
-def _uplift_mass(chain: CaseData) -> int:
-    """Index of the mass on which the uplift force acts: the case has its name, or its number from 1."""
-    on = chain["uplift_force_on"]
+def _place_forces(pantograph: CaseData, chain: CaseData, uplift_force: float) -> Floats:
+    """Constant force on every mass: the uplift force, or its static and its aerodynamic part."""
+    load = np.zeros(len(chain["masses_kg"]))
+    load[_find_mass(chain, chain["uplift_force_on"])] = uplift_force
+    if (applied := pantograph.get("applied_forces")) is not None:
+        load[_find_mass(chain, chain["uplift_force_on"])] -= applied["aerodynamic_force_N"]
+        load[_find_mass(chain, applied["aerodynamic_force_on"])] += applied["aerodynamic_force_N"]
+    return load
+
+
+def _find_mass(chain: CaseData, on: int | str) -> int:
+    """Index of a mass; the case has its name, or its number from 1."""
     return chain["names"].index(on) if isinstance(on, str) else int(on) - 1
 
 

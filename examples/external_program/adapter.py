@@ -17,6 +17,7 @@ from itertools import pairwise
 from pathlib import Path
 
 PROTOCOL = "pantocheck.command/2"
+FORCES = ("uplift_force_N", "target_mean_force_N")
 
 
 def toml_lines(table, path=()):
@@ -42,15 +43,23 @@ def join_keys(*keys):
     return ".".join(key if key.isidentifier() and key.isascii() else json.dumps(key) for key in keys)
 
 
+def write_law(applied):
+    """Force law of a pantograph with a static and an aerodynamic force, as the program reads it."""
+    aerodynamic = {"on": applied["aerodynamic_force_on"], "constant_N": applied["aerodynamic_force_N"]}
+    static = applied["static_force_N"]
+    return {"kind": "applied_forces", "static_force_N": static, "aerodynamic_force": aerodynamic}
+
+
 def write_input(case):
     """Write the case, its line and its pantographs as files."""
     Path("line.toml").write_text("\n".join(toml_lines(case["line"])), encoding="utf-8")
     uses = []
     for i, train in enumerate(case["pantographs"], 1):
         parts = {key: train[key] for key in ("chain", "matrices", "modes", "contact") if train[key] is not None}
-        model = {"title": f"pantograph {i}", **parts}
+        model, forces = {"title": f"pantograph {i}", **parts}, {key: train[key] for key in FORCES}
+        if (applied := train.get("applied_forces")) is not None:
+            model["force_law"], forces = write_law(applied), {"force_from": "law"}
         Path(f"pantograph{i}.toml").write_text("\n".join(toml_lines(model)), encoding="utf-8")
-        forces = {key: train[key] for key in ("uplift_force_N", "target_mean_force_N")}
         uses.append({"model": f"pantograph{i}.toml", **forces})
     starts = [train["start_m"] for train in case["pantographs"]]
     content = {

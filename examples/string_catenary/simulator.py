@@ -164,6 +164,21 @@ def settle_line(line, x, force, dt):
     return float(point.interpolate(line.height + line.contact.w)[0])
 
 
+def place_forces(train):
+    """Constant force on every mass [N]: the uplift force, or its static and its aerodynamic part."""
+    chain, applied = train["chain"], train.get("applied_forces")
+    parts = [(chain["uplift_force_on"], train["uplift_force_N"])]
+    if applied is not None:
+        parts = [
+            (chain["uplift_force_on"], applied["static_force_N"]),
+            (applied["aerodynamic_force_on"], applied["aerodynamic_force_N"]),
+        ]
+    force = np.zeros(len(chain["masses_kg"]))
+    for mass, part in parts:
+        force[chain["names"].index(mass) if isinstance(mass, str) else mass - 1] += part
+    return force
+
+
 def simulate(case):
     """Simulate a case with one pantograph.
 
@@ -179,9 +194,7 @@ def simulate(case):
     dt = step / substeps
     start_height = settle_line(line, train["start_m"], uplift_force, dt)
     k, c, m = (np.array(chain[key]) for key in ("stiffness_N_m", "damping_N_s_m", "masses_kg"))
-    uplift_mass = chain["uplift_force_on"]
-    uplift = np.zeros(m.size)
-    uplift[chain["names"].index(uplift_mass) if isinstance(uplift_mass, str) else uplift_mass - 1] = uplift_force
+    uplift = place_forces(train)
     working_height = derived["train"]["pantographs"][0]["working_height_m"]
     z, v = np.zeros(m.size), np.zeros(m.size)
     z[-1] = start_height + uplift_force / contact_stiffness

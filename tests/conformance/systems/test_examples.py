@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 from helpers.listed_spans import list_spans
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import load_case
+from pantocheck.conformance.cases.library import load_case, select_cases
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.input_files.toml_file import read_toml
@@ -110,3 +110,30 @@ def test_external_program_agrees_with_the_same_program_in_process(short: Case, r
     outcome = adapter("external_program", f"'{command}'").run(short)
     values = evaluate(outcome, short)
     assert_allclose([values[name] for name in reference], list(reference.values()), rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "arguments", "tolerance"), [("external_program", ("pantocheck",), 1e-9), ("string_catenary", (), 0.02)]
+)
+def test_adapters_place_the_applied_forces_of_a_force_law(
+    short: Case, name: str, arguments: tuple[str, ...], tolerance: float
+) -> None:
+    """Static and aerodynamic force act on different masses, here with a base spring of 2 kN/m.
+
+    On one mass, the frame would be 4 mm higher and the mean force 5 N lower. The tolerances are those of the tests
+    above.
+    """
+    law = select_cases(["force-law/300"])[-1]
+    chain = law.pantographs[0].chain
+    assert chain is not None
+    sprung = chain.model_copy(update={"stiffness_N_m": (2000.0, *chain.stiffness_N_m[1:])})
+    pantograph = law.pantographs[0].model_copy(update={"chain": sprung})
+    case = replace(
+        short,
+        file=short.file.model_copy(update={"pantograph": law.file.pantograph}),
+        pantographs=(pantograph,),
+    )
+    expected = evaluate(ReferenceSimulator().run_unrefined(case), case)
+    programs = [f"'{Path(sysconfig.get_path('scripts'), program)}'" for program in arguments]
+    values = evaluate(adapter(name, *programs).run(case), case)
+    assert_allclose(values["mean_force_N"], expected["mean_force_N"], rtol=tolerance)
