@@ -190,6 +190,12 @@ class LineFile(InputTable):
         limits = self.geometry.span_limits
         return tuple((limits[after.first], limits[before.last]) for before, after in pairwise(self.section_places))
 
+    @property
+    def middle_span(self) -> int:
+        """Number of the span in the middle of the first tension section without its overlap, from 1."""
+        overlap = 0 if self.overlap is None else self.overlap.spans
+        return self.geometry.shorten(self.section_places[0].last - overlap).middle_span
+
     def shorten(self, spans: int) -> Self:
         """Same line with the first spans only, as one tension section."""
         return self.model_copy(update={"geometry": self.geometry.shorten(spans), "section": None, "overlap": None})

@@ -22,7 +22,7 @@ def build_derived_tables(case: Case) -> list[RenderableType]:
     case : Case
         Any case, with or without a speed.
     """
-    derived, middle = build_derived(case), case.line.geometry.middle_span
+    derived, middle = build_derived(case), case.line.middle_span
     parts: list[tuple[str, BaseModel | None]] = [("line", derived.line), ("train", derived.train)]
     tables = []
     for name, part in parts:

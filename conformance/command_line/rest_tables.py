@@ -62,7 +62,7 @@ def _build_elasticity_table(case: Case, quantities: dict[str, Value]) -> Table:
         "Elasticity along the span", "position in the span [m]", "small load [mm/N]", "200 N [mm/N]"
     )
     small, large = (_as_sequence(quantities[f"{name}{ALONG_SPAN}"]) for name in ("elasticity", "elasticity_200_N"))
-    start, end = case.line.geometry.span(case.line.geometry.middle_span)
+    start, end = case.line.geometry.span(case.line.middle_span)
     for x, at_small_load, at_large_load in zip(sample_span(0.0, end - start), small, large, strict=True):
         table.add_row(f"{x:.2f}", format_number(at_small_load), format_number(at_large_load))
     return table

@@ -150,7 +150,8 @@ class CaseEvaluation:
         return _complete(run, None if run.record is None else self._signals(run.record).evaluation)
 
     def _signals(self, record: Record) -> RecordSignals:
-        return RecordSignals(record, self.case.file.filter.low_pass, self.case.line.geometry.supports)
+        line = self.case.line
+        return RecordSignals(record, self.case.file.filter.low_pass, line.geometry.supports, line.overlaps)
 
 
 def _complete(delivered: Delivered, evaluation: Evaluation | None) -> Evaluation:

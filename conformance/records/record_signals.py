@@ -1,11 +1,13 @@
 """Signals of a record, filtered once and shared by quantities, traces, section spread and consistency checks."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from pantocheck.conformance.quantities.evaluation import Evaluation, evaluate_section, evaluate_signals
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.quantities.signals import ForceChannel, LineSignals, PantographSignals
+from pantocheck.conformance.quantities.stretch_quantities import Stretch, evaluate_outside_overlaps
 from pantocheck.conformance.records.record import Record
 
 
@@ -21,11 +23,14 @@ class RecordSignals:
         Filter of the graded force.
     line_supports : tuple of float or None
         Positions of all supports of the line [m]; None if they are not known.
+    overlaps : sequence of Stretch
+        Overlaps of the tension sections of the line.
     """
 
     record: Record
     low_pass: LowPass
     line_supports: tuple[float, ...] | None = None
+    overlaps: Sequence[Stretch] = ()
 
     @cached_property
     def pantographs(self) -> dict[int, PantographSignals]:
@@ -56,11 +61,20 @@ class RecordSignals:
     @cached_property
     def evaluation(self) -> Evaluation:
         """Quantities over the analysis section of the record."""
-        return evaluate_signals(self.pantographs, self.line)
+        return self._add_stretches(evaluate_signals(self.pantographs, self.line), self.pantographs)
 
     def evaluate_section(self, section: tuple[float, float]) -> Evaluation:
         """Evaluate the quantities over another analysis section [m, m]; the force is not filtered again."""
-        return evaluate_section(self.pantographs, self.line, section)
+        moved = {number: replace(signals, section=section) for number, signals in self.pantographs.items()}
+        return self._add_stretches(evaluate_section(self.pantographs, self.line, section), moved)
+
+    def _add_stretches(self, evaluation: Evaluation, pantographs: Mapping[int, PantographSignals]) -> Evaluation:
+        """Add the quantities outside of the overlaps."""
+        values, skipped = evaluate_outside_overlaps(pantographs, self.overlaps)
+        return Evaluation(
+            {owner: {**known, **values.get(owner, {})} for owner, known in evaluation.values.items()},
+            {owner: {**known, **skipped.get(owner, {})} for owner, known in evaluation.skipped.items()},
+        )
 
 
 def evaluate_record(record: Record, low_pass: LowPass, line_supports: tuple[float, ...] | None = None) -> Evaluation:

@@ -88,7 +88,7 @@ def first_modes(line: LineFile, element: float) -> Modes:
 
 def _droppers(line: LineFile, catenary: Catenary) -> list[int]:
     """Indices of the droppers of the middle span."""
-    start, end = line.geometry.span(line.geometry.middle_span)
+    start, end = line.geometry.span(line.middle_span)
     return [i for i, dropper in enumerate(catenary.droppers) if start <= dropper.position < end]
 
 
@@ -117,7 +117,7 @@ def _dropper_lengths(file: LineFile, line: DiscretisedLine) -> dict[str, Value]:
 
 
 def _elasticity(file: LineFile, line: DiscretisedLine) -> dict[str, Value]:
-    positions = sample_span(*file.geometry.span(file.geometry.middle_span))
+    positions = sample_span(*file.geometry.span(file.middle_span))
     quantities: dict[str, Value] = {}
     for name, load in (("elasticity", SMALL_LOAD), ("elasticity_200_N", LARGE_LOAD)):
         elasticity = 1e3 * static_uplift(line, positions, load) / load

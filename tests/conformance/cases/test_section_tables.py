@@ -29,6 +29,13 @@ def test_line_without_sections_is_one_section_without_overlap() -> None:
     assert not {"section", "overlap"} & set(plain.model_dump(mode="json"))  # the digest of a case stays
 
 
+def test_middle_span_lies_outside_of_the_overlap() -> None:
+    """Of six spans the last three belong to the overlap; without sections it is that of the line."""
+    line = section_line()
+    assert line.middle_span == 2
+    assert line.shorten(9).middle_span == line.geometry.middle_span == 5
+
+
 def test_shortened_line_has_one_section() -> None:
     line = section_line().shorten(4)
     assert (line.geometry.spans, line.section, line.overlap) == (4, None, None)
