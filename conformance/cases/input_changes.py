@@ -184,6 +184,8 @@ def change_tree(
     InputError
         A table or a list item does not exist.
     """
+    if not changes:
+        return tree, ()
     changed = copy.deepcopy(tree)
     descriptions = []
     for change in changes:

@@ -21,6 +21,12 @@ from pantocheck.conformance.own_files.file_kinds import list_keys, recognise_jso
 from pantocheck.conformance.records.record_reading import RECORD_SCHEMAS, read_samples
 from pantocheck.conformance.results.results_reading import MAX_RESULTS_BYTES
 from pantocheck.conformance.schemas import READ_FORMATS, WRITTEN_FORMATS
+from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.model import discretise
+from pantocheck.model.failures import SimulationError
+
+ELEMENT_M = 2.0
+"""Largest element for the line at rest, whose shape hardly depends on it [m]."""
 
 TABLE_SUFFIXES = tuple(suffix for table_format in TABLE_FORMATS for suffix in table_format.suffixes)
 
@@ -97,13 +103,25 @@ def _check_model(path: Path, kind: str) -> str:
 
 def _check_case(path: Path) -> str:
     case = load_case(path)
+    _check_rest(case.line, f"case '{path.name}', line {case.line.title!r}")
     speed = "line at rest" if case.file.speed_km_h is None else f"{case.file.speed_km_h:g} km/h"
     pantographs = [f"{len(case.pantographs)} pantograph(s)"] if case.pantographs else []
     return f"case {case.id}: {', '.join([speed, *pantographs])}; line: {_describe_line(case.line)}"
 
 
 def _check_line(path: Path) -> str:
-    return f"line: {_describe_line(read_model(path, LineFile, 'line'))}"
+    line = read_model(path, LineFile, "line")
+    _check_rest(line, f"line '{path.name}'")
+    return f"line: {_describe_line(line)}"
+
+
+def _check_rest(line: LineFile, where: str) -> None:
+    """Refuse a line without a static equilibrium."""
+    try:
+        discretise(build_catenary(line), ELEMENT_M)
+    except SimulationError as error:
+        hint = "Check encumbrance, tensions, masses, pre-sag and the positions of the droppers."
+        raise InputError(where, f"is impossible at rest: {error}", hint) from None
 
 
 def _describe_line(line: LineFile) -> str:

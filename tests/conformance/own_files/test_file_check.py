@@ -2,6 +2,7 @@
 
 import shutil
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -189,3 +190,18 @@ def test_tables_of_a_line_are_recognised_and_checked(tmp_path: Path) -> None:
     assert result.exit_code == 2
     for place in ("row 3, column 'span_m'", "row 4, column 'encumbrance_m'", "row 9, column 'x_m'"):
         assert place in result.output
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"geometry.encumbrance_m": 0.05}, "is impossible at rest: the wires cross at the dropper"),
+        ({"droppers.presag_m": [0.0, 3.0, 3.0, 3.0, 3.0, 3.0, 3.0, 3.0, 0.0]}, "a dropper cannot push"),
+    ],
+)
+def test_line_without_equilibrium_is_refused(changes: dict[str, Any], message: str, edited_case: EditedCase) -> None:
+    path = edited_case("line.toml", changes)
+    for file in (path, path.with_name("line.toml")):
+        result = check(file)
+        assert result.exit_code == 2
+        assert message in result.stderr
