@@ -1,11 +1,12 @@
 """Channels of a contact-force record from a measured table: rows of samples in SI units."""
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.input_error import InputError, join_errors
 from pantocheck.conformance.input_files.measured_table import TableColumn
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.table_formats import CSV, HDF5, read_tables
@@ -39,32 +40,34 @@ def read_channel_rows(path: Path, sidecar: RecordSidecar) -> ChannelRows:
     Raises
     ------
     InputError
-        The table is damaged, has an unknown column, lacks a channel, or contradicts its sidecar.
+        The table is damaged, has an unknown column, lacks a channel, or contradicts its sidecar. The error lists all
+        such columns and channels.
     """
     tables = read_tables(path, (), MAX_SAMPLES, RECORD_FORMATS)
     where = tables[0].where
     if len(tables) > 1:
         raise InputError(where, f"holds {len(tables)} runs", "Write one file per run.")
     rows: ChannelRows = {}
+    errors: list[InputError] = []
     for column, values in zip(tables[0].columns, tables[0].values.T, strict=True):
-        meaning = _find_meaning(column, sidecar, where)
+        try:
+            meaning = _find_meaning(column, sidecar, where)
+        except InputError as error:
+            errors.append(error)
+            continue
         channel = rows.setdefault(meaning.channel.name, {})
         if meaning.number in channel:
-            hint = "Store each channel once."
-            raise InputError(
-                f"{where}, column {str(column.name)[:80]!r}", "repeats the channel of another column", hint
-            )
-        with np.errstate(invalid="ignore", over="ignore"):  # numbers too large are reported by `_check_size`
+            place = f"{where}, column {str(column.name)[:80]!r}"
+            errors.append(InputError(place, "repeats the channel of another column", "Store each channel once."))
+            continue
+        with np.errstate(invalid="ignore", over="ignore"):  # numbers too large are reported below
             channel[meaning.number] = meaning.factor * values
-    for missing, present in (
-        ("force_N", "force" in rows),
-        ("time_s or position_m", rows.keys() & {"time", "position"}),
-    ):
-        if not present:
-            raise InputError(where, f"has no channel {missing}", "Store force_N, and time_s or position_m.")
+    if not errors:  # a wrong column may be the missing one
+        errors += _find_missing_channels(rows, sidecar, where)
     for name in rows:
-        _check_count(name, rows[name], sidecar, where)
-        _check_size(name, rows[name], where)
+        errors += _find_impossible_values(name, rows[name], where)
+    if errors:
+        raise join_errors(errors)
     return rows
 
 
@@ -85,25 +88,30 @@ def _find_meaning(column: TableColumn, sidecar: RecordSidecar, where: str) -> Re
     return meaning
 
 
-def _check_count(name: str, rows: dict[int, RealArray], sidecar: RecordSidecar, where: str) -> None:
-    """Refuse a channel without a row for each pantograph; uplift may be measured at some of the supports only."""
-    expected = sidecar.rows(CHANNELS[name].per)
-    first_alone = name == "position" and list(rows) == [1] and sidecar.spacing_m is not None
-    if name != "uplift" and len(rows) != expected and not first_alone:
-        raise InputError(
-            where,
-            f"has {len(rows)} rows of {CHANNELS[name].key}, expected {expected}",
-            "Store one row per pantograph; for positions, position_1_m and spacing_m in the sidecar are also enough.",
-        )
+def _find_missing_channels(rows: ChannelRows, sidecar: RecordSidecar, where: str) -> Iterator[InputError]:
+    """Missing channels, and channels without a row for each pantograph; uplift may be measured at some supports."""
+    for missing, present in (
+        ("force_N", "force" in rows),
+        ("time_s or position_m", rows.keys() & {"time", "position"}),
+    ):
+        if not present:
+            yield InputError(where, f"has no channel {missing}", "Store force_N, and time_s or position_m.")
+    for name, numbered in rows.items():
+        expected = sidecar.rows(CHANNELS[name].per)
+        first_alone = name == "position" and list(numbered) == [1] and sidecar.spacing_m is not None
+        if name != "uplift" and len(numbered) != expected and not first_alone:
+            found = f"has {len(numbered)} rows of {CHANNELS[name].key}, expected {expected}"
+            hint = "Store one row per pantograph; for positions, position_1_m and spacing_m in the sidecar are enough."
+            yield InputError(where, found, hint)
 
 
-def _check_size(name: str, rows: dict[int, RealArray], where: str) -> None:
-    """Refuse infinite and impossibly large values; NaN marks a missing value."""
+def _find_impossible_values(name: str, rows: dict[int, RealArray], where: str) -> Iterator[InputError]:
+    """Channels with infinite or impossibly large values; NaN marks a missing value."""
     for number, values in rows.items():
         impossible = np.abs(values) > LARGEST_NUMBER
         if impossible.any():
             sample = int(np.argmax(impossible))
-            raise InputError(
+            yield InputError(
                 f"{where}, {CHANNELS[name].column(number)}",
                 f"sample {sample + 1} has the impossible value {values[sample]:.3g}",
                 "Correct the value, or write nan for a missing value.",

@@ -205,3 +205,21 @@ def test_line_without_equilibrium_is_refused(changes: dict[str, Any], message: s
         result = check(file)
         assert result.exit_code == 2
         assert message in result.stderr
+
+
+def test_all_wrong_columns_of_a_record_are_listed(tmp_path: Path, two_pantograph_record: Record) -> None:
+    sidecar = write_record(tmp_path / "a.csv", two_pantograph_record)
+    edit_toml(sidecar, {"sha256": None})
+    text = (tmp_path / "a.csv").read_text()
+    head, first, rest = text.split("\n", 2)
+    cells = [
+        "1e300" if name == "force_2_N" else cell for name, cell in zip(head.split(","), first.split(","), strict=True)
+    ]
+    head = head.replace("force_1_N", "force_1_lbf").replace("uplift_2_m", "lift_2_m")
+    (tmp_path / "a.csv").write_text("\n".join([head, ",".join(cells), rest]))
+    result = check(sidecar)
+    assert result.exit_code == 2
+    for place in ("column 'force_1_lbf': unknown column", "column 'lift_2_m': unknown column"):
+        assert place in result.stderr
+    assert "force_2_N: sample 1 has the impossible value 1e+300" in result.stderr
+    assert "3 problem(s) in 1 of 1 file(s)" in result.stderr
