@@ -17,7 +17,6 @@ STIFFNESS = {"z": "vertical_stiffness_N_m", "y": "lateral_stiffness_N_m"}
 def build_bars(line: Line, strands: Strands, rest: Rest) -> list[Bar]:
     """Droppers, steady arms across their length and messenger supports, linearised about the state of rest."""
     table, axes = line.inputs["droppers"], "yz" if line.staggered else "z"
-    supports = line.derived["messenger_supports"]
     beta, bars = line.derived["droppers"]["stiffness_coefficient_s"], []
     length = rest.dropper_length
     for i, dropper in enumerate(line.droppers):
@@ -36,9 +35,9 @@ def build_bars(line: Line, strands: Strands, rest: Rest) -> list[Bar]:
                 damping, preload = (beta * stiffness, tension) if taut_only else (0.0, 0.0)
                 bars.append(Bar(x, *join(*parts), float(stiffness), float(damping), float(preload), taut_only))
     bars += _arm_bars(line, strands, rest)
-    for x in line.supports:
-        for axis in axes:
-            k, strand = supports[STIFFNESS[axis]], strands["messenger", axis]
+    for axis in axes:
+        strand = strands["messenger", axis]
+        for x, k in zip(line.supports, line.by_support("messenger_supports", STIFFNESS[axis]), strict=True):
             bars.append(Bar(x, *strand.weights(x), k / (1 - k * strand.excess_at(x))))
     return sorted(bars, key=lambda bar: bar.position)
 
@@ -50,9 +49,8 @@ def arm_directions(rest: Rest) -> Floats:
 
 def _arm_bars(line: Line, strands: Strands, rest: Rest) -> list[Bar]:
     """Stiffness of the arms across their length: axial force over length, or the vertical stiffness of the file."""
-    arm, beta = line.inputs["steady_arm"], line.derived["steady_arms"]["stiffness_coefficient_s"]
-    bars = []
-    for i, x in enumerate(line.supports):
+    beta, bars = line.derived["steady_arms"]["stiffness_coefficient_s"], []
+    for i, (x, arm) in enumerate(zip(line.supports, line.arms, strict=True)):
         if arm["vertical_stiffness_N_m"] is not None:
             k, parts = arm["vertical_stiffness_N_m"], [(1.0, strands["contact", "z"].weights(x))]
         elif line.staggered and arm["length_m"] is not None and arm["acts"] == "pull":

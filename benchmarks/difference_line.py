@@ -7,7 +7,8 @@ Everything else is solved again, and nothing of the reference simulator is used.
 from dataclasses import dataclass
 from typing import Any
 
-from difference_strands import Wire
+import numpy as np
+from difference_strands import Floats, Wire
 
 CaseData = dict[str, Any]
 """Case of a message `run`."""
@@ -54,6 +55,37 @@ class Line:
         return tuple(self.derived["steady_arms"]["position_m"])
 
     @property
+    def arms(self) -> list[CaseData]:
+        """Steady arm of every support: that of the line, with the values of the support in place of its own."""
+        own = {support["number"]: support["steady_arm"] or {} for support in self._own_supports}
+        given = [own.get(number, {}).items() for number in range(1, len(self.supports) + 1)]
+        return [self.inputs["steady_arm"] | {key: value for key, value in arm if value is not None} for arm in given]
+
+    @property
+    def contact_heights(self) -> Floats:
+        """Prescribed height of the contact wire at anchors and supports [m]."""
+        geometry, last = self.inputs["geometry"], len(self.span_limits) - 1
+        own = {support["number"]: support["contact_wire_height_m"] for support in self._own_supports}
+        heights = []
+        for number, x in enumerate(self.span_limits):
+            neighbour = min(max(number, 1), last - 1)
+            given = [own.get(number), own.get(neighbour), geometry.get("contact_wire_height_m", 0.0)]
+            rise = (
+                g["slope"] * (min(max(x, g["from_m"]), g["to_m"]) - g["from_m"]) for g in geometry.get("gradient", [])
+            )
+            heights.append(next(height for height in given if height is not None) + sum(rise))
+        return np.array(heights)
+
+    @property
+    def _own_supports(self) -> list[CaseData]:
+        own: list[CaseData] = self.inputs["geometry"].get("support", [])
+        return own
+
+    def by_support(self, table: str, key: str) -> Floats:
+        """Derived value of every arm or messenger support; a program receives one number if all are equal."""
+        return np.broadcast_to(self.derived[table][key], len(self.supports))
+
+    @property
     def staggers(self) -> dict[str, tuple[tuple[float, float], ...]]:
         """Lateral positions (x, y) at anchors and supports by wire [m]."""
         return {
@@ -67,7 +99,7 @@ def build_line(case: CaseData) -> Line:
     inputs, derived = case["line"], case["derived"]["line"]
     if inputs["contact_wire"]["number"] != 1 or inputs["messenger_wire"]["number"] != 1 or inputs["damping"]["modal"]:
         raise ValueError("the second formulation has one contact wire, one messenger wire and no modal damping")
-    if inputs["messenger_support"]["along_track"] != "free":
+    if derived["messenger_supports"]["held_along_track"] is not False:
         raise ValueError("the second formulation has messenger wires of constant tension only")
     messenger, stitch = inputs["messenger_wire"], derived["stitch_wires"]
     stretches = [] if stitch is None else list(zip(stitch["start_m"], stitch["end_m"], strict=True))

@@ -11,7 +11,7 @@ DAMPER = {"z": "vertical_damper_N_s_m", "y": "lateral_damper_N_s_m"}
 def lumped_masses(line: Line, strands: Strands) -> tuple[Floats, Floats]:
     """Mass [kg] and damper to the ground [N s/m] of every point."""
     mass, damper = np.zeros(size(strands)), np.zeros(size(strands))
-    droppers, arms = line.derived["droppers"], line.derived["steady_arms"]
+    droppers, alpha_of_arms = line.derived["droppers"], line.derived["steady_arms"]["mass_coefficient_1_s"]
 
     def add(strand: Strand, x: float, value: float, coefficient: float) -> None:
         s = (x - strand.wire.start) / strand.spacing
@@ -25,12 +25,15 @@ def lumped_masses(line: Line, strands: Strands) -> tuple[Floats, Floats]:
         mass[inner] += strand.wire.mass_per_length * strand.spacing
         damper[inner] += strand.wire.mass_coefficient * strand.wire.mass_per_length * strand.spacing
         if name == "contact":
-            for x in line.supports:
-                add(strand, x, arms["mass_kg"], arms["mass_coefficient_1_s"])
-                damper[strand.point(x)] += arms["vertical_damper_N_s_m"] if axis == "z" else 0.0
+            masses, dampers = (line.by_support("steady_arms", key) for key in ("mass_kg", "vertical_damper_N_s_m"))
+            for x, arm_mass, arm_damper in zip(line.supports, masses, dampers, strict=True):
+                add(strand, x, float(arm_mass), alpha_of_arms)
+                damper[strand.point(x)] += arm_damper if axis == "z" else 0.0
         elif name == "messenger":
-            for x in line.supports:
-                damper[strand.point(x)] += line.derived["messenger_supports"][DAMPER[axis]]
+            for x, support_damper in zip(
+                line.supports, line.by_support("messenger_supports", DAMPER[axis]), strict=True
+            ):
+                damper[strand.point(x)] += support_damper
     alpha = droppers["mass_coefficient_1_s"]
     axes = "zy" if line.staggered else "z"
     for axis in axes:

@@ -66,9 +66,16 @@ def check_conventions(case: CaseData) -> None:
 
 
 def working_height(case: CaseData, model: Model, force: float, contact_stiffness: float) -> float:
-    """Height of the head under a static force: mean uplift over the positions of the case, and the contact [m]."""
+    """Height of the head under a static force: nominal height, mean uplift of the wire, and the contact [m]."""
     positions = case["derived"]["train"]["working_height_positions_m"]
-    return float(np.mean([model.static_uplift(x, force) for x in positions])) + force / contact_stiffness
+    lift = float(np.mean([model.static_uplift(x, force) for x in positions])) + force / contact_stiffness
+    return nominal_height(case, model) + lift
+
+
+def nominal_height(case: CaseData, model: Model) -> float:
+    """Mean height of the straight lines between the supports over the positions of the working height [m]."""
+    positions = case["derived"]["train"]["working_height_positions_m"]
+    return float(np.interp(positions, model.line.span_limits, model.line.contact_heights).mean())
 
 
 def build_heads(
@@ -83,7 +90,7 @@ def build_heads(
         if chain["base_spring_unstretched"] == "working_height":
             free = cache.setdefault(force, working_height(case, model, force, stiffness))
         else:
-            free = 0.0
+            free = nominal_height(case, model)
         load = _place_forces(pantograph, chain, force)
         head = model.lift(x, model.rest.shape + displacement) + force * (1 / stiffness - model.contact.excess_at(x))
         unstretched.append(free)

@@ -50,14 +50,14 @@ def compute_rest(line: Line, strands: Strands) -> Rest:
     contact = strands["contact", "z"]
     below, above = dropper_ends(line, strands, "z")
     # 1. Contact wire.
-    level = line.inputs["steady_arm"]["static_share"] == "level"
+    level = np.array([arm["static_share"] == "level" for arm in line.arms], dtype=bool)
+    at_limits = line.contact_heights
     held = [contact.weights(0.0), contact.weights(contact.wire.end), *below]
-    held += [contact.weights(x) for x in supports if level]
-    heights = np.array([0.0, 0.0, *(d.height for d in line.droppers), *(0.0 for _ in supports if level)])
+    held += [contact.weights(x) for x, carries in zip(supports, level, strict=True) if carries]
+    heights = np.array([*at_limits[[0, -1]], *(d.height for d in line.droppers), *at_limits[1:-1][level]])
     shape, force = _hang(strands, ["contact"], gravity, np.zeros(n), held, heights)
     holding, arm_force = force[2 : 2 + len(below)], np.zeros((len(supports), 2))
-    if level:
-        arm_force[:, 1] = force[2 + len(below) :]
+    arm_force[level, 1] = force[2 + len(below) :]
     vertical = holding + gravity * (table["lower_clamp_kg"] + mass / 2)
     # 2. Messenger and stitch wires.
     upper = [wire.name for wire in line.wires if wire.name != "contact"]
