@@ -10,9 +10,10 @@ from pydantic import BaseModel
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import CaseFile
+from pantocheck.conformance.cases.changed_content import change_case, change_tree
 from pantocheck.conformance.cases.damping_file import Damping, DampingFile, overlay_damping
 from pantocheck.conformance.cases.force_rules import resolve_rule
-from pantocheck.conformance.cases.input_changes import InputChange, change_case, change_tree
+from pantocheck.conformance.cases.input_changes import InputChange
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.pantograph_file import PantographFile

@@ -25,7 +25,7 @@ from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.model import discretise
 from pantocheck.model.failures import SimulationError
 
-ELEMENT_M = 2.0
+LARGEST_REST_ELEMENT_M = 2.0
 """Largest element for the line at rest, whose shape hardly depends on it [m]."""
 
 TABLE_SUFFIXES = tuple(suffix for table_format in TABLE_FORMATS for suffix in table_format.suffixes)
@@ -118,7 +118,7 @@ def _check_line(path: Path) -> str:
 def _check_rest(line: LineFile, where: str) -> None:
     """Refuse a line without a static equilibrium."""
     try:
-        discretise(build_catenary(line), ELEMENT_M)
+        discretise(build_catenary(line), LARGEST_REST_ELEMENT_M)
     except SimulationError as error:
         hint = "Check encumbrance, tensions, masses, pre-sag and the positions of the droppers."
         raise InputError(where, f"is impossible at rest: {error}", hint) from None
