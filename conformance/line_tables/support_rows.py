@@ -73,7 +73,7 @@ def _read_length(here: TypedRow, behind: TypedRow, column: str, problems: list[I
             problems.append(InputError(missing.places[POSITION], "the position is missing", "Give every position."))
             return None
         if distance <= 0:
-            hint = "List the supports in running order."
+            hint = f"List the supports in running order; if the chainage decreases, give {SPAN_LENGTH} in place of it."
             problems.append(InputError(behind.places[POSITION], "the position does not increase", hint))
             return None
         return distance

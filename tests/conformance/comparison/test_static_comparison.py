@@ -76,6 +76,21 @@ def test_known_differences_are_found_with_their_place_and_sign(tmp_path: Path, c
     assert comparison.values[1].spans[2].largest_difference == pytest.approx(7.0, rel=1e-4)
 
 
+def test_common_offset_has_no_outliers_and_shows_the_error_of_the_mesh(
+    tmp_path: Path, computed: dict[str, Array]
+) -> None:
+    """All heights are measured 4 mm too low; elements of 2 m are 0.2 mm too high in the mean, and say so."""
+    columns = {name: computed[name] for name in ("position_m", "contact_wire_height_m")}
+    columns["contact_wire_height_m"] = columns["contact_wire_height_m"] - 0.004
+    record = read_static_record(write_static_record(tmp_path, columns, **COMPLETE), LINE.geometry)
+    comparison = compare_statics(record, LINE, 2.0, {"contact_wire_height_difference_mm": 5.0})
+    assert comparison.values[0].outlier_rows == ()
+    assert comparison.values[0].mean_difference == pytest.approx(4.2, abs=0.1)
+    (height,) = comparison.criteria
+    assert height.discretisation is not None
+    assert 0.02 < height.discretisation < 1.0
+
+
 def test_difference_of_two_forces_is_the_slope_between_them(tmp_path: Path, computed: dict[str, Array]) -> None:
     """Droppers slacken under 200 N: the slope from 100 N to 200 N exceeds the elasticity under 100 N."""
     one, two = (

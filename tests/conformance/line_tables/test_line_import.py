@@ -72,6 +72,16 @@ def test_positions_in_chainage_give_exact_span_lengths(base: Path) -> None:
     assert [limit.contact_wire_stagger for limit in line.layout.limits] == [0.0, -0.2, 0.25, -0.2, 0.0]
 
 
+def test_conversions_are_those_of_decimal_numbers(base: Path) -> None:
+    """Thousandths of whole millimetres; many binary products, such as 9 * 0.001, are another number."""
+    staggers = [*range(1, 200), 0]
+    rows = [f"{number},50,{stagger}" for number, stagger in enumerate(staggers[:-1])]
+    text = "\n".join(["number,span_m,stagger_contact_wire_mm", *rows, f"{len(rows)},,0"])
+    tree = import_line(base, write(base.parent, "s.csv", text), None)
+    supports = tree["geometry"]["support"]
+    assert [support["stagger_contact_wire_m"] for support in supports] == [stagger / 1000 for stagger in staggers]
+
+
 def test_empty_cells_take_the_values_of_the_base(base: Path) -> None:
     text = (
         "number,span_m,encumbrance_m,steady_arm_length_m,steady_arm_acts\n0,50,,,\n1,50,1.1,0.9,push\n2,50,,,\n3,,,,\n"
