@@ -1,6 +1,7 @@
 """Inputs, limits and sources of a case as text and tables."""
 
 from collections.abc import Iterator
+from itertools import groupby
 from typing import Any
 
 from rich.console import RenderableType
@@ -60,9 +61,30 @@ def _build_input_table(case: Case) -> Table:
             for key, value in inputs.items():
                 top_key = key if path == name else path.removeprefix(f"{name}.").split(".")[0]
                 trust = "provisional" if top_key in sourced.provisional else sourced.trust
-                text = ", ".join(map(str, value)) if isinstance(value, list) else str(value)
-                table.add_row(escape_text(f"  {key}"), escape_text(text), trust)
+                table.add_row(escape_text(f"  {key}"), escape_text(_format_input(value)), trust)
     return table
+
+
+def _format_input(value: object) -> str:
+    """Value without quotes; the tables of a list are numbered, one per line, equal neighbours together."""
+    if not isinstance(value, list):
+        return str(value)
+    if not (value and isinstance(value[0], dict)):
+        return ", ".join(map(str, value))
+    lines, last = [], 0
+    for text, equal in groupby(
+        ", ".join(f"{key} = {_format_inline(part)}" for key, part in row.items()) for row in value
+    ):
+        first, last = last + 1, last + len(list(equal))
+        lines.append(f"{first if first == last else f'{first}-{last}'}: {text}")
+    return "\n".join(lines)
+
+
+def _format_inline(value: object) -> str:
+    """Value inside a table, as in TOML but without quotes."""
+    if isinstance(value, dict):
+        return f"{{ {', '.join(f'{key} = {_format_inline(part)}' for key, part in value.items())} }}"
+    return f"[{', '.join(map(_format_inline, value))}]" if isinstance(value, list) else str(value)
 
 
 def _split_tables(path: str, values: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:

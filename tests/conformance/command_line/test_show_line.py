@@ -55,6 +55,26 @@ def test_elasticity_of_every_listed_span_is_printed(tmp_path: Path) -> None:
     assert [row.split()[:2] for row in table.splitlines()[2:5]] == [["1", "60"], ["2", "57.5"], ["3", "60"]]
 
 
+def test_listed_spans_and_supports_are_printed_line_by_line(tmp_path: Path) -> None:
+    """Equal neighbours share a line; no Python table is printed."""
+    tables = list_spans(read_toml(library_folder() / "en50318-2002" / "line.toml", "line"))
+    short = {"length_m": 54.0, "droppers": {"x_m": [9.0, 45.0]}}
+    tables["geometry"]["span_list"] = [{"length_m": 60.0}] * 3 + [short, {"length_m": 60.0}]
+    tables["geometry"]["support"] = [{"number": 2, "encumbrance_m": 1.1, "steady_arm": {"length_m": 0.9}}]
+    write_toml(tmp_path / "line.toml", tables)
+    file = write_toml(tmp_path / "case.toml", {"id": "own", "title": "own", "line": "line.toml"})
+    result = CliRunner(env={"COLUMNS": "150"}).invoke(app, ["show", str(file)])
+    assert result.exit_code == 0, result.output
+    lines = [" ".join(line.split()) for line in result.output.splitlines()]
+    first = next(i for i, line in enumerate(lines) if line.startswith("span_list"))
+    assert lines[first].startswith("span_list 1-3: length_m = 60.0")
+    assert lines[first + 1 : first + 3] == [
+        "4: length_m = 54.0, droppers = { x_m = [9.0, 45.0] }",
+        "5: length_m = 60.0",
+    ]
+    assert any("1: number = 2, encumbrance_m = 1.1, steady_arm = { length_m = 0.9 }" in line for line in lines)
+
+
 def test_derived_values_are_printed_with_their_meaning() -> None:
     """Lists by span show the middle span; long lists show their ends."""
     result = CliRunner(env={"COLUMNS": "250"}).invoke(app, ["show", "en50318-2002/250", "--derived"])
