@@ -99,6 +99,9 @@ def build_line(case: CaseData) -> Line:
     inputs, derived = case["line"], case["derived"]["line"]
     if inputs["contact_wire"]["number"] != 1 or inputs["messenger_wire"]["number"] != 1 or inputs["damping"]["modal"]:
         raise ValueError("the second formulation has one contact wire, one messenger wire and no modal damping")
+    details = (derived["contact_wire"], derived["messenger_wire"])
+    if any(wire.get("stretches") or wire.get("irregularity") for wire in details) or derived.get("point_masses"):
+        raise ValueError("the second formulation has uniform, smooth wires without point masses")
     if derived["messenger_supports"]["held_along_track"] is not False:
         raise ValueError("the second formulation has messenger wires of constant tension only")
     messenger, stitch = inputs["messenger_wire"], derived["stitch_wires"]

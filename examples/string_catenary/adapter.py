@@ -33,6 +33,9 @@ def reason_to_skip(case):
         return "dampers of steady arms are not supported"
     if derived["messenger_supports"]["held_along_track"] is not False:
         return "messenger wires that are held along the track are not supported"
+    wires = (derived["contact_wire"], derived["messenger_wire"])
+    if any(wire.get("stretches") or wire.get("irregularity") for wire in wires) or derived.get("point_masses"):
+        return "changes of a wire, its irregularity and point masses are not supported"
     return None
 
 
