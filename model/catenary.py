@@ -30,6 +30,13 @@ class Kind(StrEnum):
     MESSENGER_SUPPORT = "messenger_support"
 
 
+class Termination(StrEnum):
+    """Terminations of a wire along the track: a weight keeps its tension, an anchor holds its end."""
+
+    WEIGHT = "weight"
+    ANCHOR = "anchor"
+
+
 @dataclass(frozen=True)
 class Rayleigh:
     """Rayleigh damping of one kind of component: C = alpha M + beta K.
@@ -114,6 +121,8 @@ class Wire:
         Heights that a pantograph feels in addition to those of the wire; only of a contact wire.
     section_changes : tuple of SectionChange
         Stretches with another cross-section.
+    terminations : (Termination, Termination) or None
+        Terminations at both ends; None: constant tension, or rigid anchors if a support is fixed along the track.
     """
 
     name: str
@@ -129,6 +138,7 @@ class Wire:
     end_heights: tuple[float, float] | None = None
     irregularity: Irregularity | None = None
     section_changes: tuple[SectionChange, ...] = ()
+    terminations: tuple[Termination, Termination] | None = None
 
 
 @dataclass(frozen=True)

@@ -275,6 +275,17 @@ class LineFile(InputTable):
             yield validation_problem(key, f"the table is missing beside {other}", "Give both, or none of them.")
 
     @cross_check
+    def _check_terminations(self) -> Problems:
+        for number, section in enumerate(self.section or (), 1):
+            if section.holding_points > 1 and self.messenger_wire.axial_stiffness_EA_N is None:
+                yield validation_problem(
+                    "messenger_wire.axial_stiffness_EA_N",
+                    f"section {number} holds the messenger wire along the track at {section.holding_points} points, "
+                    "but its axial stiffness is not given",
+                    "Give messenger_wire.axial_stiffness_EA_N, or end the section with weights.",
+                )
+
+    @cross_check
     def _check_sections(self) -> Problems:
         if self.section is not None and self.overlap is not None:
             yield from find_span_problems(self.section, self.overlap.spans, self.geometry.spans)

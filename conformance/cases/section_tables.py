@@ -11,7 +11,7 @@ outgoing wires rise to their anchor, and the incoming ones descend from theirs.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field
@@ -23,6 +23,13 @@ from pantocheck.conformance.input_files.sourced_table import InputTable, validat
 MOST_OVERLAP_SPANS = 5
 """Largest number of spans of an overlap."""
 
+WireEnd = Annotated[
+    Literal["weight", "anchor"],
+    Field(
+        description="termination of the wires; weight: a tensioning weight keeps their tension; anchor: rigid, so that "
+        "the tension of the messenger wire changes with its elongation up to the next holding point"
+    ),
+]
 WireRise = Annotated[float, Field(gt=0, le=3)]
 
 
@@ -30,6 +37,22 @@ class SectionTable(InputTable):
     """Tension section of a line."""
 
     spans: Annotated[int, Field(ge=2, le=MOST_SPANS, description="number of spans from anchor to anchor")]
+    start: WireEnd = "weight"
+    end: WireEnd = "weight"
+    midpoint_anchor: Annotated[
+        int | None,
+        Field(
+            ge=1,
+            le=MOST_SPANS,
+            description="number of the support, counted along the line, at which the messenger wire is held along the "
+            "track; default: none",
+        ),
+    ] = None
+
+    @property
+    def holding_points(self) -> int:
+        """Number of points that hold the messenger wire along the track."""
+        return [self.start, self.end].count("anchor") + (self.midpoint_anchor is not None)
 
 
 class OverlapTable(InputTable):
@@ -137,7 +160,16 @@ def find_span_problems(sections: Sequence[SectionTable], overlap: int, spans: in
                 f"{section.spans} spans, of which {neighbours * overlap} belong to overlaps",
                 f"Give at least {neighbours * overlap + 1} spans, or a shorter overlap.",
             )
-    end = place_sections(sections, overlap)[-1].last
+    places = place_sections(sections, overlap)
+    for section, place in zip(sections, places, strict=True):
+        support = section.midpoint_anchor
+        if support is not None and not place.first < support < place.last:
+            yield validation_problem(
+                f"section[{place.number}].midpoint_anchor",
+                f"support {support} is not inside the section",
+                f"Give a support from {place.first + 1} to {place.last - 1}, counted along the line.",
+            )
+    end = places[-1].last
     if end != spans:
         yield validation_problem(
             "section",

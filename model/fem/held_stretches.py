@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pantocheck.model.arrays import Array, Indices
-from pantocheck.model.catenary import Catenary, Wire
+from pantocheck.model.catenary import Catenary, Termination, Wire
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.mesh import Mesh
 
@@ -43,9 +43,9 @@ class HeldStretches(NamedTuple):
 
 
 def build_held_stretches(catenary: Catenary, mesh: Mesh, deflection: Array) -> HeldStretches:
-    """Build the stretches of all wires with a support that is fixed along the track.
+    """Build the stretches of all wires between the points that hold them along the track: fixed supports and anchors.
 
-    The anchors of such a wire hold it, too. A wire without fixed support has constant tension.
+    Between a tensioning weight and the next such point the tension is constant.
 
     Parameters
     ----------
@@ -86,8 +86,9 @@ def build_held_stretches(catenary: Catenary, mesh: Mesh, deflection: Array) -> H
 def _held_stations(catenary: Catenary, mesh: Mesh, wire: Wire) -> list[int]:
     """Stations at which a wire is held along the track, in order; none without a fixed support."""
     supports = [s for s in catenary.messenger_supports if s.wire == wire.name and s.along_track == "fixed"]
-    places = {wire.start, wire.end, *(support.position for support in supports)} if supports else set()
-    return sorted({mesh.station(place) for place in places})
+    terminations = wire.terminations or ((Termination.ANCHOR if supports else Termination.WEIGHT),) * 2
+    anchors = [x for x, end in zip((wire.start, wire.end), terminations, strict=True) if end is Termination.ANCHOR]
+    return sorted({mesh.station(place) for place in (*anchors, *(support.position for support in supports))})
 
 
 def _axial_stiffness(wire: Wire) -> float:

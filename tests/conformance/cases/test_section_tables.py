@@ -90,6 +90,14 @@ def test_given_rises_are_joined_by_straight_lines() -> None:
                 "section[2].spans: 6 spans, of which 6 belong to overlaps",
             ],
         ),
+        (
+            {"section": [{"spans": 6, "midpoint_anchor": 6}, {"spans": 6, "midpoint_anchor": 4, "start": "anchor"}]},
+            [
+                "section[1].midpoint_anchor: support 6 is not inside the section",
+                "messenger_wire.axial_stiffness_EA_N: section 2 holds the messenger wire along the track at 2 points",
+            ],
+        ),
+        ({"section": [{"spans": 6, "end": "spring"}, {"spans": 6}]}, ["section[1].end: found 'spring'"]),
         ({"geometry.spans": 12}, ["section: the sections end at span 9, but the line has 12 spans"]),
     ],
 )

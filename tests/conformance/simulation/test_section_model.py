@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from helpers.section_lines import section_line
+from helpers.section_lines import section_line, section_tables
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.simulation.case_run import build_passage
 from pantocheck.conformance.simulation.catenary_model import build_catenary
@@ -129,6 +130,18 @@ def test_forces_before_the_overlap_are_those_without_it(
     assert early.sum() > 300
     assert difference[:, early].max() < 1e-9
     assert difference.max() > 10.0
+
+
+def test_terminations_and_mid_point_anchor_hold_the_messenger_wires() -> None:
+    """Rigid at the start of the first section and at its mid-point anchor, the third support: one stretch of 180 m."""
+    tables = section_tables()
+    tables["messenger_wire"]["axial_stiffness_EA_N"] = 13.8e6
+    tables["section"][0] |= {"start": "anchor", "midpoint_anchor": 3}
+    tables["section"][1] |= {"midpoint_anchor": 6}
+    line = discretise(build_catenary(LineFile.model_validate(tables)), 2.0)
+    assert line.stretches.stiffness.tolist() == [13.8e6 / 180.0]
+    assert line.stretches.row.tolist() == [[line.mesh.row_of["section 1 messenger wire", "z"]]]
+    assert line.mesh.position[line.stretches.first[0]] == 0.0
 
 
 def test_program_gets_no_derived_values_of_several_sections(case_250: Case) -> None:

@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 
 from helpers.lines import Array, fix_along_track, simple_line
 from pantocheck.model import Catenary, DiscretisedLine, Kind, MessengerSupport, Wire, discretise
-from pantocheck.model.catenary import GRAVITY
+from pantocheck.model.catenary import GRAVITY, Termination
 from pantocheck.model.fem.assembly import (
     assemble_matrices,
     bandwidth_order,
@@ -114,6 +114,33 @@ def test_one_fixed_support_holds_the_wire_there_and_at_its_anchors() -> None:
     fixed = replace(fix_along_track(line), messenger_supports=supports)
     stretches = discretise(fixed, 1.0).stretches
     np.testing.assert_allclose(stretches.stiffness, [13.8e6 / 120.0] * 2)
+
+
+@pytest.mark.parametrize(
+    ("terminations", "held"),
+    [("WW", []), ("AW", [(0.0, 60.0)]), ("WA", [(60.0, 120.0)]), ("AA", [(0.0, 60.0), (60.0, 120.0)])],
+)
+def test_tension_is_constant_between_a_weight_and_the_next_fixed_support(
+    terminations: str, held: list[tuple[float, float]]
+) -> None:
+    """Two spans of 60 m, fixed at the mast: a stretch up to each rigid anchor, none up to a weight."""
+    ends = [{"W": Termination.WEIGHT, "A": Termination.ANCHOR}[letter] for letter in terminations]
+    line = fix_along_track(simple_line())
+    messenger = replace(line.wires[1], terminations=(ends[0], ends[1]))
+    supports = tuple(replace(s, along_track="fixed" if s.position == 60.0 else "free") for s in line.messenger_supports)
+    built = discretise(replace(line, wires=(line.wires[0], messenger), messenger_supports=supports), 2.0)
+    limits = [(built.mesh.station(start), built.mesh.station(end)) for start, end in held]
+    width = [int(np.flatnonzero(c.any(axis=(0, 2)))[-1]) for c in built.stretches.coefficient]
+    assert [(first, first + w) for first, w in zip(built.stretches.first.tolist(), width, strict=True)] == limits
+
+
+def test_rigid_anchors_hold_a_wire_without_fixed_support() -> None:
+    """One stretch from end to end, of EA over 120 m."""
+    line = fix_along_track(simple_line())
+    messenger = replace(line.wires[1], terminations=(Termination.ANCHOR, Termination.ANCHOR))
+    supports = tuple(replace(s, along_track="free") for s in line.messenger_supports)
+    built = discretise(replace(line, wires=(line.wires[0], messenger), messenger_supports=supports), 2.0)
+    assert built.stretches.stiffness.tolist() == [13.8e6 / 120.0]
 
 
 def test_fixed_support_needs_the_axial_stiffness_of_its_wire() -> None:
