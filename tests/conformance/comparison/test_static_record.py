@@ -8,6 +8,7 @@ import pytest
 
 from helpers.static_records import read_unequal_line, write_static_record
 from pantocheck.conformance.comparison.static_record import read_static_record
+from pantocheck.conformance.input_files.formats.hdf5_table import write_hdf5_table
 from pantocheck.conformance.input_files.input_error import InputError
 
 GEOMETRY = read_unequal_line().geometry
@@ -37,6 +38,14 @@ def test_table_of_a_spreadsheet_with_decimal_commas_is_read(tmp_path: Path) -> N
     text = path.read_text().replace(",", ";").replace(".", ",").replace("\n", "\r\n")
     path.write_bytes(b"\xef\xbb\xbf" + text.encode())
     assert read_static_record(path, GEOMETRY).position.tolist() == [10.0, 20.0, 30.0]
+
+
+def test_hdf5_file_holds_one_data_set_per_column(tmp_path: Path) -> None:
+    write_static_record(tmp_path, COLUMNS, file="measured.h5")
+    write_hdf5_table(tmp_path / "measured.h5", {}, {name: values.tolist() for name, values in COLUMNS.items()})
+    record = read_static_record(tmp_path / "measured.h5", GEOMETRY)
+    assert record.position.tolist() == [10.0, 20.0, 30.0]
+    assert record.values["elasticity"] == pytest.approx([4e-4, np.nan, 5e-4], nan_ok=True, rel=1e-12)
 
 
 @pytest.mark.parametrize(
