@@ -8,6 +8,7 @@ import typer
 
 from pantocheck.conformance.command_line.console import console, escape_text
 from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
+from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.line_tables.dropper_rows import LengthMeaning
 from pantocheck.conformance.line_tables.line_import import import_line
 
@@ -37,9 +38,12 @@ def import_line_command(
 
     Then: pantocheck check my-line.toml
     """
+    inputs = [path for path in (supports, droppers, base) if path is not None]
+    if out.resolve() in [path.resolve() for path in inputs]:
+        raise InputError(f"option --out {out}", "is a file of the import", "Give another name for the line file.")
     tree = import_line(base, supports, droppers, dropper_lengths)
     check_writable(out.parent)
-    names = ", ".join(path.name for path in (supports, droppers, base) if path is not None)
+    names = ", ".join(path.name for path in inputs)
     head = f"# Written by `pantocheck import-line` from {names}.\n"
     write_atomically(out, (head + tomli_w.dumps(tree)).encode())
     geometry = tree["geometry"]

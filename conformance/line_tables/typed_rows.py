@@ -69,7 +69,9 @@ def read_typed_rows(table: Spreadsheet, known: Sequence[str], problems: list[Inp
         place = table.locate(table.head, index)
         if converted is None:
             hint = suggest_key(heading, None, list(known)) or suggest_names(heading, known)
-            problems.append(InputError(place, "unknown column", hint))
+            problems.append(
+                InputError(place, "unknown column", f"{hint} Remove columns that are not part of the line.")
+            )
         elif converted[0] in (name for name, _ in columns.values()):
             problems.append(InputError(place, f"repeats the column {converted[0]}", "Give each value once."))
         else:

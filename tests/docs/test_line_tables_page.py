@@ -59,6 +59,15 @@ def test_export_and_import_give_the_same_line(folder: Path) -> None:
     assert done.exit_code == 0, done.output
 
 
+def test_import_does_not_overwrite_its_input(folder: Path) -> None:
+    CliRunner().invoke(app, command("export-line"))
+    arguments = ["mass-drop-line.toml" if text == "my-line.toml" else text for text in command("import-line")]
+    done = CliRunner().invoke(app, arguments)
+    assert done.exit_code == 2
+    assert "is a file of the import" in done.output
+    assert (folder / "mass-drop-line.toml").read_bytes() == LINE_PATH.read_bytes()
+
+
 def test_tables_of_the_page_are_a_line(folder: Path) -> None:
     for name in ("number", "span"):
         (folder / f"{name}.csv").write_text(next(text for text in blocks("") if text.startswith(f"{name};")))
