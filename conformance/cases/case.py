@@ -224,6 +224,10 @@ class Case:
         merged = {limit.target: limit for limit in (*self.limits, *limits)}
         return replace(self, limits=tuple(merged.values()))
 
+    def without_limits(self) -> "Case":
+        """Same case without any limit."""
+        return replace(self, file=self.file.model_copy(update={"limit": ()}), limits=())
+
     def without_study(self) -> "Case":
         """Same case without its study, as a single run of a system."""
         return replace(self, file=self.file.model_copy(update={"study": None}), dampings={})

@@ -102,7 +102,7 @@ def load_case(path: Path, changes: Sequence[InputChange] = ()) -> Case:
     path : Path
         Case file.
     changes : sequence of InputChange
-        Changes of the case, its line and its pantographs.
+        Changes of the case, its line and its pantographs. A changed case with the id of a library case has no limits.
 
     Returns
     -------
@@ -121,7 +121,9 @@ def load_case(path: Path, changes: Sequence[InputChange] = ()) -> Case:
         raise join_errors([error, *files.list_errors()]) from None
     if disagreements := [*find_disagreements(case, f"case '{path.name}'")]:
         raise join_errors(disagreements)
-    return case
+    # The limits of a library case were published for its inputs, not for changed ones.
+    is_published = bool(case.changes) and case.id in list_library(library_folder())
+    return case.without_limits() if is_published else case
 
 
 def read_limits(path: Path) -> tuple[LimitOverride, ...]:

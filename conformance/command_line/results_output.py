@@ -13,6 +13,7 @@ from pantocheck.conformance.command_line.console import build_table, console, es
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.quantities.limit_text import format_graded, format_margin, name_value
 from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.reports.certificate.scope_page import describe_changes
 from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline, describe_record
 from pantocheck.conformance.results.criterion_format import Criterion
 from pantocheck.conformance.results.results_format import CaseResult, Results, name_case
@@ -50,7 +51,7 @@ def print_results(results: Results, files: Sequence[Path]) -> None:
         output.print()
         output.print(style_verdict(case.verdict), escape_text(f" {name_case(case.id, case.library)}  {case.title}"))
         record = None if case.record is None or case.reason else describe_record(case.model_dump())
-        changes = [f"inputs changed with --set: {'; '.join(case.changes)}"] if case.changes else []
+        changes = [describe_changes(case.model_dump(include={"changes", "library"}))]
         changes += [f"limits file: {'; '.join(case.limit_changes)}"] if case.limit_changes else []
         for line in filter(
             None, [case.reason, record, *changes, *(f"warning: {warning}" for warning in case.warnings)]

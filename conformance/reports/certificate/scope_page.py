@@ -33,7 +33,7 @@ def list_identity_warnings(results: dict[str, Any]) -> tuple[str, ...]:
         for case in results["cases"]
         if case["library"] == "modified"
     ]
-    inputs = [f"{text} in {case['id']}." for case in results["cases"] if (text := describe_changes(case))]
+    inputs = [f"{case['id']}: {text}." for case in results["cases"] if (text := describe_changes(case))]
     return (*copies, *inputs, *(warn_of_changes(case) for case in results["cases"] if case["limit_changes"]))
 
 
@@ -49,8 +49,11 @@ def summarise_identity(results: dict[str, Any]) -> list[str]:
 
 
 def describe_changes(case: dict[str, Any]) -> str:
-    """Inputs of a case that were changed on the command line; empty if there are none."""
-    return f"Inputs changed with --set: {'; '.join(case['changes'])}" if case["changes"] else ""
+    """Inputs of a case that were changed on the command line, without a full stop; empty if there are none."""
+    if not case["changes"]:
+        return ""
+    limits = "The limits of the library do not apply. " if case["library"] == "modified" else ""
+    return f"{limits}Inputs changed with --set: {'; '.join(case['changes'])}"
 
 
 def warn_of_changes(case: dict[str, Any]) -> str:

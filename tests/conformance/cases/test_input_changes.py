@@ -56,7 +56,8 @@ def test_changed_case_is_that_of_an_edited_file(
     changed, edited = change(text), load_case(edited_case(file, changes))
     assert changed.digest == edited.digest != case_250.digest
     assert compare_with_library(changed) == compare_with_library(edited) == "modified"
-    assert changed.limits == edited.limits
+    assert edited.limits == case_250.limits
+    assert changed.limits == changed.file.limit == ()  # they were published for the inputs of the library
     assert len(changed.changes) == 1
     converged = find_converged(changed.id)
     assert converged is not None
@@ -81,6 +82,29 @@ def test_pantographs_are_changed_one_by_one_or_together() -> None:
     assert [model.contact.stiffness_N_m for model in both.pantographs] == [6e4, 6e4]
     assert [model.contact.stiffness_N_m for model in second.pantographs] == [5e4, 6e4]
     assert [use.target_mean_force_N for use in second.file.pantograph] == [144.0, 150.0]
+
+
+def test_own_case_keeps_its_limits(edited_case: EditedCase, case_250: Case) -> None:
+    own = load_case(edited_case("250.toml", {"id": "own/a"}), parse_changes([TENSION]))
+    assert (own.limits, len(own.changes)) == (case_250.limits, 1)
+
+
+def test_changed_library_case_never_passes_by_its_limits(wave: Any, tmp_path: Path, case_250: Case) -> None:
+    """Another filter could move a value into a limit that was published for the filter of the case."""
+    write_record(tmp_path / "records" / "a.csv", wave().record(case_250), case_250.id)
+    arguments = (
+        "run",
+        case_250.id,
+        "--system",
+        f"record:{tmp_path / 'records'}",
+        "--formats",
+        "json",
+        "--out",
+        tmp_path,
+    )
+    result = pantocheck(*arguments, "--verdicts", "criteria", "--set", "filter.cutoff_Hz=5")
+    assert (result.exit_code, result.output.split()[0]) == (1, "INFO")
+    assert "The limits of the library do not apply." in result.output
 
 
 def test_required_cases_have_the_changed_line() -> None:
@@ -124,7 +148,7 @@ def test_wrong_change_names_the_key_and_suggests(text: str, message: str) -> Non
 
 
 def test_all_outputs_state_the_changes(wave: Any, tmp_path: Path) -> None:
-    """A case with the same force record: the verdict is not better, and its results name the changed inputs."""
+    """A case with the same force record: it does not pass either, and its results name the changed inputs."""
     case = change(TENSION)
     write_record(tmp_path / "records" / "a.csv", wave().record(case), case.id)
     arguments = ("run", case.id, "--system", f"record:{tmp_path / 'records'}", "--formats", "json,csv,html,md,junit")
@@ -140,7 +164,7 @@ def test_all_outputs_state_the_changes(wave: Any, tmp_path: Path) -> None:
     assert rows
     assert {row["changes"] for row in rows} == {STATED}
     for name, text in (
-        ("certificate.html", f"Inputs changed with --set: {STATED}"),
+        ("certificate.html", f"The limits of the library do not apply. Inputs changed with --set: {STATED}"),
         ("summary.md", "Cases with inputs changed with --set: 1."),
         ("junit.xml", STATED),
     ):
