@@ -73,7 +73,7 @@ def validate_model(tree: dict[str, Any], model: type[T], where: str) -> T:
     try:
         return model.model_validate(tree)
     except ValidationError as error:
-        raise build_input_error(error, model, where) from None
+        raise build_input_error(error, model, where, tree) from None
 
 
 def read_toml(path: Path, kind: str) -> dict[str, Any]:

@@ -14,6 +14,7 @@ from pantocheck.conformance.input_files.input_error import InputError, join_erro
 from pantocheck.conformance.input_files.key_descriptions import describe_key
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.table_models import find_field, list_models, names_in_unions
+from pantocheck.conformance.input_files.table_numbers import append_table_number
 from pantocheck.conformance.input_files.units import suggest_key
 
 _BOUNDS = {
@@ -45,7 +46,7 @@ _KINDS = {
 }
 
 
-def build_input_error(error: ValidationError, model: type[BaseModel], where: str) -> InputError:
+def build_input_error(error: ValidationError, model: type[BaseModel], where: str, tree: object = None) -> InputError:
     """Build an `InputError` with one message for each problem of a file.
 
     Parameters
@@ -56,6 +57,8 @@ def build_input_error(error: ValidationError, model: type[BaseModel], where: str
         Model that was validated.
     where : str
         Name of the file in messages, e.g. `reference line 'my-line.toml'`.
+    tree : object
+        Content of the file; a table of a list that states its number is named by it.
 
     Returns
     -------
@@ -67,7 +70,11 @@ def build_input_error(error: ValidationError, model: type[BaseModel], where: str
     problems = [_describe(detail, model) for detail in details]
     return join_errors(
         [
-            InputError(f"{where}, key {problem.key}" if problem.key else where, problem.found, problem.hint)
+            InputError(
+                f"{where}, key {append_table_number(problem.key, tree)}" if problem.key else where,
+                problem.found,
+                problem.hint,
+            )
             for problem in _drop_repetitions(problems)
         ]
     )

@@ -151,7 +151,7 @@ def _find_line_problems(
         validate_model(line, LineFile, where)
     except InputError as error:
         for problem in error.problems:
-            key = problem.where.removeprefix(f"{where}, key ")
+            key = problem.where.removeprefix(f"{where}, key ").partition(" (number ")[0]
             # The readers of the tables report empty cells, and spans that have no droppers of their own.
             empty_cell = problem.found == "missing" and key.startswith("geometry.span_list")
             if not empty_cell and not key.startswith(unused):
