@@ -5,8 +5,10 @@ from pathlib import Path
 
 from pydantic import TypeAdapter
 
+from pantocheck.conformance.cases.force_rules import resolve_rule
 from pantocheck.conformance.cases.library import load_case
 from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.comparison.static_record import read_static_table
 from pantocheck.conformance.comparison.static_sidecar import STATIC_SCHEMA
 from pantocheck.conformance.input_files.input_error import InputError
@@ -115,6 +117,11 @@ def _check_line(path: Path) -> str:
     return f"line: {_describe_line(line)}"
 
 
+def _check_pantograph(path: Path) -> str:
+    resolve_rule(read_model(path, PantographFile, "pantograph"), f"pantograph '{path.name}'")
+    return "pantograph file"
+
+
 def _check_rest(line: LineFile, where: str) -> None:
     """Refuse a line without a static equilibrium."""
     try:
@@ -173,6 +180,7 @@ def _check_json(path: Path) -> str:
 _CHECKS: dict[str, Callable[[Path], str]] = {
     "case": _check_case,
     "line": _check_line,
+    "pantograph": _check_pantograph,
     "record": _check_record,
     "mass-drop": _check_drop_sidecar,
     "static": _check_static,

@@ -198,7 +198,7 @@ def test_derived_stiffnesses_are_those_of_the_second_bars(name: str) -> None:
         assert arms["vertical_stiffness_N_m"] == line.line.inputs["steady_arm"]["vertical_stiffness_N_m"]
 
 
-@pytest.mark.parametrize("name", [*CASES, "en50318-2018/ac-simple/320-twin", AS_BUILT])
+@pytest.mark.parametrize("name", [*CASES, "en50318-2018/ac-simple/320-twin", AS_BUILT, "force-law/300"])
 def test_start_of_the_second_formulation_is_that_of_the_derived_values(name: str) -> None:
     """Working height, constant forces and heights of all masses at the start, solved on points 0.25 m apart."""
     sent = message(case(name, 5))

@@ -14,6 +14,7 @@ from pantocheck.conformance.cases import (
     case_file,
     damping_file,
     drop_test,
+    force_law,
     geometry,
     limits,
     line_file,
@@ -27,8 +28,8 @@ from pantocheck.conformance.records import record_sidecar, record_summary, sidec
 from pantocheck.conformance.systems.command import protocol_messages
 
 MODULES = (
-    *(case_file, damping_file, drop_test, geometry, limits, line_file, pantograph_file, profile_file, study_tables),
-    *(drop_sidecar, record_sidecar, record_summary, sidecar_tables, protocol_messages),
+    *(case_file, damping_file, drop_test, force_law, geometry, limits, line_file, pantograph_file, profile_file),
+    *(study_tables, drop_sidecar, record_sidecar, record_summary, sidecar_tables, protocol_messages),
 )
 STRICT = ConfigDict(strict=True, allow_inf_nan=False)
 NUMBERS = ("minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum")

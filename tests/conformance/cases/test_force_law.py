@@ -10,6 +10,7 @@ import pytest
 from helpers.toml_edit import change_keys, write_toml
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.force_rules import list_mean_force_rules
+from pantocheck.conformance.cases.input_changes import parse_changes
 from pantocheck.conformance.cases.library import load_case, select_cases
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.lift_force import AppliedForces, TunedForce
@@ -97,6 +98,16 @@ def test_rule_of_a_profile_is_a_law_of_the_mean_force(
 def test_mean_force_of_own_coefficients_follows_the_speed(tmp_path: Path) -> None:
     path = write_case(tmp_path, MEAN_LAW, speed_km_h=160.0)
     assert load_case(path).lift_forces == (TunedForce(66.0),)
+
+
+def test_changed_speed_and_law_of_the_command_line_apply(tmp_path: Path) -> None:
+    """The force follows the speed of `--set`: 70 + 38.14 N, and 60 + 38.14 N with another static force."""
+    path = write_case(tmp_path, applied_law())
+    for changes, force in ((), 155.81), (("speed_km_h=200",), 108.14), (
+        ("speed_km_h=200", "pantograph.force_law.static_force_N=60.0"), 98.14,
+    ):  # fmt: skip
+        (lift,) = load_case(path, parse_changes(changes)).lift_forces
+        assert lift.uplift_force == pytest.approx(force, abs=1e-9)
 
 
 def test_digest_depends_on_the_coefficients_and_not_on_their_source(tmp_path: Path) -> None:

@@ -46,6 +46,17 @@ def test_kinds_of_the_library_are_recognised(name: str, kind: str) -> None:
     assert recognise_toml(read_toml(library_folder() / name, "file"), name) == kind
 
 
+def test_named_rule_of_a_pantograph_is_checked(tmp_path: Path) -> None:
+    path = tmp_path / "pantograph.toml"
+    shutil.copy(library_folder() / "pantographs" / "dsa250.toml", path)
+    edit_toml(path, {"force_law": {"kind": "mean_force_rule", "profile": "acceptance-ac"}})
+    assert check(path).exit_code == 0
+    edit_toml(path, {"force_law.profile": "acceptance-dc"})
+    result = check(path)
+    assert result.exit_code == 2
+    assert "key force_law.profile: no profile 'acceptance-dc' of the library has a formula" in result.stderr
+
+
 @pytest.mark.parametrize(
     ("text", "kind"),
     [
