@@ -37,7 +37,7 @@ def draw_static_values(
     start, end = spans[0]["start_m"], spans[-1]["end_m"]
     position = np.array(values["position_m"])
     shown = (position >= start) & (position <= end)
-    figure = Figure(figsize=(FULL, 3.4))
+    figure = Figure(figsize=(FULL, 2.8))
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
     _draw_model(upper, values, spans)
     outliers = shown & np.isin(values["row"], values["outlier_rows"])
@@ -54,7 +54,7 @@ def draw_static_values(
         lower.axhspan(-tolerance, tolerance, color=LIMIT_FILL, zorder=0, label="tolerance")
     lower.axhline(0.0, color=GREY, linewidth=0.8)
     upper.set_ylabel(f"{values['name'].replace('_', ' ')} [{values['unit']}]")
-    lower.set(xlabel="position [m]", ylabel=f"model - measured [{values['unit']}]", xlim=(start, end))
+    lower.set(xlabel="position [m]", ylabel=f"difference [{values['unit']}]", xlim=(start, end))
     add_legend(upper)
     return figure
 
