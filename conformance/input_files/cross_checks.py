@@ -68,7 +68,7 @@ def _list_checks(model: type[BaseModel]) -> tuple[str, ...]:
 
 
 def _find_problems(table: BaseModel, complete: bool) -> list[PydanticCustomError]:
-    """Problems of all cross checks. A check ends where it meets a key that is not valid, or the trace of a problem."""
+    """Problems of all cross checks. A check ends at a key that is not valid, or where an earlier problem stops it."""
     problems: list[PydanticCustomError] = []
     for name in _list_checks(type(table)):
         try:
