@@ -4,6 +4,7 @@ import codecs
 import csv
 import io
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 
 from pantocheck.conformance.input_files.bounded_file import read_bytes
@@ -11,6 +12,9 @@ from pantocheck.conformance.input_files.input_error import InputError, join_erro
 
 MAX_SPREADSHEET_BYTES = 10_000_000
 """Largest table that is read [bytes]: a line of 1000 spans with 30 droppers each takes 2 MB."""
+
+MOST_ROWS = 100_000
+"""Largest number of rows: 1000 spans with 100 droppers each."""
 
 DELIMITERS = (";", "\t", ",")
 """Separators of columns; a head line with a semicolon or a tab is not separated by commas."""
@@ -77,7 +81,7 @@ def read_spreadsheet(path: Path) -> Spreadsheet:
     Raises
     ------
     InputError
-        The file cannot be read, is no text, has no row, or has rows of another width than its head line.
+        The file cannot be read, is no text, has no row or too many, or has rows of another width than its head line.
     """
     where = f"table '{path.name}'"
     text = _decode(read_bytes(path, where, MAX_SPREADSHEET_BYTES), where)
@@ -88,14 +92,20 @@ def read_spreadsheet(path: Path) -> Spreadsheet:
     delimiter = next((mark for mark in DELIMITERS if mark in lines[start]), ",")
     reader = csv.reader(io.StringIO("\n".join(lines[start:])), delimiter=delimiter, strict=True)
     try:
-        rows = [SpreadsheetRow(start + reader.line_num, tuple(cell.strip() for cell in cells)) for cells in reader]
+        rows = [
+            SpreadsheetRow(start + reader.line_num, tuple(cell.strip() for cell in cells))
+            for cells in islice(reader, MOST_ROWS + 2)
+        ]
     except csv.Error as error:
         raise InputError(f"{where}, row {start + reader.line_num}", str(error), "Export the table again.") from None
-    head, *body = (row for row in rows if any(row.cells))
+    if len(rows) > MOST_ROWS + 1:
+        raise InputError(where, f"has more than {MOST_ROWS} rows", "Export one line only, without empty rows.")
+    filled = [row for row in rows if any(row.cells)]
+    head, body = filled[:1], filled[1:]
     if not body:
         raise InputError(where, "has a head line but no rows", "Export the table again.")
-    _check_widths(where, head, body)
-    return Spreadsheet(where, delimiter, head, tuple(body))
+    _check_widths(where, head[0], body)
+    return Spreadsheet(where, delimiter, head[0], tuple(body))
 
 
 def _decode(content: bytes, where: str) -> str:

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.spreadsheet import read_spreadsheet
+from pantocheck.conformance.input_files.spreadsheet import MOST_ROWS, read_spreadsheet
 
 TEXT = "name;x_m\nMast Süd;1,5\nMast 2;2,5\n"
 
@@ -44,6 +44,7 @@ def test_rows_keep_the_numbers_of_the_spreadsheet(tmp_path: Path) -> None:
         (b"", "is empty"),
         (b"# only a remark\n", "is empty"),
         (b"a,b\n,\n", "has a head line but no rows"),
+        (b";;\n;;\n", "has a head line but no rows"),
         (b"PK\x03\x04\x00\x00", "is not text"),
         (b"\xff\xfea\x00\x00", "is not text"),
         (b"a\x81b,c\n1,2\n", "is not text"),
@@ -54,6 +55,15 @@ def test_other_content_is_refused(tmp_path: Path, content: bytes, message: str) 
     (tmp_path / "a.csv").write_bytes(content)
     with pytest.raises(InputError, match=message):
         read_spreadsheet(tmp_path / "a.csv")
+
+
+def test_number_of_rows_is_bounded(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text("a,b\n" + "1,2\n" * MOST_ROWS)
+    assert len(read_spreadsheet(tmp_path / "a.csv").rows) == MOST_ROWS
+    for row in ("1,2\n", ",\n"):
+        (tmp_path / "a.csv").write_text("a,b\n" + row * MOST_ROWS + "3,4\n")
+        with pytest.raises(InputError, match="has more than 100000 rows"):
+            read_spreadsheet(tmp_path / "a.csv")
 
 
 def test_rows_of_another_width_are_all_named(tmp_path: Path) -> None:
