@@ -4,12 +4,14 @@ import numpy as np
 
 from pantocheck.conformance.cases.geometry import ListedSpans
 from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.one_thread import use_one_thread
 from pantocheck.conformance.quantities.evaluation import Value
 from pantocheck.conformance.simulation.static_quantities import LARGE_LOAD, SAMPLES_PER_SPAN, SMALL_LOAD, sample_span
 from pantocheck.model import DiscretisedLine
 from pantocheck.model.statics.elasticity import non_uniformity, static_uplift
 
 
+@use_one_thread
 def compute_quantities_along_line(file: LineFile, line: DiscretisedLine) -> dict[str, Value]:
     """Elasticity, pre-sag and dropper lengths of every span; none for equal spans, whose middle span is described.
 

@@ -35,12 +35,14 @@ def values(listed: Case) -> dict[str, Any]:
 
 
 def test_middle_span_has_the_values_of_the_static_check(listed: Case, values: dict[str, Any]) -> None:
-    """The same positions and droppers of span 3 of 5, to the last digit."""
+    """The same positions and droppers of span 3 of 5, to rounding: sums of several threads have another order."""
     middle = compute_static_quantities(listed, discretise(build_catenary(listed.line), 1.0))
     for name in ("elasticity", "elasticity_200_N"):
-        assert values[f"{name}_along_line_mm_N"][48:72] == middle[f"{name}_along_span_mm_N"]
-        assert values[f"{name}_of_spans_mm_N"][2] == middle[f"{name}_mm_N"]
-        assert values[f"{name}_non_uniformity_of_spans_pct"][2] == middle[f"{name}_non_uniformity_pct"]
+        along = middle[f"{name}_along_span_mm_N"]
+        assert values[f"{name}_along_line_mm_N"][48:72] == pytest.approx(along, rel=1e-9)
+        assert values[f"{name}_of_spans_mm_N"][2] == pytest.approx(middle[f"{name}_mm_N"], rel=1e-9)
+        non_uniformity = middle[f"{name}_non_uniformity_pct"]
+        assert values[f"{name}_non_uniformity_of_spans_pct"][2] == pytest.approx(non_uniformity, rel=1e-9)
     assert values["presag_along_line_mm"][18:27] == middle["presag_mm"]
     assert values["dropper_length_along_line_m"][18:27] == middle["dropper_length_stagger_m"]
 
