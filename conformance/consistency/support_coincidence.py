@@ -7,7 +7,8 @@ at rest and the penetration F / k differ by a constant, the datum of the height:
 
 The constant is the same at every support, and for every pantograph of the same kind and uplift force. A channel that is
 frozen, of another support or of another passage, and positions that are shifted, scatter. A gain of the uplift shows as
-a trend with u.
+a trend with u. Supports inside an overlap of tension sections are left out: the uplift is that of one wire, and the
+head may touch the other one.
 """
 
 from dataclasses import dataclass
@@ -98,7 +99,8 @@ def _find_passages(case: Case, signals: RecordSignals, number: int) -> _Passages
     height, stiffness = record.contact_height[number - 1], case.pantographs[number - 1].contact.stiffness_N_m
     rows = []
     for support, uplift in zip(line.supports, line.uplift, strict=True):
-        if position[0] <= support <= position[-1]:
+        in_overlap = any(start < support < end for start, end in case.line.overlaps)
+        if position[0] <= support <= position[-1] and not in_overlap:
             moment = np.interp(support, position, record.time)
             at_passage = [float(np.interp(moment, record.time, channel)) for channel in (force, height, uplift)]
             rows.append((float(support), *at_passage))

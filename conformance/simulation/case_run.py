@@ -11,6 +11,7 @@ from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import Discretisation
 from pantocheck.conformance.cases.pantograph_file import PantographFile
+from pantocheck.conformance.cases.section_rises import lowest_rise
 from pantocheck.conformance.cases.start_and_section import RunStart
 from pantocheck.conformance.quantities.signals import UPLIFT_STRETCH_M
 from pantocheck.conformance.records.record import Record
@@ -161,8 +162,13 @@ def working_height_positions(case: Case) -> RealArray:
 
 
 def nominal_wire_height(case: Case) -> float:
-    """Nominal height of the contact wire at the same positions: mean of the straight lines between the supports [m]."""
-    return float(case.line.layout.chord_height(working_height_positions(case)).mean())
+    """Nominal height of the contact wire at the same positions [m].
+
+    It is the mean of the straight lines between the supports, in an overlap of those of the lowest wire.
+    """
+    positions = working_height_positions(case)
+    rises = [lowest_rise(case.line, float(x)) for x in positions]
+    return float(case.line.layout.chord_height(positions).mean() + np.mean(rises))
 
 
 def compute_working_height(case: Case, line: DiscretisedLine, file: PantographFile, uplift_force: float) -> float:

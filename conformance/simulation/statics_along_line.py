@@ -15,6 +15,8 @@ from pantocheck.model.statics.elasticity import non_uniformity, static_uplift
 def compute_quantities_along_line(file: LineFile, line: DiscretisedLine) -> dict[str, Value]:
     """Elasticity, pre-sag and dropper lengths of every span; none for equal spans, whose middle span is described.
 
+    With several tension sections only the elasticity: a span of an overlap has the droppers of both.
+
     Parameters
     ----------
     file : LineFile
@@ -29,7 +31,7 @@ def compute_quantities_along_line(file: LineFile, line: DiscretisedLine) -> dict
     """
     if not isinstance(file.geometry, ListedSpans):
         return {}
-    return _elasticity(file, line) | _droppers(file, line)
+    return _elasticity(file, line) | ({} if file.section else _droppers(file, line))
 
 
 def _elasticity(file: LineFile, line: DiscretisedLine) -> dict[str, Value]:

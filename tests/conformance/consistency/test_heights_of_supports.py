@@ -8,6 +8,7 @@ import pytest
 
 from helpers.extreme_runs import build_case, simulate
 from helpers.listed_spans import list_spans
+from helpers.section_lines import section_line
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.line_file import LineFile
@@ -17,6 +18,7 @@ from pantocheck.conformance.input_files.toml_file import read_toml
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.model import discretise
+from pantocheck.model.statics.elasticity import rest_height
 
 
 @pytest.fixture(scope="module")
@@ -57,3 +59,30 @@ def test_record_of_an_uneven_line_is_free_of_findings(uneven: Case) -> None:
     assert check_record(uneven, RecordSignals(record, uneven.file.filter.low_pass, supports)) == {}
     shifted = replace(record, position=record.position + np.array([[0.0], [10.0]]))
     assert check_record(uneven, RecordSignals(shifted, uneven.file.filter.low_pass, supports)) != {}
+
+
+@pytest.fixture(scope="module")
+def overlapping() -> Case:
+    """Two sections of AC simple with an overlap of spans 5 and 6; at support 5 both contact wires are 60 mm up."""
+    overlap = {"spans": 2, "support_rises_m": [0.4, 0.06]}
+    return replace(build_case(), line=section_line("en50318-2018/ac-simple", (6, 6), overlap))
+
+
+def test_heights_at_rest_in_an_overlap_are_those_of_the_lowest_wire(overlapping: Case) -> None:
+    """At support 5, 275 m, both wires; at the others that wire which is not raised. Bending: 1 mm, as above."""
+    line = discretise(build_catenary(overlapping.line), 0.5)
+    supports = np.array(overlapping.line.geometry.supports)
+    exact = rest_height(line, supports)
+    np.testing.assert_allclose(rest_heights(overlapping, supports), exact, atol=1.5e-3)
+    assert exact[4] > 0.05
+    assert np.abs(np.delete(exact, 4)).max() < 0.01
+
+
+def test_record_of_an_overlap_is_free_of_findings(overlapping: Case) -> None:
+    """The heads change from wire to wire 60 mm higher than elsewhere; shifted by 10 m the record is refuted."""
+    record = simulate(overlapping)
+    low_pass, supports = overlapping.file.filter.low_pass, overlapping.line.geometry.supports
+    assert record.evaluated[0] < 275.0 < record.evaluated[1]
+    assert check_record(overlapping, RecordSignals(record, low_pass, supports)) == {}
+    shifted = replace(record, position=record.position + np.array([[0.0], [10.0]]))
+    assert check_record(overlapping, RecordSignals(shifted, low_pass, supports)) != {}
