@@ -9,7 +9,13 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from pantocheck.conformance.input_files.sourced_table import InputTable, NumberList, SourcedTable
+from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
+from pantocheck.conformance.input_files.sourced_table import (
+    InputTable,
+    NumberList,
+    SourcedTable,
+    validation_problem,
+)
 
 FASTEST_KM_H = 600.0
 """Largest speed of a case [km/h]."""
@@ -43,8 +49,27 @@ class SpeedPolynomial(SourcedTable):
         float, Field(gt=0, le=FASTEST_KM_H, description="largest speed for which the law is valid [km/h]")
     ] = FASTEST_KM_H
 
+    @cross_check
+    def _has_a_range(self) -> Problems:
+        if self.up_to_km_h <= self.above_km_h:
+            yield validation_problem(
+                "up_to_km_h",
+                f"{self.up_to_km_h:g} km/h is not greater than above_km_h = {self.above_km_h:g} km/h",
+                "Give the speeds between which the law is valid.",
+            )
+
     def evaluate(self, speed_km_h: float) -> float:
-        """Force [N] at a speed [km/h].
+        """Evaluate the polynomial.
+
+        Parameters
+        ----------
+        speed_km_h : float
+            Speed [km/h].
+
+        Returns
+        -------
+        float
+            Force [N].
 
         Raises
         ------

@@ -1,6 +1,6 @@
 """Named rules of the mean contact force: the formulas of the profiles of the library."""
 
-from pantocheck.conformance.cases.force_law import FASTEST_KM_H, MeanForceLaw, MeanForceRule
+from pantocheck.conformance.cases.force_law import MeanForceLaw, MeanForceRule
 from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.cases.profile_file import SpeedFormula, list_profiles, load_profile
 from pantocheck.conformance.input_files.input_error import InputError
@@ -46,7 +46,7 @@ def list_mean_force_rules() -> dict[str, MeanForceLaw]:
             kind="mean_force",
             constant_N=rule.upper.constant,
             quadratic_N_h2_km2=rule.upper.per_speed_squared,
-            above_km_h=min(rule.upper.above_km_h or 0.0, FASTEST_KM_H),
+            above_km_h=rule.upper.above_km_h or 0.0,
             trust=rule.trust,
             source=rule.source,
             note=f"rule of the profile {name}",

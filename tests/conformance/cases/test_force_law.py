@@ -132,6 +132,7 @@ def test_pantograph_without_a_law_has_no_key_for_it(case_250: Case) -> None:
         (applied_law(on=[0.0, 1.0, 0.0]), {}, "key force_law.aerodynamic_force.on: found a list"),
         (applied_law(up_to_km_h=250.0), {}, r"pantograph\[1\].force_from: the force law is valid above 0 km/h up to "),
         (MEAN_LAW | {"above_km_h": 300.0}, {}, "not at 300 km/h"),
+        (MEAN_LAW | {"above_km_h": 90.0, "up_to_km_h": 90.0}, {}, "force_law.up_to_km_h: 90 km/h is not greater than"),
         (MEAN_LAW | {"constant_N": -80.0}, {}, "the force law gives -50 N at 300 km/h"),
         (MEAN_LAW | {"constant_N": 1999.0}, {}, "the force law gives 2029 N at 300 km/h"),
         (MEAN_LAW | {"constants_N": 1.0}, {}, r"key force_law.constants_N: unknown key"),
