@@ -21,6 +21,7 @@ if TYPE_CHECKING:
         TensionChange,
         Wire,
     )
+    from pantocheck.model.curves import TrackCurve
     from pantocheck.model.discretised_line import DiscretisedLine, discretise, make_droppers_bilateral
     from pantocheck.model.dynamics.passage import History, Passage
     from pantocheck.model.dynamics.simulation import simulate_passage
@@ -47,6 +48,7 @@ __all__ = [
     "SpectralDensity",
     "SteadyArm",
     "TensionChange",
+    "TrackCurve",
     "Wire",
     "chain",
     "discretise",
@@ -56,6 +58,7 @@ __all__ = [
 ]
 
 _MODULES = {
+    "TrackCurve": "curves",
     "DiscretisedLine": "discretised_line",
     "History": "dynamics.passage",
     "Irregularity": "irregularity",

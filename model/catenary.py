@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Literal
 
+from pantocheck.model.curves import TrackCurve
 from pantocheck.model.irregularity import Irregularity
 
 GRAVITY = 9.81
@@ -318,6 +319,8 @@ class Catenary:
         Frequency bands with modal damping.
     point_masses : tuple of PointMass
         Masses on the wires, each with the damping of its wire.
+    curves : tuple of TrackCurve
+        Curves of the track.
     """
 
     wires: tuple[Wire, ...]
@@ -328,6 +331,7 @@ class Catenary:
     damping: dict[Kind, Rayleigh] = field(default_factory=dict)
     modal_damping: tuple[ModalBand, ...] = ()
     point_masses: tuple[PointMass, ...] = ()
+    curves: tuple[TrackCurve, ...] = ()
 
     @property
     def contact_wires(self) -> tuple[Wire, ...]:

@@ -25,6 +25,7 @@ from pantocheck.conformance.cases.section_tables import (
     place_sections,
 )
 from pantocheck.conformance.cases.support_tables import MOST_SPANS, ClampMass, MessengerSupportTable, SteadyArmTable
+from pantocheck.conformance.cases.track_table import CurveTable, TrackTable, check_curves
 from pantocheck.conformance.cases.variation import ListedLengthChanges, Variation
 from pantocheck.conformance.cases.wire_changes import (
     MOST_CHANGES,
@@ -172,6 +173,9 @@ class LineFile(InputTable):
         ),
     ] = None
     overlap: Annotated[OverlapTable | None, Field(exclude_if=is_absent)] = None
+    track: Annotated[
+        TrackTable | None, Field(description="curves and cant of the track; default: straight", exclude_if=is_absent)
+    ] = None
     variation: Annotated[
         Variation | None, Field(description="variation of the line after it was built", exclude_if=is_absent)
     ] = None
@@ -261,6 +265,21 @@ class LineFile(InputTable):
     @cross_check
     def _check_point_masses(self) -> Problems:
         yield from check_point_masses(self.point_mass, self.geometry.length, self.overlaps)
+
+    @property
+    def curves(self) -> tuple[CurveTable, ...]:
+        """Curves of the track."""
+        return () if self.track is None else self.track.curve
+
+    @cross_check
+    def _check_curves(self) -> Problems:
+        yield from check_curves(self.curves, self.geometry.length)
+        if self.curves and self.messenger_support.along_track == "fixed":
+            yield validation_problem(
+                "messenger_support.along_track",
+                "'fixed' is not possible on a track with curves",
+                "Set along_track = 'free', or leave out the curves.",
+            )
 
     @cross_check
     def _check_irregularity(self) -> Problems:

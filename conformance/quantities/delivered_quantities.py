@@ -70,6 +70,8 @@ DELIVERED_QUANTITIES: tuple[Quantity, ...] = (
          "sag of the contact wire below the straight lines between its supports, at every dropper of listed spans"),
         ("dropper_length_along_line_m", "Dropper length along the line", "m",
          "length of every dropper of listed spans at rest, with bending stiffness and stagger"),
+        ("head_offset_mm", "Largest lateral offset of the contact wire", "mm",
+         "largest lateral distance of the contact wire at rest from the centre of a pantograph head, with cant"),
         ("wave_speed_m_s", "Wave speed of the contact wire", "m/s", "speed of transverse waves on the contact wire"),
         ("reflection_coefficient", "Reflection coefficient of a dropper", "",
          "share of a contact-wire wave that a dropper reflects: sqrt(T m) of the messenger over that of both"),

@@ -122,7 +122,7 @@ def _wires(line: LineFile, layout: LineLayout, kind: Kind) -> Iterator[Wire]:
             table.mass_kg_m,
             table.bending_stiffness_N_m2,
             tension_changes=changes,
-            stagger=plan if layout.has_stagger else None,
+            stagger=plan if layout.has_stagger or line.curves else None,
             axial_stiffness=axial_stiffness,
             end_heights=(places[0][1], places[-1][1]),
         )

@@ -1,11 +1,16 @@
-"""Derived values of the details of a line: stretches of its wires, point masses and irregularity."""
+"""Derived values of the details of a line: stretches of its wires, point masses, irregularity and curves."""
 
 from itertools import groupby
 
 import numpy as np
 
 from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.simulation.derived_format import DerivedIrregularity, DerivedPointMass, DerivedStretch
+from pantocheck.conformance.simulation.derived_format import (
+    DerivedCurve,
+    DerivedIrregularity,
+    DerivedPointMass,
+    DerivedStretch,
+)
 from pantocheck.conformance.simulation.derived_rounding import round_number, round_numbers, round_positions
 from pantocheck.model import Catenary, DiscretisedLine, Kind, Wire
 
@@ -64,4 +69,17 @@ def derive_irregularity(catenary: Catenary) -> DerivedIrregularity | None:
         return None
     return DerivedIrregularity(
         x_m=round_positions(irregularity.position), height_m=round_numbers(np.array(irregularity.height))
+    )
+
+
+def derive_curves(catenary: Catenary) -> tuple[DerivedCurve, ...]:
+    """Curves of the track."""
+    return tuple(
+        DerivedCurve(
+            from_m=round_positions([curve.start])[0],
+            to_m=round_positions([curve.end])[0],
+            curvature_1_m=round_number(1 / curve.radius),
+            transition_m=round_positions([curve.transition])[0],
+        )
+        for curve in catenary.curves
     )

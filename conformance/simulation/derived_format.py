@@ -49,6 +49,15 @@ class DerivedPointMass(InputTable):
     mass_coefficient_1_s: MassCoefficient
 
 
+class DerivedCurve(InputTable):
+    """TrackCurve of the track: T times curvature loads every wire per length towards positive y, at rest."""
+
+    from_m: Annotated[float, Field(description="start, with its transition [m]")]
+    to_m: Annotated[float, Field(description="end, with its transition [m]")]
+    curvature_1_m: Annotated[float, Field(description="curvature between the transitions [1/m]")]
+    transition_m: Annotated[float, Field(description="length at either end over which the curvature rises [m]")]
+
+
 class DerivedWire(InputTable):
     """Contact wire or messenger wire; parallel wires differ in their lateral positions only."""
 
@@ -219,6 +228,10 @@ class DerivedLine(InputTable):
     point_masses: Annotated[
         tuple[DerivedPointMass, ...],
         Field(strict=False, exclude_if=is_absent, description="masses on the wires; absent: none"),
+    ] = ()
+    curves: Annotated[
+        tuple[DerivedCurve, ...],
+        Field(strict=False, exclude_if=is_absent, description="curves of the track; absent: a straight track"),
     ] = ()
 
 

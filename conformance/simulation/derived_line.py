@@ -9,6 +9,7 @@ import numpy as np
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.simulation.derived_details import (
+    derive_curves,
     derive_irregularity,
     derive_point_masses,
     derive_stretches,
@@ -53,6 +54,7 @@ def build_derived_line(file: LineFile, line: DiscretisedLine) -> DerivedLine:
         steady_arms=_steady_arms(line),
         messenger_supports=_messenger_supports(line.catenary),
         point_masses=derive_point_masses(line.catenary),
+        curves=derive_curves(line.catenary),
     )
 
 

@@ -1,4 +1,4 @@
-"""Details of a catenary from a line file: point masses, changes of wires, and irregularity of the contact wire."""
+"""Details of a catenary from a line file: point masses, changes of wires, irregularity, and curves of the track."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -14,6 +14,7 @@ from pantocheck.model import (
     SectionChange,
     SpectralDensity,
     TensionChange,
+    TrackCurve,
     Wire,
     realise_irregularity,
 )
@@ -24,7 +25,7 @@ _KINDS = {"contact_wire": Kind.CONTACT_WIRE, "messenger_wire": Kind.MESSENGER_WI
 
 
 def add_details(catenary: Catenary, line: LineFile) -> Catenary:
-    """Add point masses, changes of wires and the irregularity to a catenary of uniform wires.
+    """Add point masses, changes of wires, the irregularity and the curves of the track to a catenary of uniform wires.
 
     In an overlap of tension sections they hold for the wires of both.
 
@@ -57,6 +58,7 @@ def add_details(catenary: Catenary, line: LineFile) -> Catenary:
             for wire in wires
             if wire.kind is _KINDS[mass.wire] and wire.start < mass.x_m < wire.end
         ),
+        curves=tuple(TrackCurve(c.from_m, c.to_m, c.radius_m, c.transition_m, c.cant_m) for c in line.curves),
     )
 
 

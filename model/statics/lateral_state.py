@@ -9,6 +9,9 @@
 
 Without droppers the wires are straight between steady arms and supports. An inclined dropper pulls both its wires
 sideways with its vertical force times its slope: it acts as a lateral spring of stiffness force over height.
+
+In a curve of radius R, y counts from a centre line that is curved itself. A wire that is straight in space has the
+curvature -1 / R there, as if the tension pulled it towards the centre of the curve with T / R per length.
 """
 
 from dataclasses import dataclass
@@ -18,6 +21,8 @@ import scipy.sparse as sp
 
 from pantocheck.model.arrays import Array
 from pantocheck.model.catenary import Catenary, Clamp, Dropper
+from pantocheck.model.curves import curvature
+from pantocheck.model.fem.beam import uniform_load
 from pantocheck.model.fem.beams import Beams, wire_stiffness
 from pantocheck.model.fem.mesh import Mesh
 from pantocheck.model.statics.prescribed_displacements import solve_with_prescribed_displacements
@@ -72,12 +77,23 @@ def compute_lateral_state(catenary: Catenary, mesh: Mesh, beams: Beams, dropper_
             free[row, station, 0] = False
             shape[row, station, 0] = y
     stiffness = sp.csr_array(wires + elongation @ sp.diags_array(bar_stiffness) @ elongation.T)
-    solution = solve_with_prescribed_displacements(stiffness, np.zeros(shape.size), free.ravel(), shape.ravel())
+    load = np.concatenate([_radial_load(catenary, mesh, beams, row) for row in rows])
+    solution = solve_with_prescribed_displacements(stiffness, load, free.ravel(), shape.ravel())
     force = bar_stiffness * (elongation.T @ solution)
-    reaction = stiffness @ solution
+    reaction = stiffness @ solution - load
     return LateralState(
         rows=rows,
         shape=np.reshape(solution, shape.shape),
         clamps=force[len(catenary.droppers) :],
         arms=np.array([reaction[deflection_index(arm.wire, arm.position)] for arm in catenary.steady_arms]),
     )
+
+
+def _radial_load(catenary: Catenary, mesh: Mesh, beams: Beams, row: int) -> Array:
+    """Nodal forces of the tension in a curve, T / R per length towards its centre, of one row [N, N m]."""
+    middle = (mesh.position[:-1] + mesh.position[1:]) / 2
+    radial = beams.tension[row] * curvature(catenary.curves, middle)
+    force = np.zeros(2 * mesh.position.size)
+    for element in np.flatnonzero(radial):
+        force[2 * element : 2 * element + 4] += uniform_load(beams.length[element], radial[element])
+    return force
