@@ -6,7 +6,7 @@ from typing import Any
 
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.line_tables.line_columns import POSITION, SPAN_LENGTH, SUPPORT_KEYS
-from pantocheck.conformance.line_tables.typed_rows import CellValue, TypedRow
+from pantocheck.conformance.line_tables.typed_rows import TypedRow
 
 LARGEST_DISAGREEMENT = Decimal("0.001")
 """Largest difference between a span length and the distance of two positions, both rounded to a millimetre [m]."""
@@ -14,6 +14,8 @@ LARGEST_DISAGREEMENT = Decimal("0.001")
 
 def read_span_lengths(rows: list[TypedRow], where: str, problems: list[InputError]) -> list[float | None]:
     """Lengths of the spans, from their own column or from the positions of the supports.
+
+    The positions increase or decrease in running order.
 
     Parameters
     ----------
@@ -47,11 +49,12 @@ def read_span_lengths(rows: list[TypedRow], where: str, problems: list[InputErro
                 "without any value is skipped, so give the last row its number.",
             )
         )
-    lengths = []
-    for here, behind in pairwise(rows):
-        length = _read_length(here, behind, SPAN_LENGTH if by_length else POSITION, problems)
-        lengths.append(None if length is None else float(length))
-    return lengths
+    distances = _measure_distances(rows)
+    lengths: list[Decimal | None] = [
+        _read_length(here, distance, problems) if by_length else _read_distance(here, behind, distance, problems)
+        for (here, behind), distance in zip(pairwise(rows), distances, strict=True)
+    ]
+    return [None if length is None else float(length) for length in lengths]
 
 
 def _check_numbers(rows: list[TypedRow], problems: list[InputError]) -> None:
@@ -64,19 +67,31 @@ def _check_numbers(rows: list[TypedRow], problems: list[InputError]) -> None:
             problems.append(InputError(row.places["number"], f"found {found}, expected {number}", hint))
 
 
-def _read_length(here: TypedRow, behind: TypedRow, column: str, problems: list[InputError]) -> Decimal | None:
-    """Length of the span between two rows; None if it is missing or not positive."""
-    distance = _subtract(behind.values.get(POSITION), here.values.get(POSITION))
-    if column == POSITION:
-        if distance is None:
-            missing = here if POSITION not in here.values else behind
-            problems.append(InputError(missing.places[POSITION], "the position is missing", "Give every position."))
-            return None
-        if distance <= 0:
-            hint = f"List the supports in running order; if the chainage decreases, give {SPAN_LENGTH} in place of it."
-            problems.append(InputError(behind.places[POSITION], "the position does not increase", hint))
-            return None
-        return distance
+def _measure_distances(rows: list[TypedRow]) -> list[Decimal | None]:
+    """Distances between neighbouring positions in the direction from the first to the last one; None: not known [m]."""
+    positions = [x if isinstance(x := row.values.get(POSITION), Decimal) else None for row in rows]
+    known = [x for x in positions if x is not None]
+    direction = -1 if known and known[-1] < known[0] else 1
+    return [None if start is None or end is None else direction * (end - start) for start, end in pairwise(positions)]
+
+
+def _read_distance(
+    here: TypedRow, behind: TypedRow, distance: Decimal | None, problems: list[InputError]
+) -> Decimal | None:
+    """Length of the span between two positions; None if one is missing, or if they run backwards."""
+    if distance is None:
+        missing = here if POSITION not in here.values else behind
+        problems.append(InputError(missing.places[POSITION], "the position is missing", "Give every position."))
+        return None
+    if distance <= 0:
+        hint = "List the supports in running order, with increasing or with decreasing positions."
+        problems.append(InputError(behind.places[POSITION], "the position runs backwards", hint))
+        return None
+    return distance
+
+
+def _read_length(here: TypedRow, distance: Decimal | None, problems: list[InputError]) -> Decimal | None:
+    """Length of the span that begins at a support; None if it is missing."""
     length = here.values.get(SPAN_LENGTH)
     if not isinstance(length, Decimal):
         problems.append(InputError(here.places[SPAN_LENGTH], "the span length is missing", "Give the length."))
@@ -90,10 +105,6 @@ def _read_length(here: TypedRow, behind: TypedRow, column: str, problems: list[I
             )
         )
     return length
-
-
-def _subtract(end: CellValue | None, start: CellValue | None) -> Decimal | None:
-    return end - start if isinstance(end, Decimal) and isinstance(start, Decimal) else None
 
 
 def build_support_tables(rows: list[TypedRow]) -> list[dict[str, Any]]:

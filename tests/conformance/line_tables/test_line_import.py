@@ -72,6 +72,12 @@ def test_positions_in_chainage_give_exact_span_lengths(base: Path) -> None:
     assert [limit.contact_wire_stagger for limit in line.layout.limits] == [0.0, -0.2, 0.25, -0.2, 0.0]
 
 
+def test_positions_may_decrease_in_running_order(base: Path) -> None:
+    text = "number,x_km\n0,7.2475\n1,7.1845\n2,7.126\n3,7.063\n"
+    tree = import_line(base, write(base.parent, "s.csv", text), None)
+    assert [span["length_m"] for span in tree["geometry"]["span_list"]] == [63.0, 58.5, 63.0]
+
+
 def test_conversions_are_those_of_decimal_numbers(base: Path) -> None:
     """Thousandths of whole millimetres; many binary products, such as 9 * 0.001, are another number."""
     staggers = [*range(1, 200), 0]
@@ -127,7 +133,7 @@ def test_every_problem_of_all_files_is_named_with_row_and_column(tables: tuple[P
         ("number,span_m\n0,50\n1.0,\n", "row 3, column 'number'", "found '1.0'"),
         ("span_m\n50\n50\n", "row 3, column 'span_m'", "a span begins at the end of the line"),
         ("number,span_m\n0,50\n1,\n2,50\n3,\n", "row 3, column 'span_m'", "the span length is missing"),
-        ("number,x_m\n0,0\n1,50\n2,50\n", "row 4, column 'x_m'", "the position does not increase"),
+        ("number,x_m\n0,0\n1,50\n2,50\n", "row 4, column 'x_m'", "the position runs backwards"),
         ("number,x_m\n0,0\n1,\n2,50\n", "row 3, column 'x_m'", "the position is missing"),
         ("number,span_m\n0,5\n1,\n", "row 2, column 'span_m'", "5 must be at least 10.0"),
         ("number;span_m\n0;50,5\n1;50.5\n2;\n", "row 2, column 'span_m'", "a decimal comma, but row 3 has a"),
