@@ -87,7 +87,8 @@ def read_static_table(path: Path) -> StaticRecord:
     table = locate_table(sidecar_path, sidecar.file, sidecar.sha256)
     columns = _read_columns(read_tables(table, (), LARGEST_TABLE, (CSV, HDF5)))
     where = f"record '{table.name}'"
-    position = columns["position"] - sidecar.line_start_m
+    direction = 1.0 if sidecar.positions == "increasing" else -1.0
+    position = direction * (columns["position"] - sidecar.line_start_m)
     values: dict[StaticValue, RealArray] = {name: columns[name] for name in STATIC_VALUES if name in columns}
     if "contact_wire_height" in values:
         values["contact_wire_height"] = values["contact_wire_height"] - sidecar.datum_m
@@ -218,8 +219,8 @@ def _find_line_problems(path: Path, record: StaticRecord, geometry: Geometry) ->
         yield InputError(
             f"record '{record.source}', {_name_rows(record.row[outside])}",
             f"the position is not on the line: {positions} from its start",
-            f"The line ends at {geometry.length:g} m. If the table counts from elsewhere, give line_start_m in the "
-            "sidecar.",
+            f"The line ends at {geometry.length:g} m. If the table counts otherwise, give line_start_m and "
+            "positions in the sidecar.",
         )
 
 

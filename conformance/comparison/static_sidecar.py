@@ -31,6 +31,10 @@ class StaticSidecar(InputTable):
     line_start_m: Annotated[
         float, Field(ge=-1e7, le=1e7, description="position of the start of the line, as the table counts [m]")
     ] = 0.0
+    positions: Annotated[
+        Literal["increasing", "decreasing"],
+        Field(description="direction in which the table counts positions, from the start of the line to its end"),
+    ] = "increasing"
     datum_m: Annotated[
         float, Field(ge=-100, le=100, description="height of the datum of the line, as the table counts [m]")
     ] = 0.0

@@ -40,6 +40,14 @@ def test_table_of_a_spreadsheet_with_decimal_commas_is_read(tmp_path: Path) -> N
     assert read_static_record(path, GEOMETRY).position.tolist() == [10.0, 20.0, 30.0]
 
 
+def test_positions_may_decrease_along_the_line(tmp_path: Path) -> None:
+    columns = COLUMNS | {"position_m": 1000 - COLUMNS["position_m"]}
+    path = write_static_record(tmp_path, columns, line_start_m=1000.0, positions="decreasing")
+    record = read_static_record(path, GEOMETRY)
+    assert record.position.tolist() == [10.0, 20.0, 30.0]
+    assert record.row.tolist() == [2, 3, 1]
+
+
 def test_hdf5_file_holds_one_data_set_per_column(tmp_path: Path) -> None:
     write_static_record(tmp_path, COLUMNS, file="measured.h5")
     write_hdf5_table(tmp_path / "measured.h5", {}, {name: values.tolist() for name, values in COLUMNS.items()})
