@@ -24,7 +24,13 @@ from pantocheck.conformance.cases.section_tables import (
     find_span_problems,
     place_sections,
 )
-from pantocheck.conformance.cases.support_tables import MOST_SPANS, ClampMass, MessengerSupportTable, SteadyArmTable
+from pantocheck.conformance.cases.support_tables import (
+    MOST_SPANS,
+    ClampMass,
+    MessengerSupportTable,
+    SteadyArmTable,
+    overlay_changes,
+)
 from pantocheck.conformance.cases.track_table import CurveTable, TrackTable, check_curves
 from pantocheck.conformance.cases.variation import ListedLengthChanges, Variation
 from pantocheck.conformance.cases.wire_changes import (
@@ -193,6 +199,17 @@ class LineFile(InputTable):
         """Start and end of every overlap [m, m]."""
         limits = self.geometry.span_limits
         return tuple((limits[after.first], limits[before.last]) for before, after in pairwise(self.section_places))
+
+    def section_file(self, place: SectionPlace) -> Self:
+        """Same line with the wires of one section."""
+        if self.section is None:
+            return self
+        own = self.section[place.number - 1]
+        wires = {
+            "contact_wire": overlay_changes(self.contact_wire, own.contact_wire),
+            "messenger_wire": overlay_changes(self.messenger_wire, own.messenger_wire),
+        }
+        return self.model_copy(update=wires)
 
     @property
     def middle_span(self) -> int:

@@ -17,6 +17,7 @@ import numpy as np
 from pydantic import Field
 
 from pantocheck.conformance.cases.support_tables import MOST_SPANS
+from pantocheck.conformance.cases.wire_changes import BendingStiffness, MassPerLength, Tension
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.sourced_table import InputTable, validation_problem
 
@@ -31,6 +32,14 @@ WireEnd = Annotated[
     ),
 ]
 WireRise = Annotated[float, Field(gt=0, le=3)]
+
+
+class SectionWire(InputTable):
+    """Values of a wire of one section that differ from those of the line."""
+
+    tension_N: Tension | None = None
+    mass_kg_m: MassPerLength | None = None
+    bending_stiffness_N_m2: BendingStiffness | None = None
 
 
 class SectionTable(InputTable):
@@ -48,6 +57,9 @@ class SectionTable(InputTable):
             "track; default: none",
         ),
     ] = None
+
+    contact_wire: Annotated[SectionWire | None, Field(description="own values of the contact wires")] = None
+    messenger_wire: Annotated[SectionWire | None, Field(description="own values of the messenger wires")] = None
 
     @property
     def holding_points(self) -> int:

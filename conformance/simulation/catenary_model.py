@@ -55,7 +55,9 @@ def build_catenary(line: LineFile) -> Catenary:
         The varied line has no equilibrium.
     """
     layout = line.layout
-    sections = [_build_section(line, layout.part(place.first, place.last)) for place in line.section_places]
+    sections = [
+        _build_section(line.section_file(place), layout.part(place.first, place.last)) for place in line.section_places
+    ]
     catenary = sections[0] if line.overlap is None else join_line(line, sections)
     return vary_catenary(_add_dropper_masses(add_details(catenary, line), line.droppers.mass_kg_m), line)
 

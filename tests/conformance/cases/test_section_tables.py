@@ -107,6 +107,10 @@ def test_lowest_rise_is_that_of_the_wire_under_the_head() -> None:
                 "messenger_wire.axial_stiffness_EA_N: section 2 holds the messenger wire along the track at 2 points",
             ],
         ),
+        (
+            {"section": [{"spans": 6, "contact_wire": {"tension_N": 0.0, "number": 2}}, {"spans": 6}]},
+            ["section[1].contact_wire.tension_N: 0", "section[1].contact_wire.number: unknown key"],
+        ),
         ({"section": [{"spans": 6, "end": "spring"}, {"spans": 6}]}, ["section[1].end: found 'spring'"]),
         ({"geometry.spans": 12}, ["section: the sections end at span 9, but the line has 12 spans"]),
     ],

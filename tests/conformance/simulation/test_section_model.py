@@ -155,6 +155,25 @@ def test_force_in_an_overlap_converges_with_the_mesh(case_250: Case) -> None:
     assert (middle < coarse / 2).all()
 
 
+def test_section_has_its_own_wires() -> None:
+    """The second section has a tension of its own and a heavier messenger wire; everything else is that of the line."""
+    tables = section_tables()
+    tables["section"][1] |= {"contact_wire": {"tension_N": 25e3}, "messenger_wire": {"mass_kg_m": 1.2}}
+    catenary = build_catenary(LineFile.model_validate(tables))
+    first, second = (
+        {
+            wire.name.removeprefix(f"section {n} "): wire
+            for wire in catenary.wires
+            if wire.name.startswith(f"section {n}")
+        }
+        for n in (1, 2)
+    )
+    assert [first["contact wire"].tension, second["contact wire"].tension] == [20e3, 25e3]
+    assert first["contact wire"].mass_per_length == second["contact wire"].mass_per_length == 1.35
+    assert [first["messenger wire"].mass_per_length, second["messenger wire"].mass_per_length] == [1.07, 1.2]
+    assert first["messenger wire"].tension == second["messenger wire"].tension == 16e3
+
+
 def test_terminations_and_mid_point_anchor_hold_the_messenger_wires() -> None:
     """Rigid at the start of the first section and at its mid-point anchor, the third support: one stretch of 180 m."""
     tables = section_tables()
