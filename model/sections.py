@@ -77,6 +77,7 @@ def place_section(catenary: Catenary, name: str, start: float, rise: Rise) -> Ca
             )
             for support in catenary.messenger_supports
         ),
+        curves=tuple(replace(c, start=start + c.start, end=start + c.end) for c in catenary.curves),
         point_masses=tuple(
             replace(mass, position=start + mass.position, wire=rename(mass.wire)) for mass in catenary.point_masses
         ),
@@ -147,4 +148,5 @@ def join_sections(sections: Sequence[Catenary]) -> Catenary:
         messenger_supports=tuple(support for section in sections for support in section.messenger_supports),
         clamps=tuple(clamp for section in sections for clamp in section.clamps),
         point_masses=tuple(mass for section in sections for mass in section.point_masses),
+        curves=tuple(dict.fromkeys(curve for section in sections for curve in section.curves)),
     )

@@ -8,6 +8,7 @@ import pytest
 from helpers.lines import DAMPED, overlapping_line, simple_line
 from pantocheck.model import Clamp, Kind, TensionChange, Wire, discretise
 from pantocheck.model.catenary import PointMass, SectionChange
+from pantocheck.model.curves import TrackCurve
 from pantocheck.model.irregularity import Irregularity
 from pantocheck.model.sections import join_sections, place_section
 
@@ -23,7 +24,7 @@ def test_section_is_shifted_renamed_and_raised() -> None:
     stitch = Wire("stitch", Kind.STITCH_WIRE, 52.0, 68.0, 3e3, 0.3, 0.0)
     line = replace(
         line, wires=(contact, relieved, stitch), clamps=(Clamp(52.0, "messenger", "stitch"),),
-        point_masses=(PointMass(30.0, "contact", 12.0),),
+        point_masses=(PointMass(30.0, "contact", 12.0),), curves=(TrackCurve(20.0, 80.0, 900.0),),
         droppers=(replace(line.droppers[0], contact_wire_height=-0.05), *line.droppers[1:]),
     )  # fmt: skip
     placed = place_section(line, "second", 200.0, lambda x: x / 100)
@@ -36,6 +37,8 @@ def test_section_is_shifted_renamed_and_raised() -> None:
     assert placed.wires[0].irregularity == Irregularity((210.0, 220.0), (0.0, 1e-3))
     assert placed.wires[0].section_changes == (SectionChange(205.0, 209.0, 1.1),)
     assert placed.point_masses == (PointMass(230.0, "second contact", 12.0),)
+    assert placed.curves == (TrackCurve(220.0, 280.0, 900.0),)
+    assert join_sections([line, placed]).curves == line.curves + placed.curves
     assert join_sections([line, placed]).point_masses == line.point_masses + placed.point_masses
     assert placed.clamps == (Clamp(252.0, "second messenger", "second stitch"),)
     first, arm, support = placed.droppers[0], placed.steady_arms[0], placed.messenger_supports[1]
