@@ -15,6 +15,7 @@ from pantocheck.conformance.cases.damping_file import Damping, DampingFile, over
 from pantocheck.conformance.cases.force_rules import resolve_rule
 from pantocheck.conformance.cases.input_changes import InputChange
 from pantocheck.conformance.cases.library_folder import library_folder
+from pantocheck.conformance.cases.limits import spread_limits
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.input_files.input_error import InputError
@@ -70,7 +71,7 @@ class CaseFiles:
             file,
             line,
             tuple(pantograph for pantograph, _ in pantographs),
-            file.limit,
+            spread_limits(file.limit, len(pantographs)),
             static_pantograph,
             dampings,
             tuple(dict.fromkeys(descriptions)),

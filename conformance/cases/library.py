@@ -11,7 +11,7 @@ from pantocheck.conformance.cases.case_agreement import find_disagreements
 from pantocheck.conformance.cases.case_parts import CaseFiles
 from pantocheck.conformance.cases.input_changes import InputChange
 from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.cases.limits import Limit, LimitOverride, LimitsFile
+from pantocheck.conformance.cases.limits import Limit, LimitOverride, LimitsFile, spread_limits
 from pantocheck.conformance.input_files.input_error import InputError, join_errors
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.toml_file import read_model, read_toml
@@ -163,7 +163,7 @@ def overlay_limits(cases: Sequence[Case], limits: Sequence[LimitOverride]) -> li
             raise InputError(f"{where}.pantograph", f"there is no pantograph {limit.owner}", hint)
         for case in with_owner:
             added[case.id].append(limit)
-    return [case.with_limits(tuple(added[case.id])) for case in cases]
+    return [case.with_limits(spread_limits(added[case.id], len(case.pantographs))) for case in cases]
 
 
 @cache

@@ -1,6 +1,7 @@
 """Limits: a quantity, its bounds and their source."""
 
-from typing import Annotated
+from collections.abc import Iterable
+from typing import Annotated, TypeVar
 
 from pydantic import AfterValidator, Field
 
@@ -42,7 +43,8 @@ class Limit(InputTable):
         Field(
             ge=1,
             le=20,
-            description="number of the pantograph in running order; default: 1, or none for a quantity of the line",
+            description="number of the pantograph in running order; default: every pantograph; none for a quantity of "
+            "the line",
         ),
     ] = None
     item: Annotated[
@@ -73,7 +75,7 @@ class Limit(InputTable):
 
     @property
     def owner(self) -> int:
-        """Number of the pantograph of this limit, from 1; 0 for the line."""
+        """Number of the pantograph of this limit, from 1; 0 for the line. A limit of every pantograph counts as 1."""
         if QUANTITIES[self.quantity].scope != "pantograph":
             return 0
         return self.pantograph or 1
@@ -82,6 +84,41 @@ class Limit(InputTable):
     def target(self) -> tuple[str, int, int | None]:
         """Quantity, pantograph and item of this limit; a later limit with the same target replaces it."""
         return self.quantity, self.owner, self.item
+
+
+AnyLimit = TypeVar("AnyLimit", bound=Limit)
+
+
+def spread_limits(limits: Iterable[AnyLimit], pantographs: int) -> tuple[AnyLimit, ...]:
+    """Give every pantograph of a train its own copy of each limit that names no pantograph.
+
+    A limit that names its pantograph takes precedence. Without copies, a limit would judge the first pantograph alone,
+    although the trailing one usually has the larger standard deviation.
+
+    Parameters
+    ----------
+    limits : iterable of Limit
+        Limits of a case, a record or a user.
+    pantographs : int
+        Number of pantographs.
+
+    Returns
+    -------
+    tuple of Limit
+        Limits; with two or more pantographs, each limit of a pantograph names it.
+    """
+    limits = tuple(limits)
+    if pantographs < 2:
+        return limits
+    named = {limit.target for limit in limits if limit.pantograph is not None}
+    spread: list[AnyLimit] = []
+    for limit in limits:
+        if limit.pantograph is not None or limit.owner == 0:
+            spread.append(limit)
+            continue
+        copies = (limit.model_copy(update={"pantograph": number}) for number in range(1, pantographs + 1))
+        spread += [copy for copy in copies if copy.target not in named]
+    return tuple(spread)
 
 
 class LimitOverride(Limit):

@@ -8,7 +8,7 @@ import typer
 from pydantic import ValidationError
 
 from pantocheck.conformance.cases.library import read_limits
-from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.cases.limits import Limit, spread_limits
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.command_line.options import (
     AcceptUnverifiedOption,
@@ -76,6 +76,7 @@ def assess_command(
     assessed = load_assessed_record(record, rules, line)
     reference = None if measured is None else load_assessed_record(measured, rules, LineTable())
     _check_pantographs(own_limits, len(assessed.pantographs))
+    own_limits = spread_limits(own_limits, len(assessed.pantographs))
     check_writable(folder)
     participation = Participation(accepted_unverified=tuple(accept_unverified or ()))
     results = assess_record(assessed, rules, options.trust, reference, own_limits, participation)

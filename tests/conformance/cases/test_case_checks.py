@@ -439,6 +439,26 @@ def test_limits_of_a_user_reach_every_case_with_their_pantograph(tmp_path: Path,
     assert caught.value.where == "limits, key limit[2].case"
 
 
+def test_limit_without_a_pantograph_concerns_every_pantograph(
+    tmp_path: Path, two_pantograph_case: Case, edited_case: EditedCase
+) -> None:
+    """A limit of the case and one of the user: both pantographs have it, and one that names its pantograph remains."""
+    both = {("std_force_N", 1, None): 30.0, ("std_force_N", 2, None): 35.0}
+    uplift = {"quantity": "max_uplift_at_support_mm", "upper": 90.0, **OWN}
+    tables = [
+        {"quantity": "std_force_N", "upper": 30.0, **OWN},
+        {"quantity": "std_force_N", "upper": 35.0, "pantograph": 2, **OWN},
+        {"quantity": "max_force_N", "upper": 250.0, **OWN},
+        uplift,
+    ]
+    path = edited_case("250.toml", {"limit": tables, "pantograph": [TUNED] * 2, "spacing_m": [30.0]})
+    expected = both | {("max_force_N", n, None): 250.0 for n in (1, 2)} | {("max_uplift_at_support_mm", 0, None): 90.0}
+    assert {limit.target: limit.upper for limit in load_case(path).limits} == expected
+    limits = read_limits(limits_file(tmp_path / "limits.toml", {}, {"upper": 35.0, "pantograph": 2}))
+    (twin,) = overlay_limits([two_pantograph_case.without_limits()], limits)
+    assert {limit.target: limit.upper for limit in twin.limits} == both
+
+
 def test_owner_of_a_limit_is_the_line_or_a_pantograph() -> None:
     def owner(quantity: str, pantograph: int | None = None) -> int:
         table = {"quantity": quantity, "upper": 1.0, **OWN} | ({} if pantograph is None else {"pantograph": pantograph})
