@@ -15,7 +15,11 @@ from pantocheck.conformance.comparison.static_record import read_static_record
 from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import check_writable, produce_atomically
 from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
-from pantocheck.conformance.reports.comparison.static_comparison_page import HEADLINES, build_static_comparison
+from pantocheck.conformance.reports.comparison.static_comparison_page import (
+    HEADLINES,
+    build_static_comparison,
+    list_remarks,
+)
 from pantocheck.conformance.reports.formats.report_writers import write_report
 
 ToleranceOption = float | None
@@ -109,5 +113,7 @@ def _print_differences(comparison: StaticComparison) -> None:
             criteria.add_row(item.quantity, format_number(item.value), format_number(item.tolerance), verdict)
         output.print(criteria)
     for item in comparison.criteria:
-        for remark in filter(None, (item.reason, *item.close)):
-            output.print(escape_text(f"  {item.quantity}: {remark}"))
+        if item.reason:
+            output.print(escape_text(f"  {item.quantity}: {item.reason}"))
+    for remark in list_remarks(comparison.model_dump(mode="json")):
+        output.print(escape_text(f"  {remark}"))

@@ -12,8 +12,8 @@ SPANS_OF_A_FIGURE = 10
 COMPARISON_STATEMENT = "self-declared comparison with measured values"
 
 HEADLINES = {
-    "pass": "The model agrees with the measured values within the tolerances of the user.",
-    "fail": "The model differs from the measured values by more than a tolerance of the user.",
+    "pass": "The graded differences between model and measurement lie within the tolerances of the user.",
+    "fail": "A difference between model and measurement exceeds a tolerance of the user.",
     "skip": "The record is not complete for every tolerance.",
     "info": "No tolerance was given: the differences are shown and not graded.",
 }
@@ -41,7 +41,7 @@ def build_static_comparison(results: dict[str, Any]) -> doc.Document:
         f"Line: {results['line']}. Measured values: {results['record']}. {suite}.",
         f"{suite} · {results['line']}",
     )
-    remarks = tuple(_list_remarks(results))
+    remarks = tuple(list_remarks(results))
     blocks: list[doc.Block] = [doc.WarningBox(remarks)] if remarks else []
     blocks += [doc.Paragraph(SCOPE), doc.Facts(_list_facts(results))]
     if results["criteria"]:
@@ -50,11 +50,14 @@ def build_static_comparison(results: dict[str, Any]) -> doc.Document:
     return doc.Document(header.heading, header, tuple(blocks))
 
 
-def _list_remarks(results: dict[str, Any]) -> list[str]:
-    """Caveats: values that are missing or far from the others, and criteria close to their tolerance."""
+def list_remarks(results: dict[str, Any]) -> list[str]:
+    """Caveats: values without tolerance, missing or far from the others, and criteria close to their tolerance."""
     remarks = []
+    graded = [item["quantity"] for item in results["criteria"]]
     for values in results["values"]:
         name = values["name"].replace("_", " ")
+        if graded and not any(quantity.startswith(values["name"]) for quantity in graded):
+            remarks.append(f"{name}: no tolerance was given, so that the differences are not graded")
         if values["missing_rows"]:
             remarks.append(f"{name}: no value in {_name_rows(values['missing_rows'])}")
         if values["outlier_rows"]:

@@ -78,6 +78,21 @@ def test_page_states_verdict_caveats_and_every_span() -> None:
     assert ("Largest distance of measured positions", "not stated") in facts.pairs
 
 
+def test_values_without_a_tolerance_are_named() -> None:
+    """A verdict on one kind of values must not be taken for one on the other kind."""
+    results = build_results()
+    heights = results["values"][0] | {
+        "name": "contact_wire_height",
+        "unit": "mm",
+        "missing_rows": [],
+        "outlier_rows": [],
+    }
+    (warnings,) = find_blocks(build_static_comparison(results | {"values": [heights]}), doc.WarningBox)
+    assert "contact wire height: no tolerance was given, so that the differences are not graded" in warnings.sentences
+    informative = build_static_comparison(results | {"values": [heights], "criteria": [], "verdict": "info"})
+    assert find_blocks(informative, doc.WarningBox) == []
+
+
 @pytest.mark.parametrize("verdict", ["pass", "skip", "info"])
 def test_every_verdict_has_a_headline(verdict: str) -> None:
     document = build_static_comparison(build_results() | {"verdict": verdict})
