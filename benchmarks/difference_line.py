@@ -102,6 +102,8 @@ def build_line(case: CaseData) -> Line:
     details = (derived["contact_wire"], derived["messenger_wire"])
     if any(wire.get("stretches") or wire.get("irregularity") for wire in details) or derived.get("point_masses"):
         raise ValueError("the second formulation has uniform, smooth wires without point masses")
+    if derived.get("curves"):
+        raise ValueError("the second formulation has a straight track")
     if derived["messenger_supports"]["held_along_track"] is not False:
         raise ValueError("the second formulation has messenger wires of constant tension only")
     messenger, stitch = inputs["messenger_wire"], derived["stitch_wires"]

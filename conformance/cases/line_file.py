@@ -291,7 +291,7 @@ class LineFile(InputTable):
     @cross_check
     def _check_curves(self) -> Problems:
         yield from check_curves(self.curves, self.geometry.length)
-        if self.curves and self.messenger_support.along_track == "fixed":
+        if self.curves and self.layout.supports_fixed_along_track:
             yield validation_problem(
                 "messenger_support.along_track",
                 "'fixed' is not possible on a track with curves",
