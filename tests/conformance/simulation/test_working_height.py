@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
+from helpers.listed_spans import list_spans
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library_folder import library_folder
+from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.pantograph_file import MatricesTable, ModesTable, PantographFile
-from pantocheck.conformance.input_files.toml_file import read_model
+from pantocheck.conformance.input_files.toml_file import read_model, read_toml
 from pantocheck.conformance.simulation.case_run import build_passage
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph
@@ -95,3 +97,20 @@ def test_wrong_number_of_values_is_refused(descriptions: dict[str, PantographFil
     table = descriptions["matrices"].matrices.model_dump()
     with pytest.raises(ValueError, match="2 values for 3 degrees of freedom"):
         MatricesTable(**table | {"uplift_force_on": (1.0, 0.0)})
+
+
+@pytest.mark.parametrize("convention", ["working_height", "wire_height"])
+def test_height_of_the_line_does_not_change_the_forces(case_250: Case, chain: PantographFile, convention: str) -> None:
+    """A contact wire at 5.3 m above the rail: the nominal height of the wire moves with it, in both conventions.
+
+    To 1e-6 N; heights of 5 m leave rounding errors of 1e-15 m times 5e4 N/m, which sweeps amplify.
+    """
+    table = chain.chain.model_copy(update={"base_spring_unstretched": convention})
+    pantograph = chain.model_copy(update={"chain": table})
+    tables = list_spans(read_toml(library_folder() / "en50318-2002" / "line.toml", "line"))
+    forces = []
+    for height in (0.0, 5.3):
+        tables["geometry"]["contact_wire_height_m"] = height
+        forces.append(simulate(replace(case_250, line=LineFile.model_validate(tables)), pantograph))
+    assert np.abs(forces[1] - forces[0]).max() < 1e-6
+    assert forces[0].mean() > 100.0
