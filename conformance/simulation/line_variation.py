@@ -16,8 +16,12 @@ from pantocheck.model import Catenary, Kind, Wire
 from pantocheck.model.statics.dropper_lengths import compute_unloaded_lengths, hang_on_droppers
 from pantocheck.model.statics.wire_climate import excess_lengths, fixed_tension
 
-VARIATION_ELEMENT_M = 1.0
-"""Element length for the heights of a varied line [m]; with elements of 0.25 m they change by less than 0.1 mm."""
+VARIATION_ELEMENT_M = 0.5
+"""Element length for the heights of a varied line [m].
+
+With elements of 0.125 m the heights of the lines of the library change by less than 0.02 mm, the dropper forces by less
+than 0.1 N, for 5 % less tension of the messenger wire.
+"""
 
 
 def vary_catenary(catenary: Catenary, line: LineFile) -> Catenary:
