@@ -59,6 +59,10 @@ class CommandSystem:
         """Run a case in a new process; a failure of the process is an error of this case only."""
         if self.start_failure is not None:
             return Errored(self.start_failure)
+        if case.line.section is not None:
+            return Skipped(
+                f"the line has {len(case.line.section)} tension sections (key section); the protocol describes one only"
+            )
         with tempfile.TemporaryDirectory(prefix="pantocheck-", ignore_cleanup_errors=True) as name:
             folder = Path(name)
             try:

@@ -17,6 +17,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from helpers.listed_spans import list_spans
+from helpers.section_lines import section_line
 from helpers.toml_edit import edit_toml
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
@@ -210,6 +211,15 @@ def test_program_of_the_first_version_does_not_get_a_line_that_it_cannot_read(
     assert f"the line has the key {key}, which pantocheck.command/1 does not contain" in outcome.reason
     messages = [json.loads(line)["message"] for line in (tmp_path / "log").read_text().splitlines()]
     assert messages == ["start", "stop"] * 2
+
+
+def test_line_of_several_sections_is_skipped(program: Callable[..., System], case_250: Case, tmp_path: Path) -> None:
+    """No version of the protocol describes them; the program is not asked."""
+    outcome = program("well").run(replace(case_250, line=section_line()))
+    assert isinstance(outcome, Skipped)
+    assert "the line has 2 tension sections (key section)" in outcome.reason
+    messages = [json.loads(line)["message"] for line in (tmp_path / "log").read_text().splitlines()]
+    assert messages == ["start", "stop"]
 
 
 def test_answers_follow_their_schema() -> None:
