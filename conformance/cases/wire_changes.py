@@ -16,9 +16,9 @@ from pantocheck.conformance.input_files.sourced_table import (
     validation_problem,
 )
 
-Tension = Annotated[float, Field(gt=0, le=200e3, description="axial tension of one wire [N]")]
-MassPerLength = Annotated[float, Field(gt=0, le=20, description="mass per length of one wire [kg/m]")]
-BendingStiffness = Annotated[float, Field(ge=0, le=1e5, description="bending stiffness EI of one wire [N m2]")]
+Tension = Annotated[float, Field(ge=500, le=200e3, description="axial tension of one wire [N]")]
+MassPerLength = Annotated[float, Field(ge=0.02, le=10, description="mass per length of one wire [kg/m]")]
+BendingStiffness = Annotated[float, Field(ge=0, le=1e4, description="bending stiffness EI of one wire [N m2]")]
 
 MOST_CHANGES = 1000
 """Largest number of changes of a wire, and of point masses of a line."""

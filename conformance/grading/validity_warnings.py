@@ -36,11 +36,22 @@ def validity_warnings(case: Case, evaluation: Evaluation) -> list[str]:
     """
     if case.is_static or not case.pantographs:
         return []
-    return [*_speed_warnings(case), *_working_height_warnings(case), *_contact_loss_warnings(evaluation)]
+    return [*speed_warnings(case), *_working_height_warnings(case), *_contact_loss_warnings(evaluation)]
 
 
-def _speed_warnings(case: Case) -> Iterator[str]:
-    """Warn of a speed near the wave speed sqrt(T / m) of the contact wire, the slowest wave that meets the head."""
+def speed_warnings(case: Case) -> Iterator[str]:
+    """Warn of a speed near the wave speed sqrt(T / m) of the contact wire, the slowest wave that meets the head.
+
+    Parameters
+    ----------
+    case : Case
+        Case of a passage.
+
+    Yields
+    ------
+    str
+        Warning with the reason and the remedy.
+    """
     wire = case.line.contact_wire
     c = wave_speed(wire.tension_N, wire.mass_kg_m)
     share = case.speed / c

@@ -11,6 +11,7 @@ from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.comparison.static_record import read_static_table
 from pantocheck.conformance.comparison.static_sidecar import STATIC_SCHEMA
+from pantocheck.conformance.grading.validity_warnings import speed_warnings
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.json_file import read_json, validate_json
 from pantocheck.conformance.input_files.suggestions import suggest_names
@@ -46,7 +47,7 @@ def check_input_file(path: Path, kind: str | None = None) -> str:
     Returns
     -------
     str
-        Kind and size of the valid content, for one line of output.
+        Kind and size of the valid content, and a line for each warning.
 
     Raises
     ------
@@ -108,7 +109,9 @@ def _check_case(path: Path) -> str:
     _check_rest(case.line, f"case '{path.name}', line {case.line.title!r}")
     speed = "line at rest" if case.file.speed_km_h is None else f"{case.file.speed_km_h:g} km/h"
     pantographs = [f"{len(case.pantographs)} pantograph(s)"] if case.pantographs else []
-    return f"case {case.id}: {', '.join([speed, *pantographs])}; line: {_describe_line(case.line)}"
+    warnings = [] if case.is_static else [f"\n  warning: {text}" for text in speed_warnings(case)]
+    description = f"case {case.id}: {', '.join([speed, *pantographs])}; line: {_describe_line(case.line)}"
+    return "".join([description, *warnings])
 
 
 def _check_line(path: Path) -> str:

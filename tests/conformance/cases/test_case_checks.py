@@ -162,6 +162,19 @@ def test_line_is_checked(changes: dict[str, Any], key: str | None, edited_case: 
     assert find_fault(edited_case("line.toml", changes)) == key
 
 
+@pytest.mark.parametrize("wire", ["contact_wire", "messenger_wire"])
+@pytest.mark.parametrize(
+    ("name", "smallest", "largest"),
+    [("tension_N", 500.0, 200e3), ("mass_kg_m", 0.02, 10.0), ("bending_stiffness_N_m2", 0.0, 1e4)],
+)
+def test_value_of_a_wire_in_another_unit_is_refused(
+    wire: str, name: str, smallest: float, largest: float, edited_case: EditedCase
+) -> None:
+    key = f"{wire}.{name}"
+    for value, fault in ((smallest, None), (largest, None), (0.99 * smallest - 1e-6, key), (1.01 * largest, key)):
+        assert find_fault(edited_case("line.toml", {key: value})) == fault
+
+
 @pytest.mark.parametrize(("length_m", "valid"), [(59.9, True), (60.0, False)])
 def test_stitch_wires_do_not_overlap(length_m: float, valid: bool, edited_case: EditedCase) -> None:
     stitch = {"length_m": length_m, "tension_N": 3500.0, "mass_kg_m": 0.3, **OWN}

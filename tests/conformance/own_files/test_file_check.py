@@ -93,6 +93,14 @@ def test_valid_files_give_one_line_each(edited_case: EditedCase) -> None:
     ]
 
 
+def test_speed_near_the_wave_speed_is_warned_of(edited_case: EditedCase) -> None:
+    """The waves of the contact wire run at 438 km/h; a warning starts at 70 % of it."""
+    assert "warning" not in check(edited_case("250.toml", {"speed_km_h": 306.0})).stdout
+    result = check(edited_case("250.toml", {"speed_km_h": 307.0}))
+    assert result.exit_code == 0
+    assert "\n  warning: speed: 307 km/h is 70.1 % of the wave speed" in result.stdout
+
+
 def test_problems_of_all_files_of_a_case_are_listed(edited_case: EditedCase) -> None:
     path = edited_case("250.toml", {"speed_km_h": 900.0, "filter.order": 5})
     edit_toml(path.with_name("line.toml"), {"geometry.span_m": 600.0, "messenger_wire.number": 2})
@@ -122,8 +130,8 @@ def test_valid_and_faulty_files_are_reported_together(edited_case: EditedCase) -
     assert result.exit_code == 2
     assert result.stdout.splitlines() == [f"{folder}/pantograph.toml: valid pantograph file"]
     assert "file 'none.toml': cannot be read" in result.stderr
-    assert "key contact_wire.tension_N: -1 must be greater than 0.0" in result.stderr
-    assert "Allowed: a number greater than 0, at most 200000." in result.stderr
+    assert "key contact_wire.tension_N: -1 must be at least 500.0" in result.stderr
+    assert "Allowed: a number at least 500, at most 200000." in result.stderr
     assert "2 problem(s) in 2 of 3 file(s)" in result.stderr
 
 
