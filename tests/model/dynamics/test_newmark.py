@@ -134,12 +134,19 @@ damping_coefficients = st.builds(Rayleigh, st.floats(0.0, 0.5), st.floats(0.0, 2
 
 @st.composite
 def small_lines(draw: st.DrawFn) -> Catenary:
-    """One or two spans with droppers at any position, stiff and soft, heavy and light, with any damping."""
+    """One or two spans with droppers at any even position, stiff and soft, heavy and light, with any damping.
+
+    Of droppers 1 m apart beside a long field, one would have to push: such a line has no state at rest.
+    """
     spans = draw(st.integers(1, 2))
-    places = sorted(draw(st.sets(st.integers(2, 28), min_size=1, max_size=4)))
+    places = sorted(draw(st.sets(st.integers(1, 14), min_size=1, max_size=4)))
     damping = {kind: draw(damping_coefficients) for kind in Kind}
     line = simple_line(
-        spans, 30.0, tuple(map(float, places)), damping, dropper_stiffness=draw(st.sampled_from([1e3, 1e5, 3e6]))
+        spans,
+        30.0,
+        tuple(2.0 * place for place in places),
+        damping,
+        dropper_stiffness=draw(st.sampled_from([1e3, 1e5, 3e6])),
     )
     mass, damper = draw(st.floats(0.0, 2.0)), draw(st.floats(0.0, 500.0))
     return replace(
