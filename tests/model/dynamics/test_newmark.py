@@ -5,11 +5,17 @@ from dataclasses import replace
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numba.core.runtime import rtsys
+from numba.core.runtime._nrt_python import memsys_enable_stats
 
 from helpers.lines import DAMPED, PANTOGRAPH_2002, bare_wire, fix_along_track, overlapping_line, simple_line
 from helpers.step_differences import THREE_MASSES, largest_differences
 from pantocheck.model import Catenary, Kind, Passage, Rayleigh, chain
 from pantocheck.model.discretised_line import discretise
+from pantocheck.model.dynamics.active_window import build_window_arrays
+from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays
+from pantocheck.model.dynamics.recording import allocate_recording, simulate_steps
+from pantocheck.model.dynamics.simulation import start_motion
 from pantocheck.model.pantograph import Pantograph
 
 
@@ -177,3 +183,23 @@ def test_step_equals_the_plain_implementation_on_any_small_line(
     passage = Passage(tuple(several), (12.0, 4.0)[: len(several)], speed, 0.12, 2e-3)
     difference, _, _ = largest_differences(discretise(catenary, 2.0), passage, 60, drop)
     assert max(difference.values()) < 1e-9, difference
+
+
+def test_a_step_allocates_no_memory() -> None:
+    """A call allocates one record per array, whatever its number of steps: 10 steps as many as 400 through an overlap.
+
+    The window is smaller than the line, and the head changes to the wire of the second section.
+    """
+    line = discretise(overlapping_line(3, 3, section=simple_line(3, damping=DAMPED)), 2.0)
+    passage = Passage((PANTOGRAPH_2002,), (140.0,), 60.0, 0.8, 2e-3, kept_behind=60.0)
+    kernel = build_kernel_arrays(line, passage.time_step, build_window_arrays(line, passage))
+    motion, train = start_motion(line, kernel, passage)
+    memsys_enable_stats()
+    allocated = []
+    for steps in (10, 10, 400):
+        recording = allocate_recording(line, (("section 2 contact", 180.0),), steps, 1)
+        before = rtsys.get_allocation_stats().alloc
+        simulate_steps(kernel, motion, train, np.zeros(steps), recording)
+        allocated.append(rtsys.get_allocation_stats().alloc - before)
+    assert train.contact[0, 0] == 0.0 < train.contact[0, 1]
+    assert allocated[1] == allocated[2]
