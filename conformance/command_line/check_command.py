@@ -8,7 +8,8 @@ import typer
 from pantocheck.conformance.command_line.console import console, escape_text
 from pantocheck.conformance.command_line.guard import BAD_INPUT, strip_control_characters
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.own_files.file_check import check_input_file, list_input_files
+from pantocheck.conformance.own_files.file_check import check_input_file
+from pantocheck.conformance.own_files.folder_search import list_input_files
 from pantocheck.conformance.schemas import READ_FORMATS
 
 
@@ -28,7 +29,8 @@ def check_command(
     pantocheck check records
     """
     output, problems, faulty = console(), 0, 0
-    paths = [file for name in files for file in (list_input_files(name) if name.is_dir() else (name,))]
+    # A folder without input files stays in the list, so that it is reported like a faulty file.
+    paths = [file for name in files for file in ([*list_input_files(name)] or [name] if name.is_dir() else [name])]
     for path in paths:
         try:
             output.print(escape_text(f"{path}: valid {check_input_file(path, kind)}"), soft_wrap=True)
@@ -38,3 +40,5 @@ def check_command(
     if faulty:
         typer.echo(f"{problems} problem(s) in {faulty} of {len(paths)} file(s)", err=True)
         raise typer.Exit(BAD_INPUT)
+    if any(name.is_dir() for name in files):
+        output.print(f"{len(paths)} file(s) checked, all valid")

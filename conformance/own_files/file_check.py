@@ -1,6 +1,6 @@
 """Check of input files of any kind: every problem of a file is reported."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 from pydantic import TypeAdapter
@@ -20,7 +20,7 @@ from pantocheck.conformance.input_files.toml_file import read_model, read_toml
 from pantocheck.conformance.line_tables.line_table_check import check_line_table, read_line_table
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
 from pantocheck.conformance.mass_drops.drop_sidecar import DropSidecar
-from pantocheck.conformance.own_files.file_kinds import list_keys, recognise_json, recognise_toml
+from pantocheck.conformance.own_files.file_kinds import recognise_json, recognise_toml
 from pantocheck.conformance.records.record_reading import RECORD_SCHEMAS, read_samples
 from pantocheck.conformance.results.results_reading import MAX_RESULTS_BYTES
 from pantocheck.conformance.schemas import READ_FORMATS, WRITTEN_FORMATS
@@ -40,7 +40,7 @@ def check_input_file(path: Path, kind: str | None = None) -> str:
     Parameters
     ----------
     path : Path
-        TOML file, JSON file, or table of a record.
+        TOML file, JSON file, or table of a record. A folder stands for one without input files.
     kind : str or None
         Kind of a TOML file, a key of `READ_FORMATS`; None: it is recognised by its keys.
 
@@ -54,6 +54,12 @@ def check_input_file(path: Path, kind: str | None = None) -> str:
     InputError
         The file is invalid; the error lists all problems.
     """
+    if path.is_dir():
+        raise InputError(
+            f"folder '{path}'",
+            "there is no input file in it",
+            "Give a folder with TOML files, or with tables of supports and droppers.",
+        )
     suffix = path.suffix.lower()
     if suffix in TABLE_SUFFIXES:
         return _check_table(path)
@@ -65,38 +71,6 @@ def check_input_file(path: Path, kind: str | None = None) -> str:
     elif kind not in READ_FORMATS:
         raise InputError("option --kind", f"there is no kind {kind!r}", suggest_names(kind, list(READ_FORMATS)))
     return _CHECKS[kind](path) if kind in _CHECKS else _check_model(path, kind)
-
-
-def list_input_files(folder: Path) -> Iterator[Path]:
-    """List the input files of a folder and of the folders below it.
-
-    Parameters
-    ----------
-    folder : Path
-        The folder.
-
-    Yields
-    ------
-    Path
-        TOML file with a key of any kind of input file, or that cannot be read. A sidecar stands for its table.
-
-    Raises
-    ------
-    InputError
-        There is no such file.
-    """
-    known = set().union(*map(list_keys, READ_FORMATS.values()))
-    count = 0
-    for path in sorted(folder.rglob("*.toml")):
-        try:
-            is_input = bool(read_toml(path, "file").keys() & known)
-        except InputError:
-            is_input = True
-        if is_input:
-            yield path
-            count += 1
-    if count == 0:
-        raise InputError(f"folder '{folder}'", "there is no input file in it", "Give a folder with TOML files.")
 
 
 def _check_model(path: Path, kind: str) -> str:

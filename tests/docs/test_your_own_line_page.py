@@ -104,7 +104,7 @@ def test_changed_inputs_are_stated(outputs: dict[str, list[str]]) -> None:
 
 
 def test_keys_of_the_table_exist(outputs: dict[str, list[str]]) -> None:
-    values = {"span_list": "61", "masses_kg": "[14.0, 7.0]", "speed_km_h": "300"}
+    values = {"span_list": "61", "masses_kg": "[14.0, 7.0]", "speed_km_h": "300", "tension_N": "18e3"}
     table = re.findall(r"^\| `([^`]+)` \| (?:a|an|the) ", PAGE, re.MULTILINE)
     assert len(table) == 5
     for key in table:

@@ -142,8 +142,11 @@ def test_folder_of_records_is_checked(tmp_path: Path, two_pantograph_record: Rec
     result = check(tmp_path)
     assert result.exit_code == 0
     assert result.stdout.splitlines() == [
-        f"{tmp_path}/{name}.toml: valid record: 400 samples of 2 pantograph(s) in {name}.{suffix}, 216 km/h"
-        for name, suffix in (("a", "csv"), ("b", "h5"))
+        *(
+            f"{tmp_path}/{name}.toml: valid record: 400 samples of 2 pantograph(s) in {name}.{suffix}, 216 km/h"
+            for name, suffix in (("a", "csv"), ("b", "h5"))
+        ),
+        "2 file(s) checked, all valid",
     ]
     edit_toml(tmp_path / "a.toml", {"spacing_m": [1.0, 2.0], "pantographs": 0})
     (tmp_path / "b.h5").unlink()
@@ -179,8 +182,40 @@ def test_kind_can_be_stated(tmp_path: Path) -> None:
     assert "Did you mean line or limits ?" in check(tmp_path / "a.toml", "--kind", "lime").stderr
 
 
-def test_folder_without_input_files_is_refused(tmp_path: Path) -> None:
-    assert check(tmp_path).exit_code == 2
+def test_folder_without_input_files_hides_no_other_result(edited_case: EditedCase, tmp_path: Path) -> None:
+    folder = edited_case("250.toml", {}).parent
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "empty" / "other.csv").write_text("name,price\na,1\n")
+    result = check(tmp_path / "empty", folder / "line.toml")
+    assert result.exit_code == 2
+    assert result.stdout.splitlines() == [f"{folder}/line.toml: valid line: 10 spans, 600 m"]
+    assert "there is no input file in it" in result.stderr
+    assert "1 problem(s) in 1 of 2 file(s)" in result.stderr
+
+
+@pytest.mark.parametrize("name", [".venv", "env", "build", "node_modules", "__pycache__"])
+def test_folders_of_tools_are_skipped(name: str, tmp_path: Path) -> None:
+    line = library_folder() / "en50318-2002" / "line.toml"
+    (tmp_path / "lines").mkdir()
+    (tmp_path / name / "lib").mkdir(parents=True)
+    (tmp_path / name / "lib" / "plan.toml").write_text("cases = 3\n")
+    (tmp_path / "env" / "pyvenv.cfg").parent.mkdir(exist_ok=True)
+    (tmp_path / "env" / "pyvenv.cfg").write_text("")
+    shutil.copy(line, tmp_path / "lines" / "line.toml")
+    result = check(tmp_path)
+    assert result.exit_code == 0, result.stderr
+    assert result.stdout.splitlines()[1:] == ["1 file(s) checked, all valid"]
+    assert check(tmp_path / name).exit_code == 2
+
+
+def test_tables_of_a_line_are_found_in_a_folder(tmp_path: Path) -> None:
+    supports, _ = export_tables(tmp_path, read_unequal_line())
+    result = check(tmp_path)
+    assert result.exit_code == 0, result.output
+    assert "table of 7 supports and ends" in result.stdout
+    assert "table of 53 droppers" in result.stdout
+    change_cell(supports, 3, "span_m", "58 m")
+    assert "row 3, column 'span_m'" in check(tmp_path).stderr
 
 
 @pytest.mark.parametrize("suffix", [".csv", ".toml"])
