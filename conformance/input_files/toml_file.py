@@ -9,6 +9,7 @@ from pydantic import BaseModel, ValidationError
 
 from pantocheck.conformance.input_files.bounded_file import read_text
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.toml_syntax import explain_syntax_error
 from pantocheck.conformance.input_files.validation_messages import build_input_error
 
 MAX_TOML_BYTES = 5_000_000
@@ -88,7 +89,7 @@ def read_toml(path: Path, kind: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise InputError(where, f"is not valid TOML: {str(error)[:200]}", "Correct this line; see toml.io.") from None
+        raise InputError(where, *explain_syntax_error(text, error)) from None
     except (ValueError, RecursionError):
         # The grammar allows numbers of thousands of digits and tables nested thousands of levels deep.
         raise InputError(

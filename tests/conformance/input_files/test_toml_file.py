@@ -70,3 +70,26 @@ def test_long_number_and_deep_nesting_are_refused(content: str, tmp_path: Path) 
     (tmp_path / "a.toml").write_text(content)
     with pytest.raises(InputError, match="a number that is too long, or tables nested too deeply"):
         read_toml(tmp_path / "a.toml", "case")
+
+
+@pytest.mark.parametrize(
+    ("line", "found", "hint"),
+    [
+        ("mass_kg_m = 1,07", "'mass_kg_m = 1,07'", "Write a decimal point: 1.07 in place of 1,07 ."),
+        ("spans = [{ length_m = -60,5 }]", "'spans = [{ length_m = -60,5 }]'", "-60.5 in place of -60,5 ."),
+        ("tension_N = 21 kN  # each", "'tension_N = 21 kN  # each'", "Write 21 without 'kN': the end of the key"),
+        ("area_mm2 = 1.2e2mm²", "'area_mm2 = 1.2e2mm²'", "Write 1.2e2 without 'mm²'"),
+        ("x_m = [5.0 m, 15.0 m]", "'x_m = [5.0 m, 15.0 m]'", "Write 5.0 without 'm'"),
+        ("title = My line", "'title = My line'", "Correct this line"),
+        ("title = \x1b]m", r"'title = \x1b]m'", "Correct this line"),
+        ("x_m = [5,15 m]", "'x_m = [5,15 m]'", "Write 15 without 'm'"),
+        ("a" * 200 + " 1", f"'{'a' * 80}...'", "Correct this line"),
+        ("x_m = [1.0", "(at end of document)", "Complete the end of the file"),
+    ],
+)
+def test_line_with_a_syntax_error_is_quoted(line: str, found: str, hint: str, tmp_path: Path) -> None:
+    (tmp_path / "a.toml").write_text(f"x = 1\n{line}")
+    with pytest.raises(InputError) as caught:
+        read_toml(tmp_path / "a.toml", "line")
+    assert f"{found}.\n" in str(caught.value)
+    assert hint in str(caught.value)
