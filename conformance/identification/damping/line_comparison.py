@@ -128,7 +128,7 @@ def _list_missing(measured: MeasuredLine) -> Iterator[str]:
 
 
 def _span_lengths(line: Catenary) -> list[float]:
-    """Lengths of the spans of a line [m], between its supports and the ends of its contact wire."""
-    wire = line.contact_wires[0]
+    """Lengths of the spans of a line [m], between its supports and the outermost ends of its contact wires."""
+    start, end = min(wire.start for wire in line.contact_wires), max(wire.end for wire in line.contact_wires)
     supports = {support.position for support in line.messenger_supports}
-    return [b - a for a, b in pairwise(sorted({wire.start, wire.end, *supports}))]
+    return [b - a for a, b in pairwise(sorted({start, end, *supports}))]

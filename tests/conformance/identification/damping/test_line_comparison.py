@@ -15,6 +15,7 @@ from pydantic import TypeAdapter
 from pypdf import PdfReader
 from typer.testing import CliRunner
 
+from helpers.section_lines import section_line
 from pantocheck.conformance.cases.damping_file import Damping
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.cases.line_file import LineFile
@@ -118,6 +119,15 @@ def fit_other_line(folder: Path, modes: Sequence[Mode], *options: str) -> tuple[
     command = ["fit-damping", str(folder / "modes.json"), "--line", CASE, "--out", str(folder / "fit"), *options]
     result = CliRunner(env={"COLUMNS": "4000"}).invoke(app, command)
     return result.exit_code, result.output
+
+
+def test_line_of_several_sections_has_the_spans_of_all() -> None:
+    """Two sections of six spans of 60 m, an overlap of three; sensors on either section."""
+    line = section_line()
+    facts = describe_line(line)
+    modes = [build_mode(facts, position=position) for position in (30.0, 510.0)]
+    comparison = compare_line(modes, build_catenary(line))
+    assert (comparison.state, len(facts.spans_m)) == ("verified", 9)
 
 
 @pytest.mark.parametrize(
