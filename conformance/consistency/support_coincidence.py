@@ -100,7 +100,8 @@ def _find_passages(case: Case, signals: RecordSignals, number: int) -> _Passages
     rows = []
     for support, uplift in zip(line.supports, line.uplift, strict=True):
         in_overlap = any(start < support < end for start, end in case.line.overlaps)
-        if position[0] <= support <= position[-1] and not in_overlap:
+        known = not in_overlap and np.isfinite(rest_heights(case, np.array([support])))[0]
+        if position[0] <= support <= position[-1] and known:
             moment = np.interp(support, position, record.time)
             at_passage = [float(np.interp(moment, record.time, channel)) for channel in (force, height, uplift)]
             rows.append((float(support), *at_passage))

@@ -4,6 +4,7 @@ import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.line_irregularity import irregularity_at
 from pantocheck.conformance.cases.line_layout import SpanLayout, SupportLayout
 from pantocheck.conformance.cases.section_rises import SectionRise, section_rise
 from pantocheck.conformance.input_files.units import STANDARD_GRAVITY
@@ -14,7 +15,8 @@ def rest_heights(case: Case, supports: RealArray) -> RealArray:
 
     An arm that carries its share holds the wire at its height. Below another arm, the wire hangs between the nearest
     droppers: the sag of a string, q a b / 2T, at the distances a and b from them. In an overlap of tension sections it
-    is the height of the lowest wire.
+    is the height of the lowest wire. The irregularity of the contact wire is added. Where the wire hangs in droppers
+    with a tolerance of their lengths, its height is unknown: nan.
 
     Parameters
     ----------
@@ -24,26 +26,33 @@ def rest_heights(case: Case, supports: RealArray) -> RealArray:
         Positions of supports [m].
     """
     line, layout = case.line, case.line.layout
+    tolerance = line.variation is not None and line.variation.droppers is not None
     sag = STANDARD_GRAVITY * line.contact_wire.mass_kg_m / (2 * line.contact_wire.tension_N)
     rises = [(place, section_rise(line, place)) for place in line.section_places]
     heights = [
         min(
-            _rest_height(support, before, after, sag, rise)
+            np.nan if tolerance and not _is_level(support) else _rest_height(support, before, after, sag, rise)
             for place, rise in rises
             if place.first < support.limit.number < place.last
         )
         for support, before, after in zip(layout.supports, layout.spans[:-1], layout.spans[1:], strict=True)
     ]
     places = np.array([support.limit.position for support in layout.supports])
-    return np.asarray(np.array(heights)[np.abs(places[:, None] - supports).argmin(axis=0)])
+    rest = np.array(heights)[np.abs(places[:, None] - supports).argmin(axis=0)]
+    return np.asarray(rest + irregularity_at(line, supports))
 
 
 def _rest_height(support: SupportLayout, before: SpanLayout, after: SpanLayout, sag: float, rise: SectionRise) -> float:
     """Height of the contact wire of a section at one support [m]; `sag` is q / 2T [1/m]."""
-    if support.steady_arm.static_share == "level":
+    if _is_level(support):
         return support.limit.contact_wire_height + rise(support.limit.position)
     ends = np.array([before.dropper_position[-1], after.dropper_position[0]])
     a, b = np.abs(ends - support.limit.position)
     levels = (before.contact_wire_height[-1], after.contact_wire_height[0])
     heights = [level + rise(x) for level, x in zip(levels, ends, strict=True)]
     return float(np.interp(support.limit.position, ends, heights) - sag * a * b)
+
+
+def _is_level(support: SupportLayout) -> bool:
+    """Whether the arm of a support carries its share, so that it holds the wire at its height."""
+    return support.steady_arm.static_share == "level"

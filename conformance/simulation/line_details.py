@@ -3,20 +3,17 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from pantocheck.conformance.cases.irregularity_table import SpectralIrregularity
 from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.cases.line_irregularity import build_irregularity
 from pantocheck.conformance.cases.wire_changes import ContactWireChange, WireChange
 from pantocheck.model import (
     Catenary,
-    Irregularity,
     Kind,
     PointMass,
     SectionChange,
-    SpectralDensity,
     TensionChange,
     TrackCurve,
     Wire,
-    realise_irregularity,
 )
 from pantocheck.model.worn_wire import worn_stiffness_share
 
@@ -46,7 +43,7 @@ def add_details(catenary: Catenary, line: LineFile) -> Catenary:
         Kind.MESSENGER_WIRE: line.messenger_wire.change,
     }
     wires = [_change_wire(wire, changes.get(wire.kind, ())) for wire in catenary.wires]
-    irregularity = _irregularity(line)
+    irregularity = build_irregularity(line)
     return replace(
         catenary,
         wires=tuple(
@@ -88,14 +85,3 @@ def _mass_and_stiffness(wire: Wire, change: WireChange) -> tuple[float, float]:
         mass if change.mass_kg_m is None else change.mass_kg_m,
         stiffness if change.bending_stiffness_N_m2 is None else change.bending_stiffness_N_m2,
     )
-
-
-def _irregularity(line: LineFile) -> Irregularity | None:
-    """Irregularity of the contact wires; parallel wires have the same."""
-    table = line.contact_wire.irregularity
-    if table is None:
-        return None
-    if isinstance(table, SpectralIrregularity):
-        spectrum = SpectralDensity(table.frequency_1_m, table.density_m3)
-        return realise_irregularity(spectrum, line.geometry.length, table.seed)
-    return Irregularity(table.x_m, table.height_m)

@@ -61,6 +61,31 @@ def test_record_of_an_uneven_line_is_free_of_findings(uneven: Case) -> None:
     assert check_record(uneven, RecordSignals(shifted, uneven.file.filter.low_pass, supports)) != {}
 
 
+@pytest.mark.parametrize("static_share", ["none", "level"])
+def test_record_of_an_irregular_line_with_tolerances_is_free_of_findings(static_share: str) -> None:
+    """Irregularity of 20 mm, and droppers with 8 mm of tolerance: heights at rest are known at level arms only.
+
+    The heights that the check of coincidence subtracts are those of the statics, or unknown.
+    """
+    tables: dict[str, Any] = read_toml(library_folder() / "en50318-2018" / "ac-simple" / "line.toml", "line")
+    tables["geometry"]["spans"] = 10
+    tables["steady_arm"]["static_share"] = static_share
+    heights = [0.0, 0.02, -0.02, 0.015, -0.01, 0.02, -0.015, 0.0]
+    tables["contact_wire"]["irregularity"] = {"x_m": [80.0 * n for n in range(8)], "height_m": heights}
+    droppers = {"tolerance_m": 0.008, "seed": 1}
+    tables["variation"] = {"droppers": droppers} if static_share == "none" else {}
+    case = replace(build_case(), line=LineFile.model_validate(tables))
+    supports = case.line.geometry.supports
+    found = rest_heights(case, np.array(supports))
+    if static_share == "none":
+        assert np.isnan(found).all()
+    else:
+        exact = rest_height(discretise(build_catenary(case.line), 0.5), np.array(supports))
+        np.testing.assert_allclose(found, exact, atol=1e-9)
+    record = simulate(case)
+    assert check_record(case, RecordSignals(record, case.file.filter.low_pass, supports)) == {}
+
+
 @pytest.fixture(scope="module")
 def overlapping() -> Case:
     """Two sections of AC simple with an overlap of spans 5 and 6; at support 5 both contact wires are 60 mm up."""
