@@ -8,6 +8,8 @@ from numba import njit
 
 from pantocheck.model.arrays import Array, Indices
 from pantocheck.model.discretised_line import DiscretisedLine
+from pantocheck.model.dynamics.active_window import active_window
+from pantocheck.model.dynamics.extents import active_run
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, Workspace, build_workspace
 from pantocheck.model.dynamics.motion import Motion
 from pantocheck.model.dynamics.newmark import step
@@ -32,7 +34,7 @@ class Recording(NamedTuple):
     motion : (T, U, 3) ndarray
         Displacement, velocity, acceleration at the stations [m, m/s, m/s2].
     slack : (T,) int ndarray
-        Number of slack droppers.
+        Number of slack droppers in the active window.
     """
 
     row: Indices
@@ -112,10 +114,13 @@ def _advance(
         for u in range(recording.row.size):
             for i in range(3):
                 recording.motion[n, u, i] = motion.w[i, recording.row[u], recording.station[u]]
-        slack = 0
-        for c in range(connectors.station.size):
-            if connectors.unilateral[c] and motion.tension[c] == 0.0:
-                slack += 1
+        slack, window = 0, active_window(kernel.window, train)
+        for k in range(connectors.run.size - 1):
+            start = connectors.run[k]
+            first, end = active_run(connectors.station[start : connectors.run[k + 1]], window)
+            for c in range(start + first, start + end):
+                if connectors.unilateral[c] and motion.tension[c] == 0.0:
+                    slack += 1
         recording.slack[n] = slack
     return int(load.size)
 
