@@ -12,6 +12,7 @@ from pantocheck.conformance.cases.case_parts import CaseFiles
 from pantocheck.conformance.cases.input_changes import InputChange
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.limits import Limit, LimitOverride, LimitsFile, spread_limits
+from pantocheck.conformance.cases.named_files import recognise_named_file
 from pantocheck.conformance.input_files.input_error import InputError, join_errors
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.toml_file import read_model, read_toml
@@ -114,7 +115,15 @@ def load_case(path: Path, changes: Sequence[InputChange] = ()) -> Case:
     InputError
         A file cannot be read or is invalid, or the files do not agree. The error lists all problems.
     """
-    files = CaseFiles(path, read_toml(path, "case"), tuple(changes))
+    tree = read_toml(path, "case")
+    if (kind := recognise_named_file(tree.keys())) is not None:
+        raise InputError(
+            f"file '{path.name}'",
+            f"is a {kind}, not a case",
+            f"Give a case that names it, e.g. `pantocheck new case my-case.toml --{kind} {path.name}`. "
+            "`pantocheck check` checks it alone; `pantocheck show LINE.toml --drawing FILE` draws a line.",
+        )
+    files = CaseFiles(path, tree, tuple(changes))
     try:
         case = files.read()
     except InputError as error:

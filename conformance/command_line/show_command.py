@@ -8,15 +8,19 @@ from typing import Annotated
 import typer
 
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.case_file import Discretisation
 from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.cases.named_files import recognise_named_file
 from pantocheck.conformance.command_line.case_tables import build_case_tables
 from pantocheck.conformance.command_line.console import console, escape_text
 from pantocheck.conformance.command_line.derived_tables import build_derived_tables
 from pantocheck.conformance.command_line.rest_tables import build_rest_tables
 from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.toml_file import read_model, read_toml
 from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.simulation.drawing_marks import list_marks
+from pantocheck.conformance.simulation.drawing_marks import list_marks, list_point_masses
 from pantocheck.conformance.simulation.line_drawing import LineDrawing, draw_line_pdf, draw_line_svg
 from pantocheck.conformance.systems.command.case_message import build_case_message
 from pantocheck.model import discretise
@@ -29,7 +33,9 @@ DRAWING_FORMATS: dict[str, Callable[[LineDrawing], bytes]] = {
 
 
 def show_command(
-    case: Annotated[str, typer.Argument(help="Id, glob or path of a case, e.g. en50318-2002/250.")],
+    case: Annotated[
+        str, typer.Argument(help="Id, glob or path of a case, e.g. en50318-2002/250; a line file for --drawing.")
+    ],
     at_rest: Annotated[
         bool,
         typer.Option("--at-rest", help="Also compute the line at rest and the frequency response of the pantographs."),
@@ -55,16 +61,22 @@ def show_command(
     pantocheck show en50318-2002/250 --derived --request case.json
 
     pantocheck show en50318-2018/ac-stitched/static --drawing line.svg
+
+    pantocheck show my-line.toml --drawing line.svg
     """
     output = console()
+    if drawing is not None and drawing.suffix.lower() not in DRAWING_FORMATS:
+        raise InputError(
+            str(drawing), f"format '{drawing.suffix}' cannot be written", f"Write {' or '.join(DRAWING_FORMATS)}."
+        )
+    if drawing is not None and not (at_rest or derived or request) and _is_line(case):
+        _draw_line(read_model(Path(case), LineFile, "line"), drawing)
+        output.print(escape_text(str(drawing)), soft_wrap=True)
+        return
     cases = _without_required(case, select_cases([case]))
     if request is not None:
         _write_request(cases, request)
     if drawing is not None:
-        if drawing.suffix.lower() not in DRAWING_FORMATS:
-            raise InputError(
-                str(drawing), f"format '{drawing.suffix}' cannot be written", f"Write {' or '.join(DRAWING_FORMATS)}."
-            )
         if any(each.line != cases[0].line for each in cases):
             raise InputError(f"case '{case}'", "the cases have different lines", "Give the id of one case.")
         _draw(cases[0], drawing)
@@ -91,10 +103,24 @@ def _write_request(cases: list[Case], path: Path) -> None:
     write_atomically(path, (json.dumps(build_case_message(cases[0]), indent=1) + "\n").encode())
 
 
+def _is_line(name: str) -> bool:
+    return name.endswith(".toml") and recognise_named_file(read_toml(Path(name), "file").keys()) == "line"
+
+
+def _draw_line(file: LineFile, path: Path) -> None:
+    """Draw a line without a case, with the default mesh of cases."""
+    line = discretise(build_catenary(file), Discretisation().element_m)
+    _write_drawing(
+        LineDrawing(line, file.title, file.geometry, list_point_masses(line.catenary), file.section_places), path
+    )
+
+
 def _draw(case: Case, path: Path) -> None:
-    draw = DRAWING_FORMATS[path.suffix.lower()]
-    check_writable(path.parent)
     line = discretise(build_catenary(case.line), case.file.discretisation.element_m)
     marks = list_marks(case, line.catenary)
-    drawing = LineDrawing(line, case.line.title, case.line.geometry, marks, case.line.section_places)
-    write_atomically(path, draw(drawing))
+    _write_drawing(LineDrawing(line, case.line.title, case.line.geometry, marks, case.line.section_places), path)
+
+
+def _write_drawing(drawing: LineDrawing, path: Path) -> None:
+    check_writable(path.parent)
+    write_atomically(path, DRAWING_FORMATS[path.suffix.lower()](drawing))

@@ -31,9 +31,14 @@ class DrawnMark:
     text: str
 
 
+def list_point_masses(catenary: Catenary) -> tuple[DrawnMark, ...]:
+    """Point masses of a line."""
+    return tuple(DrawnMark("mass", part.wire, part.position, f"{part.mass:g} kg") for part in catenary.point_masses)
+
+
 def list_marks(case: Case, catenary: Catenary) -> tuple[DrawnMark, ...]:
     """Point masses of a line, and sensors and dropped masses of its case, numbered from 1 as in its file."""
-    fixed = (DrawnMark("mass", part.wire, part.position, f"{part.mass:g} kg") for part in catenary.point_masses)
+    fixed = list_point_masses(catenary)
     return (*fixed, *(_list_drop_marks(case.file.mass_drop, catenary) if case.file.mass_drop is not None else ()))
 
 

@@ -30,6 +30,30 @@ def test_drawing_in_another_format_is_refused(tmp_path: Path) -> None:
     assert "Write .svg or .pdf." in result.output
 
 
+def test_line_is_drawn_without_a_case(tmp_path: Path) -> None:
+    line = library_folder() / "en50318-2002" / "line.toml"
+    alone, of_case = tmp_path / "alone.svg", tmp_path / "case.svg"
+    result = CliRunner().invoke(app, ["show", str(line), "--drawing", str(alone)])
+    assert result.exit_code == 0, result.output
+    assert result.output.strip().endswith("alone.svg")
+    CliRunner().invoke(app, ["show", "en50318-2002/250", "--drawing", str(of_case)])
+    assert alone.read_bytes() == of_case.read_bytes()
+    result = CliRunner().invoke(app, ["show", str(line), "--drawing", str(alone), "--at-rest"])
+    assert result.exit_code == 2
+    assert "is a line, not a case" in result.output
+
+
+@pytest.mark.parametrize("command", [["show"], ["run"], ["simulate", "--out", "a.csv"]])
+@pytest.mark.parametrize("kind", ["line", "pantograph"])
+def test_file_of_another_kind_is_named_in_the_place_of_a_case(kind: str, command: list[str]) -> None:
+    path = library_folder() / "en50318-2002" / f"{kind}.toml"
+    result = CliRunner(env={"COLUMNS": "200"}).invoke(app, [*command, str(path)])
+    assert result.exit_code == 2
+    assert f"file '{kind}.toml': is a {kind}, not a case." in result.output
+    assert f"pantocheck new case my-case.toml --{kind} {kind}.toml" in result.output
+    assert "unknown key" not in result.output
+
+
 def test_line_at_rest_and_apparent_mass_are_printed() -> None:
     result = CliRunner().invoke(app, ["show", "en50318-2002/250", "--at-rest"])
     assert result.exit_code == 0, result.output
