@@ -12,6 +12,22 @@ class NoInitialState(SimulationError):
     """The prescribed geometry has no equilibrium with taut droppers: a simulation from it would not start at rest."""
 
 
+class ImpossibleDropper(NoInitialState):
+    """A dropper would have to push, or its wires cross.
+
+    Parameters
+    ----------
+    message : str
+        Description of the cause.
+    position : float
+        Position of the dropper along the line [m].
+    """
+
+    def __init__(self, message: str, position: float) -> None:
+        super().__init__(message)
+        self.position = position
+
+
 class NoEquilibrium(SimulationError):
     """The set of slack droppers does not settle under a static load: the last iterate is not in equilibrium."""
 

@@ -67,9 +67,24 @@ def _find_positions_outside(case: Case, where: str) -> Iterator[InputError]:
     if front >= length:
         yield InputError(
             f"{where}run_out_m",
-            f"the first pantograph would run to {front:g} m, but the line is {length:g} m long",
-            "Reduce run_out_m, evaluate an earlier section, or add spans to the line.",
+            f"the first pantograph would run to {front:g} m, but the line is {length:g} m long{_default_run_out(case)}",
+            _shorter_section(case),
         )
+
+
+def _default_run_out(case: Case) -> str:
+    if case.file.run_out_m is not None:
+        return ""
+    return f". The file has no run_out_m; its default here is {case.end - case.recorded_section[1]:g} m"
+
+
+def _shorter_section(case: Case) -> str:
+    geometry = case.line.geometry
+    room = geometry.length - case.offsets[-1] - (case.file.run_out_m or 0.0)
+    last = sum(limit < room for limit in geometry.span_limits[1:])
+    keys = "evaluated_m" if case.file.evaluated_m is not None else "evaluated_spans and compared_spans"
+    shorter = f"End {keys} with span {last} at the latest" if last else "Reduce spacing_m"
+    return f"{'Reduce run_out_m. ' if case.file.run_out_m else ''}{shorter}, or add spans to the line."
 
 
 def _find_wrong_drops(case: Case, where: str) -> Iterator[InputError]:

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 from pydantic import TypeAdapter
 
 from pantocheck.conformance.cases.force_rules import resolve_rule
@@ -26,7 +27,7 @@ from pantocheck.conformance.results.results_reading import MAX_RESULTS_BYTES
 from pantocheck.conformance.schemas import READ_FORMATS, WRITTEN_FORMATS
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.model import discretise
-from pantocheck.model.failures import SimulationError
+from pantocheck.model.failures import ImpossibleDropper, SimulationError
 
 LARGEST_REST_ELEMENT_M = 2.0
 """Largest element for the line at rest, whose shape hardly depends on it [m]."""
@@ -104,8 +105,19 @@ def _check_rest(line: LineFile, where: str) -> None:
     try:
         discretise(build_catenary(line), LARGEST_REST_ELEMENT_M)
     except SimulationError as error:
-        hint = "Check encumbrance, tensions, masses, pre-sag and the positions of the droppers."
-        raise InputError(where, f"is impossible at rest: {error}", hint) from None
+        place = _name_dropper(line, error.position) if isinstance(error, ImpossibleDropper) else ""
+        hint = (
+            "Check encumbrance, tensions, masses, pre-sag and the positions of the droppers; check that the heights "
+            "contact_wire_height_m of supports and droppers count from the same datum."
+        )
+        raise InputError(where, f"is impossible at rest: {place}{error}", hint) from None
+
+
+def _name_dropper(line: LineFile, position: float) -> str:
+    """Numbers of the span and of its dropper nearest to a position [m]."""
+    number, _ = line.geometry.spans_of_section(position, position)
+    dropper = int(np.argmin(np.abs(line.layout.spans[number - 1].dropper_position - position))) + 1
+    return f"span {number}, dropper {dropper}: "
 
 
 def _describe_line(line: LineFile) -> str:

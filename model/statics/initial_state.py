@@ -16,7 +16,7 @@ import scipy.sparse as sp
 
 from pantocheck.model.arrays import Array
 from pantocheck.model.catenary import GRAVITY, Catenary, Kind
-from pantocheck.model.failures import NoInitialState
+from pantocheck.model.failures import ImpossibleDropper
 from pantocheck.model.fem.beams import Beams, weight, wire_stiffness
 from pantocheck.model.fem.mesh import Mesh
 from pantocheck.model.statics.lateral_state import compute_lateral_state
@@ -100,8 +100,8 @@ def compute_initial_state(
     height = _dropper_extent(catenary, mesh, deflection, "z")
     if height.size and height.min() <= 0:
         position = catenary.droppers[int(np.argmin(height))].position
-        raise NoInitialState(
-            f"the wires cross at the dropper at x = {position:g} m: the encumbrance is smaller than the sag"
+        raise ImpossibleDropper(
+            f"the wires cross at the dropper at x = {position:g} m: the encumbrance is smaller than the sag", position
         )
     # 3. Lateral shape.
     width = np.zeros_like(height)
@@ -157,9 +157,11 @@ def _dropper_tension(catenary: Catenary, mesh: Mesh, reaction: Array) -> Array:
     )
     if tension.size and tension.min() <= 0:
         worst = int(np.argmin(tension))
-        raise NoInitialState(
-            f"the dropper at x = {catenary.droppers[worst].position:g} m would have to push with"
-            f" {-tension[worst]:.3g} N to hold the contact wire at its prescribed height; a dropper cannot push"
+        position = catenary.droppers[worst].position
+        raise ImpossibleDropper(
+            f"the dropper at x = {position:g} m would have to push with {-tension[worst]:.3g} N to hold the contact"
+            " wire at its prescribed height; a dropper cannot push",
+            position,
         )
     return tension
 

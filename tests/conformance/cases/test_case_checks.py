@@ -162,6 +162,22 @@ def test_line_is_checked(changes: dict[str, Any], key: str | None, edited_case: 
     assert find_fault(edited_case("line.toml", changes)) == key
 
 
+@pytest.mark.parametrize(
+    ("changes", "found", "hint"),
+    [
+        ({"evaluated_spans": [9, 10]}, "no run_out_m; its default here is 0 m.", "End evaluated_spans and"),
+        ({"run_out_m": 240.0}, "600 m long.", "Reduce run_out_m. End evaluated_spans and compared_spans with span 5"),
+    ],
+)
+def test_key_that_is_not_in_the_file_is_named_with_its_default(
+    changes: dict[str, Any], found: str, hint: str, edited_case: EditedCase
+) -> None:
+    with pytest.raises(InputError) as caught:
+        load_case(edited_case("250.toml", changes))
+    assert found in str(caught.value)
+    assert hint in str(caught.value)
+
+
 @pytest.mark.parametrize("wire", ["contact_wire", "messenger_wire"])
 @pytest.mark.parametrize(
     ("name", "smallest", "largest"),

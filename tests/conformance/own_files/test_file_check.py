@@ -11,8 +11,9 @@ from typer.testing import CliRunner, Result
 from helpers.case_fixtures import EditedCase
 from helpers.drop_records import build_drop_record
 from helpers.line_table_files import change_cell, export_tables
+from helpers.listed_spans import list_spans
 from helpers.static_records import read_unequal_line, write_static_record
-from helpers.toml_edit import edit_toml
+from helpers.toml_edit import edit_toml, write_toml
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.input_files.input_error import InputError
@@ -249,7 +250,7 @@ def test_tables_of_a_line_are_recognised_and_checked(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"geometry.encumbrance_m": 0.05}, "is impossible at rest: the wires cross at the dropper"),
+        ({"geometry.encumbrance_m": 0.05}, "dropper 5: the wires cross at the dropper at x = "),
         ({"droppers.presag_m": [0.0, 3.0, 3.0, 3.0, 3.0, 3.0, 3.0, 3.0, 0.0]}, "a dropper cannot push"),
     ],
 )
@@ -259,6 +260,23 @@ def test_line_without_equilibrium_is_refused(changes: dict[str, Any], message: s
         result = check(file)
         assert result.exit_code == 2
         assert message in result.stderr
+
+
+def test_dropper_that_would_push_is_named(edited_case: EditedCase) -> None:
+    """The second dropper of span 4 holds the wire 0.3 m too high, so that the first one would have to push."""
+    path = edited_case("line.toml", {}).with_name("line.toml")
+    tables = list_spans(read_toml(path, "line"))
+    own = {"x_m": tables["droppers"]["x_m"], "contact_wire_height_m": [0.0, 0.3, *[0.0] * 7]}
+    tables["geometry"]["span_list"] = [
+        *[{"length_m": 60.0}] * 3,
+        {"length_m": 60.0, "droppers": own},
+        {"length_m": 60.0},
+    ]
+    write_toml(path, tables)
+    result = check(path)
+    assert result.exit_code == 2
+    assert "is impossible at rest: span 4, dropper 1: the dropper at x = 185 m would have to push" in result.stderr
+    assert "contact_wire_height_m of supports and droppers count from the same datum" in result.stderr
 
 
 def test_all_wrong_columns_of_a_record_are_listed(tmp_path: Path, two_pantograph_record: Record) -> None:
