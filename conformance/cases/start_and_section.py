@@ -56,15 +56,20 @@ def list_other_starts(case: Case) -> tuple[RunStart, ...]:
     """Other starts of a case with a short run-in; none after a long run-in.
 
     The start is shifted along the line, and the contact force of the stated start rises over a ramp. A shifted start
-    stays on the line, and every pantograph starts before the analysis section.
+    stays on the line and outside of overlaps, and every pantograph starts before the analysis section.
     """
     if not has_short_run_in(case):
         return ()
     span, run_in = span_length(case), case.analysis_section[0] - case.start_positions[0]
     shifts = [share * span for share in START_SHIFTS if case.start + share * span > 0 and share * span < run_in]
-    shifted = (RunStart(replace(case, file=case.file.model_copy(update={"start_m": case.start + s}))) for s in shifts)
+    cases = [replace(case, file=case.file.model_copy(update={"start_m": case.start + shift})) for shift in shifts]
+    shifted = (RunStart(other) for other in cases if not _starts_in_overlap(other))
     ramps = (RunStart(case, share * run_in / case.speed) for share in RAMP_SHARES if run_in > 0)
     return (*shifted, *ramps)
+
+
+def _starts_in_overlap(case: Case) -> bool:
+    return any(start < x < end for x in case.start_positions for start, end in case.line.overlaps)
 
 
 def list_earlier_sections(case: Case) -> tuple[tuple[float, float], ...]:

@@ -25,7 +25,7 @@ matters: the accepted error of the mean force in the consistency check."""
 
 
 def validity_warnings(case: Case, evaluation: Evaluation) -> list[str]:
-    """Warnings on speed, working height and lost contact of a passage; none for a static case.
+    """Warnings on speed, start, working height and lost contact of a passage; none for a static case.
 
     Parameters
     ----------
@@ -36,7 +36,12 @@ def validity_warnings(case: Case, evaluation: Evaluation) -> list[str]:
     """
     if case.is_static or not case.pantographs:
         return []
-    return [*speed_warnings(case), *_working_height_warnings(case), *_contact_loss_warnings(evaluation)]
+    return [
+        *speed_warnings(case),
+        *_start_warnings(case),
+        *_working_height_warnings(case),
+        *_contact_loss_warnings(evaluation),
+    ]
 
 
 def speed_warnings(case: Case) -> Iterator[str]:
@@ -52,8 +57,8 @@ def speed_warnings(case: Case) -> Iterator[str]:
     str
         Warning with the reason and the remedy.
     """
-    wire = case.line.contact_wire
-    c = wave_speed(wire.tension_N, wire.mass_kg_m)
+    wires = [case.line.section_file(place).contact_wire for place in case.line.section_places]
+    c = min(wave_speed(wire.tension_N, wire.mass_kg_m) for wire in wires)
     share = case.speed / c
     speed = (
         f"{3.6 * case.speed:.4g} km/h is {100 * share:.3g} % of the wave speed of the contact wire, {3.6 * c:.4g} km/h"
@@ -68,6 +73,17 @@ def speed_warnings(case: Case) -> Iterator[str]:
             f"speed: {speed}, above the usual limit of {100 * HIGH_SPEED:g} %. The results settle slowly: lengthen the "
             "run-in until a shift of the analysis section (compared_spans) changes no result"
         )
+
+
+def _start_warnings(case: Case) -> Iterator[str]:
+    """Warn of a start in an overlap, where the head can lift the lower wire up to the other one."""
+    for number, x in enumerate(case.start_positions, 1):
+        for start, end in case.line.overlaps:
+            if start < x < end:
+                yield (
+                    f"start of pantograph {number}: {x:g} m lies in the overlap from {start:g} m to {end:g} m. The "
+                    "state at the start takes account of the lower contact wire only. Start outside of overlaps"
+                )
 
 
 def _working_height_warnings(case: Case) -> Iterator[str]:

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from helpers.section_lines import section_line
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.cases.start_and_section import (
@@ -52,6 +53,13 @@ def test_other_starts_of_a_short_run_in(case_250: Case) -> None:
 def test_other_starts_lie_on_the_line_before_the_section(case_250: Case, start: float, places: list[float]) -> None:
     shifted = [other.case.start for other in list_other_starts(with_keys(case_250, start_m=start)) if not other.ramp_s]
     assert shifted == pytest.approx(places)
+
+
+def test_other_starts_lie_outside_of_overlaps(case_250: Case) -> None:
+    """An overlap from 60 m to 240 m: starts at 80 m, 100 m and 120 m are left out, that at its beginning is not."""
+    case = replace(case_250, line=section_line(spans=(4, 9)))
+    assert case.line.overlaps == ((60.0, 240.0),)
+    assert [start.case.start for start in list_other_starts(case)] == pytest.approx([20.0, 40.0, 60.0, 60.0])
 
 
 def test_long_run_in_needs_no_other_start_but_has_earlier_sections() -> None:

@@ -6,9 +6,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from helpers.section_lines import section_line
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.pantograph_file import MatricesTable, ModesTable
+from pantocheck.conformance.cases.section_tables import SectionTable, SectionWire
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.grading.validity_warnings import validity_warnings
 from pantocheck.conformance.quantities.evaluation import Evaluation
@@ -37,6 +39,22 @@ def at_speed(case: Case, share: float) -> Case:
 def test_speed_near_the_wave_speed(case_250: Case, share: float, text: str | None) -> None:
     found = validity_warnings(at_speed(case_250, share), NOTHING)
     assert [text in warning for warning in found] == ([] if text is None else [True])
+
+
+def test_speed_is_compared_with_the_slowest_section(case_250: Case) -> None:
+    """A section of 10 kN in place of 20 kN: 250 km/h is 81 % of its wave speed of 310 km/h."""
+    slow = SectionTable(spans=6, contact_wire=SectionWire(tension_N=10e3))
+    line = section_line().model_copy(update={"section": (SectionTable(spans=6), slow)})
+    (found,) = validity_warnings(replace(case_250, line=line), NOTHING)
+    assert "250 km/h is 80.7 % of the wave speed of the contact wire, 309.8 km/h" in found
+
+
+@pytest.mark.parametrize(("start", "warned"), [(150.0, False), (180.0, False), (200.0, True), (360.0, False)])
+def test_start_in_an_overlap(case_250: Case, start: float, warned: bool) -> None:
+    """The overlap extends from 180 m to 360 m."""
+    file = case_250.file.model_copy(update={"start_m": start, "evaluated_spans": (7, 8)})
+    found = validity_warnings(replace(case_250, line=section_line(), file=file), NOTHING)
+    assert ["200 m lies in the overlap from 180 m to 360 m" in warning for warning in found] == [True] * warned
 
 
 def with_pantograph(case: Case, target: float | None = None, **changes: Any) -> Case:
