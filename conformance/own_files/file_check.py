@@ -1,6 +1,6 @@
 """Check of input files of any kind: every problem of a file is reported."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +8,7 @@ from pydantic import TypeAdapter
 
 from pantocheck.conformance.cases.force_rules import resolve_rule
 from pantocheck.conformance.cases.library import load_case
+from pantocheck.conformance.cases.limits import Limit, LimitsFile
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.comparison.static_record import read_static_table
@@ -15,6 +16,7 @@ from pantocheck.conformance.comparison.static_sidecar import STATIC_SCHEMA
 from pantocheck.conformance.grading.validity_warnings import speed_warnings
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.json_file import read_json, validate_json
+from pantocheck.conformance.input_files.sourced_table import NO_SOURCE
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.table_formats import CSV, TABLE_FORMATS
 from pantocheck.conformance.input_files.toml_file import read_model, read_toml
@@ -84,9 +86,22 @@ def _check_case(path: Path) -> str:
     _check_rest(case.line, f"case '{path.name}', line {case.line.title!r}")
     speed = "line at rest" if case.file.speed_km_h is None else f"{case.file.speed_km_h:g} km/h"
     pantographs = [f"{len(case.pantographs)} pantograph(s)"] if case.pantographs else []
-    warnings = [] if case.is_static else [f"\n  warning: {text}" for text in speed_warnings(case)]
+    speeds = [] if case.is_static else speed_warnings(case)
+    warnings = [f"\n  warning: {text}" for text in (*speeds, *_warn_of_limits(case.file.limit))]
     description = f"case {case.id}: {', '.join([speed, *pantographs])}; line: {_describe_line(case.line)}"
     return "".join([description, *warnings])
+
+
+def _check_limits(path: Path) -> str:
+    limits = read_model(path, LimitsFile, "limits").limit
+    return "".join(["limits file", *(f"\n  warning: {text}" for text in _warn_of_limits(limits))])
+
+
+def _warn_of_limits(limits: Iterable[Limit]) -> Iterator[str]:
+    """Limits without a source, which decide no verdict."""
+    for limit in limits:
+        if limit.source == NO_SOURCE:
+            yield f'the limit of {limit.quantity} does not count. Give it trust, e.g. "primary", and source'
 
 
 def _check_line(path: Path) -> str:
@@ -169,6 +184,7 @@ def _check_json(path: Path) -> str:
 _CHECKS: dict[str, Callable[[Path], str]] = {
     "case": _check_case,
     "line": _check_line,
+    "limits": _check_limits,
     "pantograph": _check_pantograph,
     "record": _check_record,
     "mass-drop": _check_drop_sidecar,

@@ -102,6 +102,18 @@ def test_speed_near_the_wave_speed_is_warned_of(edited_case: EditedCase) -> None
     assert "\n  warning: speed: 307 km/h is 70.1 % of the wave speed" in result.stdout
 
 
+@pytest.mark.parametrize("name", ["250.toml", "limits.toml"])
+def test_limit_that_does_not_count_is_warned_of(name: str, edited_case: EditedCase) -> None:
+    limit = {"quantity": "std_force_N", "upper": 60.0}
+    path = edited_case("250.toml", {}).with_name(name)
+    for source, warned in ({}, True), ({"trust": "primary", "source": "requirement 12"}, False):
+        tables = read_toml(path, "file") if path.is_file() else {}
+        write_toml(path, tables | {"limit": [limit | source]})
+        result = check(path)
+        assert result.exit_code == 0
+        assert ("\n  warning: the limit of std_force_N does not count. Give it trust" in result.stdout) is warned
+
+
 def test_problems_of_all_files_of_a_case_are_listed(edited_case: EditedCase) -> None:
     path = edited_case("250.toml", {"speed_km_h": 900.0, "filter.order": 5})
     edit_toml(path.with_name("line.toml"), {"geometry.span_m": 600.0, "messenger_wire.number": 2})
