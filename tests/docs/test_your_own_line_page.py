@@ -52,6 +52,9 @@ def outputs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[str]]:
         for language, text in list_blocks()[1:]:
             if language == "toml" and text.startswith("span_list"):
                 replace_spans(folder / "my-line.toml", text)
+            elif language == "toml" and text.startswith("[[geometry.support]]"):
+                line = (folder / "my-line.toml").read_text()
+                (folder / "my-line.toml").write_text(line.replace("\n[contact_wire]", f"\n{text}\n[contact_wire]", 1))
             elif language == "toml":
                 with (folder / "my-case.toml").open("a") as file:
                     file.write("\n" + text)
