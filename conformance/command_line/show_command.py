@@ -69,6 +69,8 @@ def show_command(
         raise InputError(
             str(drawing), f"format '{drawing.suffix}' cannot be written", f"Write {' or '.join(DRAWING_FORMATS)}."
         )
+    if drawing is not None:
+        check_writable(drawing.parent)
     if drawing is not None and not (at_rest or derived or request) and _is_line(case):
         _draw_line(read_model(Path(case), LineFile, "line"), drawing)
         output.print(escape_text(str(drawing)), soft_wrap=True)
@@ -122,5 +124,4 @@ def _draw(case: Case, path: Path) -> None:
 
 
 def _write_drawing(drawing: LineDrawing, path: Path) -> None:
-    check_writable(path.parent)
     write_atomically(path, DRAWING_FORMATS[path.suffix.lower()](drawing))
