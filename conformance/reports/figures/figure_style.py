@@ -8,7 +8,6 @@ from typing import Any, ParamSpec, TypeVar
 
 import matplotlib
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_pdf import FigureCanvasPdf, PdfPages
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
@@ -65,6 +64,9 @@ def render_pdf_pages(paint: Callable[[Content], Figure], contents: Iterable[Cont
     contents : iterable
         Argument of the function for each page.
     """
+    # Imported here: it takes 0.3 s, which a certificate does not need.
+    from matplotlib.backends.backend_pdf import FigureCanvasPdf, PdfPages
+
     buffer = io.BytesIO()
     with (
         matplotlib.rc_context(_read_style()),
