@@ -61,7 +61,7 @@ class SourcedTable(InputTable):
         for key in self.provisional:
             if key not in type(self).model_fields:
                 yield validation_problem(
-                    "provisional", f"{key!r} is not a key of this table", "List keys of the same table."
+                    "provisional", f"{key[:80]!r} is not a key of this table", "List keys of the same table."
                 )
 
     @cross_check
