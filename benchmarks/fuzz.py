@@ -54,7 +54,7 @@ def run_round(target: Target, folder: Path, chance: random.Random) -> str:
     try:
         target.use(folder)
     except InputError as error:
-        if "\n  " not in str(error) or not error.found or len(str(error)) > 3000:
+        if any(not problem.found or not problem.hint or len(problem.message) > 3000 for problem in error.problems):
             raise Falsehood(f"a message without place, fault or hint: {str(error)[:200]!r}") from None
         return "refused"
     return "read"
