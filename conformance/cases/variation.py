@@ -14,30 +14,30 @@ class WireVariation(InputTable):
     """Change of the tension of a wire after the line was built."""
 
     ends: Annotated[
-        Literal["weight", "fixed"],
+        Literal["weight", "anchor"],
         Field(
-            description="weight: the tension does not depend on the temperature; fixed: the ends of the wire are held, "
-            "and its tension changes with the temperature"
+            description="weight: the tension does not depend on the temperature; anchor: both ends are rigid anchors, "
+            "and the tension changes with the temperature"
         ),
     ] = "weight"
     axial_stiffness_EA_N: Annotated[
-        float | None, Field(gt=0, le=1e9, description="axial stiffness EA; needed with ends = 'fixed' [N]")
+        float | None, Field(gt=0, le=1e9, description="axial stiffness EA; needed with ends = 'anchor' [N]")
     ] = None
     expansion_coefficient_1_K: Annotated[
         float | None,
-        Field(gt=0, le=1e-4, description="thermal expansion coefficient; needed with ends = 'fixed' [1/K]"),
+        Field(gt=0, le=1e-4, description="thermal expansion coefficient; needed with ends = 'anchor' [1/K]"),
     ] = None
     tension_change_share: Annotated[
         float, Field(ge=-0.5, le=0.5, description="tolerance of the tension: share of it that is added [-]")
     ] = 0.0
 
     @cross_check
-    def _check_fixed_ends(self) -> Problems:
-        if self.ends == "fixed":
+    def _check_anchors(self) -> Problems:
+        if self.ends == "anchor":
             for key in ("axial_stiffness_EA_N", "expansion_coefficient_1_K"):
                 if getattr(self, key) is None:
                     yield validation_problem(
-                        key, "missing for a wire with fixed ends", "Give it, or set ends = 'weight'."
+                        key, "missing for a wire with rigid anchors", "Give it, or set ends = 'weight'."
                     )
 
 

@@ -58,7 +58,7 @@ def _vary_tension(wire: Wire, variation: Variation, excess_length: float) -> Wir
     tables = {Kind.CONTACT_WIRE: variation.contact_wire, Kind.MESSENGER_WIRE: variation.messenger_wire}
     table = tables.get(wire.kind, WireVariation())
     tension = wire.tension
-    if table.ends == "fixed" and table.axial_stiffness_EA_N and table.expansion_coefficient_1_K:
+    if table.ends == "anchor" and table.axial_stiffness_EA_N and table.expansion_coefficient_1_K:
         strain = table.expansion_coefficient_1_K * variation.temperature_change_K
         tension = fixed_tension(tension, excess_length, table.axial_stiffness_EA_N, strain)
     return replace(wire, tension=tension * (1 + table.tension_change_share))

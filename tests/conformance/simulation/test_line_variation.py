@@ -20,7 +20,7 @@ from pantocheck.model import Catenary, discretise
 from pantocheck.model.statics.dropper_lengths import compute_unloaded_lengths, hang_on_droppers
 from pantocheck.model.statics.wire_climate import excess_lengths, fixed_tension
 
-FIXED = {"ends": "fixed", "axial_stiffness_EA_N": 12e6, "expansion_coefficient_1_K": 17e-6}
+ANCHORED = {"ends": "anchor", "axial_stiffness_EA_N": 12e6, "expansion_coefficient_1_K": 17e-6}
 
 
 def varied(variation: dict[str, Any], **changes: Any) -> Catenary:
@@ -37,7 +37,7 @@ def test_weight_keeps_the_tension_and_a_tolerance_changes_it() -> None:
 
 def test_fixed_wires_follow_the_temperature() -> None:
     """The contact wire loses nearly EA alpha dtheta = 4080 N; the messenger less, because it sags."""
-    table = {"temperature_change_K": 20.0, "contact_wire": FIXED, "messenger_wire": FIXED}
+    table = {"temperature_change_K": 20.0, "contact_wire": ANCHORED, "messenger_wire": ANCHORED}
     catenary, nominal = varied(table), build_catenary(changed_line({}))
     excess = excess_lengths(nominal, VARIATION_ELEMENT_M)
     expected = [fixed_tension(w.tension, excess[w.name], 12e6, 20 * 17e-6) for w in nominal.wires]
@@ -125,7 +125,7 @@ def test_derived_values_state_the_varied_line() -> None:
 @pytest.mark.parametrize(
     ("variation", "message"),
     [
-        ({"contact_wire": {"ends": "fixed"}}, "variation.contact_wire.axial_stiffness_EA_N: missing for a wire"),
+        ({"contact_wire": {"ends": "anchor"}}, "variation.contact_wire.axial_stiffness_EA_N: missing for a wire"),
         ({"droppers": {"length_change_m": [[0.0] * 9] * 2}}, "2 lists with 18 changes for 3 spans with 27 droppers"),
         ({"droppers": {"tolerance_m": 0.003}}, "seed"),
     ],
