@@ -11,6 +11,7 @@ from pantocheck.conformance.identification.identification_analysis import analys
 from pantocheck.conformance.identification.identification_format import IdentificationFile
 from pantocheck.conformance.identification.identify import identify_modes
 from pantocheck.conformance.identification.mode import ModesFile
+from pantocheck.conformance.identification.mode_export import MODE_FORMATS, select_mode_writer
 from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.table_formats import TABLE_FORMATS, list_suffixes
@@ -35,6 +36,10 @@ def identify_command(
         ),
     ] = None,
     highest: Annotated[float, typer.Option(help="Highest frequency of a mode [Hz].", min=0.5, max=200.0)] = 10.0,
+    export: Annotated[
+        list[Path] | None,
+        typer.Option(help=f"Also write the modes to this file ({', '.join(MODE_FORMATS)}); may be repeated."),
+    ] = None,
 ) -> None:
     """Identify frequencies, damping ratios and mode shapes from mass-drop records.
 
@@ -45,11 +50,15 @@ def identify_command(
     pantocheck identify T1.h5 --out T1
 
     pantocheck identify T1.h5 T2.csv --out both --highest 6
+
+    pantocheck identify T1.h5 --out T1 --export modes.csv --export modes.uff
     """
     output = console()
+    exports = [(path, select_mode_writer(path)) for path in export or ()]
     start_poles = None if poles is None else read_poles(poles)
     drop_records = tuple(record for path in records for record in read_drop_records(path))
-    check_writable(out)
+    for folder in (out, *(path.parent for path, _ in exports)):
+        check_writable(folder)
     with output.status("reading") as status:
         identifications = identify_modes(
             drop_records, highest, start_poles, progress=lambda text: status.update(escape_text(text))
@@ -58,7 +67,10 @@ def identify_command(
         lines = tuple(analyse_identification(identification) for identification in identifications)
         data = [line.model_dump(mode="json", by_alias=True) for line in lines]
         document = build_identification_document(data)
-        write_model(out / "modes.json", ModesFile(tuple(mode for line in lines for mode in line.modes)))
+        modes = tuple(mode for line in lines for mode in line.modes)
+        write_model(out / "modes.json", ModesFile(modes))
+        for path, write_modes in exports:
+            write_modes(modes, path)
         write_model(out / "identification.json", IdentificationFile(lines=lines))
         for suffix in (".html", ".pdf"):
             write_report(document, out / f"identification{suffix}")
@@ -76,3 +88,5 @@ def identify_command(
     output.print(
         escape_text(f"{out}: modes.json, identification.json, identification.html, identification.pdf"), soft_wrap=True
     )
+    for path, _ in exports:
+        output.print(escape_text(str(path)), soft_wrap=True)

@@ -1,12 +1,11 @@
 """Writing of mass-drop records as universal files, one data set 58 per channel, with a sidecar."""
 
-import warnings
 from pathlib import Path
 from typing import Any, Literal
 
 import pyuff
 
-from pantocheck.conformance.input_files.atomic_writing import produce_atomically
+from pantocheck.conformance.input_files.formats.uff_sets import encode_identification_line, write_data_sets
 from pantocheck.conformance.input_files.formats.uff_table import DATA_TYPES
 from pantocheck.conformance.input_files.units import SI_UNITS
 from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropDescription, DropRecord
@@ -34,17 +33,8 @@ def write_drop_uff(record: DropRecord, path: Path, form: Literal["ascii", "binar
         A file cannot be written.
     """
     sets = [_build_data_set(record, c, form) for c in range(len(record.channels))]
-
-    def produce(temporary: Path) -> None:
-        # pyuff's mode 'overwrite' damages binary files; adding to a new file does not.
-        temporary.unlink()
-        with warnings.catch_warnings():
-            # pyuff leaves its files to the garbage collector, which closes them when it returns.
-            warnings.simplefilter("ignore", ResourceWarning)
-            pyuff.UFF(str(temporary)).write_sets(sets, mode="add")
-
     write_drop_sidecar(record, path)
-    produce_atomically(path, produce)
+    write_data_sets(path, sets)
 
 
 def _build_data_set(record: DropRecord, c: int, form: Literal["ascii", "binary"]) -> dict[str, Any]:
@@ -72,9 +62,9 @@ def _build_data_set(record: DropRecord, c: int, form: Literal["ascii", "binary"]
         orddenom_axis_units_lab="NONE",
         z_axis_spec_data_type=0,
         z_axis_axis_units_lab="NONE",
-        id1=_encode_line(record.name),
-        id2=_encode_line(_format_drop(record.drop)),
-        id3=_encode_line(_format_channel(channel)),
+        id1=encode_identification_line(record.name),
+        id2=encode_identification_line(_format_drop(record.drop)),
+        id3=encode_identification_line(_format_channel(channel)),
         id4=record.quantity,
         id5="NONE",
     )
@@ -94,8 +84,3 @@ def _format_channel(channel: DropChannel) -> str:
     if channel.position is None or not channel.wire or " " in channel.name or not channel.name.isascii():
         return ""
     return f"{channel.name} {channel.wire} at {channel.position:g} m dir +{channel.axis}"
-
-
-def _encode_line(text: str) -> str:
-    """Identification line: 80 ASCII characters, never empty."""
-    return text.encode("ascii", "replace").decode("ascii")[:80].strip() or "NONE"

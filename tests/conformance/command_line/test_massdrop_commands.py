@@ -26,6 +26,7 @@ RATE, RELEASE = 25.0, 4.0
 
 def run_identify(folder: Path, name: str) -> None:
     command = ["identify", str(folder / "T.csv"), "--out", str(folder / name), "--highest", "2.2"]
+    command += ["--export", str(folder / name / "modes.csv"), "--export", str(folder / name / "modes.uff")]
     result = CliRunner(env={"SOURCE_DATE_EPOCH": "0"}).invoke(app, command)
     assert result.exit_code == 0, result.output
 
@@ -84,7 +85,10 @@ def test_modes_json_has_the_keys_that_other_tools_read(folder: Path) -> None:
 
 def test_identify_is_deterministic(folder: Path) -> None:
     run_identify(folder, "again")
-    for file in ("modes.json", "identification.json", "identification.html", "identification.pdf"):
+    written = sorted(path.name for path in (folder / "out").iterdir())
+    names = ["identification.html", "identification.json", "identification.pdf"]
+    assert written == [*names, "modes.csv", "modes.json", "modes.uff"]
+    for file in written:
         assert (folder / "out" / file).read_bytes() == (folder / "again" / file).read_bytes()
 
 
@@ -141,6 +145,14 @@ def test_bad_modes_are_refused(tmp_path: Path, content: bytes, message: str) -> 
     )
     assert result.exit_code == 2
     assert message in result.output
+
+
+def test_unknown_export_is_refused_before_the_identification(tmp_path: Path, folder: Path) -> None:
+    command = ["identify", str(folder / "T.csv"), "--out", str(tmp_path / "out"), "--export", "modes.xlsx"]
+    result = CliRunner().invoke(app, command)
+    assert result.exit_code == 2
+    assert "format '.xlsx' cannot be written" in result.output
+    assert not (tmp_path / "out").exists()
 
 
 def test_missing_record_is_refused(tmp_path: Path) -> None:
