@@ -4,6 +4,7 @@ import numpy as np
 
 from pantocheck.conformance.identification.decay_preparation import PreparedDecay
 from pantocheck.conformance.identification.frequency_response import compute_frequency_response
+from pantocheck.conformance.identification.half_power import count_half_power_lines
 from pantocheck.conformance.identification.identification_format import (
     IdentifiedLine,
     IdentifiedRecord,
@@ -35,6 +36,7 @@ def analyse_identification(identification: Identification) -> IdentifiedLine:
         records=tuple(_record(decay) for decay in decays),
         groups=_groups(modes),
         modes=modes,
+        half_power=count_half_power_lines(modes),
         repeatability=tuple(compare_records(repeats) for repeats in repeated),
         overlays=tuple(overlay_records(repeats) for repeats in repeated),
         spectra=tuple(_spectra(fit, record, modes) for record in fit.records),

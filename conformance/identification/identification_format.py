@@ -119,6 +119,17 @@ class RecordResponses(RoundedModel):
     identified: tuple[ResponseCurve, ...]
 
 
+class HalfPowerLines(RoundedModel):
+    """Modes with few spectral lines in their half-power band."""
+
+    recommended: Annotated[int, Field(description="recommended number of spectral lines in the half-power band")]
+    modes: Annotated[int, Field(description="number of modes")]
+    fewer: Annotated[int, Field(description="number of modes with fewer spectral lines")]
+    needed_s: Annotated[
+        Rounded | None, Field(description="linear decay that gives the recommended number to every certain mode [s]")
+    ]
+
+
 class IdentifiedLine(RoundedModel):
     """Identification of one line from all its records."""
 
@@ -131,6 +142,7 @@ class IdentifiedLine(RoundedModel):
     records: tuple[IdentifiedRecord, ...]
     groups: tuple[ModeGroup, ...]
     modes: tuple[Mode, ...]
+    half_power: Annotated[HalfPowerLines | None, Field(description="spectral lines in the half-power band")] = None
     repeatability: Annotated[tuple[Repeatability, ...], Field(description="repeatability of each repeated drop")]
     overlays: Annotated[tuple[Overlay, ...], Field(description="signals of each repeated drop")]
     spectra: Annotated[tuple[RecordSpectra, ...], Field(description="spectra of each record")]

@@ -10,9 +10,6 @@ from pantocheck.conformance.identification.mode_groups import assign_groups
 from pantocheck.conformance.identification.projection import build_block, estimate_noise, residue_spread, solve_residues
 from pantocheck.conformance.mass_drops.drop_record import DropLine
 
-POINTS_IN_HALF_POWER_BAND = 5
-"""Recommended number of spectral lines in the half-power band (Vo Van, Balmes, Lorang 2015)."""
-
 UNCERTAIN = 0.05
 """Relative standard deviation above which a damping ratio is uncertain."""
 
@@ -91,11 +88,6 @@ def _list_warnings(mode: Mode, duration: float, nearest: float) -> tuple[str, ..
     """Caveats on a mode in a decay of a duration [s]; `nearest` is the distance of the nearest other mode [Hz]."""
     warnings = []
     bandwidth = 2 * mode.damping_ratio * mode.frequency_Hz
-    if bandwidth * duration < POINTS_IN_HALF_POWER_BAND:
-        warnings.append(
-            f"half-power band: {bandwidth * duration:.1f} spectral lines in {duration:.0f} s, recommended are "
-            f"{POINTS_IN_HALF_POWER_BAND}, which need a record of {POINTS_IN_HALF_POWER_BAND / bandwidth:.0f} s"
-        )
     if not mode.certain:
         relative = 100 * (mode.damping_ratio_std / mode.damping_ratio)
         warnings.append(f"weakly excited: the standard deviation of the damping ratio is {relative:.0f} %")

@@ -5,6 +5,7 @@ from typing import Any
 
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.figures import identification_figures as figures
+from pantocheck.conformance.reports.figures.half_power_figure import draw_half_power
 from pantocheck.conformance.reports.page_text import clean_tree, format_percent, format_value
 
 UNITS = {"acceleration": "m/s²", "velocity": "m/s", "displacement": "m"}
@@ -39,7 +40,7 @@ def collect_warnings(lines: list[dict[str, Any]]) -> tuple[str, ...]:
 def _list_sections(line: dict[str, Any], suffix: str) -> Iterator[doc.Section]:
     unit = UNITS[line["quantity"]]
     yield doc.Section(f"Damping{suffix}", (*_damping_figures(line["modes"]), _group_table(line["groups"])))
-    yield doc.Section(f"Modes{suffix}", (doc.Paragraph(MODES_TEXT), _mode_table(line["modes"])))
+    yield doc.Section(f"Modes{suffix}", (doc.Paragraph(MODES_TEXT), *_half_power(line), _mode_table(line["modes"])))
     # The records stand before the fit: its tall figure starts a page, and they fill the one before.
     yield doc.Section(f"Records{suffix}", (_record_table(line["records"]),))
     yield doc.Section(f"Fit{suffix}", tuple(_fit(line, unit)))
@@ -70,6 +71,32 @@ def _damping_figures(modes: list[dict[str, Any]]) -> tuple[doc.Figures, ...]:
     return (doc.Figures((boxes, ratios)),)
 
 
+def _half_power(line: dict[str, Any]) -> Iterator[doc.Block]:
+    """One sentence and one figure on the spectral lines in the half-power bands; nothing for results without them."""
+    if (counts := line.get("half_power")) is None or not counts["modes"]:
+        return
+    yield doc.Paragraph(describe_half_power(counts))
+    figure = doc.Figure(
+        draw_half_power(line["modes"], counts["recommended"]),
+        f"Spectral lines in the half-power band of each mode over frequency. {describe_half_power(counts)}",
+        "Spectral lines in the half-power band of each mode; dashed line: recommended number.",
+    )
+    yield doc.Figures((figure,))
+
+
+def describe_half_power(counts: dict[str, Any]) -> str:
+    """Sentences on the spectral lines in the half-power bands, by the `half_power` of a line."""
+    recommended = counts["recommended"]
+    if not counts["fewer"]:
+        return f"Every mode has at least {recommended} spectral lines in its half-power band."
+    needed = counts["needed_s"]
+    record = "" if needed is None else f"; a linear decay of {format_value(needed, 3)} s would give them to every mode"
+    return (
+        f"{counts['fewer']} of {counts['modes']} modes have fewer than {recommended} spectral lines in their "
+        f"half-power band{record}. Methods that read this band from a spectrum need them; the fit of decays does not."
+    )
+
+
 def _group_table(groups: list[dict[str, Any]]) -> doc.Table:
     cells = {
         "Group": lambda group: str(group["group"]),
@@ -90,13 +117,9 @@ def _mode_table(modes: list[dict[str, Any]]) -> doc.Table:
         "Group": lambda mode: "–" if mode["group"] is None else str(mode["group"]),
         "Collinearity": lambda mode: format_value(mode["phase_collinearity"], 4),
         "Error [%]": lambda mode: format_percent(mode["error"], 2),
-        "Warnings": lambda mode: "; ".join(map(_shorten, mode["warnings"])) or "–",
+        "Warnings": lambda mode: "; ".join(mode["warnings"]) or "–",
     }
     return doc.make_grid("Modes by frequency", modes, cells)
-
-
-def _shorten(warning: str) -> str:
-    return warning.split(";", maxsplit=1)[0] if warning.startswith("half-power") else warning
 
 
 def _record_table(records: list[dict[str, Any]]) -> doc.Table:

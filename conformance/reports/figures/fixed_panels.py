@@ -1,0 +1,97 @@
+"""Figures of panels with given margins: computing a layout would take longer than painting a small figure."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+from numpy.typing import NDArray
+
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+@dataclass(frozen=True)
+class PanelGrid:
+    """Sizes of a grid of panels [in].
+
+    Parameters
+    ----------
+    width, height : float
+        Width of the figure, and height of one panel.
+    rows, columns : int
+        Number of panels below and beside each other.
+    left, right, bottom, top : float
+        Margins around the grid; the legend stands in the upper one.
+    between_rows, between_columns : float
+        Gaps between the panels.
+    """
+
+    width: float
+    height: float
+    rows: int = 1
+    columns: int = 1
+    left: float = 0.6
+    right: float = 0.1
+    bottom: float = 0.42
+    top: float = 0.28
+    between_rows: float = 0.3
+    between_columns: float = 0.55
+
+    @property
+    def total_height(self) -> float:
+        """Height of the figure."""
+        return self.bottom + self.top + self.rows * self.height + (self.rows - 1) * self.between_rows
+
+    @property
+    def panel_width(self) -> float:
+        """Width of one panel."""
+        gaps = self.left + self.right + (self.columns - 1) * self.between_columns
+        return (self.width - gaps) / self.columns
+
+
+def add_panels(grid: PanelGrid) -> tuple[Figure, NDArray[np.object_]]:
+    """Add a grid of panels to a new figure.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    (rows, columns) ndarray of Axes
+        The panels, from the upper left.
+    """
+    figure = Figure(figsize=(grid.width, grid.total_height))
+    figure.set_layout_engine("none")
+    panels = np.empty((grid.rows, grid.columns), dtype=object)
+    for row, column in np.ndindex(panels.shape):
+        left = grid.left + column * (grid.panel_width + grid.between_columns)
+        bottom = grid.bottom + (grid.rows - 1 - row) * (grid.height + grid.between_rows)
+        panels[row, column] = figure.add_axes(
+            (
+                left / grid.width,
+                bottom / grid.total_height,
+                grid.panel_width / grid.width,
+                grid.height / grid.total_height,
+            )
+        )
+    return figure, panels
+
+
+def add_panel(width: float, height: float) -> tuple[Figure, Axes]:
+    """Add one panel of a height to a new figure of a width [in]."""
+    figure, panels = add_panels(PanelGrid(width, height))
+    return figure, panels[0, 0]
+
+
+def use_powers_of_ten(axis: Axis) -> None:
+    """Give a logarithmic axis ticks at powers of ten as plain text; mathematical text takes ten times as long."""
+    axis.set_major_locator(LogLocator(numticks=6))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: format_power_of_ten(value)))
+    axis.set_minor_locator(NullLocator())
+
+
+def format_power_of_ten(value: float) -> str:
+    """A power of ten as text: `10⁻³`, and 0.1, 1 and 10 as they are."""
+    exponent = round(np.log10(value))
+    return f"{value:g}" if abs(exponent) <= 1 else f"10{str(exponent).translate(SUPERSCRIPTS)}"
