@@ -1,6 +1,7 @@
 """Figures of a case with their captions and alternative texts."""
 
 from collections.abc import Iterator
+from itertools import groupby
 from typing import Any
 
 from pantocheck.conformance.quantities.bands import BANDS
@@ -11,15 +12,14 @@ from pantocheck.conformance.reports.figures.force_figures import (
     draw_spectrum,
     select_limited,
 )
-from pantocheck.conformance.reports.figures.study_chart import draw_chart
+from pantocheck.conformance.reports.figures.study_chart import draw_chart, find_common_range
 from pantocheck.conformance.reports.figures.uplift_figure import draw_uplift
 from pantocheck.conformance.reports.page_text import format_plain, format_value
 
 
 def draw_case_figures(case: dict[str, Any]) -> Iterator[Figure]:
     """Charts of a study, then force, spectrum and histogram of each pantograph, then the uplift."""
-    for chart in case["charts"]:
-        yield Figure(draw_chart(chart), chart["alternative"], chart["caption"], chart["wide"])
+    yield from _chart_figures(case["charts"])
     for key, trace in sorted(case["traces"].items(), key=lambda item: (len(item[0]), item[0])):
         if trace["position_m"]:
             yield _force_figure(key, trace, [row for row in case["criteria"] if str(row["pantograph"]) == key])
@@ -35,6 +35,16 @@ def draw_case_figures(case: dict[str, Any]) -> Iterator[Figure]:
         )
         caption = f"Uplift at the supports. Largest: {peaks}."
         yield Figure(draw_uplift(supports, case["criteria"]), caption, caption)
+
+
+def _chart_figures(charts: list[dict[str, Any]]) -> Iterator[Figure]:
+    """Charts of a study; those that stand side by side and have the same linear y axis get one scale."""
+    for (wide, _, scale), group in groupby(charts, lambda chart: (chart["wide"], chart["y_label"], chart["y_scale"])):
+        neighbours = list(group)
+        shared = not wide and scale == "linear" and len(neighbours) > 1
+        y_range = find_common_range(neighbours) if shared else None
+        for chart in neighbours:
+            yield Figure(draw_chart(chart, y_range), chart["alternative"], chart["caption"], wide)
 
 
 def _force_figure(key: str, trace: dict[str, Any], criteria: list[dict[str, Any]]) -> Figure:

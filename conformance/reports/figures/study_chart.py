@@ -1,5 +1,6 @@
 """Chart of a study: series, printed values and limits."""
 
+from collections.abc import Iterable
 from textwrap import fill
 from typing import Any
 
@@ -26,9 +27,20 @@ TICK_WIDTH = 10
 """Characters on a line of a tick label."""
 
 
+def find_common_range(charts: Iterable[dict[str, Any]]) -> tuple[float, float]:
+    """Ends of a linear y axis for several charts: from 0, or from below a negative value, to above the highest value.
+
+    The margins are a twentieth of the range, as those of a single chart.
+    """
+    values = [value for chart in charts for series in chart["series"] for value in series["y"]]
+    low, high = min(values, default=0.0), max(values, default=1.0)
+    margin = 0.05 * (high - min(low, 0.0))
+    return (0.0 if low >= 0 else low - margin, high + margin)
+
+
 @render_svg
-def draw_chart(data: dict[str, Any]) -> Figure:
-    """A chart of a study: one entry of a case's `charts`."""
+def draw_chart(data: dict[str, Any], y_range: tuple[float, float] | None = None) -> Figure:
+    """A chart of a study: one entry of a case's `charts`; `y_range` is the scale that it shares with others."""
     figure = Figure(figsize=(FULL, 2.9) if data["wide"] else (HALF, 2.4))
     axes = figure.subplots()
     axes.set(xscale=data["x_scale"], yscale=data["y_scale"], xlabel=data["x_label"], ylabel=data["y_label"])
@@ -45,9 +57,11 @@ def draw_chart(data: dict[str, Any]) -> Figure:
         axes.set_xlim(-0.6, len(data["ticks"]) - 0.4)
     if data["y_scale"] == "linear" and all(min(series["y"], default=0) >= 0 for series in data["series"]):
         axes.set_ylim(bottom=0)
+    if y_range is not None:
+        axes.set_ylim(*y_range)
     if any(series["style"] != "boxes" for series in data["series"]) or data["marks"]:
         longest = max(len(entry["label"]) for entry in (*data["series"], *data["marks"]))
-        add_legend(axes, columns=max(1, min(4, 100 // (longest + 8))))
+        add_legend(axes, columns=max(1, min(4, (100 if data["wide"] else 45) // (longest + 8))))
     return figure
 
 

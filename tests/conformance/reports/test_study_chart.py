@@ -9,9 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.testing import assert_allclose
 
+from pantocheck.conformance.reports.certificate.case_figures import draw_case_figures
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
 from pantocheck.conformance.reports.document import Section
-from pantocheck.conformance.reports.figures.study_chart import draw_chart
+from pantocheck.conformance.reports.figures.study_chart import draw_chart, find_common_range
 from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.results.figure_data import Chart, Mark, Series, TextTable
 
@@ -63,6 +64,33 @@ def test_chart_axis_includes_negative_values() -> None:
     """An axis that starts at zero would hide half of a velocity; positive values start there."""
     assert axes_of().get_ylim()[0] == 0
     assert axes_of(series=[LINE.model_copy(update={"y": [-3.0, 2.0, 1.0]})]).get_ylim()[0] < -3
+
+
+def test_common_range_of_charts() -> None:
+    """From 0, or 5 % of the range below the lowest value, to 5 % above the highest value of both charts."""
+    lower = LINE.model_copy(update={"y": [-1.0, 1.0, 1.0]})
+    assert_allclose(find_common_range([data(), data()]), (0.0, 3.15), rtol=1e-12)
+    assert_allclose(find_common_range([data(), data(series=[lower])]), (-1.2, 3.2), rtol=1e-12)
+
+
+def test_charts_side_by_side_have_one_scale(results: dict[str, Any]) -> None:
+    """Two narrow charts of one quantity; a chart of another quantity and a wide chart keep their own scale."""
+    narrow, other = data(wide=False), data(wide=False, y_label="z [mm]")
+    higher = data(wide=False, series=[LINE.model_copy(update={"y": [9.0, 2.0, 1.0]})])
+    case = results["cases"][0] | {"charts": [narrow, higher, other, data()], "traces": {}, "uplift": []}
+    figures = list(draw_case_figures(case))
+    assert [figure.wide for figure in figures] == [False, False, False, True]
+    common = (0.0, 1.05 * 9.0)
+    expected = [draw_chart(narrow, common), draw_chart(higher, common), draw_chart(other), draw_chart(data())]
+    assert [figure.svg for figure in figures] == expected
+    painter: Callable[..., Figure] = inspect.unwrap(draw_chart)
+    assert_allclose(painter(narrow, common).axes[0].get_ylim(), common)
+
+
+def test_charts_side_by_side_are_halves_of_the_page() -> None:
+    painter: Callable[..., Figure] = inspect.unwrap(draw_chart)
+    widths = [painter(data(wide=wide)).get_figwidth() for wide in (True, False)]
+    assert widths[0] > 2 * widths[1]
 
 
 def test_chart_error_bars_have_their_length() -> None:
