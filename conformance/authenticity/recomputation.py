@@ -15,6 +15,7 @@ from pantocheck.conformance.input_files.trust import limit_counts
 from pantocheck.conformance.quantities.bands import BANDS
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, statistical_extremes
 from pantocheck.conformance.results.criterion_format import COMPONENT_NAMES
+from pantocheck.conformance.results.finding_format import count_findings, count_verdict, judge_finding
 from pantocheck.conformance.results.record_facts import RecordFacts
 from pantocheck.conformance.results.results_format import Results
 
@@ -42,8 +43,10 @@ def find_discrepancies(results: dict[str, Any]) -> list[str]:
     pairs.append(("verification: ", stated.verification_verdict, decided.verification_verdict))
     if stated.criteria_verdict is not None:  # null: made by a version without a second verdict
         pairs.append(("EN 50318 criteria: ", stated.criteria_verdict, decided.criteria_verdict))
+    findings = count_findings(row.finding for case in stated.cases for row in case.criteria)
     return [
         *discrepancies,
+        *(() if stated.findings == findings else ("the numbers of findings do not follow from the criteria",)),
         *(f"{where}verdict '{old}' stated, '{new}' follows from the cases" for where, old, new in pairs if old != new),
     ]
 
@@ -109,9 +112,12 @@ def _check_grade(row: dict[str, Any], trust: Any) -> Iterator[str]:
     if lower is not None and upper is not None and lower > upper:
         yield f"lower limit {_format(lower)} above upper limit {_format(upper)}"
         return
-    verdict = "skip" if value is None else judge(value, lower, upper)
-    if not limit_counts(row["trust"], trust):
-        verdict = "info"
+    judged = "skip" if value is None else judge(value, lower, upper)
+    finding = row["finding"]
+    if finding is not None and finding["outcome"] != judge_finding(finding["role"], judged):
+        yield f"finding '{finding['outcome']}' stated, '{judge_finding(finding['role'], judged)}' follows"
+    role = None if finding is None else finding["role"]
+    verdict = count_verdict(role, judged) if limit_counts(row["trust"], trust) else "info"
     if row["verdict"] != verdict:
         yield f"verdict '{row['verdict']}' stated, '{verdict}' follows from value, limits and trust"
     expected = None if value is None else margin(value, lower, upper)

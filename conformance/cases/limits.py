@@ -5,12 +5,14 @@ from typing import Annotated, TypeVar
 
 from pydantic import AfterValidator, Field
 
+from pantocheck.conformance.cases.finding import PublishedFinding
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.sourced_table import (
     NO_SOURCE,
     NO_TRUST,
     InputTable,
     find_missing_source,
+    is_absent,
     validation_problem,
 )
 from pantocheck.conformance.input_files.suggestions import suggest_names
@@ -58,6 +60,10 @@ class Limit(InputTable):
         NO_SOURCE
     )
     note: Annotated[str | None, Field(description="remark for the reader", max_length=4000)] = None
+    finding: Annotated[
+        PublishedFinding | None,
+        Field(description="finding of a publication that this limit grades", exclude_if=is_absent),
+    ] = None
 
     @cross_check
     def _consistent(self) -> Problems:
@@ -79,6 +85,11 @@ class Limit(InputTable):
         if QUANTITIES[self.quantity].scope != "pantograph":
             return 0
         return self.pantograph or 1
+
+    @property
+    def is_imposed(self) -> bool:
+        """Whether the limit grades an imposed finding."""
+        return self.finding is not None and self.finding.role == "imposed"
 
     @property
     def target(self) -> tuple[str, int, int | None]:

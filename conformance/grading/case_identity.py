@@ -13,6 +13,10 @@ from pantocheck.conformance.input_files.trust import LEVELS
 from pantocheck.conformance.quantities.limit_text import format_bounds, name_value
 from pantocheck.conformance.results.results_format import LibraryIdentity
 
+_FINDING_TEXTS = {"section", "sentence", "printed", "tolerance", "sensitivity"}
+_REMARKS: dict[str, Any] = {"note": True, "case": True, "finding": _FINDING_TEXTS}
+"""Texts of a limit, which do not change its grade."""
+
 
 def compare_with_library(case: Case) -> LibraryIdentity:
     """Compare the content of a case with the library case of the same id.
@@ -54,7 +58,7 @@ def _content_digest(case: Case) -> str:
 
 def limits_digest(limits: Sequence[Limit]) -> str:
     """SHA-256 of limits with trust and source, in any order."""
-    content = [limit.model_dump(mode="json", exclude={"note", "case"}) for limit in limits]
+    content = [limit.model_dump(mode="json", exclude=_REMARKS) for limit in limits]
     return json_digest(sorted(content, key=repr))
 
 
@@ -90,6 +94,8 @@ def describe_limit_change(stated: Limit, limit: Limit | None) -> str | None:
     if limit.trust != stated.trust:
         change = "lowered" if LEVELS.index(limit.trust) > LEVELS.index(stated.trust) else "raised"
         parts.append(f"the trust of the limit is {change} from {stated.trust} to {limit.trust}")
+    if stated.is_imposed and not limit.is_imposed:
+        parts.append("an imposed finding counts")
     return f"{name}: {', and '.join(parts)}" if parts else None
 
 

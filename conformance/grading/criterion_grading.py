@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from pantocheck.conformance.cases.finding import PublishedFinding
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.grading.near_limit import NO_ERRORS, ValueErrors, near_limit_remarks
@@ -14,6 +15,7 @@ from pantocheck.conformance.quantities.evaluation import Evaluation, Value
 from pantocheck.conformance.quantities.limit_text import name_value
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results.criterion_format import Criterion
+from pantocheck.conformance.results.finding_format import IMPOSED_REASON, count_verdict, grade_finding
 
 ErrorsByQuantity = Mapping[int, Mapping[str, float]]
 """Errors of quantities, by pantograph (0: the line) and name."""
@@ -37,6 +39,8 @@ class Requirement:
         Trust of the limits.
     source : str
         Source of the limits.
+    finding : PublishedFinding or None
+        Finding of a publication that the limits grade.
     """
 
     quantity: str
@@ -46,6 +50,7 @@ class Requirement:
     upper: float | None
     trust: Trust | Computed
     source: str
+    finding: PublishedFinding | None = None
 
 
 @dataclass(frozen=True)
@@ -84,9 +89,8 @@ def grade_limit(limit: Limit, values: GradedValues, lowest_trust: Trust, limit_u
     limit_uncertainty : float
         Uncertainty of the limit itself, if it comes from a measured record.
     """
-    requirement = Requirement(
-        limit.quantity, limit.owner, limit.item, limit.lower, limit.upper, limit.trust, source_text(limit.source)
-    )
+    number, source = (limit.quantity, limit.owner, limit.item), source_text(limit.source)
+    requirement = Requirement(*number, limit.lower, limit.upper, limit.trust, source, limit.finding)
     return grade_requirement(requirement, values, lowest_trust, limit_uncertainty)
 
 
@@ -143,9 +147,12 @@ def build_criterion(
     if value is not None and (lower is not None or upper is not None):
         verdict, distance = judge(value, lower, upper), margin(value, lower, upper)
         reason = _distance_outside(value, requirement, unit) if verdict == "fail" else None
+    finding = None if requirement.finding is None else grade_finding(requirement.finding, verdict)
     if not limit_counts(requirement.trust, lowest_trust):
         hypothetical = {"pass": "would pass", "fail": f"would fail: {reason}", "skip": f"not graded: {reason}"}[verdict]
         verdict, reason = "info", f"{hypothetical}; the limit is {requirement.trust} and does not count"
+    elif finding is not None and (counted := count_verdict(finding.role, verdict)) != verdict:
+        verdict, reason = counted, IMPOSED_REASON
     return Criterion(
         quantity=name,
         pantograph=requirement.owner,
@@ -165,6 +172,7 @@ def build_criterion(
         components=dict(errors.components),
         limit_uncertainty=errors.limit_uncertainty,
         close=near_limit_remarks(value, (lower, upper), unit, errors),
+        finding=finding,
     )
 
 

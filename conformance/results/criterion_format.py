@@ -6,6 +6,7 @@ from pydantic import Field
 
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.trust import Computed, Trust
+from pantocheck.conformance.results.finding_format import GradedFinding
 from pantocheck.conformance.results.results_part import FiniteNumber, ResultsPart
 
 BASELINE = "baseline"
@@ -48,6 +49,9 @@ class Criterion(ResultsPart):
     limit_uncertainty: float = 0.0
     close: list[str] = []
     baseline: float | None = None
+    finding: Annotated[
+        GradedFinding | None, Field(description="finding of a publication that the limits grade; null: none")
+    ] = None
 
     @property
     def is_drift(self) -> bool:

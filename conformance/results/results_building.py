@@ -11,6 +11,7 @@ from pantocheck.conformance.grading.case_verdict import EVERY_CASE, Participatio
 from pantocheck.conformance.grading.uncertainty import Uncertainty
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.evaluation import Value
+from pantocheck.conformance.results.finding_format import count_findings
 from pantocheck.conformance.results.results_format import CaseResult, Platform, Results, Suite, SystemIdentity
 from pantocheck.conformance.results.results_part import Number
 from pantocheck.conformance.results.scope import build_scope
@@ -94,6 +95,7 @@ def build_results(
             system=host.system(),
         ),
         scope=build_scope(cases),
+        findings=count_findings(row.finding for case in cases for row in case.criteria),
         cases=list(cases),
     )
     return participation.decide_run(results)

@@ -12,6 +12,7 @@ from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.results.criterion_format import CaseVerification, ComponentName, Criterion
 from pantocheck.conformance.results.figure_data import Chart, TextTable, Traces, UpliftTrace
+from pantocheck.conformance.results.finding_format import FindingCounts
 from pantocheck.conformance.results.lift_force_facts import LawForces
 from pantocheck.conformance.results.record_facts import RecordFacts
 from pantocheck.conformance.results.results_part import Number, Owner, ResultsPart
@@ -220,6 +221,9 @@ class Results(ResultsPart):
     scope: Annotated[
         list[ScopeStep], Field(description="every step of the procedure; empty: made by an older version")
     ] = []
+    findings: Annotated[
+        FindingCounts | None, Field(description="findings of publications by outcome; null: the cases grade none")
+    ] = None
     information: list[str] = []
     """Ids of the cases that are shown for information: they do not take part in the verdict."""
     accepted_unverified: list[str] = []

@@ -11,6 +11,7 @@ from pantocheck.conformance.reports.certificate.case_facts import (
 )
 from pantocheck.conformance.reports.certificate.case_figures import draw_case_figures
 from pantocheck.conformance.reports.certificate.criteria_table import criteria_blocks
+from pantocheck.conformance.reports.certificate.findings_table import build_findings_section
 from pantocheck.conformance.reports.certificate.quantity_tables import (
     build_band_table,
     build_quantity_table,
@@ -59,6 +60,7 @@ def build_certificate(results: dict[str, Any]) -> doc.Document:
             *((doc.WarningBox(warnings),) if warnings else ()),
             *build_verdict_section(prepared),
             *build_scope_section(prepared, dict(zip((case["id"] for case in cases), anchors, strict=True))),
+            *build_findings_section(prepared),
             doc.Section("Reasons", reasons, anchor="reasons"),
             doc.Section("Cases", (_case_index(cases, anchors),), anchor="cases"),
             *map(_case_section, cases, anchors),

@@ -5,6 +5,7 @@ from typing import Any
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.certificate.certificate_page import build_header
 from pantocheck.conformance.reports.certificate.criteria_table import describe_criterion, error_name
+from pantocheck.conformance.reports.certificate.findings_table import build_findings_section
 from pantocheck.conformance.reports.certificate.scope_page import (
     build_scope_section,
     list_identity_warnings,
@@ -20,7 +21,7 @@ def build_summary(results: dict[str, Any]) -> doc.Document:
     results = prepare_results(results)
     header = build_header(results)
     warnings = list_identity_warnings(results)
-    scope = (*build_verdict_section(results), *build_scope_section(results, {}))
+    scope = (*build_verdict_section(results), *build_scope_section(results, {}), *build_findings_section(results))
     first = (*((doc.WarningBox(warnings),) if warnings else ()), *scope, *list_reasons(results))
     return doc.Document(header.heading, header, (*first, *map(_case_section, results["cases"])))
 

@@ -6,6 +6,7 @@ from typing import Any
 
 from pantocheck.conformance.quantities.limit_text import format_margin
 from pantocheck.conformance.reports.certificate.criteria_table import criterion_title, is_close
+from pantocheck.conformance.reports.certificate.findings_table import count_sentences
 from pantocheck.conformance.reports.certificate.scope_page import summarise_identity
 from pantocheck.conformance.reports.certificate.two_verdicts import select_criteria, verdict_sentences
 from pantocheck.conformance.reports.document import BulletList, Section
@@ -54,7 +55,7 @@ def build_headline(results: dict[str, Any]) -> str:
     if shown := results["information"]:
         more = f" and {len(shown) - NAMES_SHOWN} more" if len(shown) > NAMES_SHOWN else ""
         sentences.append(f"For information, not part of the verdict: {', '.join(shown[:NAMES_SHOWN])}{more}.")
-    return " ".join([*sentences, *verdict_sentences(results), *summarise_identity(results)])
+    return " ".join([*sentences, *verdict_sentences(results), *count_sentences(results), *summarise_identity(results)])
 
 
 def describe_record(case: dict[str, Any]) -> str | None:

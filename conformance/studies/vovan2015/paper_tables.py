@@ -41,7 +41,8 @@ def build_findings_table(limits: Sequence[Limit], computed: ValuesByOwner, print
         texts = [
             "-" if number is None else f"{number:.3g} {unit}".strip() for number in (find_value(limit, printed), value)
         ]
-        rows.append([limit.note or limit.quantity, *texts, agreement])
+        sentence = limit.finding.sentence if limit.finding else limit.note or limit.quantity
+        rows.append([sentence, *texts, agreement])
     return TextTable(caption="Findings", columns=["Finding", "Printed", "Computed", "Agreement"], rows=rows)
 
 
@@ -55,7 +56,7 @@ def build_provenance_table(case: Case) -> TextTable:
     for limit in case.limits:
         item = f" {limit.item}" if limit.item else ""
         keys = [limit.source] if isinstance(limit.source, str) else limit.source
-        text = limit.note or source_text(limit.source)
+        text = limit.finding.tolerance if limit.finding else limit.note or source_text(limit.source)
         rows.append([f"limit of {limit.quantity}{item}", _name_origin(limit.trust, keys), text])
     quantities = dict.fromkeys(limit.quantity for limit in case.limits)
     rows += [[name, "computed", QUANTITIES[name].definition] for name in quantities]

@@ -1,0 +1,60 @@
+"""Table of the findings of publications that the cases of a run grade."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from pantocheck.conformance.reports import document as doc
+from pantocheck.conformance.reports.certificate.criteria_table import describe_criterion
+
+FINDING_MEANING = (
+    "Imposed: the inputs were chosen with this finding, so meeting it shows nothing. Held out: they were chosen "
+    "without it. Only held-out findings inside their bounds count as reproduced."
+)
+
+
+def build_findings_section(results: dict[str, Any]) -> tuple[doc.Section, ...]:
+    """Section with every finding of a run, its role and its outcome; empty without findings."""
+    rows = tuple(_build_row(case, row) for case, row in list_findings(results))
+    if not rows:
+        return ()
+    columns = (
+        doc.Column("Section"),
+        doc.Column("Finding", share=3),
+        doc.Column("Printed"),
+        doc.Column("Computed", number=True),
+        doc.Column("Bounds", number=True),
+        *map(doc.Column, ("Trust", "Role", "Outcome")),
+    )
+    counts = doc.Paragraph(" ".join(count_sentences(results)))
+    table = doc.Table(columns, rows, layout="cards")
+    return (doc.Section("Findings", (counts, table, doc.SmallPrint(FINDING_MEANING)), anchor="findings"),)
+
+
+def list_findings(results: dict[str, Any]) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
+    """Cases and their criteria that grade a finding, in the order of the sections of the publication."""
+    pairs = [(case, row) for case in results["cases"] for row in case["criteria"] if row["finding"] is not None]
+    yield from sorted(pairs, key=lambda pair: str(pair[1]["finding"]["section"]))
+
+
+def count_sentences(results: dict[str, Any]) -> list[str]:
+    """Sentence on the numbers of findings by outcome; none without findings."""
+    if results["findings"] is None:
+        return []
+    counts = {name.replace("_", " "): number for name, number in results["findings"].items()}
+    shown = [f"{number} {name}" for name, number in counts.items() if number or name != "not evaluated"]
+    return [f"Findings: {', '.join(shown)}."]
+
+
+def _build_row(case: dict[str, Any], row: dict[str, Any]) -> tuple[doc.RichText, ...]:
+    finding, texts = row["finding"], describe_criterion(row)
+    remarks = [finding["tolerance"], *([finding["sensitivity"]] if finding["outcome"] == "not_reproduced" else [])]
+    return (
+        finding["section"],
+        (f"{finding['sentence']} ", doc.Code(case["id"]), *map(doc.Remark, filter(None, remarks))),
+        finding["printed"],
+        texts.value,
+        texts.limits,
+        doc.TrustMark(texts.trust),
+        finding["role"].replace("_", " "),
+        finding["outcome"].replace("_", " "),
+    )
