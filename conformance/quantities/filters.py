@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from scipy.signal import butter, sosfilt, sosfilt_zi, sosfiltfilt, sosfreqz
+import scipy  # loads scipy.signal when it is used: its import takes longer than a listing of the cases
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandNotObservable
@@ -91,7 +91,7 @@ class LowPass:
         """
         check_observable(self.cutoff_Hz, rate, f"a filter at {self.cutoff_Hz:g} Hz")
         order, cutoff = self.single_run(rate)
-        return np.asarray(butter(order, cutoff, fs=rate, output="sos"))
+        return np.asarray(scipy.signal.butter(order, cutoff, fs=rate, output="sos"))
 
     @property
     def runs(self) -> int:
@@ -123,14 +123,14 @@ class LowPass:
         """
         sections = self.sections(rate)
         if self.phase == "causal":
-            filtered, _ = sosfilt(sections, signal, zi=sosfilt_zi(sections) * signal[0])
+            filtered, _ = scipy.signal.sosfilt(sections, signal, zi=scipy.signal.sosfilt_zi(sections) * signal[0])
             return np.asarray(filtered)
         padding = min(signal.size - 1, int(np.ceil(2 * rate / self.cutoff_Hz)))
-        return np.asarray(sosfiltfilt(sections, signal, padlen=padding))
+        return np.asarray(scipy.signal.sosfiltfilt(sections, signal, padlen=padding))
 
     def gain(self, frequency: RealArray, rate: float) -> RealArray:
         """Gain of the whole filter at frequencies [Hz], for a sampling rate [Hz]."""
-        _, response = sosfreqz(self.sections(rate), worN=frequency, fs=rate)
+        _, response = scipy.signal.sosfreqz(self.sections(rate), worN=frequency, fs=rate)
         return np.asarray(np.abs(response) ** self.runs)
 
 

@@ -299,6 +299,13 @@ def test_show_states_the_forces_of_a_force_law_and_their_sources() -> None:
     assert "force law" not in pantocheck("show", "en50318-2002/250").output
 
 
+def test_list_of_cases_needs_neither_signal_processing_nor_the_compiler() -> None:
+    """Their imports take longer than the list itself."""
+    code = "import sys; from pantocheck.conformance.command_line import cases_command; print(*sys.modules)"
+    output = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True, timeout=120)
+    assert {"scipy.signal", "scipy.linalg", "numba"}.isdisjoint(output.stdout.split())
+
+
 def test_every_case_of_the_library_is_listed() -> None:
     """One row per case; a case without limits has none."""
     rows = {line.split()[0]: line for line in pantocheck("cases").output.splitlines()[1:] if line.strip()}
