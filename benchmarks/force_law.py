@@ -18,8 +18,9 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.geometry import GradientTable, ListedSpans
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.simulation.case_run import compute_working_height, run_passage
+from pantocheck.conformance.simulation.case_run import run_passage
 from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.simulation.working_height import compute_working_height
 from pantocheck.model import DiscretisedLine, discretise
 
 PUBLISHED = {

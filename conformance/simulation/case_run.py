@@ -10,19 +10,16 @@ import numpy as np
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import Discretisation
-from pantocheck.conformance.cases.pantograph_file import PantographFile
-from pantocheck.conformance.cases.section_rises import lowest_rise
 from pantocheck.conformance.cases.start_and_section import RunStart
 from pantocheck.conformance.quantities.signals import UPLIFT_STRETCH_M
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.records.sidecar_tables import RunTable
-from pantocheck.conformance.simulation.pantograph_model import build_pantograph
-from pantocheck.conformance.simulation.static_quantities import sample_span
+from pantocheck.conformance.simulation.uplift_estimate import estimate_uplift_forces
 from pantocheck.conformance.simulation.uplift_tuning import tune_uplift
+from pantocheck.conformance.simulation.working_height import build_pantographs
 from pantocheck.model import DiscretisedLine, History, Pantograph, Passage, simulate_passage
 from pantocheck.model.fem.contact_wires import touched_wires
-from pantocheck.model.statics.elasticity import static_uplift
 
 KEPT_SPANS = 1.5
 """Smallest distance behind the train with known uplift at the end of a run [spans]: the check of the support passing
@@ -74,7 +71,7 @@ def run_passage(
     TuningFailed
         No uplift force gives the mean contact force that the case requires.
     """
-    start = uplift_forces or start_forces(case)
+    start = uplift_forces or estimate_uplift_forces(case, line)
     # The computing time must not include the compilation of the kernels.
     simulate_passage(line, replace(build_passage(case, line, discretisation, start), duration=0.0))
     return tune_uplift(
@@ -93,7 +90,7 @@ def run_starts(
     uplift_forces: tuple[float, ...],
 ) -> Iterator[Record]:
     """Simulate the passage of a case from other starts; parameters as in `run_passage`."""
-    pantographs = _build_pantographs(case, line, uplift_forces)
+    pantographs = build_pantographs(case, line, uplift_forces)
     for start in starts:
         passage = replace(_place_train(start.case, line, discretisation, pantographs), ramp=start.ramp_s)
         yield record_passage(start.case, passage, simulate_passage(line, passage))
@@ -127,16 +124,7 @@ def build_passage(
     case: Case, line: DiscretisedLine, discretisation: Discretisation, uplift_forces: tuple[float, ...]
 ) -> Passage:
     """Passage of a case on a discretised line, with given uplift forces [N]."""
-    return _place_train(case, line, discretisation, _build_pantographs(case, line, uplift_forces))
-
-
-def _build_pantographs(case: Case, line: DiscretisedLine, uplift_forces: tuple[float, ...]) -> tuple[Pantograph, ...]:
-    """Pantographs of a case, each with its working height under its uplift force."""
-    nominal = nominal_wire_height(case)
-    return tuple(
-        build_pantograph(file, force, compute_working_height(case, line, file, force), nominal, lift.aerodynamic_force)
-        for file, lift, force in zip(case.pantographs, case.lift_forces, uplift_forces, strict=True)
-    )
+    return _place_train(case, line, discretisation, build_pantographs(case, line, uplift_forces))
 
 
 def _place_train(
@@ -154,41 +142,6 @@ def _place_train(
         kept_behind=max(KEPT_SPANS * case.line.geometry.longest_span, UPLIFT_STRETCH_M),
         reach=math.inf if discretisation.reach_m is None else discretisation.reach_m,
     )
-
-
-def working_height_positions(case: Case) -> RealArray:
-    """Positions of the mean uplift for the working height: those of the first span of the analysis section [m]."""
-    return sample_span(*case.line.geometry.span(case.analysed_spans[0]))
-
-
-def nominal_wire_height(case: Case) -> float:
-    """Nominal height of the contact wire at the same positions [m].
-
-    It is the mean of the straight lines between the supports, in an overlap of those of the lowest wire.
-    """
-    positions = working_height_positions(case)
-    rises = [lowest_rise(case.line, float(x)) for x in positions]
-    return float(case.line.layout.chord_height(positions).mean() + np.mean(rises))
-
-
-def compute_working_height(case: Case, line: DiscretisedLine, file: PantographFile, uplift_force: float) -> float:
-    """Static height of a head under its uplift force: nominal height of the wire, mean uplift, and contact spring [m].
-
-    The pre-sag of the line at rest is left out.
-
-    Parameters
-    ----------
-    case : Case
-        Case with a speed.
-    line : DiscretisedLine
-        Line of the case.
-    file : PantographFile
-        Pantograph.
-    uplift_force : float
-        Its uplift force [N].
-    """
-    uplift = static_uplift(line, working_height_positions(case), uplift_force)
-    return nominal_wire_height(case) + (float(uplift.mean()) + uplift_force / file.contact.stiffness_N_m)
 
 
 def start_forces(case: Case) -> tuple[float, ...]:

@@ -6,12 +6,7 @@ from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.quantities.bands import BANDS
-from pantocheck.conformance.simulation.case_run import (
-    compute_working_height,
-    nominal_wire_height,
-    start_forces,
-    working_height_positions,
-)
+from pantocheck.conformance.simulation.case_run import start_forces
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.simulation.derived_format import (
     Derived,
@@ -24,6 +19,11 @@ from pantocheck.conformance.simulation.derived_line import build_derived_line
 from pantocheck.conformance.simulation.derived_rounding import round_number, round_numbers, round_positions
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 from pantocheck.conformance.simulation.uplift_tuning import TOLERANCE
+from pantocheck.conformance.simulation.working_height import (
+    compute_working_height,
+    nominal_wire_height,
+    working_height_positions,
+)
 from pantocheck.model import DiscretisedLine, discretise
 from pantocheck.model.fem.contact_wires import touched_rows
 from pantocheck.model.pantograph import equilibrium

@@ -21,8 +21,9 @@ from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.input_files.toml_file import read_toml
 from pantocheck.conformance.records.record import Record
-from pantocheck.conformance.simulation.case_run import build_passage, compute_working_height, record_passage
+from pantocheck.conformance.simulation.case_run import build_passage, record_passage
 from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.simulation.working_height import compute_working_height
 from pantocheck.model import discretise, simulate_passage
 
 RAMP = (360.0, 660.0)

@@ -1,0 +1,75 @@
+"""Estimate of the uplift forces: close to those that give the required mean contact forces, whatever the speed."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.records.record_signals import RecordSignals
+from pantocheck.conformance.simulation.case_run import run_passage, start_forces
+from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.simulation.uplift_estimate import estimate_uplift_forces, moving_factor
+from pantocheck.model import DiscretisedLine, discretise
+
+PER_UNIT_MASS = 0.3
+"""Damping of both wires [1/s]: waves decay within a few spans, so that the train of a short line is settled."""
+
+
+def short_case(name: str, speed_km_h: float, stated: float | None = None) -> Case:
+    """Two pantographs 60 m apart on ten well damped spans of a line of the library, on elements of 2 m."""
+    *_, case = select_cases([f"en50318-2018/{name}"])
+    damping = case.line.damping
+    wires = {
+        key: getattr(damping, key).model_copy(update={"mass_coefficient_1_s": PER_UNIT_MASS})
+        for key in ("contact_wire", "messenger_wire")
+    }
+    line = {"damping": damping.model_copy(update=wires), "geometry": case.line.geometry.shorten(10)}
+    coarse = case.file.discretisation.model_copy(update={"element_m": 2.0, "time_step_s": 0.004})
+    file = {
+        "speed_km_h": speed_km_h, "evaluated_spans": (5, 8), "compared_spans": None, "discretisation": coarse,
+        "pantograph": (case.file.pantograph[0].model_copy(update={"uplift_force_N": stated}),) * 2,
+        "spacing_m": (60.0,),
+    }  # fmt: skip
+    return replace(
+        case,
+        file=case.file.model_copy(update=file),
+        line=case.line.model_copy(update=line),
+        pantographs=case.pantographs[:1] * 2,
+    )
+
+
+def discretised(case: Case) -> DiscretisedLine:
+    return discretise(build_catenary(case.line), 2.0)
+
+
+def mean_forces(case: Case, line: DiscretisedLine, uplift: tuple[float, ...]) -> np.ndarray:
+    """Mean contact forces over the analysis section with given uplift forces [N]."""
+    run = run_passage(case, line, case.file.discretisation, uplift)
+    signals = RecordSignals(run.record, case.file.filter.low_pass)
+    return np.array([pantograph.delivered.mean() for pantograph in signals.pantographs.values()])
+
+
+@pytest.mark.parametrize(("name", "speed"), [("ac-simple/320", 320.0), ("ac-stitched/320", 275.0)])
+def test_estimate_gives_nearly_the_required_mean_forces(name: str, speed: float) -> None:
+    """Within 2 N for both pantographs, of which the second runs through the waves of the first one."""
+    case = short_case(name, speed)
+    line, target = discretised(case), case.lift_forces[0].target_mean_force
+    error = mean_forces(case, line, estimate_uplift_forces(case, line)) - target
+    untuned = mean_forces(case, line, start_forces(case)) - target
+    assert np.abs(error).max() < 2.0
+    assert np.abs(error).max() < np.abs(untuned).min()
+
+
+def test_stated_uplift_force_is_the_start() -> None:
+    case = short_case("ac-simple/320", 320.0, stated=171.0)
+    assert estimate_uplift_forces(case, discretised(case)) == (171.0, 171.0)
+
+
+def test_uplift_grows_with_the_speed_up_to_the_wave_speed() -> None:
+    """A contact wire of 22 kN and 1.35 kg/m has a wave speed of 127.7 m/s; at 0.6 of it the factor is 1 / 0.8."""
+    line = discretised(short_case("ac-simple/320", 320.0))
+    assert moving_factor(0.6 * np.sqrt(22e3 / 1.35), line) == pytest.approx(1.25, abs=1e-12)
+    assert moving_factor(0.0, line) == 1.0
+    assert np.isfinite(moving_factor(200.0, line))
