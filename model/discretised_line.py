@@ -1,7 +1,8 @@
 """Discretised line: finite elements of a line in its initial state."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -31,6 +32,11 @@ class DiscretisedLine:
         Line at rest.
     stretches : HeldStretches
         Stretches of wires that are held along the track.
+
+    Attributes
+    ----------
+    kept : dict
+        Results that the simulations of the line share (`kept_results`); a changed line begins without any.
     """
 
     catenary: Catenary
@@ -39,6 +45,7 @@ class DiscretisedLine:
     connectors: Connectors
     state: InitialState
     stretches: HeldStretches
+    kept: dict[Hashable, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @property
     def contact_rows(self) -> list[int]:

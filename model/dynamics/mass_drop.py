@@ -13,7 +13,7 @@ from pantocheck.model.dynamics.motion import motion_at_rest
 from pantocheck.model.dynamics.recording import allocate_recording, simulate_steps
 from pantocheck.model.dynamics.train import build_empty_train
 from pantocheck.model.fem.assembly import point_load
-from pantocheck.model.statics.static_solver import StaticSolver
+from pantocheck.model.statics.static_solver import static_solver
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ def simulate_mass_drop(
     load = Load(line.mesh.row_of[test.wire, "z"], line.mesh.station(test.position))
     kernel = build_kernel_arrays(line, test.time_step, load=load)
     weight = -test.mass * GRAVITY
-    hanging = StaticSolver(line).deflection(weight * point_load(line, load.row, test.position))
+    hanging = static_solver(line).deflection(weight * point_load(line, load.row, test.position))
     motion = motion_at_rest(hanging, kernel.modal.damping.size, kernel.stretches.stiffness.size)
     train = build_empty_train(len(catenary.contact_wires))
     before, after = (round(duration / test.time_step) for duration in (test.hanging, test.duration))

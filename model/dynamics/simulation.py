@@ -20,7 +20,7 @@ from pantocheck.model.fem.assembly import point_load
 from pantocheck.model.fem.contact_wires import locate_contact_wires, touched_wires
 from pantocheck.model.fem.mesh import find_element
 from pantocheck.model.fem.residual_flexibility import residual_flexibility
-from pantocheck.model.statics.static_solver import StaticSolver
+from pantocheck.model.statics.static_solver import static_solver
 
 
 def simulate_passage(
@@ -85,7 +85,7 @@ def start_motion(line: DiscretisedLine, kernel: KernelArrays, passage: Passage) 
         touched[p, under] = True
         for row in wires.row[under]:
             load += 1 / under.size * pressed * pantograph.static_force * point_load(line, row, x)
-    deflection = StaticSolver(line).deflection(load)
+    deflection = static_solver(line).deflection(load)
     profile = kernel.contact.rest + deflection.displacement
     height, flexibility = np.zeros(touched.shape), np.zeros(touched.shape)
     for p, wire in np.argwhere(touched):

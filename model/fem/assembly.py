@@ -3,12 +3,10 @@
 Unknowns are ordered station by station with the rows interleaved, (w, r) each, so that the matrices are banded.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.linalg import splu
 
 from pantocheck.model.arrays import Array, Indices
 from pantocheck.model.discretised_line import DiscretisedLine
@@ -105,38 +103,6 @@ def stretch_directions(line: DiscretisedLine) -> sp.csr_array:
     unknown = _unknowns(line, stretches.row[number, field], stretches.first[number] + station, slope)
     shape = (line.beams.free.size, stretches.first.size)
     return sp.csr_array((stretches.coefficient[number, field, station, slope], (unknown, number)), shape=shape)
-
-
-def factorise_stiffness(line: DiscretisedLine, matrices: GlobalMatrices) -> Callable[[Array], Array]:
-    """Solver of K x = f for the free unknowns, with the stiffness of held stretches.
-
-    The additional tensions h = k a'x are unknowns of their own, so that the matrix stays sparse:
-
-        [ K   a    ] [x]   [f]
-        [ a'  -1/k ] [h] = [0]
-
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Discretised line.
-    matrices : GlobalMatrices
-        Matrices of the line.
-
-    Returns
-    -------
-    callable
-        Solution (n, ...) for forces (n, ...).
-    """
-    direction = sp.csc_array(stretch_directions(line)[matrices.free])
-    flexibility = sp.diags_array(-1 / line.stretches.stiffness, format="csc")
-    solve = splu(sp.block_array([[matrices.stiffness, direction], [direction.T, flexibility]], format="csc")).solve
-    unknowns, stretches = direction.shape
-
-    def solve_free(force: Array) -> Array:
-        """Displacements of the free unknowns."""
-        return np.asarray(solve(np.concatenate([force, np.zeros((stretches, *force.shape[1:]))]))[:unknowns])
-
-    return solve_free
 
 
 def point_load(line: DiscretisedLine, row: int, position: float) -> Array:

@@ -8,7 +8,8 @@ from scipy.sparse.linalg import LinearOperator, eigsh
 from pantocheck.model.arrays import Array
 from pantocheck.model.catenary import Kind, Rayleigh
 from pantocheck.model.discretised_line import DiscretisedLine, with_damping
-from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, factorise_stiffness, free_unknowns
+from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, free_unknowns
+from pantocheck.model.fem.line_stiffness import factored_stiffness
 
 
 @dataclass(frozen=True)
@@ -61,10 +62,17 @@ def compute_modes(line: DiscretisedLine, count: int) -> Modes:
     Modes
         Lowest modes.
     """
-    matrices = assemble_matrices(line)
+    matrices, factored = assemble_matrices(line), factored_stiffness(line)
+
+    def solve_free(force: Array) -> Array:
+        """Displacements of the free unknowns under forces on them."""
+        full = np.zeros(line.beams.free.size)
+        full[matrices.free] = force.ravel()
+        return factored.solve(full)[matrices.free]
+
     # A fixed start vector makes the result reproducible to the last digit.
     start = np.ones(matrices.free.size)
-    inverse = LinearOperator(matrices.stiffness.shape, matvec=factorise_stiffness(line, matrices), dtype=np.float64)
+    inverse = LinearOperator(matrices.stiffness.shape, matvec=solve_free, dtype=np.float64)
     w2, vectors = eigsh(matrices.stiffness, count, matrices.mass, sigma=0.0, v0=start, OPinv=inverse)
     ascending = np.argsort(w2)
     shape = np.zeros((count, line.beams.free.size))

@@ -9,7 +9,7 @@ from pantocheck.model.fem.contact_wires import touched_rows, touched_wires
 from pantocheck.model.fem.mesh import find_element
 from pantocheck.model.fem.residual_flexibility import residual_flexibility
 from pantocheck.model.irregularity_spline import NO_IRREGULARITY, irregularity_height
-from pantocheck.model.statics.static_solver import StaticSolver
+from pantocheck.model.statics.static_solver import static_solver
 
 
 def static_uplift(line: DiscretisedLine, position: Array, force: float) -> Array:
@@ -29,14 +29,13 @@ def static_uplift(line: DiscretisedLine, position: Array, force: float) -> Array
     (n,) ndarray
         Uplift at the force, mean over these contact wires [m].
     """
-    statics = StaticSolver(line)
+    statics = static_solver(line)
     uplift = np.empty(len(position))
     for i, x in enumerate(position):
         rows = touched_rows(line, float(x))
-        loads = [point_load(line, row, float(x)) for row in rows]
-        displacement = statics.deflection(force / len(rows) * np.sum(loads, axis=0)).displacement
-        flat = displacement.transpose(1, 0, 2).ravel()
-        uplift[i] = np.mean([load @ flat for load in loads]) + force / len(rows) * _mean_residual(line, rows, float(x))
+        shape = np.mean([point_load(line, row, float(x)) for row in rows], axis=0)
+        residual = force / len(rows) * _mean_residual(line, rows, float(x))
+        uplift[i] = statics.deflection_along(shape, force) + residual
     return uplift
 
 
@@ -82,7 +81,7 @@ def height_under_forces(line: DiscretisedLine, position: Array, force: Array) ->
         np.mean([point_load(line, row, float(x)) for row in under], axis=0)
         for x, under in zip(position, rows, strict=True)
     ]
-    displacement = StaticSolver(line).deflection(np.sum([f * n for f, n in zip(force, shapes, strict=True)], axis=0))
+    displacement = static_solver(line).deflection(np.sum([f * n for f, n in zip(force, shapes, strict=True)], axis=0))
     height = (line.state.deflection + displacement.displacement).transpose(1, 0, 2).ravel()
     residual = [
         f / len(under) * _mean_residual(line, under, float(x))

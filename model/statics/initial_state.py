@@ -134,7 +134,7 @@ def _hold_contact_wire(
     for station, height in heights.items():
         free[station, 0] = False
         shape[station, 0] = height
-    solution = solve_with_prescribed_displacements(stiffness, load, free.ravel(), shape.ravel())
+    solution = solve_with_prescribed_displacements(stiffness, load, free[None], shape.ravel())
     return solution.reshape(-1, 2), (stiffness @ solution - load)[::2]
 
 
@@ -191,7 +191,8 @@ def _hang_upper_wires(
         load[deflection_index(clamp.upper, clamp.position)] -= GRAVITY * clamp.mass
     join = sp.csr_array((np.ones(free.size), (np.arange(free.size), merged)), shape=(free.size, free.size))
     free[merged != np.arange(free.size)] = False
-    solution = join @ solve_with_prescribed_displacements(join.T @ stiffness @ join, join.T @ load, free, shape)
+    joined, places = join.T @ stiffness @ join, free.reshape(len(rows), stations, 2)
+    solution = join @ solve_with_prescribed_displacements(joined, join.T @ load, places, shape)
     residual = load - stiffness @ solution
     clamp_force = np.array([-residual[deflection_index(c.lower, c.position)] for c in catenary.clamps])
     return np.reshape(solution, (len(rows), stations, 2)), clamp_force

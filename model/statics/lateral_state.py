@@ -78,7 +78,7 @@ def compute_lateral_state(catenary: Catenary, mesh: Mesh, beams: Beams, dropper_
             shape[row, station, 0] = y
     stiffness = sp.csr_array(wires + elongation @ sp.diags_array(bar_stiffness) @ elongation.T)
     load = np.concatenate([_radial_load(catenary, mesh, beams, row) for row in rows])
-    solution = solve_with_prescribed_displacements(stiffness, load, free.ravel(), shape.ravel())
+    solution = solve_with_prescribed_displacements(stiffness, load, free, shape.ravel())
     force = bar_stiffness * (elongation.T @ solution)
     reaction = stiffness @ solution - load
     return LateralState(

@@ -1,9 +1,9 @@
-"""Linear statics with prescribed displacements."""
+"""Linear statics with prescribed displacements, on rows of beams that connectors couple at their stations."""
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from scipy.sparse.linalg import splu
+from scipy.linalg import solveh_banded
 
 from pantocheck.model.arrays import Array
 
@@ -13,14 +13,16 @@ def solve_with_prescribed_displacements(
 ) -> Array:
     """Solve K q = f for the free unknowns; a free unknown without stiffness stays at zero.
 
+    The unknowns are solved station by station, all rows together: in this order the matrix is a narrow band.
+
     Parameters
     ----------
     stiffness : (n, n) sparse array
-        Stiffness matrix K.
+        Stiffness matrix K, positive definite for the free unknowns; n = 2 B S.
     load : (n,) ndarray
         Forces and moments f [N, N m].
-    free : (n,) ndarray of bool
-        Whether an unknown is free.
+    free : (B, S, 2) ndarray of bool
+        Whether an unknown of B rows with S stations is free.
     prescribed : (n,) ndarray
         Values of the other unknowns [m, -].
 
@@ -29,8 +31,16 @@ def solve_with_prescribed_displacements(
     (n,) ndarray
         All unknowns q [m, -].
     """
-    active = np.flatnonzero(free & (stiffness.diagonal() != 0))
-    solution: Array = np.where(free, 0.0, prescribed)
-    inner = sp.csc_array(stiffness[active][:, active])
-    solution[active] = splu(inner).solve((load - stiffness @ solution)[active])
+    order = np.arange(free.size).reshape(free.shape).transpose(1, 0, 2).ravel()
+    solution: Array = np.where(free.ravel(), 0.0, prescribed)
+    active = order[(free.ravel() & (stiffness.diagonal() != 0))[order]]
+    place = np.full(free.size, -1)
+    place[active] = np.arange(active.size)
+    entries = stiffness.tocoo()
+    row, column = place[entries.row], place[entries.col]
+    lower = (column >= 0) & (row >= column)
+    distance, column = (row - column)[lower], column[lower]
+    band = np.zeros((int(distance.max(initial=0)) + 1, active.size))
+    np.add.at(band, (distance, column), entries.data[lower])
+    solution[active] = solveh_banded(band, (load - stiffness @ solution)[active], lower=True, check_finite=False)
     return solution

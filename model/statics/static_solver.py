@@ -6,10 +6,12 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from pantocheck.model.arrays import Array
+from pantocheck.model.arrays import Array, Indices
 from pantocheck.model.discretised_line import DiscretisedLine
 from pantocheck.model.failures import NoEquilibrium
-from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, connector_directions, factorise_stiffness
+from pantocheck.model.fem.assembly import bandwidth_order, connector_directions
+from pantocheck.model.fem.line_stiffness import factored_stiffness
+from pantocheck.model.kept_results import keep_with_line
 
 MAX_ITERATIONS = 100
 """Largest number of changes of the set of slack droppers."""
@@ -39,6 +41,9 @@ class Deflection:
 class StaticSolver:
     """Static solver of one line, factored once; slack droppers enter as low-rank corrections.
 
+    Elongations of connectors under the load, and under the forces that release slack droppers, decide which droppers
+    are slack. The deflection of the line follows once at the end.
+
     Parameters
     ----------
     line : DiscretisedLine
@@ -46,11 +51,11 @@ class StaticSolver:
     """
 
     def __init__(self, line: DiscretisedLine) -> None:
-        self.line = line
-        matrices = assemble_matrices(line)
-        self._free = matrices.free
-        self._solve = factorise_stiffness(line, matrices)
-        self._direction = sp.csc_array(connector_directions(line)[self._free])
+        self._connectors = line.connectors
+        self._shape, self._order = line.beams.free.shape, bandwidth_order(line)
+        self._stiffness = factored_stiffness(line)
+        self._direction = sp.csc_array(connector_directions(line))
+        self._compliance: dict[int, Array] = {}
 
     def deflection(self, load: Array) -> Deflection:
         """Compute the deflection under a load.
@@ -70,31 +75,70 @@ class StaticSolver:
         NoEquilibrium
             The set of slack droppers does not settle.
         """
-        connectors = self.line.connectors
-        taut = self._solve(np.asarray(load, dtype=float)[self._free])
-        slack = np.zeros(connectors.station.size, dtype=np.bool_)
+        taut = self._stiffness.solve(np.asarray(load, dtype=float))
+        slack, release, tension = self._release_slack(self._direction.T @ taut)
+        if slack.size:
+            taut = taut + self._stiffness.solve(self._direction[:, slack] @ release)
+        full = np.empty(taut.size)
+        full[self._order] = taut
+        return Deflection(full.reshape(self._shape), tension)
+
+    def deflection_along(self, direction: Array, force: float) -> float:
+        """Compute the deflection in a direction under a force in this direction.
+
+        Parameters
+        ----------
+        direction : (unknowns,) ndarray
+            Nodal forces of a unit force, in global order; zero but for a few unknowns.
+        force : float
+            Size of the force [N].
+
+        Returns
+        -------
+        float
+            Product of the direction with the displacements [m].
+
+        Raises
+        ------
+        NoEquilibrium
+            The set of slack droppers does not settle.
+        """
+        unit, loaded = self._stiffness.solve(direction), np.flatnonzero(direction)
+        elongation = self._direction.T @ unit
+        slack, release, _ = self._release_slack(force * elongation)
+        # A unit force elongates a dropper as much as a unit elongating force of the dropper moves the unit force.
+        return float(force * (direction[loaded] @ unit[loaded]) + elongation[slack] @ release)
+
+    def _release_slack(self, elongation: Array) -> tuple[Indices, Array, Array]:
+        """Indices of slack droppers, the forces that release them, and all tensions, from elongations of taut ones."""
+        connectors = self._connectors
+        slack, release, released = np.zeros(0, dtype=np.int64), np.zeros(0), elongation
         for _ in range(MAX_ITERATIONS):
-            solution = taut
-            index = np.flatnonzero(slack)
-            if index.size:
-                # Cancel the compression of the slack droppers, and release their preload.
-                b = self._direction[:, index].toarray()
-                compliance = self._solve(b)
-                k, preload = connectors.stiffness[index], connectors.preload[index]
-                system = np.eye(index.size) - k[:, None] * (b.T @ compliance)
-                release = np.linalg.solve(system, preload + k * (b.T @ taut))
-                solution = taut + compliance @ release
-            tension = connectors.preload + connectors.stiffness * (self._direction.T @ solution)
-            now_slack = connectors.unilateral & (tension < 0)
+            tension = connectors.preload + connectors.stiffness * released
+            now_slack = np.flatnonzero(connectors.unilateral & (tension < 0))
             if np.array_equal(now_slack, slack):
-                return self._expand(solution, np.where(slack, 0.0, tension))
+                tension[slack] = 0.0
+                return slack, release, tension
             slack = now_slack
+            # Cancel the compression of the slack droppers, and release their preload.
+            compliance = np.array([self._elongations(n) for n in slack.tolist()]).reshape(slack.size, -1)
+            k, preload = connectors.stiffness[slack], connectors.preload[slack]
+            system = np.eye(slack.size) - k[:, None] * compliance[:, slack]
+            release = np.linalg.solve(system, preload + k * elongation[slack])
+            released = elongation + release @ compliance
         raise NoEquilibrium(
             f"no static equilibrium: the set of slack droppers still changes after {MAX_ITERATIONS} iterations"
         )
 
-    def _expand(self, solution: Array, tension: Array) -> Deflection:
-        """Deflection of all unknowns from that of the free ones."""
-        full = np.zeros(self.line.beams.free.size)
-        full[bandwidth_order(self.line)[self._free]] = solution
-        return Deflection(full.reshape(self.line.beams.free.shape), tension)
+    def _elongations(self, connector: int) -> Array:
+        """Elongations of all connectors under a unit force that elongates one of them, (connectors,) [m/N]."""
+        if connector not in self._compliance:
+            force = self._direction[:, [connector]].toarray()[:, 0]
+            self._compliance[connector] = self._direction.T @ self._stiffness.solve(force)
+        return self._compliance[connector]
+
+
+@keep_with_line
+def static_solver(line: DiscretisedLine) -> StaticSolver:
+    """Static solver of a line, built once."""
+    return StaticSolver(line)

@@ -87,3 +87,11 @@ def test_static_solver_satisfies_maxwells_reciprocity() -> None:
     place = bandwidth_order(LINE)
     moved = [STATICS.deflection(load).displacement.ravel()[place] for load in (a, b)]
     assert moved[0] @ b == pytest.approx(moved[1] @ a, rel=1e-9)
+
+
+@pytest.mark.parametrize("force", [10.0, 800.0])
+def test_deflection_along_a_load_is_its_product_with_the_displacements(force: float) -> None:
+    """With taut droppers and with slack ones, by the reciprocity of the releasing forces; to rounding."""
+    direction = point_load(LINE, 0, 90.0)
+    displacement = STATICS.deflection(force * direction).displacement.ravel()[bandwidth_order(LINE)]
+    assert STATICS.deflection_along(direction, force) == pytest.approx(direction @ displacement, rel=1e-12)
