@@ -10,6 +10,7 @@ from pantocheck.conformance.identification.identification_format import (
     IdentifiedRecord,
     ModeGroup,
     RecordResponses,
+    RecordSensor,
     RecordSpectra,
     ResponseCurve,
 )
@@ -33,6 +34,7 @@ def analyse_identification(identification: Identification) -> IdentifiedLine:
         band_Hz=(fit.band.low, fit.band.high),
         misfit=fit.misfit,
         warnings=identification.warnings,
+        spans_m=decays[0].record.line.spans,
         records=tuple(_record(decay) for decay in decays),
         groups=_groups(modes),
         modes=modes,
@@ -58,6 +60,10 @@ def _record(decay: PreparedDecay) -> IdentifiedRecord:
         used_from_s=decay.linear.start,
         used_to_s=decay.linear.end,
         channels=decay.channel_names,
+        sensors=tuple(
+            RecordSensor(channel=channel.name, wire=channel.wire, position_m=channel.position)
+            for channel in decay.channels
+        ),
     )
 
 

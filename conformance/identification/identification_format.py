@@ -12,6 +12,14 @@ Curve = list[float]
 """Values of a curve on one axis, with six significant digits."""
 
 
+class RecordSensor(RoundedModel):
+    """Sensor of a vertical channel."""
+
+    channel: Annotated[str, Field(description="name of the channel")]
+    wire: Annotated[str, Field(description="wire: CW (contact wire) or MW (messenger wire); empty: unknown")]
+    position_m: Annotated[float | None, Field(description="distance from the first support [m]; null: unknown")]
+
+
 class IdentifiedRecord(RoundedModel):
     """Mass-drop record, and the part of it in the identification."""
 
@@ -26,6 +34,7 @@ class IdentifiedRecord(RoundedModel):
     used_from_s: Annotated[Rounded, Field(description="start of the linear decay, in the time of the record [s]")]
     used_to_s: Annotated[Rounded, Field(description="end of the linear decay, in the time of the record [s]")]
     channels: Annotated[tuple[str, ...], Field(description="names of the vertical channels")]
+    sensors: Annotated[tuple[RecordSensor, ...], Field(description="sensors of these channels")] = ()
 
 
 class ModeGroup(RoundedModel):
@@ -139,6 +148,7 @@ class IdentifiedLine(RoundedModel):
         Rounded, Field(description="squared residual over its expectation for noise [-]; 1: complete model")
     ]
     warnings: tuple[str, ...]
+    spans_m: Annotated[tuple[float, ...], Field(description="lengths of the spans [m]; empty: unknown")] = ()
     records: tuple[IdentifiedRecord, ...]
     groups: tuple[ModeGroup, ...]
     modes: tuple[Mode, ...]

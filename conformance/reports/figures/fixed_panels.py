@@ -7,7 +7,6 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
-from numpy.typing import NDArray
 
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -51,37 +50,32 @@ class PanelGrid:
         return (self.width - gaps) / self.columns
 
 
-def add_panels(grid: PanelGrid) -> tuple[Figure, NDArray[np.object_]]:
+def add_panels(grid: PanelGrid) -> tuple[Figure, list[list[Axes]]]:
     """Add a grid of panels to a new figure.
 
     Returns
     -------
     Figure
         The figure.
-    (rows, columns) ndarray of Axes
-        The panels, from the upper left.
+    list of list of Axes
+        The panels, row by row from the upper left.
     """
     figure = Figure(figsize=(grid.width, grid.total_height))
     figure.set_layout_engine("none")
-    panels = np.empty((grid.rows, grid.columns), dtype=object)
-    for row, column in np.ndindex(panels.shape):
-        left = grid.left + column * (grid.panel_width + grid.between_columns)
-        bottom = grid.bottom + (grid.rows - 1 - row) * (grid.height + grid.between_rows)
-        panels[row, column] = figure.add_axes(
-            (
-                left / grid.width,
-                bottom / grid.total_height,
-                grid.panel_width / grid.width,
-                grid.height / grid.total_height,
-            )
-        )
-    return figure, panels
+    return figure, [[_add_panel(figure, grid, row, n) for n in range(grid.columns)] for row in range(grid.rows)]
+
+
+def _add_panel(figure: Figure, grid: PanelGrid, row: int, column: int) -> Axes:
+    left = grid.left + column * (grid.panel_width + grid.between_columns)
+    bottom = grid.bottom + (grid.rows - 1 - row) * (grid.height + grid.between_rows)
+    width, height = grid.width, grid.total_height
+    return figure.add_axes((left / width, bottom / height, grid.panel_width / width, grid.height / height))
 
 
 def add_panel(width: float, height: float) -> tuple[Figure, Axes]:
     """Add one panel of a height to a new figure of a width [in]."""
     figure, panels = add_panels(PanelGrid(width, height))
-    return figure, panels[0, 0]
+    return figure, panels[0][0]
 
 
 def use_powers_of_ten(axis: Axis) -> None:

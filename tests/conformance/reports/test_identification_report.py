@@ -13,10 +13,14 @@ from helpers.example_identification import build_example_line
 from pantocheck.conformance.reports.document import Block, Document, Paragraph, Section
 from pantocheck.conformance.reports.document import Figure as PageFigure
 from pantocheck.conformance.reports.document import Figures as PageFigures
+from pantocheck.conformance.reports.figures.drop_layout_figure import draw_drop_layout
 from pantocheck.conformance.reports.figures.fixed_panels import format_power_of_ten
 from pantocheck.conformance.reports.figures.half_power_figure import draw_half_power
+from pantocheck.conformance.reports.figures.response_zoom import draw_response_zoom
+from pantocheck.conformance.reports.figures.shape_figure import draw_shapes
 from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.reports.mass_drop.identification_report import build_identification_document
+from pantocheck.conformance.reports.mass_drop.shape_rows import list_measured_shapes
 
 
 @pytest.fixture(scope="module")
@@ -80,6 +84,77 @@ def test_results_without_counts_have_no_such_figure(line: dict[str, Any]) -> Non
     """An identification.json of an earlier version has no `half_power`."""
     document = build_identification_document([{key: value for key, value in line.items() if key != "half_power"}])
     assert not any("half-power" in text for text in list_sentences(document))
+
+
+def test_spectra_of_repeats_are_not_drawn(line: dict[str, Any], document: Document) -> None:
+    """Both records are in the JSON file; the page shows the first one of the drop."""
+    assert [data["record"] for data in line["spectra"]] == ["run 1", "run 2"]
+    captions = [figure.caption for figure in list_figures(document) if "spectrum of the free decay" in figure.caption]
+    assert captions == ["run 1: spectrum of the free decay, the identified modes and the residual."]
+    alone = line | {"repeatability": []}
+    captions = [figure.caption for figure in list_figures(build_identification_document([alone]))]
+    assert sum("spectrum of the free decay" in caption for caption in captions) == 2
+
+
+def test_shapes_have_a_row_per_mode_with_the_real_parts(line: dict[str, Any]) -> None:
+    """The first mode has 1 and 0.4 at the sensors. Rows have the distance 1, and the largest value of a row is 0.42."""
+    columns = list_measured_shapes(line["modes"])
+    assert [(column["title"], len(column["rows"])) for column in columns] == [("group 1", 3), ("group 2", 3)]
+    left, right = paint(draw_shapes, columns, [0.0, 60.0])
+    assert [text.get_text() for text in left.get_yticklabels()] == ["0.8800 Hz", "0.9200 Hz", "0.9700 Hz"]
+    (points,) = left.lines
+    np.testing.assert_array_equal(points.get_xdata(), [20.0, 40.0] * 3)
+    levels = np.repeat([0.0, -1.0, -2.0], 2)
+    expected = [1.0, 0.4, -0.7 / 0.9, 1.0, 0.6 / 0.8, 1.0]
+    np.testing.assert_allclose(points.get_ydata(), levels + 0.42 * np.array(expected), atol=1e-6)
+    assert right.get_xlim() == (0.0, 60.0)
+
+
+def test_shapes_need_two_sensors_with_positions(line: dict[str, Any]) -> None:
+    """Uncertain and lateral modes are left out as well."""
+    mode = line["modes"][0]
+    alone = mode | {"sensor_shape": mode["sensor_shape"][:1]}
+    nowhere = mode | {"sensor_shape": [part | {"position_m": None} for part in mode["sensor_shape"]]}
+    assert list_measured_shapes([alone, nowhere, mode | {"certain": False}, mode | {"lateral": True}]) == []
+
+
+def test_zoom_shows_the_first_two_groups(line: dict[str, Any], document: Document) -> None:
+    """From 10 % below the first mode to 10 % above the last one; the ticks are the modes."""
+    data, modes = line["frequency_responses"][0], [mode["frequency_Hz"] for mode in line["modes"]]
+    first, second = paint(draw_response_zoom, data, modes, (0.9 * 0.88, 1.1 * 1.93))
+    measured, identified, ticks = first.lines
+    assert first.get_xlim() == pytest.approx((0.792, 2.123))
+    for curve in (measured, identified):
+        assert 0.792 <= min(curve.get_xdata()) < 0.81
+        assert 2.1 < max(curve.get_xdata()) <= 2.123
+    np.testing.assert_allclose(ticks.get_xdata(), modes)
+    assert second.get_ylabel().startswith("S2_z")
+    assert any(figure.caption.endswith("the first 2 groups of span modes.") for figure in list_figures(document))
+
+
+def test_layout_shows_sensors_and_mass_on_their_wires(line: dict[str, Any], document: Document) -> None:
+    """Two sensors on the contact wire, and one mass; the repeat has the same places and adds nothing."""
+    (figure,) = [figure for figure in list_figures(document) if "masses" in figure.caption]
+    assert figure.alternative == ("Line with 6 spans: S1_z on CW at 20 m; S2_z on CW at 40 m; 20 kg on CW at 100 m.")
+    sensor = {"label": "S3_z", "wire": "MW", "position_m": 90.0}
+    (axes,) = paint(draw_drop_layout, [60.0, 60.0], [sensor], [{"label": "20 kg", "wire": "CW", "position_m": 30.0}])
+    marks = {curve.get_marker(): curve for curve in axes.lines if curve.get_marker() in ("s", "v")}
+    # In the middle of a span the messenger wire is at its lowest, 0.6 of the height at a support.
+    assert (*marks["s"].get_xdata(), *marks["s"].get_ydata()) == pytest.approx((90.0, 0.6))
+    assert (*marks["v"].get_xdata(), *marks["v"].get_ydata()) == pytest.approx((30.0, -0.1))
+
+
+def test_layout_is_left_out_if_the_spans_are_unknown(line: dict[str, Any]) -> None:
+    figures = list_figures(build_identification_document([line | {"spans_m": []}]))
+    assert not any("masses" in figure.caption for figure in figures)
+
+
+def test_names_in_figures_are_not_read_as_mathematics(line: dict[str, Any]) -> None:
+    """A channel named $S$ keeps its name; a lone formula such as $_$ would be an error."""
+    sensors = [{"label": "$_$", "wire": "CW", "position_m": 30.0}]
+    assert draw_drop_layout([60.0], sensors, []).startswith("<svg")
+    data = line["frequency_responses"][0] | {"channels": ["$_$", "$^$"]}
+    assert draw_response_zoom(data, [0.9], (0.8, 2.0)).startswith("<svg")
 
 
 @pytest.mark.parametrize(("value", "text"), [(1e-3, "10⁻³"), (0.1, "0.1"), (1.0, "1"), (10.0, "10"), (1e12, "10¹²")])

@@ -1,0 +1,60 @@
+"""Schematic of a mass drop: supports, wires, sensors and masses along the line, without a scale of the heights."""
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.reports.figures.figure_style import FULL, GREY, INK, render_svg
+from pantocheck.conformance.reports.figures.fixed_panels import PanelGrid, add_panels
+
+DRAWN_SAG = 0.4
+"""Sag of the messenger wire in the drawing; the contact wire has height 0, the messenger wire at a support height 1."""
+
+DRAWN_DROPPERS = 5
+"""Droppers drawn in a span; their real number is not known."""
+
+NAME_OFFSET = 0.16
+"""Distance of a text from its point in the drawing."""
+
+
+@render_svg
+def draw_drop_layout(spans: list[float], sensors: list[dict[str, Any]], masses: list[dict[str, Any]]) -> Figure:
+    """Wires over spans [m]; sensors stand above and masses below their wires (`label`, `wire`, `position_m`)."""
+    figure, panels = add_panels(PanelGrid(FULL, 1.25, left=0.15, right=0.15, top=0.02))
+    axes = panels[0][0]
+    supports = np.concatenate([[0.0], np.cumsum(spans)])
+    for start, end in pairwise(supports):
+        x = np.linspace(start, end, 21)
+        places = start + (np.arange(DRAWN_DROPPERS) + 0.5) / DRAWN_DROPPERS * (end - start)
+        axes.plot(x, _messenger_height(x, supports), color=INK, linewidth=0.8)
+        axes.vlines(places, 0.0, _messenger_height(places, supports), color=GREY, linewidth=0.5)
+    axes.plot(supports[[0, -1]], [0.0, 0.0], color=INK, linewidth=1.4)
+    axes.vlines(supports, -0.15, 1.15, color=GREY, linewidth=1.8)
+    _draw_points(axes, supports, sensors, "s", NAME_OFFSET)
+    _draw_points(axes, supports, masses, "v", -NAME_OFFSET - 0.1)
+    axes.set(xlim=(supports[0] - 2, supports[-1] + 2), ylim=(-0.7, 1.4), xlabel="position along the line [m]")
+    axes.set_xticks(supports, [f"{x:g}" for x in supports])
+    axes.set_yticks([])
+    axes.spines["left"].set_visible(False)
+    return figure
+
+
+def _draw_points(axes: Axes, supports: RealArray, points: list[dict[str, Any]], marker: str, offset: float) -> None:
+    for point in points:
+        x = np.array([point["position_m"]])
+        height = float(_messenger_height(x, supports)[0]) if point["wire"] == "MW" else 0.0
+        # A mass hangs below its wire.
+        axes.plot(x, [height - 0.1 * (marker == "v")], marker, color=INK, markersize=6 if marker == "v" else 4)
+        side = "bottom" if offset > 0 else "top"
+        axes.text(x[0], height + offset, point["label"], ha="center", va=side, fontsize=7, parse_math=False)
+
+
+def _messenger_height(x: RealArray, supports: RealArray) -> RealArray:
+    """Height of the messenger wire in the drawing: a parabola in each span."""
+    span = np.clip(np.searchsorted(supports, x, side="right") - 1, 0, supports.size - 2)
+    s = (x - supports[span]) / (supports[span + 1] - supports[span])
+    return np.asarray(1.0 - 4 * DRAWN_SAG * s * (1 - s))

@@ -1,0 +1,41 @@
+"""Rows of a figure of mode shapes."""
+
+from collections.abc import Iterable
+from itertools import accumulate
+from typing import Any
+
+from pantocheck.conformance.reports.page_text import format_value
+
+DRAWN_GROUPS = 2
+"""Number of groups of span modes whose shapes are drawn."""
+
+DRAWN_MODES = 12
+"""Largest number of drawn modes of a group."""
+
+
+def list_measured_shapes(modes: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Groups of modes with the real parts of their shapes at the sensors, for `draw_shapes`.
+
+    Uncertain modes and sensors without a position are left out, and shapes at fewer than two sensors.
+    """
+    columns = []
+    for group in range(1, DRAWN_GROUPS + 1):
+        rows = []
+        for mode in (mode for mode in modes if mode["group"] == group and mode["certain"] and not mode["lateral"]):
+            sensors = [
+                {"wire": part["wire"], "position_m": part["position_m"], "value": part["re"]}
+                for part in mode["sensor_shape"]
+                if part["position_m"] is not None
+            ]
+            if len(sensors) > 1:
+                label = f"{format_value(mode['frequency_Hz'], 4)} Hz"
+                rows.append({"label": label, "remark": "", "sensors": sensors, "curves": []})
+        if rows:
+            columns.append({"title": f"group {group}", "rows": rows[:DRAWN_MODES]})
+    return columns
+
+
+def list_supports(spans: Iterable[float]) -> list[float]:
+    """Positions of the supports [m] by the lengths of the spans [m]; empty if these are unknown."""
+    lengths = list(spans)
+    return [*accumulate(lengths, initial=0.0)] if lengths else []
