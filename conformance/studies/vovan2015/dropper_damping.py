@@ -30,6 +30,8 @@ from pantocheck.model.discretised_line import keep_viscous_part, with_damping
 
 TRANSITION_SHARE = 0.1
 """Relative change of the force at the onset of the transition, and remaining share of the force at its end."""
+KEPT_MARGIN_M = 5.0
+"""Distance beyond the dropper to the end of the recorded motion, which a wave from the cut has reached [m]."""
 SMALLEST_DRAWN_FORCE = 1.0
 """Smaller forces are drawn at this value on the logarithmic scale [N]."""
 LAWS: dict[str, tuple[Callable[[DiscretisedLine], DiscretisedLine], float]] = {
@@ -69,7 +71,7 @@ def run_dropper_damping(case: Case, study: DropperDamping) -> Delivered:
             f"case '{case.id}', key pantograph", "no uplift_force_N", "Give uplift_force_N of every pantograph."
         )
     mesh = discretise(line, discretisation.element_m)
-    passage = build_passage(case, mesh, discretisation, forces)
+    passage = _keep_dropper(build_passage(case, mesh, discretisation, forces), case.end, study.x_m)
     history = simulate_passage(mesh, passage)
     coefficients = np.array(study.coefficients_s)
     force = {
@@ -136,6 +138,11 @@ def _find_dropper(line: Catenary, study: DropperDamping, name: str) -> int:
         problem = f"no dropper at {study.x_m:g} m"
         raise InputError(f"case '{name}', key study.x_m", problem, "Give the position of a dropper.")
     return number
+
+
+def _keep_dropper(passage: Passage, end: float, position: float) -> Passage:
+    """Passage whose active window still includes the dropper when the last pantograph is at its end [m, m]."""
+    return replace(passage, kept_behind=max(passage.kept_behind, end - position + KEPT_MARGIN_M))
 
 
 def _largest_force(mesh: DiscretisedLine, passage: Passage, number: int, coefficient: float, law: str) -> float:

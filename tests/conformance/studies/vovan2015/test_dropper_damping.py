@@ -81,6 +81,15 @@ def test_only_compensation_of_the_elastic_force_locks_a_dropper() -> None:
     assert outcome.run.simulated_s == pytest.approx((1 + 2 * 3) * outcome.record.time[-1], rel=0.01)
 
 
+def test_motion_of_a_dropper_far_behind_the_train_is_known_until_the_end() -> None:
+    """The last pantograph stops 1.5 spans behind the dropper; without its motion there, no force would be found."""
+    (case,) = select_cases(["vovan2015/dropper-damping"])
+    coarse = case.file.discretisation.model_copy(update={"element_m": 2.25, "time_step_s": 0.004})
+    study = case.file.study.model_copy(update={"coefficients_s": (1e-6, 1e-1)})
+    outcome = run_dropper_damping(replace(case, file=case.file.model_copy(update={"discretisation": coarse})), study)
+    assert outcome.study.findings[LINE]["dropper_locked_force_pct"] < 10
+
+
 def test_both_laws_are_the_same_while_every_dropper_is_taut() -> None:
     """The laws give two linear systems with the same matrices until one dropper becomes slack.
 
