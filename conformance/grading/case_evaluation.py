@@ -79,10 +79,12 @@ class CaseEvaluation:
     @cached_property
     def values(self) -> GradedValues:
         """Quantities with their uncertainty, discretisation error and section spread."""
+        study, signals = self.delivered.study.spread, self.signals
+        run = {} if signals is None else section_spread(signals, self.case.shifted_sections)
         return GradedValues(
             evaluation=self.evaluation,
             refined=self.refined,
-            spread={} if self.signals is None else section_spread(self.signals, self.case.shifted_sections),
+            spread={owner: {**run.get(owner, {}), **study.get(owner, {})} for owner in run.keys() | study.keys()},
             uncertainty=self.uncertainty,
         )
 

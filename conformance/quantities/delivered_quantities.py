@@ -116,6 +116,12 @@ DELIVERED_QUANTITIES: tuple[Quantity, ...] = (
     *_define(
         "pantograph", "two runs of a train",
         *(
+            (f"change_cov_{cutoff}_pct", f"Change of the coefficient of variation, 0–{cutoff} Hz", "%",
+             f"change of the coefficient of variation of the contact force in 0-{cutoff} Hz "
+             "from the previous damping model to the damping of the case")
+            for cutoff in (20, 50)
+        ),
+        *(
             (f"change_{band.quantity.removesuffix('_N')}_pct", f"Change of RMS, {band.low:g}–{band.high:g} Hz", "%",
              f"change of the RMS of the contact force in {band.low:g}-{band.high:g} Hz "
              "from the previous damping model to the damping of the case")
@@ -126,6 +132,9 @@ DELIVERED_QUANTITIES: tuple[Quantity, ...] = (
         "study", "two runs of a train",
         ("rear_over_front_change_20_50_pct", "Change of RMS, 20–50 Hz, rear less front", "%",
          "change of the RMS in 20-50 Hz of the last pantograph minus the change of the first [points]"),
+        ("front_over_rear_cov_20", "Coefficient of variation, 0–20 Hz, front over rear", "",
+         "coefficient of variation in 0-20 Hz of the first pantograph over that of the last, "
+         "in the run with the smaller ratio"),
     ),
     *_define(
         "study", "runs with several coefficients",

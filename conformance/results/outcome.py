@@ -16,6 +16,8 @@ class StudyResult:
     ----------
     findings : dict of int to dict of str to Value
         Quantities by pantograph (0: the line) and name.
+    spread : dict of int to dict of str to float
+        Largest change of these quantities when the analysis section is shifted.
     charts : tuple of Chart
         Figures for the report.
     tables : tuple of TextTable
@@ -23,6 +25,7 @@ class StudyResult:
     """
 
     findings: dict[int, dict[str, Value]] = field(default_factory=dict)
+    spread: dict[int, dict[str, float]] = field(default_factory=dict)
     charts: tuple[Chart, ...] = ()
     tables: tuple[TextTable, ...] = ()
 

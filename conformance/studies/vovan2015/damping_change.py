@@ -6,12 +6,11 @@ from dataclasses import replace
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import DampingChange
 from pantocheck.conformance.quantities.bands import BAND_QUANTITIES
-from pantocheck.conformance.quantities.evaluation import LINE, Value, ValuesByOwner
 from pantocheck.conformance.quantities.signals import EXTENDED_CUTOFF_HZ, ForceChannel
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.record import Record
-from pantocheck.conformance.records.record_signals import evaluate_record
-from pantocheck.conformance.results.figure_data import Chart, Series, TextTable
+from pantocheck.conformance.records.record_signals import RecordSignals
+from pantocheck.conformance.results.figure_data import Chart, Series
 from pantocheck.conformance.results.outcome import (
     Delivered,
     Errored,
@@ -21,11 +20,11 @@ from pantocheck.conformance.results.outcome import (
     missing_record_reason,
 )
 from pantocheck.conformance.results.traces import thin_series
-from pantocheck.conformance.studies.band_charts import PrintedValues, draw_band_bars, list_pantographs
+from pantocheck.conformance.studies.band_charts import draw_band_bars
+from pantocheck.conformance.studies.vovan2015.change_tables import build_changes_table, build_values_table
+from pantocheck.conformance.studies.vovan2015.force_changes import ForceChanges, compare_runs, force_changes
 from pantocheck.conformance.studies.vovan2015.paper_tables import build_findings_table, build_provenance_table
 from pantocheck.conformance.systems.system import System
-
-PRINTED_QUANTITIES = ("cov_20", "cov_50", *BAND_QUANTITIES)
 
 
 def run_damping_change(case: Case, study: DampingChange, system: System) -> Outcome:
@@ -47,107 +46,75 @@ def run_damping_change(case: Case, study: DampingChange, system: System) -> Outc
     """
     ((name, damping),) = case.dampings.items()
     runs: dict[str, Delivered] = {}
-    records: dict[str, Record] = {}
+    signals: dict[str, RecordSignals] = {}
     for model, variant in ((name, case.with_damping(name, damping)), (study.after, case.without_study())):
         outcome = system.run(variant)
         if not isinstance(outcome, Delivered) or outcome.record is None:
             failure = Skipped if isinstance(outcome, Skipped) else Errored
             return failure(f"{model}: {missing_record_reason(outcome)}")
-        runs[model], records[model] = outcome, outcome.record
+        runs[model], signals[model] = outcome, _build_signals(case, outcome.record)
     before, after = runs.values()
-    values = {model: _evaluate(case, record) for model, record in records.items()}
-    findings = band_changes(*values.values())
-    printed = {(table.model, table.pantograph): table.values for table in study.printed}
-    printed_changes = band_changes(
-        *({p: dict(table) for (model, p), table in printed.items() if model == run} for run in runs)
-    )
+    changes = compare_runs(signals[name], signals[study.after], case.shifted_sections)
     return replace(
         after,
         refined=_compare_runs(case, before.refined, after.refined),
         coarse=_compare_runs(case, before.coarse, after.coarse),
         starts=tuple(_add_changes(case, *pair) for pair in zip(before.starts, after.starts, strict=True)),
-        study=StudyResult(
-            findings=findings,
-            charts=(*draw_band_bars(values, printed, BAND_QUANTITIES), *_draw_rear_force(case, study.span, records)),
-            tables=(
-                build_findings_table(case.limits, findings, printed_changes),
-                _comparison_table(values, printed),
-                build_provenance_table(case),
-            ),
+        study=_build_study(case, study, signals, changes),
+    )
+
+
+def _build_study(
+    case: Case, study: DampingChange, signals: Mapping[str, RecordSignals], changes: ForceChanges
+) -> StudyResult:
+    """Findings, figures and tables of the two runs."""
+    values = {model: run.evaluation.values for model, run in signals.items()}
+    printed = {(table.model, table.pantograph): table.values for table in study.printed}
+    printed_changes = force_changes(
+        *({p: dict(table) for (model, p), table in printed.items() if model == run} for run in signals)
+    )
+    return StudyResult(
+        findings=changes.values,
+        spread=changes.spread,
+        charts=(*draw_band_bars(values, printed, BAND_QUANTITIES), *_draw_rear_force(case, study.span, signals)),
+        tables=(
+            build_findings_table(case.limits, changes.values, printed_changes),
+            build_changes_table(changes, printed_changes),
+            build_values_table(values, printed),
+            build_provenance_table(case),
         ),
     )
 
 
 def _compare_runs(case: Case, before: Delivered | None, after: Delivered | None) -> Delivered | None:
-    """Run after the change with the changes of the bands; None if one of the runs is missing."""
+    """Run after the change with the changes of the force; None if one of the runs is missing."""
     return None if before is None or after is None else _add_changes(case, before, after)
 
 
 def _add_changes(case: Case, before: Delivered, after: Delivered) -> Delivered:
-    """Run after the change with the changes of the bands."""
-    changes = band_changes(_evaluate(case, before.record), _evaluate(case, after.record))
-    return replace(after, study=StudyResult(changes))
+    """Run after the change with the changes of the force."""
+    if before.record is None or after.record is None:
+        return after
+    changes = compare_runs(_build_signals(case, before.record), _build_signals(case, after.record))
+    return replace(after, study=StudyResult(changes.values))
 
 
-def band_changes(before: ValuesByOwner, after: ValuesByOwner) -> dict[int, dict[str, Value]]:
-    """Changes of the RMS in the bands [%].
+def _build_signals(case: Case, record: Record) -> RecordSignals:
+    return RecordSignals(record, case.file.filter.low_pass, case.line.geometry.supports)
 
-    Parameters
-    ----------
-    before, after : ValuesByOwner
-        Quantities by pantograph and name.
 
-    Returns
-    -------
-    dict of int to dict of str to Value
-        Changes by pantograph and name, without the bands that one side lacks. The line holds the difference of the
-        last and the first pantograph.
+def _draw_rear_force(case: Case, span: int, signals: Mapping[str, RecordSignals]) -> list[Chart]:
+    """Contact force of the last pantograph over one span, low-passed at 20 Hz and at 50 Hz (Figure 11 of the paper).
+
+    The two charts stand side by side.
     """
-    findings: dict[int, dict[str, Value]] = {}
-    for pantograph in before.keys() & after.keys() - {LINE}:
-        findings[pantograph] = {}
-        for band in BAND_QUANTITIES:
-            old, new = before[pantograph].get(band), after[pantograph].get(band)
-            if isinstance(old, float) and isinstance(new, float) and old > 0:
-                findings[pantograph][f"change_{band.removesuffix('_N')}_pct"] = 100 * (new / old - 1)
-    last, highest_band = max(findings, default=1), "change_rms_20_50_pct"
-    rear, front = (findings.get(pantograph, {}).get(highest_band) for pantograph in (last, 1))
-    if last > 1 and isinstance(rear, float) and isinstance(front, float):
-        findings[LINE] = {"rear_over_front_change_20_50_pct": rear - front}
-    return findings
-
-
-def _evaluate(case: Case, record: Record | None) -> ValuesByOwner:
-    if record is None:
-        return {}
-    return evaluate_record(record, case.file.filter.low_pass, case.line.geometry.supports).values
-
-
-def _comparison_table(values: Mapping[str, ValuesByOwner], printed: PrintedValues) -> TextTable:
-    pantographs = list_pantographs(values)
-    rows = []
-    for quantity in PRINTED_QUANTITIES:
-        for model, computed in values.items():
-            sources = [source for p in pantographs for source in (computed.get(p, {}), printed.get((model, p), {}))]
-            numbers = [source.get(quantity) for source in sources]
-            cells = [f"{number:.3g}" if isinstance(number, int | float) else "-" for number in numbers]
-            rows.append([quantity, model, *cells])
-    heads = [f"{origin}, pantograph {p}" for p in pantographs for origin in ("computed", "printed")]
-    return TextTable(
-        caption="Computed and printed values. Line and pantograph are assumed: absolute values are informative.",
-        columns=["Quantity", "Damping", *heads],
-        rows=rows,
-    )
-
-
-def _draw_rear_force(case: Case, span: int, records: Mapping[str, Record]) -> list[Chart]:
-    """Contact force of the last pantograph over one span, low-passed at 20 Hz and at 50 Hz (Figure 11 of the paper)."""
     start, end = case.line.geometry.span(span)
     charts = []
     for cutoff in (case.file.filter.cutoff_Hz, EXTENDED_CUTOFF_HZ):
         low_pass = replace(case.file.filter.low_pass, cutoff_Hz=cutoff)
         series = []
-        for model, record in records.items():
+        for model, run in signals.items():
+            record = run.record
             try:
                 force = ForceChannel(record.force[-1], record.rate, low_pass, record.filter_applied_Hz).graded
             except QuantityUnavailable:
@@ -165,6 +132,7 @@ def _draw_rear_force(case: Case, span: int, records: Mapping[str, Record]) -> li
                     x_label="position along the track [m]",
                     y_label="contact force [N]",
                     series=series,
+                    wide=False,
                 )
             )
     return charts

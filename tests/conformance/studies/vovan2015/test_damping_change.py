@@ -12,10 +12,9 @@ from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.results.criterion_format import Criterion
 from pantocheck.conformance.results.outcome import Delivered, Outcome, Skipped, StudyResult
-from pantocheck.conformance.results.results_format import CaseResult
 from pantocheck.conformance.studies.band_charts import draw_band_bars
 from pantocheck.conformance.studies.study_dispatch import run_study
-from pantocheck.conformance.studies.vovan2015.damping_change import band_changes
+from pantocheck.conformance.studies.vovan2015.force_changes import force_changes
 from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
 
 
@@ -34,11 +33,21 @@ class Unrefined:
 @pytest.fixture(scope="module")
 def case() -> Case:
     (case,) = select_cases(["vovan2015/contact-force"])
-    # Only the signs of the changes are graded; they are right with three spans and a coarse mesh.
+    # Only the signs of the changes are graded; they are right with three spans, a coarse mesh and untuned mean forces.
     coarse = case.file.discretisation.model_copy(update={"element_m": 1.0, "time_step_s": 0.002})
-    file = case.file.model_copy(update={"discretisation": coarse, "evaluated_spans": (7, 9)})
+    untuned = tuple(use.model_copy(update={"target_mean_force_N": None}) for use in case.file.pantograph)
+    update = {"discretisation": coarse, "evaluated_spans": (7, 9), "compared_spans": (7, 11), "pantograph": untuned}
+    file = case.file.model_copy(update=update)
     study = file.study.model_copy(update={"span": 8})
     return replace(case, file=file.model_copy(update={"study": study}))
+
+
+@pytest.fixture(scope="module")
+def delivered(case: Case) -> Delivered:
+    """The study of the case."""
+    outcome = run_study(case, Unrefined())
+    assert isinstance(outcome, Delivered)
+    return outcome
 
 
 def build_damping(mass: float, stiffness: float) -> Damping:
@@ -56,23 +65,22 @@ def build_damping(mass: float, stiffness: float) -> Damping:
 
 def run_and_grade(
     case: Case, before: Damping | None = None, after: Damping | None = None
-) -> tuple[dict[tuple[str, int], Criterion], CaseResult]:
+) -> dict[tuple[str, int], Criterion]:
     if before is not None:
         case = replace(case, dampings={"initial": before})
     if after is not None:
         case = replace(case, line=case.line.model_copy(update={"damping": after}))
     result = grade_case(case, run_study(case, Unrefined()), "primary")
-    return {(row.quantity, row.pantograph): row for row in result.criteria}, result
+    return {(row.quantity, row.pantograph): row for row in result.criteria}
 
 
 LOW, MIDDLE = ("change_rms_0_5_pct", 1), ("change_rms_5_20_pct", 1)
 FRONT, REAR = ("change_rms_20_50_pct", 1), ("change_rms_20_50_pct", 2)
-DIFFERENCE = ("rear_over_front_change_20_50_pct", 0)
 
 
 def printed_changes(case: Case) -> dict[int, dict[str, float]]:
     printed = {(table.model, table.pantograph): dict(table.values) for table in case.file.study.printed}
-    return band_changes(*({p: printed[name, p] for p in (1, 2)} for name in ("initial", "updated")))
+    return force_changes(*({p: printed[name, p] for p in (1, 2)} for name in ("initial", "updated")))
 
 
 def test_changes_of_the_printed_table(case: Case) -> None:
@@ -88,15 +96,30 @@ def test_changes_of_the_printed_table(case: Case) -> None:
 def test_changes_of_the_rear_pantograph_alone() -> None:
     """Without values of the front pantograph there is no difference between rear and front."""
     values = [{2: {"rms_20_50_N": value}} for value in (32.0, 40.0)]
-    assert band_changes(*values) == {2: {"change_rms_20_50_pct": 25.0}}
+    assert force_changes(*values) == {2: {"change_rms_20_50_pct": 25.0}}
+
+
+def test_changes_of_the_coefficient_of_variation(case: Case) -> None:
+    """Table 1: 0.33 to 0.30 and 0.38 to 0.37 in front, 0.23 to 0.26 and 0.28 to 0.33 at the rear."""
+    changes = printed_changes(case)
+    found = [changes[p][f"change_cov_{cutoff}_pct"] for p in (1, 2) for cutoff in (20, 50)]
+    assert_allclose(found, [-9.09, -2.63, 13.04, 17.86], atol=0.01)
+
+
+def test_order_of_front_and_rear_needs_both_runs() -> None:
+    """The smaller ratio counts: 0.30 over 0.26 under the updated damping, not 0.33 over 0.23 under the initial one."""
+    before, after = ({1: {"cov_20": front}, 2: {"cov_20": rear}} for front, rear in ((0.33, 0.23), (0.3, 0.26)))
+    assert force_changes(before, after)[0] == {"front_over_rear_cov_20": pytest.approx(0.3 / 0.26)}
+    assert 0 not in force_changes(before, {1: {"cov_20": 0.3}, 2: {}})
+    assert 0 not in force_changes({1: before[1]}, {1: after[1]})
 
 
 def test_changes_need_a_value_on_both_sides() -> None:
     """Values of the line, of a pantograph on one side alone, and zeros before the change give no change."""
     before = {0: {"rms_0_5_N": 1.0}, 1: {"rms_0_5_N": 20.0, "rms_5_20_N": 0.0, "rms_20_50_N": 10.0}, 2: {}}
     after = {0: {"rms_0_5_N": 2.0}, 1: {"rms_0_5_N": 30.0, "rms_5_20_N": 5.0, "rms_20_50_N": 9.0}, 3: {}}
-    assert band_changes(before, after) == {1: {"change_rms_0_5_pct": 50.0, "change_rms_20_50_pct": pytest.approx(-10)}}
-    assert band_changes(after, {}) == {}
+    assert force_changes(before, after) == {1: {"change_rms_0_5_pct": 50.0, "change_rms_20_50_pct": pytest.approx(-10)}}
+    assert force_changes(after, {}) == {}
 
 
 def test_the_printed_values_meet_every_limit(case: Case) -> None:
@@ -106,12 +129,33 @@ def test_the_printed_values_meet_every_limit(case: Case) -> None:
     assert {row.verdict for row in result.criteria} == {"pass"}
 
 
-def test_updated_damping_raises_the_force_above_20_hz(case: Case) -> None:
-    rows, result = run_and_grade(case)
-    assert [rows[key].verdict for key in (LOW, FRONT, REAR, DIFFERENCE)] == ["pass"] * 4
+def test_updated_damping_raises_the_force_above_20_hz(case: Case, delivered: Delivered) -> None:
+    result = grade_case(case, delivered, "primary")
+    rows = {(row.quantity, row.pantograph): row for row in result.criteria}
+    assert [rows[key].verdict for key in (LOW, FRONT, REAR)] == ["pass"] * 3
     assert all(row.margin is not None for row in rows.values())
     assert result.tables[0].caption == "Findings"
     assert any("span 8" in chart.caption for chart in result.charts)
+
+
+def test_spread_is_the_largest_difference_over_shifted_sections(case: Case, delivered: Delivered) -> None:
+    """Three sections of three spans in spans 7 to 11; the first of them is the analysis section."""
+    (table,) = (table for table in delivered.study.tables if "3 positions" in table.caption)
+    row = next(row for row in table.rows if row[1] == "2" and "20–50" in row[0])
+    value = delivered.study.findings[2]["change_rms_20_50_pct"]
+    smallest, largest = (float(cell) for cell in row[4:])
+    # The cells have three digits.
+    assert float(row[3]) == pytest.approx(value, rel=0.01)
+    spread = delivered.study.spread[2]["change_rms_20_50_pct"]
+    assert spread == pytest.approx(max(value - smallest, largest - value), abs=0.1)
+    assert spread > 0.1
+    assert grade_case(case, delivered, "primary").spread["2"]["change_rms_20_50_pct"] == spread
+
+
+def test_rear_force_at_20_and_50_hz_stands_side_by_side(delivered: Delivered) -> None:
+    pair = [chart for chart in delivered.study.charts if "span 8" in chart.caption]
+    assert [("20 Hz" in chart.caption, chart.wide) for chart in pair] == [(True, False), (False, False)]
+    assert all([series.label for series in chart.series] == ["initial", "updated"] for chart in pair)
 
 
 def test_chart_mentions_printed_values_only_if_it_shows_them() -> None:
@@ -126,25 +170,23 @@ def test_chart_mentions_printed_values_only_if_it_shows_them() -> None:
 
 
 def test_exchanged_models_are_detected_above_20_hz(case: Case) -> None:
-    """Damping that grows with frequency lowers the force above 20 Hz on both pantographs, most on the rear."""
-    rows, _ = run_and_grade(case, before=case.line.damping, after=case.dampings["initial"])
-    assert [rows[key].verdict for key in (FRONT, REAR, DIFFERENCE)] == ["fail"] * 3
+    """Damping that grows with frequency lowers the force above 20 Hz on both pantographs."""
+    rows = run_and_grade(case, before=case.line.damping, after=case.dampings["initial"])
+    assert [rows[key].verdict for key in (FRONT, REAR)] == ["fail"] * 2
 
 
 def test_excessive_mass_damping_is_detected_below_5_hz(case: Case) -> None:
     """A mass coefficient of 1.5 1/s is 13 % of critical damping at 0.9 Hz."""
-    assert run_and_grade(case, after=build_damping(1.5, 1e-4))[0][LOW].verdict == "fail"
+    assert run_and_grade(case, after=build_damping(1.5, 1e-4))[LOW].verdict == "fail"
 
 
 def test_removed_damping_is_detected_between_5_and_20_hz(case: Case) -> None:
     """A line with almost no damping cannot have a lower force in this band."""
     assert (
-        run_and_grade(case, before=build_damping(0.3, 1e-3), after=build_damping(0.0, 1e-6))[0][MIDDLE].verdict
-        == "fail"
+        run_and_grade(case, before=build_damping(0.3, 1e-3), after=build_damping(0.0, 1e-6))[MIDDLE].verdict == "fail"
     )
     assert (
-        run_and_grade(case, before=build_damping(0.0, 1e-6), after=build_damping(0.3, 1e-3))[0][MIDDLE].verdict
-        == "pass"
+        run_and_grade(case, before=build_damping(0.0, 1e-6), after=build_damping(0.3, 1e-3))[MIDDLE].verdict == "pass"
     )
 
 
