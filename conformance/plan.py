@@ -179,21 +179,28 @@ def read_plan(path: Path) -> Plan:
             "missing",
             "Name the system under test: builtin, record:DIR or command:PROGRAM.",
         )
-    kind, _, rest = plan.system.partition(":")
-    system = plan.system
-    if kind == "record":
-        system = f"record:{_find_record_folder(folder, rest)}"
-    elif kind == "command":
-        system = f"command:{shlex.join(split_arguments(rest, folder))}"
     return plan.model_copy(
         update={
-            "cases": tuple(str(folder / name) if name.endswith(".toml") else name for name in plan.cases),
-            "system": system,
+            "cases": place_cases(plan.cases, folder),
+            "system": place_system(plan.system, folder),
             "out": str(folder / plan.out),
             "baseline": None if plan.baseline is None else str(folder / plan.baseline),
             "limits": None if plan.limits is None else str(folder / plan.limits),
         }
     )
+
+
+def place_cases(names: Sequence[str], folder: Path) -> tuple[str, ...]:
+    """Ids, globs and paths of cases; paths are relative to the folder of their file."""
+    return tuple(str(folder / name) if name.endswith(".toml") else name for name in names)
+
+
+def place_system(system: str, folder: Path) -> str:
+    """Text of a system whose folder or program is relative to the folder of its file."""
+    kind, _, rest = system.partition(":")
+    if kind == "record":
+        return f"record:{_find_record_folder(folder, rest)}"
+    return f"command:{shlex.join(split_arguments(rest, folder))}" if kind == "command" else system
 
 
 def _find_record_folder(folder: Path, name: str) -> Path:

@@ -1,14 +1,9 @@
 """Runner: runs cases on a system, in sequence or in parallel. An exception ends only the case that raised it."""
 
 import multiprocessing
-import os
-import signal
-import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from multiprocessing.process import BaseProcess
-from types import FrameType
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.grading.case_grading import build_ungraded, grade_case
@@ -19,13 +14,10 @@ from pantocheck.conformance.results.results_format import CaseResult, Results, S
 from pantocheck.conformance.studies.study_dispatch import run_study
 from pantocheck.conformance.systems.process_control import (
     adopt_orphans,
-    end_with_parent,
     interruption_exit_code,
 )
 from pantocheck.conformance.systems.system import System
-
-GRACE = 2.0
-"""Time of a process to end its program after a signal [s]."""
+from pantocheck.conformance.systems.worker_process import end_workers, handle_worker_signals, limit_threads
 
 PROCESS_DIED = "the process of this case, or of a parallel case, ended unexpectedly"
 """Reason of a case that was running when a process died."""
@@ -193,7 +185,7 @@ def _run_in_parallel(
                 pool.shutdown(wait=False)
                 pool, broken = _start_pool(jobs), False
     except KeyboardInterrupt:
-        _end_workers(set(multiprocessing.active_children()) - others)
+        end_workers(set(multiprocessing.active_children()) - others)
         raise
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
@@ -205,16 +197,6 @@ def _submit(pool: Executor, case: Case, system: System, trust: Trust) -> Future[
         return pool.submit(run_case, case, system, trust)
     except BrokenProcessPool:
         return None
-
-
-def _end_workers(workers: set[BaseProcess]) -> None:
-    """End the workers of a pool: a signal lets each worker end its program; a worker that still runs is killed."""
-    for worker in workers:
-        worker.terminate()
-    limit = time.monotonic() + GRACE
-    for worker in workers:
-        worker.join(max(0.0, limit - time.monotonic()))
-        worker.kill()
 
 
 def _keep_finished(running: dict[Future[CaseResult], Case], keep: Progress) -> list[Case]:
@@ -230,25 +212,7 @@ def _keep_finished(running: dict[Future[CaseResult], Case], keep: Progress) -> l
 
 
 def _start_pool(jobs: int) -> Executor:
-    """Start processes with one thread of linear algebra each; more threads would slow them down more than twofold.
-
-    The libraries read these variables when they are loaded. A value set by the user is kept.
-    """
-    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-        os.environ.setdefault(name, "1")
+    """Start processes with one thread of linear algebra each."""
+    limit_threads()
     # Fresh interpreters: threads of a compiled kernel do not survive a fork.
-    return ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn"), _handle_signals)
-
-
-def _handle_signals() -> None:
-    """Let a signal end a worker and the program of its case; only the parent process reports the signal."""
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, _exit_on_signal)
-    end_with_parent(signal.SIGTERM)
-
-
-def _exit_on_signal(number: int, frame: FrameType | None) -> None:
-    # The exception lets a system end its processes first. The pool would keep this process alive; the alarm ends it.
-    if hasattr(signal, "alarm"):
-        signal.alarm(int(GRACE))
-    raise SystemExit(128 + number)
+    return ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn"), handle_worker_signals)

@@ -12,6 +12,7 @@ from pydantic import BaseModel
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import core_schema
 
+from pantocheck.conformance.campaigns.campaign_file import CampaignFile
 from pantocheck.conformance.cases.case_file import CaseFile
 from pantocheck.conformance.cases.converged_file import ConvergedFile
 from pantocheck.conformance.cases.damping_file import DampingFile
@@ -39,6 +40,7 @@ READ_FORMATS: dict[str, type[BaseModel]] = {
     "damping": DampingFile,
     "limits": LimitsFile,
     "plan": Plan,
+    "campaign": CampaignFile,
     "record": RecordSidecar,
     "mass-drop": MassDropSidecar,
     "static": StaticSidecar,

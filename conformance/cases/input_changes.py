@@ -7,7 +7,7 @@ are those of a case whose files state the new values.
 import re
 import tomllib
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from pydantic import BaseModel
@@ -19,6 +19,7 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.key_paths import (
     KeyPath,
     check_path,
+    holds_list,
     list_dotted_keys,
     parse_key,
 )
@@ -41,6 +42,9 @@ MODELS_BY_PREFIX: dict[str, tuple[type[BaseModel], ...]] = {
 FIXED_KEYS = {"id", "title", "edition", "superseded_by", "on_request", "requires"}
 """Keys of a case that name it or place it in the library."""
 
+SET_OPTION = "option --set"
+"""Option of the command line that changes an input."""
+
 _PLAIN_WORD = re.compile(r"[A-Za-z][A-Za-z0-9_./-]*")
 
 
@@ -60,6 +64,8 @@ class InputChange:
         Path of the key in this part.
     value : object
         New value.
+    origin : str
+        File or option that states the change, for messages.
     """
 
     key: str
@@ -67,11 +73,12 @@ class InputChange:
     pantograph: int | None
     path: KeyPath
     value: object
+    origin: str = SET_OPTION
 
     @property
     def where(self) -> str:
         """Name of the change in messages."""
-        return f"option --set, key {self.key}"
+        return f"{self.origin}, key {self.key}"
 
 
 def parse_changes(texts: Sequence[str]) -> tuple[InputChange, ...]:
@@ -96,12 +103,32 @@ def parse_changes(texts: Sequence[str]) -> tuple[InputChange, ...]:
     return tuple(map(_parse_change, texts))
 
 
-def _parse_change(text: str) -> InputChange:
-    key, equals, value = (part.strip() for part in text.partition("="))
+def build_change(key: str, value: object, origin: str = SET_OPTION) -> InputChange:
+    """Build the change of one key.
+
+    Parameters
+    ----------
+    key : str
+        Dotted key as in `parse_changes`.
+    value : object
+        New value in the types of TOML; a number for a key that holds a list stands for a list of one item.
+    origin : str
+        File or option that states the change, for messages.
+
+    Returns
+    -------
+    InputChange
+        The change.
+
+    Raises
+    ------
+    InputError
+        The key does not exist, or its value cannot be changed.
+    """
     parts = parse_key(key)
-    if not equals or parts is None:
-        raise InputError(f"option --set {text[:80]!r}", "is no assignment", "Write KEY=VALUE, e.g. speed_km_h=300 .")
-    change = _locate(key, parts, _parse_value(value, f"option --set, key {key}"))
+    if parts is None:
+        raise InputError(f"{origin} {key[:80]!r}", "is no key", "Write a key such as line.contact_wire.tension_N .")
+    change = _locate(key, parts, value, origin)
     names = {part for part in parts if isinstance(part, str)}
     if names & PROVENANCE or parts[0] in FIXED_KEYS:
         raise InputError(change.where, "cannot be changed on the command line", "Copy the file and edit the copy.")
@@ -112,22 +139,36 @@ def _parse_change(text: str) -> InputChange:
         key for prefix, files in MODELS_BY_PREFIX.items() for model in files for key in list_dotted_keys(model, prefix)
     ]
     check_path(models, change.path, change.value, change.where, everywhere)
-    return change
+    is_number = isinstance(value, int | float) and not isinstance(value, bool)
+    return replace(change, value=[value]) if is_number and holds_list(models, change.path) else change
 
 
-def _locate(key: str, parts: KeyPath, value: object) -> InputChange:
+def _parse_change(text: str) -> InputChange:
+    key, equals, value = (part.strip() for part in text.partition("="))
+    if not equals or parse_key(key) is None:
+        raise InputError(f"{SET_OPTION} {text[:80]!r}", "is no assignment", "Write KEY=VALUE, e.g. speed_km_h=300 .")
+    return build_change(key, parse_value(value, f"{SET_OPTION}, key {key}"))
+
+
+def _locate(key: str, parts: KeyPath, value: object, origin: str) -> InputChange:
     """Part of the case that a key belongs to, and its path there."""
     if len(parts) > 1 and parts[0] == "line":
-        return InputChange(key, "line", None, parts[1:], value)
+        return InputChange(key, "line", None, parts[1:], value, origin)
     if len(parts) > 1 and parts[0] == "pantograph":
         index, path = (parts[1], parts[2:]) if isinstance(parts[1], int) else (None, parts[1:])
         of_use = bool(path) and any(find_field(model, str(path[0])) is not None for model in USES)
-        return InputChange(key, "use" if of_use else "pantograph", index, path, value)
-    return InputChange(key, "case", None, parts, value)
+        return InputChange(key, "use" if of_use else "pantograph", index, path, value, origin)
+    return InputChange(key, "case", None, parts, value, origin)
 
 
-def _parse_value(text: str, where: str) -> object:
-    """Value of TOML; a plain word is text, because a shell removes quotes."""
+def parse_value(text: str, where: str) -> object:
+    """Parse a value of TOML; a plain word is text, because a shell removes quotes.
+
+    Raises
+    ------
+    InputError
+        The text is no value; `where` is its place in the message.
+    """
     try:
         return tomllib.loads(f"value = {text}")["value"]
     except (ValueError, RecursionError):

@@ -52,7 +52,7 @@ def select_cases(patterns: Sequence[str], changes: Sequence[InputChange] = ()) -
         A pattern matches no case, or a file is invalid.
     """
     known = list_library(library_folder())
-    named = {path: load_case(path, changes) for pattern in patterns for path in _match_pattern(pattern, known)}
+    named = {path: load_case(path, changes) for path in find_case_files(patterns)}
     of_line = [change for change in changes if change.part == "line"]
 
     def load_required(path: Path) -> Case:
@@ -62,6 +62,12 @@ def select_cases(patterns: Sequence[str], changes: Sequence[InputChange] = ()) -
     for case in named.values():
         _add(case, known, chosen, load_required, ())
     return list(chosen.values())
+
+
+def find_case_files(patterns: Sequence[str]) -> list[Path]:
+    """Files of cases by id, pattern or path, in this order and each once; parameter and errors as in `select_cases`."""
+    known = list_library(library_folder())
+    return list(dict.fromkeys(path for pattern in patterns for path in _match_pattern(pattern, known)))
 
 
 def _match_pattern(pattern: str, known: dict[str, Path]) -> list[Path]:

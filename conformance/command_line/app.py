@@ -12,6 +12,7 @@ from pantocheck.conformance.command_line.guard import guard_command
 
 COMMANDS = {
     "run": "Run cases on a system, grade them, and write the results and the certificate.",
+    "campaign": "Run cases with varied inputs, and write a table of all runs.",
     "assess": "Assess a simulated or measured record by the rules of a profile.",
     "cases": "List the cases of the library with the number and the trust of their limits.",
     "show": "Show the inputs, the limits and the notes of a case with their trust and source.",

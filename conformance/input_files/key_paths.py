@@ -36,15 +36,32 @@ def find_holders(model: type[BaseModel], path: KeyPath) -> list[type[BaseModel] 
 
     The list is shorter than the path if a part does not exist.
     """
+    return [holder for holder, _ in _follow_model(model, path)]
+
+
+def _list_values(model: type[BaseModel], path: KeyPath) -> list[Any]:
+    """Types of the values of a key; empty if the key does not exist."""
+    steps = _follow_model(model, path)
+    return _list_alternatives(steps[-1][1]) if path and len(steps) == len(path) else []
+
+
+def _follow_model(model: type[BaseModel], path: KeyPath) -> list[tuple[type[BaseModel] | None, Any]]:
+    """Holder and annotation of each part of a path; shorter than the path if a part does not exist."""
     annotation: Any = model
-    holders: list[type[BaseModel] | None] = []
+    followed: list[tuple[type[BaseModel] | None, Any]] = []
     for part in path:
         steps = [step for each in _list_alternatives(annotation) if (step := _step(each, part)) is not None]
         if not steps:
-            return holders
-        holder, annotation = steps[0]
-        holders.append(holder)
-    return holders
+            return followed
+        followed.append(steps[0])
+        annotation = steps[0][1]
+    return followed
+
+
+def holds_list(models: Sequence[type[BaseModel]], path: KeyPath) -> bool:
+    """Whether every model that has a key accepts nothing but a list there."""
+    values = [each for model in models for each in _list_values(model, path)]
+    return bool(values) and all(typing.get_origin(each) in (tuple, list) for each in values)
 
 
 def check_path(

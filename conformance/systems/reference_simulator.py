@@ -45,6 +45,15 @@ class ReferenceSimulator:
         return _deliver(case, case.file.discretisation)[0]
 
 
+@dataclass(frozen=True)
+class UnrefinedSimulator(ReferenceSimulator):
+    """Reference simulator that runs a case once: the uncertainty of discretisation stays unknown."""
+
+    def run(self, case: Case) -> Delivered:
+        """Run a case once, with the discretisation of the case."""
+        return self.run_unrefined(case)
+
+
 def _run_other_starts(
     case: Case, discretisation: Discretisation, uplift_forces: tuple[float, ...]
 ) -> tuple[Delivered, ...]:

@@ -202,3 +202,9 @@ def test_plan_may_state_changes(tmp_path: Path) -> None:
     result = pantocheck("run", "--plan", plan)
     assert result.exit_code == 2
     assert "Did you mean speed_km_h ?" in result.stderr
+
+
+def test_number_for_a_key_that_holds_a_list_is_a_list_of_one_item() -> None:
+    """A key that also takes a single number keeps it."""
+    changes = parse_changes(["spacing_m=85", "speed_km_h=300", "line.droppers.x_m[2]=9.5"])
+    assert [change.value for change in changes] == [[85], 300, 9.5]

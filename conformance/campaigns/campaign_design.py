@@ -1,0 +1,101 @@
+"""Design of a campaign: every run is computed from its number, so that a plan of any length takes no memory."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import prod
+
+from pantocheck.conformance.campaigns.campaign_file import InputLink
+from pantocheck.conformance.campaigns.design_axes import DesignAxis, Inputs
+from pantocheck.conformance.campaigns.design_conditions import Condition
+
+
+@dataclass(frozen=True)
+class PlannedRun:
+    """Run of a campaign.
+
+    Parameters
+    ----------
+    number : int
+        Number of the run, from 1.
+    design : int
+        Number of the design, from 1; the same for all systems.
+    case_id : str
+        Id of the base case.
+    system : str
+        System as in the option `--system`.
+    inputs : dict
+        Values of the varied inputs by key.
+    """
+
+    number: int
+    design: int
+    case_id: str
+    system: str
+    inputs: Inputs
+
+
+@dataclass(frozen=True)
+class CampaignDesign:
+    """Every base case with every combination of the axes, on every system.
+
+    The case changes slowest, then the axes in their order; the system changes from run to run. A design that breaks a
+    condition is left out; the numbers of the others stay.
+
+    Parameters
+    ----------
+    case_ids : tuple of str
+        Ids of the base cases.
+    axes : tuple of DesignAxis
+        Axes of the grid; the last one changes fastest.
+    links : tuple of InputLink
+        Inputs that follow a varied input.
+    conditions : tuple of Condition
+        Conditions on the inputs.
+    systems : tuple of str
+        Systems.
+    """
+
+    case_ids: tuple[str, ...]
+    axes: tuple[DesignAxis, ...]
+    links: tuple[InputLink, ...]
+    conditions: tuple[Condition, ...]
+    systems: tuple[str, ...]
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Keys of the varied inputs, linked ones last."""
+        return (*(key for axis in self.axes for key in axis.keys), *(link.key for link in self.links))
+
+    @property
+    def candidates(self) -> int:
+        """Number of designs before the conditions."""
+        return len(self.case_ids) * prod(len(axis) for axis in self.axes)
+
+    def count_runs(self) -> int:
+        """Count the runs; with conditions, all designs are computed one by one."""
+        if not self.conditions:
+            return self.candidates * len(self.systems)
+        return sum(1 for _ in self.list_runs())
+
+    def list_runs(self) -> Iterator[PlannedRun]:
+        """List the runs in the order of their numbers, one at a time."""
+        for design in range(self.candidates):
+            case_id, inputs = self._locate(design)
+            if all(condition.holds(inputs) for condition in self.conditions):
+                for i, system in enumerate(self.systems):
+                    number = design * len(self.systems) + i + 1
+                    named = system.replace("{design}", str(design + 1))
+                    yield PlannedRun(number, design + 1, case_id, named, inputs)
+
+    def _locate(self, design: int) -> tuple[str, Inputs]:
+        """Id of the base case and inputs of a design, by the digits of its number in the lengths of the axes."""
+        rows: list[Inputs] = []
+        for axis in reversed(self.axes):
+            design, place = divmod(design, len(axis))
+            rows.append(axis.row(place))
+        inputs: Inputs = {}
+        for row in reversed(rows):
+            inputs |= row
+        for link in self.links:
+            inputs[link.key] = link.factor * inputs[link.follows] + link.offset
+        return self.case_ids[design], inputs

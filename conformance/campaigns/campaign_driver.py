@@ -1,0 +1,128 @@
+"""Driver of a campaign: starts open runs, stores finished ones, reports progress, and stops early on request."""
+
+import time
+from collections import deque
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from dataclasses import dataclass, field
+from typing import Literal
+
+from pantocheck.conformance.campaigns.campaign_design import CampaignDesign, PlannedRun
+from pantocheck.conformance.campaigns.campaign_file import Execution
+from pantocheck.conformance.campaigns.campaign_store import CampaignStore
+from pantocheck.conformance.campaigns.run_executor import Execute, RunExecutor
+
+Ending = Literal["complete", "failure share", "time budget"]
+"""Reason of the end of a campaign: all runs are finished, too many failed, or the time is used up."""
+
+FEWEST_JUDGED = 20
+"""Fewest finished runs from which the share of failed runs is judged: one failure in them is a share of 5 %."""
+
+RATED_RUNS = 50
+"""Number of the latest runs whose rate gives the remaining time."""
+
+
+@dataclass(frozen=True)
+class CampaignProgress:
+    """Progress of a campaign.
+
+    Parameters
+    ----------
+    total : int
+        Number of the runs of the campaign.
+    finished, failed : int
+        Number of the finished runs, earlier ones included, and of the failed ones among them.
+    rate : float or None
+        Runs per second, over the latest runs; None before two runs are finished.
+    """
+
+    total: int
+    finished: int
+    failed: int
+    rate: float | None
+
+    @property
+    def remaining_s(self) -> float | None:
+        """Remaining time at this rate [s]."""
+        return (self.total - self.finished) / self.rate if self.rate else None
+
+
+@dataclass
+class _Session:
+    """Counts and times of this session of a campaign."""
+
+    execution: Execution
+    finished: int
+    failed: int
+    started: float = field(default_factory=time.monotonic)
+    ends: deque[float] = field(default_factory=lambda: deque(maxlen=RATED_RUNS))
+    ending: Ending = "complete"
+
+    def add(self, failed: bool) -> None:
+        """Count a finished run."""
+        self.finished, self.failed = self.finished + 1, self.failed + failed
+        self.ends.append(time.monotonic())
+
+    def may_start(self) -> bool:
+        """Whether a further run may be started; else `ending` has the reason."""
+        share, budget = self.execution.max_failed_share, self.execution.time_budget_s
+        if share is not None and self.finished >= FEWEST_JUDGED and self.failed > share * self.finished:
+            self.ending = "failure share"
+        elif budget is not None and time.monotonic() - self.started >= budget:
+            self.ending = "time budget"
+        return self.ending == "complete"
+
+    @property
+    def rate(self) -> float | None:
+        """Runs per second of the latest runs."""
+        duration = self.ends[-1] - self.ends[0] if len(self.ends) > 1 else 0.0
+        return (len(self.ends) - 1) / duration if duration > 0 else None
+
+
+def drive_campaign(
+    design: CampaignDesign,
+    execute: Execute,
+    store: CampaignStore,
+    executor: RunExecutor,
+    execution: Execution,
+    report: Callable[[CampaignProgress], None],
+) -> Ending:
+    """Execute the runs of a campaign that its store does not hold.
+
+    Parameters
+    ----------
+    design : CampaignDesign
+        Runs of the campaign.
+    execute : callable
+        Function that executes one run.
+    store : CampaignStore
+        Finished runs.
+    executor : RunExecutor
+        Executor of the runs.
+    execution : Execution
+        Conditions of an early stop.
+    report : callable
+        Callback that receives the progress after every run.
+
+    Returns
+    -------
+    str
+        Reason of the end.
+    """
+    total, session = design.count_runs(), _Session(execution, *store.count())
+    report(CampaignProgress(total, session.finished, session.failed, None))
+    with closing(executor.execute_all(_list_open_runs(design, store, session), execute)) as rows:
+        for row in rows:
+            store.add(row)
+            session.add(row.is_failed)
+            report(CampaignProgress(total, session.finished, session.failed, session.rate))
+    return session.ending
+
+
+def _list_open_runs(design: CampaignDesign, store: CampaignStore, session: _Session) -> Iterator[PlannedRun]:
+    """Runs that are not finished, until the session must stop."""
+    for run in design.list_runs():
+        if not store.holds(run.number):
+            if not session.may_start():
+                return
+            yield run

@@ -1,0 +1,183 @@
+"""Campaign files: base cases, variations of their inputs, sampled inputs, links, conditions and execution."""
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Discriminator, Field, Tag
+
+from pantocheck.conformance.campaigns.distributions import Distribution
+from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
+from pantocheck.conformance.input_files.sourced_table import InputTable, Positive, validation_problem
+from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.systems.system_choice import TIMEOUT_S
+
+MOST_RUNS = 10_000_000
+"""Largest number of runs of a campaign: at 10 ms per run more than a day."""
+
+Key = Annotated[
+    str,
+    Field(min_length=1, max_length=200, description='key of an input as in --set, e.g. "line.contact_wire.mass_kg_m"'),
+]
+InputValue = bool | int | float | str | list[Any]
+Values = Annotated[tuple[InputValue, ...], Field(strict=False, min_length=1, max_length=100_000)]
+
+
+class ValueRange(InputTable):
+    """Equidistant values; the end is included if a step reaches it."""
+
+    start: Annotated[int | float, Field(description="first value")]
+    stop: Annotated[int | float, Field(description="last value, if a step reaches it")]
+    step: Annotated[int | float, Field(gt=0, description="distance of the values")]
+
+    @cross_check
+    def _check_length(self) -> Problems:
+        if self.stop < self.start:
+            yield validation_problem("stop", f"{self.stop:g} is less than start = {self.start:g}", "Swap them.")
+        elif (self.stop - self.start) / self.step >= MOST_RUNS:
+            yield validation_problem("step", f"gives more than {MOST_RUNS} values", "Give a larger step.")
+
+
+class ValueVariation(InputTable):
+    """InputVariation of one key over listed values."""
+
+    key: Key
+    values: Annotated[Values, Field(description="values of the key, in the types of TOML")]
+
+
+class RangeVariation(InputTable):
+    """InputVariation of one key over equidistant values."""
+
+    key: Key
+    range: ValueRange
+
+
+class ColumnVariation(InputTable):
+    """InputVariation of several keys together: the first values of all of them, then the second values."""
+
+    columns: Annotated[
+        dict[Key, Values], Field(min_length=1, description="values of each key; all lists have the same length")
+    ]
+
+    @cross_check
+    def _check_lengths(self) -> Problems:
+        lengths = {key: len(values) for key, values in self.columns.items()}
+        if len(set(lengths.values())) > 1:
+            found = ", ".join(f"{key}: {length}" for key, length in lengths.items())
+            yield validation_problem("columns", f"lists of different length ({found})", "Give one value per run.")
+
+
+class TableVariation(InputTable):
+    """InputVariation by a table of designs: one row per design, one column per key."""
+
+    table: Annotated[
+        str,
+        Field(min_length=1, max_length=500, description="CSV file, relative to the campaign; keys in its first row"),
+    ]
+
+
+_KINDS = {"range": "RangeVariation", "columns": "ColumnVariation", "table": "TableVariation"}
+
+
+def _name_variation(variation: Any) -> str:
+    """Name of the model of a variation, which pydantic validates and reports alone."""
+    if isinstance(variation, dict):
+        return next((kind for key, kind in _KINDS.items() if key in variation), "ValueVariation")
+    return type(variation).__name__
+
+
+InputVariation = Annotated[
+    Annotated[ValueVariation, Tag("ValueVariation")]
+    | Annotated[RangeVariation, Tag("RangeVariation")]
+    | Annotated[ColumnVariation, Tag("ColumnVariation")]
+    | Annotated[TableVariation, Tag("TableVariation")],
+    Discriminator(_name_variation),
+]
+"""Values of one key, or of several keys that vary together."""
+
+
+class SampledInput(InputTable):
+    """Random input with its distribution."""
+
+    key: Key
+    distribution: Distribution
+
+
+class InputSampling(InputTable):
+    """Random designs of several inputs; the seed makes them repeatable."""
+
+    method: Annotated[
+        Literal["latin-hypercube", "sobol", "random"],
+        Field(description="latin-hypercube; sobol: scrambled sequence of a power of two runs; random: independent"),
+    ]
+    runs: Annotated[int, Field(ge=1, le=1_000_000, description="number of designs")]
+    seed: Annotated[int, Field(ge=0, le=2**63 - 1, description="seed of the generator")] = 0
+    input: Annotated[tuple[SampledInput, ...], Field(strict=False, min_length=1, max_length=1000)]
+
+    @cross_check
+    def _check_balance(self) -> Problems:
+        if self.method == "sobol" and self.runs & (self.runs - 1):
+            less = 2 ** (self.runs.bit_length() - 1)
+            hint = f"A Sobol sequence is balanced for powers of two, e.g. {less} or {2 * less}."
+            yield validation_problem("runs", f"{self.runs} is no power of two", hint)
+
+
+class InputLink(InputTable):
+    """Input that follows another varied input: factor times its value plus offset."""
+
+    key: Key
+    follows: Key
+    factor: Annotated[float, Field(description="factor of the followed value")] = 1.0
+    offset: Annotated[float, Field(description="summand, in the unit of `key`")] = 0.0
+
+
+class Execution(InputTable):
+    """Execution of a campaign; it has no influence on the results of a run."""
+
+    workers: Annotated[
+        int | None, Field(ge=1, le=1024, description="number of processes; default: number of processors")
+    ] = None
+    max_failed_share: Annotated[
+        float | None, Field(ge=0, le=1, description="share of failed runs above which the campaign stops early")
+    ] = None
+    time_budget_s: Annotated[
+        float | None, Field(gt=0, description="time after which no further run is started [s]")
+    ] = None
+    run_time_limit_s: Annotated[float | None, Field(gt=0, description="time after which a single run fails [s]")] = None
+    timeout_s: Annotated[Positive, Field(description="time limit of a program for a case [s]")] = TIMEOUT_S
+
+
+Texts = Annotated[tuple[str, ...], Field(strict=False, max_length=1000)]
+
+
+class CampaignFile(InputTable):
+    """Campaign: every case with every combination of the variations, on every system."""
+
+    title: Annotated[str, Field(max_length=200, description="title in reports")] = "Campaign"
+    cases: Annotated[
+        Texts, Field(min_length=1, description="ids, globs or paths of the base cases, relative to the campaign")
+    ]
+    set: Annotated[Texts, Field(description='inputs changed in all runs, e.g. "speed_km_h=300"')] = ()
+    vary: Annotated[
+        tuple[InputVariation, ...], Field(strict=False, max_length=100, description="variations, combined as a grid")
+    ] = ()
+    sampling: Annotated[InputSampling | None, Field(description="random designs, combined with the grid")] = None
+    link: Annotated[tuple[InputLink, ...], Field(strict=False, max_length=1000)] = ()
+    conditions: Annotated[
+        Texts,
+        Field(description='conditions on varied inputs, e.g. "speed_km_h <= 320"; designs that break one are left out'),
+    ] = ()
+    systems: Annotated[
+        Texts,
+        Field(
+            min_length=1,
+            description="builtin, record:DIR or command:PROGRAM ARGUMENTS; {design} in it is the number of the design",
+        ),
+    ] = ("builtin",)
+    refined: Annotated[
+        bool,
+        Field(description="true: runs on two other meshes, for the uncertainty of discretisation; six times slower"),
+    ] = False
+    limits: Annotated[
+        str | None, Field(description="file of limits, relative to the campaign; a changed library case has no limits")
+    ] = None
+    trust: Annotated[Trust, Field(description="lowest trust of the limits that count")] = "secondary"
+    execution: Execution = Execution()

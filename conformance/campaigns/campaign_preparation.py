@@ -1,0 +1,163 @@
+"""Preparation of a campaign: its files are read and checked before the first run."""
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+from pantocheck.conformance.campaigns.campaign_design import CampaignDesign
+from pantocheck.conformance.campaigns.campaign_file import CampaignFile
+from pantocheck.conformance.campaigns.campaign_run import RunExecution, vary_inputs
+from pantocheck.conformance.campaigns.design_axes import build_axis, sample_inputs
+from pantocheck.conformance.campaigns.design_conditions import parse_condition
+from pantocheck.conformance.cases.case import Case, json_digest
+from pantocheck.conformance.cases.input_changes import InputChange, parse_changes
+from pantocheck.conformance.cases.library import find_case_files, load_case, overlay_limits, read_limits
+from pantocheck.conformance.grading.case_identity import limits_digest
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.suggestions import suggest_names
+from pantocheck.conformance.input_files.toml_file import read_model
+from pantocheck.conformance.plan import place_cases, place_system
+from pantocheck.conformance.results.suite_identity import suite_digest
+from pantocheck.conformance.systems.system_choice import choose_system
+
+
+@dataclass(frozen=True)
+class PreparedCampaign:
+    """Campaign whose files are read and checked.
+
+    Parameters
+    ----------
+    file : CampaignFile
+        Content of the campaign file.
+    design : CampaignDesign
+        Its runs.
+    execute : RunExecution
+        Function that executes one run.
+    identity : dict
+        Parts of the campaign on which its results depend.
+    """
+
+    file: CampaignFile
+    design: CampaignDesign
+    execute: RunExecution
+    identity: dict[str, Any]
+
+
+def read_campaign(path: Path) -> PreparedCampaign:
+    """Read and prepare a campaign file; paths in it are relative to the file.
+
+    Raises
+    ------
+    InputError
+        The file, or a file that it names, cannot be read or is wrong.
+    """
+    return prepare_campaign(read_model(path, CampaignFile, "campaign"), path.parent)
+
+
+def prepare_campaign(file: CampaignFile, folder: Path) -> PreparedCampaign:
+    """Prepare a campaign.
+
+    Parameters
+    ----------
+    file : CampaignFile
+        Content of a campaign file.
+    folder : Path
+        Folder to which its paths are relative.
+
+    Raises
+    ------
+    InputError
+        A case, table, key, condition, limit or system is wrong.
+    """
+    changes = parse_changes(file.set)
+    cases = _read_cases(place_cases(file.cases, folder), changes)
+    limits = () if file.limits is None else read_limits(folder / file.limits)
+    design = _build_design(file, folder, tuple(cases))
+    files = {case_id: str(path) for case_id, (path, _) in cases.items()}
+    execute = RunExecution(files, changes, limits, file.trust, file.refined, file.execution.timeout_s)
+    _check_systems(design.systems, file.execution.timeout_s)
+    _check_first_designs(design, execute)
+    limited = overlay_limits([case for _, case in cases.values()], limits)
+    identity = {
+        "campaign": file.model_dump(mode="json", exclude={"execution", "title", "cases", "limits"}),
+        "cases": {case.id: [case.digest, limits_digest(case.limits)] for case in limited},
+        "designs": json_digest([_describe_axis(design) for design in design.axes]),
+        "suite": suite_digest(),
+    }
+    return PreparedCampaign(file, design, execute, identity)
+
+
+def _read_cases(patterns: Sequence[str], changes: Sequence[InputChange]) -> dict[str, tuple[Path, Case]]:
+    """Base cases with their files, by id."""
+    cases: dict[str, tuple[Path, Case]] = {}
+    for path in find_case_files(patterns):
+        case = load_case(path, changes)
+        if case.id in cases:
+            raise InputError(f"case '{case.id}'", "two files have this id", "Give each case a different id.")
+        cases[case.id] = path.resolve(), case
+    return cases
+
+
+def _build_design(file: CampaignFile, folder: Path, case_ids: tuple[str, ...]) -> CampaignDesign:
+    """Design of a campaign file, whose keys are checked."""
+    samples = () if file.sampling is None else (sample_inputs(file.sampling),)
+    axes = (*(build_axis(variation, folder) for variation in file.vary), *samples)
+    keys = [key for axis in axes for key in axis.keys]
+    for i, link in enumerate(file.link, 1):
+        if link.follows not in keys:
+            where = f"campaign, key link[{i}].follows"
+            raise InputError(where, f"{link.follows!r} is not a varied input", suggest_names(link.follows, keys))
+        if any(not isinstance(value, int | float) for value in _first_values(axes, link.follows)):
+            raise InputError(f"campaign, key link[{i}].follows", "is not a number", "Vary the linked input itself.")
+    keys += [link.key for link in file.link]
+    repeated = [key for key, count in Counter(keys).items() if count > 1]
+    if repeated:
+        raise InputError(f"campaign, key {repeated[0]}", "varies twice", "Vary each input in one place.")
+    conditions = tuple(parse_condition(text, keys) for text in file.conditions)
+    systems = tuple(place_system(system, folder) for system in file.systems)
+    return CampaignDesign(case_ids, axes, file.link, conditions, systems)
+
+
+def _first_values(axes: Sequence[Any], key: str) -> Iterator[object]:
+    for axis in axes:
+        if key in axis.keys:
+            yield axis.row(0)[key]
+
+
+def _check_systems(systems: Sequence[str], timeout_s: float) -> None:
+    """Refuse a system that does not exist; a folder per design is looked up by its run."""
+    for system in systems:
+        if system != "builtin" and "{design}" not in system:  # the workers alone need the compiled kernels
+            choose_system(system, timeout_s)
+
+
+def _check_first_designs(design: CampaignDesign, execute: RunExecution) -> None:
+    """Refuse a campaign without designs, with an unknown key, or whose first designs are all invalid.
+
+    A key, a unit or a list item is usually wrong in all designs; a single invalid design is a failed run.
+    """
+    first = list(islice(design.list_runs(), CHECKED_DESIGNS))
+    if not first:
+        raise InputError("campaign, key conditions", "no design meets them", "Relax a condition.")
+    vary_inputs(first[0].inputs)
+    problems = []
+    for run in first:
+        try:
+            execute.read_case(run)
+        except InputError as error:
+            problems.append(error)
+    if len(problems) == len(first):
+        raise problems[0]
+
+
+CHECKED_DESIGNS = 5
+"""Number of designs whose case is read before the first run."""
+
+
+def _describe_axis(axis: Any) -> Any:
+    """First and last rows of a range or sample; all rows of a list or table."""
+    rows = range(len(axis)) if hasattr(axis, "columns") else (0, len(axis) - 1)
+    return [list(axis.keys), len(axis), *(axis.row(i) for i in rows)]

@@ -1,0 +1,151 @@
+"""One run of a campaign, from its inputs to its row in the store. A failure is a row with its reason."""
+
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from pantocheck.conformance.campaigns.campaign_design import PlannedRun
+from pantocheck.conformance.campaigns.design_axes import Inputs
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.input_changes import InputChange, build_change
+from pantocheck.conformance.cases.library import load_case, overlay_limits
+from pantocheck.conformance.cases.limits import LimitOverride
+from pantocheck.conformance.grading.verdicts import Verdict
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.results.results_format import CaseResult
+from pantocheck.conformance.results.results_part import Number
+from pantocheck.conformance.runner import run_case
+from pantocheck.conformance.systems.system import System
+from pantocheck.conformance.systems.system_choice import choose_system
+
+FAILED: Verdict = "error"
+"""Verdict of a run without a result."""
+
+CAMPAIGN = "campaign"
+"""Origin of the varied inputs in messages."""
+
+
+@dataclass(frozen=True)
+class RunRow:
+    """Row of a run in the store.
+
+    Parameters
+    ----------
+    run : PlannedRun
+        The run with its inputs.
+    verdicts : dict
+        Verdict, and the verdicts by the criteria and by verification; None: not judged.
+    reason : str or None
+        Reason of a run without a result.
+    quantities : dict
+        Values by the name of their column, such as `1.mean_force_N`.
+    wall_s : float
+        Computing time [s].
+    """
+
+    run: PlannedRun
+    verdicts: dict[str, Verdict | None]
+    reason: str | None
+    quantities: dict[str, float]
+    wall_s: float
+
+    @property
+    def is_failed(self) -> bool:
+        """Whether the run has no result."""
+        return self.verdicts["verdict"] == FAILED
+
+
+@dataclass(frozen=True)
+class RunExecution:
+    """Function that executes runs: it is sent to the workers once, and called with each run.
+
+    Parameters
+    ----------
+    case_files : dict of str to str
+        Files of the base cases by id.
+    changes : tuple of InputChange
+        Changes of all runs.
+    limits : tuple of LimitOverride
+        Limits of the user.
+    trust : Trust
+        Lowest trust of the limits that count.
+    refined : bool
+        Whether the reference simulator also runs on two other meshes.
+    timeout_s : float
+        Time limit of a program for a case [s].
+    """
+
+    case_files: dict[str, str]
+    changes: tuple[InputChange, ...]
+    limits: tuple[LimitOverride, ...]
+    trust: Trust
+    refined: bool
+    timeout_s: float
+
+    def __call__(self, run: PlannedRun) -> RunRow:
+        """Execute a run."""
+        start = time.perf_counter()
+        try:
+            case = self.read_case(run)
+            result = run_case(case, _choose_system(run.system, self.refined, self.timeout_s), self.trust)
+        except InputError as error:
+            return build_failed_row(run, str(error), time.perf_counter() - start)
+        return _build_row(run, result, time.perf_counter() - start)
+
+    def read_case(self, run: PlannedRun) -> Case:
+        """Case of a run, with its inputs and the limits of the user.
+
+        Raises
+        ------
+        InputError
+            A file cannot be read, or the inputs are invalid.
+        """
+        case = load_case(Path(self.case_files[run.case_id]), (*self.changes, *vary_inputs(run.inputs)))
+        (limited,) = overlay_limits([case], self.limits)
+        return limited
+
+
+def vary_inputs(inputs: Inputs) -> tuple[InputChange, ...]:
+    """Changes of a case that set its varied inputs.
+
+    Raises
+    ------
+    InputError
+        A key does not exist.
+    """
+    return tuple(build_change(key, value, CAMPAIGN) for key, value in inputs.items())
+
+
+def build_failed_row(run: PlannedRun, reason: str, wall_s: float) -> RunRow:
+    """Row of a run without a result."""
+    verdicts: dict[str, Verdict | None] = {"verdict": FAILED, "criteria_verdict": None, "verification_verdict": None}
+    return RunRow(run, verdicts, " ".join(reason.split()), {}, wall_s)
+
+
+@cache
+def _choose_system(text: str, refined: bool, timeout_s: float) -> System:
+    if text == "builtin" and not refined:
+        from pantocheck.conformance.systems.reference_simulator import UnrefinedSimulator
+
+        return UnrefinedSimulator()
+    return choose_system(text, timeout_s)
+
+
+def _build_row(run: PlannedRun, result: CaseResult, wall_s: float) -> RunRow:
+    verdicts: dict[str, Verdict | None] = {
+        "verdict": result.verdict,
+        "criteria_verdict": result.criteria_verdict,
+        "verification_verdict": None if result.verification is None else result.verification.verdict,
+    }
+    return RunRow(run, verdicts, result.reason, dict(_name_quantities(result.quantities)), wall_s)
+
+
+def _name_quantities(quantities: Mapping[str, Mapping[str, Number]]) -> Iterator[tuple[str, float]]:
+    """Column and value of every quantity; the items of a list are numbered from 1."""
+    for owner, values in quantities.items():
+        for name, value in values.items():
+            for item, number in enumerate(value, 1) if isinstance(value, list) else ((None, value),):
+                yield f"{owner}.{name}" + ("" if item is None else f"[{item}]"), number

@@ -1,0 +1,147 @@
+"""Store of a campaign: an SQLite file to which each finished run is written at once."""
+
+import json
+import sqlite3
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from filelock import FileLock, Timeout
+
+from pantocheck.conformance.campaigns.campaign_design import PlannedRun
+from pantocheck.conformance.campaigns.campaign_run import FAILED, RunRow
+from pantocheck.conformance.input_files.atomic_writing import check_writable
+from pantocheck.conformance.input_files.input_error import InputError
+
+STORE_NAME = "campaign.sqlite"
+
+_TABLES = """
+CREATE TABLE IF NOT EXISTS campaign (name TEXT PRIMARY KEY, content TEXT NOT NULL);
+CREATE TABLE IF NOT EXISTS run (
+  number INTEGER PRIMARY KEY,
+  design INTEGER NOT NULL,
+  case_id TEXT NOT NULL,
+  system TEXT NOT NULL,
+  inputs TEXT NOT NULL,
+  verdict TEXT NOT NULL,
+  verdicts TEXT NOT NULL,
+  reason TEXT,
+  quantities TEXT NOT NULL,
+  wall_s REAL NOT NULL
+);
+"""
+
+
+class CampaignStore:
+    """Rows of the finished runs of one campaign. One process at a time writes them.
+
+    Parameters
+    ----------
+    connection : sqlite3.Connection
+        Open database.
+    """
+
+    def __init__(self, connection: sqlite3.Connection) -> None:
+        self._connection = connection
+
+    def add(self, row: RunRow) -> None:
+        """Write a finished run; it survives the end of this process and of the machine."""
+        run = row.run
+        values = (
+            *(run.number, run.design, run.case_id, run.system, json.dumps(run.inputs, default=str)),
+            *(row.verdicts["verdict"], json.dumps(row.verdicts), row.reason, json.dumps(row.quantities), row.wall_s),
+        )
+        with self._connection:
+            self._connection.execute(f"INSERT INTO run VALUES ({', '.join('?' * len(values))})", values)
+
+    def holds(self, number: int) -> bool:
+        """Whether a run is finished."""
+        return self._connection.execute("SELECT 1 FROM run WHERE number = ?", (number,)).fetchone() is not None
+
+    def count(self) -> tuple[int, int]:
+        """Number of the finished runs, and of the failed ones among them."""
+        finished, failed = self._connection.execute(
+            "SELECT COUNT(*), COALESCE(SUM(verdict = ?), 0) FROM run", (FAILED,)
+        ).fetchone()
+        return finished, failed
+
+    def forget_failed(self) -> None:
+        """Remove the failed runs, so that they are repeated."""
+        with self._connection:
+            self._connection.execute("DELETE FROM run WHERE verdict = ?", (FAILED,))
+
+    def rows(self) -> Iterator[RunRow]:
+        """Finished runs by their numbers, one at a time."""
+        query = (
+            "SELECT number, design, case_id, system, inputs, verdicts, reason, quantities, wall_s"
+            " FROM run ORDER BY number"
+        )
+        for number, design, case_id, system, inputs, verdicts, reason, quantities, wall in self._connection.execute(
+            query
+        ):
+            run = PlannedRun(number, design, case_id, system, json.loads(inputs))
+            yield RunRow(run, json.loads(verdicts), reason, json.loads(quantities), wall)
+
+    def check_identity(self, identity: Mapping[str, Any], folder: Path) -> None:
+        """Compare the campaign of the store with this one, or write its identity into a new store.
+
+        Raises
+        ------
+        InputError
+            The store holds the runs of another campaign.
+        """
+        stored = dict(self._connection.execute("SELECT name, content FROM campaign").fetchall())
+        contents = {name: json.dumps(content, sort_keys=True, default=str) for name, content in identity.items()}
+        if not stored:
+            with self._connection:
+                self._connection.executemany("INSERT INTO campaign VALUES (?, ?)", contents.items())
+            return
+        changed = [name for name in {**stored, **contents} if stored.get(name) != contents.get(name)]
+        if changed:
+            raise InputError(
+                f"folder '{folder}'",
+                f"holds the runs of another campaign (changed: {', '.join(changed)})",
+                "Name another folder with --out, or restore the campaign.",
+            )
+
+
+@contextmanager
+def open_store(folder: Path, identity: Mapping[str, Any]) -> Iterator[CampaignStore]:
+    """Open the store of a campaign, or create it; no other process can write it meanwhile.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder of the campaign.
+    identity : mapping of str to Any
+        Parts of the campaign on which its results depend.
+
+    Yields
+    ------
+    CampaignStore
+        The store.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written, another process runs the campaign, or the store is damaged or that of another
+        campaign.
+    """
+    check_writable(folder)
+    where = f"folder '{folder}'"
+    try:
+        with FileLock(folder / "campaign.lock", timeout=0):
+            connection = sqlite3.connect(folder / STORE_NAME)
+            try:
+                connection.executescript(_TABLES)
+                store = CampaignStore(connection)
+                store.check_identity(identity, folder)
+                yield store
+            finally:
+                connection.close()
+    except Timeout:
+        raise InputError(where, "another process runs this campaign", "Wait for its end, or stop it.") from None
+    except sqlite3.Error as error:
+        hint = f"Free space on the device, or name another folder with --out. A damaged {STORE_NAME} must be removed."
+        raise InputError(f"{where}, {STORE_NAME}", f"cannot be used ({error})", hint) from None

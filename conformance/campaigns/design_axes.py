@@ -1,0 +1,175 @@
+"""Axes of a design: rows of inputs that are found by their number, so that no list of runs is built."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from decimal import Decimal
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+
+from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.campaigns.campaign_file import (
+    ColumnVariation,
+    InputSampling,
+    RangeVariation,
+    TableVariation,
+    ValueRange,
+    ValueVariation,
+)
+from pantocheck.conformance.campaigns.distributions import Discrete
+from pantocheck.conformance.cases.input_changes import parse_value
+from pantocheck.conformance.input_files.spreadsheet import read_spreadsheet
+
+Inputs = dict[str, Any]
+"""Values by key."""
+
+_DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?")
+
+
+class DesignAxis(Protocol):
+    """Sequence of rows; each row has values of the same keys."""
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Keys of every row."""
+
+    def __len__(self) -> int:
+        """Number of rows."""
+
+    def row(self, number: int) -> Inputs:
+        """Values of a row; rows count from 0."""
+
+
+@dataclass(frozen=True)
+class RangeAxis:
+    """Equidistant values of one key, computed in decimals: 0.1 + 0.2 is 0.3."""
+
+    key: str
+    values: ValueRange
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """The key."""
+        return (self.key,)
+
+    def __len__(self) -> int:
+        """Number of values."""
+        start, stop, step = (Decimal(repr(value)) for value in (self.values.start, self.values.stop, self.values.step))
+        return int((stop - start) // step) + 1
+
+    def row(self, number: int) -> Inputs:
+        """Value of a number; whole numbers stay whole."""
+        start, step = self.values.start, self.values.step
+        if isinstance(start, int) and isinstance(step, int):
+            return {self.key: start + number * step}
+        return {self.key: float(Decimal(repr(start)) + number * Decimal(repr(step)))}
+
+
+@dataclass(frozen=True)
+class ColumnAxis:
+    """Values of several keys that vary together.
+
+    Parameters
+    ----------
+    keys : tuple of str
+        The keys.
+    columns : tuple of sequences
+        Values of each key, all of the same length.
+    """
+
+    keys: tuple[str, ...]
+    columns: tuple[Sequence[Any], ...]
+
+    def __len__(self) -> int:
+        """Number of rows."""
+        return len(self.columns[0])
+
+    def row(self, number: int) -> Inputs:
+        """Values of a row."""
+        return {key: column[number] for key, column in zip(self.keys, self.columns, strict=True)}
+
+
+@dataclass(frozen=True)
+class SampleAxis:
+    """Random designs: points of the unit cube, turned into values by the distributions of the inputs."""
+
+    sampling: InputSampling
+    values: tuple[RealArray, ...]
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Keys of the random inputs."""
+        return tuple(sampled.key for sampled in self.sampling.input)
+
+    def __len__(self) -> int:
+        """Number of designs."""
+        return self.sampling.runs
+
+    def row(self, number: int) -> Inputs:
+        """Values of a design."""
+        row: Inputs = {}
+        for sampled, values in zip(self.sampling.input, self.values, strict=True):
+            distribution, value = sampled.distribution, values[number]
+            row[sampled.key] = distribution.values[int(value)] if isinstance(distribution, Discrete) else float(value)
+        return row
+
+
+def build_axis(
+    variation: ValueVariation | RangeVariation | ColumnVariation | TableVariation, folder: Path
+) -> DesignAxis:
+    """Build the axis of a variation; a table of designs is read from a folder.
+
+    Raises
+    ------
+    InputError
+        The table cannot be read, or a cell is not a value.
+    """
+    match variation:
+        case ValueVariation(key=key, values=values):
+            return ColumnAxis((key,), (values,))
+        case RangeVariation(key=key, range=values):
+            return RangeAxis(key, values)
+        case ColumnVariation(columns=columns):
+            return ColumnAxis(tuple(columns), tuple(columns.values()))
+        case TableVariation(table=name):
+            return _read_table(folder / name)
+
+
+def sample_inputs(sampling: InputSampling) -> SampleAxis:
+    """Draw the random designs of a campaign; the same seed gives the same designs."""
+    points = _draw_points(sampling.method, len(sampling.input), sampling.runs, sampling.seed)
+    values = []
+    for column, sampled in zip(points.T, sampling.input, strict=True):
+        distribution = sampled.distribution
+        values.append(
+            distribution.choices(column) if isinstance(distribution, Discrete) else distribution.quantiles(column)
+        )
+    return SampleAxis(sampling, tuple(values))
+
+
+def _draw_points(method: str, dimension: int, runs: int, seed: int) -> RealArray:
+    """Points of the unit cube, (runs, dimension)."""
+    from scipy.stats import qmc  # imported here: it takes a second, which the workers do not need
+
+    samplers = {"latin-hypercube": qmc.LatinHypercube, "sobol": qmc.Sobol}
+    if method not in samplers:
+        return np.random.default_rng(seed).random((runs, dimension))
+    points: RealArray = samplers[method](dimension, rng=seed).random(runs)
+    return points
+
+
+def _read_table(path: Path) -> ColumnAxis:
+    """Axis of a table of designs; decimal commas are read where columns are separated by another mark."""
+    table = read_spreadsheet(path)
+    columns = []
+    for index in range(len(table.head.cells)):
+        values = []
+        for row in table.rows:
+            text = row.cells[index]
+            if table.delimiter != "," and _DECIMAL_COMMA.fullmatch(text):
+                text = text.replace(",", ".")
+            values.append(parse_value(text, table.locate(row, index)))
+        columns.append(values)
+    return ColumnAxis(table.head.cells, tuple(columns))

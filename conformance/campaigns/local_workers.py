@@ -1,0 +1,151 @@
+"""Executor on this machine: worker processes with one thread each, without any server."""
+
+import multiprocessing
+import time
+from collections import Counter, deque
+from collections.abc import Generator, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from multiprocessing.connection import Connection, wait
+from multiprocessing.process import BaseProcess
+
+from pantocheck.conformance.campaigns.campaign_design import PlannedRun
+from pantocheck.conformance.campaigns.campaign_run import RunRow, build_failed_row
+from pantocheck.conformance.campaigns.run_executor import MOST_ATTEMPTS, Execute, describe_death
+from pantocheck.conformance.systems.process_control import adopt_orphans
+from pantocheck.conformance.systems.worker_process import end_workers, handle_worker_signals, limit_threads
+
+_STARTED = "started"
+"""Sign of a worker that it starts a run: the start of its process does not count for the time limit of the run."""
+
+
+@dataclass(frozen=True)
+class LocalWorkers:
+    """Worker processes on this machine.
+
+    Parameters
+    ----------
+    workers : int
+        Number of processes.
+    run_time_limit_s : float or None
+        Time after which a single run fails and its process is ended [s].
+    """
+
+    workers: int
+    run_time_limit_s: float | None = None
+
+    def execute_all(self, runs: Iterator[PlannedRun], execute: Execute) -> Generator[RunRow, None, None]:
+        """Execute runs as in `RunExecutor`."""
+        limit_threads()
+        waiting, deaths = deque[PlannedRun](), Counter[int]()
+        busy: dict[Connection, _Worker] = {}
+        idle: list[_Worker] = []
+        with adopt_orphans(), _end_children():
+            while True:
+                while len(busy) < self.workers and (run := _take(waiting, runs)) is not None:
+                    worker = _give(run, idle, execute)
+                    busy[worker.connection] = worker
+                if not busy:
+                    return
+                for worker in self._wait(busy):
+                    answer = worker.receive()
+                    if answer == _STARTED:
+                        worker.started = time.monotonic()
+                        busy[worker.connection] = worker
+                    elif isinstance(answer, RunRow):
+                        idle.append(worker)
+                        yield answer
+                    else:
+                        end_workers([worker.process])
+                        deaths[worker.run.number] += 1
+                        if self._is_late(worker):
+                            yield build_failed_row(worker.run, f"longer than {self.run_time_limit_s:g} s", worker.age)
+                        elif deaths[worker.run.number] < MOST_ATTEMPTS:
+                            waiting.append(worker.run)
+                        else:
+                            yield build_failed_row(worker.run, describe_death(MOST_ATTEMPTS), worker.age)
+
+    def _wait(self, busy: "dict[Connection, _Worker]") -> "list[_Worker]":
+        """Wait for workers that answer, end or are late, and take them out of the busy ones."""
+        limit = self.run_time_limit_s
+        timeout = None if limit is None else max(0.0, limit - max(worker.age for worker in busy.values()))
+        ready = {connection for connection in wait(list(busy), timeout) if isinstance(connection, Connection)}
+        late = {connection for connection, worker in busy.items() if self._is_late(worker)}
+        return [busy.pop(connection) for connection in [*busy] if connection in ready | late]
+
+    def _is_late(self, worker: "_Worker") -> bool:
+        return self.run_time_limit_s is not None and worker.age >= self.run_time_limit_s
+
+
+@dataclass
+class _Worker:
+    """Worker process with the run that it executes."""
+
+    process: BaseProcess
+    connection: Connection
+    run: PlannedRun
+    started: float | None = None
+
+    @property
+    def age(self) -> float:
+        """Time since the start of the run [s]; 0 while the process is starting."""
+        return 0.0 if self.started is None else time.monotonic() - self.started
+
+    def receive(self) -> RunRow | str | None:
+        """Row of the finished run, or sign of its start; None if the process has ended or is late."""
+        with suppress(EOFError, OSError):
+            if self.connection.poll():
+                answer: RunRow | str = self.connection.recv()
+                return answer
+        return None
+
+
+@contextmanager
+def _end_children() -> Iterator[None]:
+    """End all processes that this process starts in the context."""
+    others = set(multiprocessing.active_children())
+    try:
+        yield
+    finally:
+        end_workers(set(multiprocessing.active_children()) - others)
+
+
+def _take(waiting: deque[PlannedRun], runs: Iterator[PlannedRun]) -> PlannedRun | None:
+    """Next run: one that must be repeated, or a new one; None if there is none."""
+    return waiting.popleft() if waiting else next(runs, None)
+
+
+def _give(run: PlannedRun, idle: list[_Worker], execute: Execute) -> _Worker:
+    """Give a run to an idle worker, or to a new one; an idle worker that has ended is forgotten."""
+    while idle:
+        worker = idle.pop()
+        with suppress(OSError):
+            worker.connection.send(run)
+            worker.run, worker.started = run, None
+            return worker
+    # Fresh interpreters: threads of a compiled kernel do not survive a fork.
+    context = multiprocessing.get_context("spawn")
+    connection, far_end = context.Pipe()
+    process = context.Process(target=_work, args=(far_end, execute), daemon=True)
+    process.start()
+    far_end.close()  # the connection then ends with the worker
+    with suppress(OSError):  # a worker that has ended already is noticed when its answer is awaited
+        connection.send(run)
+    return _Worker(process, connection, run)
+
+
+def _work(connection: Connection, execute: Execute) -> None:
+    """Execute runs until the connection ends; an exception becomes the reason of a failed run."""
+    handle_worker_signals()
+    while True:
+        try:
+            run: PlannedRun = connection.recv()
+        except (EOFError, OSError):
+            return
+        connection.send(_STARTED)
+        start = time.perf_counter()
+        try:
+            row = execute(run)
+        except Exception as error:
+            row = build_failed_row(run, f"{type(error).__name__}: {error}", time.perf_counter() - start)
+        connection.send(row)

@@ -1,0 +1,115 @@
+"""`pantocheck campaign`: many runs with varied inputs, which can be interrupted and resumed."""
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pantocheck.conformance.campaigns.campaign_driver import CampaignProgress, Ending, drive_campaign
+from pantocheck.conformance.campaigns.campaign_file import CampaignFile, Execution
+from pantocheck.conformance.campaigns.campaign_preparation import PreparedCampaign, prepare_campaign
+from pantocheck.conformance.campaigns.campaign_store import CampaignStore, open_store
+from pantocheck.conformance.campaigns.campaign_table import write_campaign_table
+from pantocheck.conformance.campaigns.local_workers import LocalWorkers
+from pantocheck.conformance.campaigns.short_form import parse_variation
+from pantocheck.conformance.command_line.campaign_progress import report_campaign
+from pantocheck.conformance.command_line.console import console, escape_text
+from pantocheck.conformance.command_line.options import SetOption, TrustOption
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.toml_file import read_toml, validate_model
+from pantocheck.conformance.systems.process_control import interruption_exit_code
+
+STOPPED: dict[Ending, str] = {
+    "complete": "",
+    "failure share": "Stopped: too many runs failed. ",
+    "time budget": "Stopped: the time budget is used up. ",
+}
+
+
+def campaign_command(
+    campaign: Annotated[str, typer.Argument(help="Campaign file (TOML), or id, glob or path of the base cases.")],
+    out: Annotated[Path, typer.Option(help="Folder of the runs and tables; the same command resumes the campaign.")],
+    vary: Annotated[
+        list[str] | None,
+        typer.Option(metavar="KEY=VALUES", help="Vary an input: START:STOP:STEP or VALUE,VALUE; repeat for a grid."),
+    ] = None,
+    changed: SetOption = None,
+    system: Annotated[
+        list[str] | None,
+        typer.Option(help="System: builtin, record:DIR or command:PROGRAM; repeat to compare.", show_default="builtin"),
+    ] = None,
+    limits: Annotated[Path | None, typer.Option(help="TOML file of your limits.")] = None,
+    trust: TrustOption = None,
+    workers: Annotated[
+        int | None, typer.Option(help="Number of processes.", show_default="number of processors")
+    ] = None,
+    max_failed: Annotated[
+        float | None, typer.Option(metavar="SHARE", help="Stop if a larger share of the runs fails.")
+    ] = None,
+    time_budget: Annotated[
+        float | None, typer.Option(metavar="SECONDS", help="Start no further run after this time.")
+    ] = None,
+    retry_failed: Annotated[bool, typer.Option("--retry-failed", help="Repeat the failed runs.")] = False,
+) -> None:
+    """Run cases with varied inputs, and write a table of all runs.
+
+    Every finished run is stored at once. After an interruption, the same command goes on with the open runs.
+
+    Examples:
+
+    pantocheck campaign tolerances.toml --out tolerances
+
+    pantocheck campaign en50318-2018/ac-simple/320-twin --vary speed_km_h=200:350:10 --vary spacing_m=85,200 --out map
+    """
+    design: dict[str, object] = {
+        "vary": [parse_variation(text) for text in vary or ()] or None,
+        "set": changed,
+        "systems": system,
+        "limits": None if limits is None else str(limits.resolve()),
+        "trust": trust,
+    }
+    execution = {"workers": workers, "max_failed_share": max_failed, "time_budget_s": time_budget}
+    prepared = _prepare(campaign, design, {key: value for key, value in execution.items() if value is not None})
+    output, interrupted = console(), 0
+    with open_store(out, prepared.identity) as store:
+        if retry_failed:
+            store.forget_failed()
+        ending: Ending = "complete"
+        try:
+            with report_campaign() as report:
+                ending = _drive(prepared, store, report)
+        except KeyboardInterrupt as interruption:
+            interrupted = interruption_exit_code(interruption)
+            typer.echo("Interrupted: the finished runs are stored. The same command resumes the campaign.", err=True)
+        write_campaign_table(store, out / "campaign.csv")
+        finished, failed = store.count()
+    total = prepared.design.count_runs()
+    output.print(escape_text(f"{STOPPED[ending]}{finished} of {total} runs finished, {failed} failed"))
+    output.print(escape_text(str(out / "campaign.csv")), soft_wrap=True)
+    raise typer.Exit(interrupted or int(finished < total or failed > 0))
+
+
+def _prepare(source: str, design: dict[str, object], execution: dict[str, object]) -> PreparedCampaign:
+    """Prepare a campaign file, or the cases and variations of the command line."""
+    given = {key: value for key, value in design.items() if value is not None}
+    tree = read_toml(Path(source), "campaign") if source.endswith(".toml") else {"id": source}
+    if "id" in tree:  # only a case has an id
+        content = {"title": source, "cases": [source], **given, "execution": execution}
+        return prepare_campaign(validate_model(content, CampaignFile, "command line"), Path())
+    if given:
+        raise InputError(
+            f"option {'--' + min(given).removesuffix('s')}", "stands beside a campaign file", "Edit the campaign file."
+        )
+    file = validate_model(tree, CampaignFile, f"campaign '{Path(source).name}'")
+    stated = file.execution.model_dump(exclude_unset=True)
+    changed = validate_model({**stated, **execution}, Execution, "command line")
+    return prepare_campaign(file.model_copy(update={"execution": changed}), Path(source).parent)
+
+
+def _drive(prepared: PreparedCampaign, store: CampaignStore, report: Callable[[CampaignProgress], None]) -> Ending:
+    """Execute the open runs in local processes."""
+    execution = prepared.file.execution
+    workers = LocalWorkers(execution.workers or os.cpu_count() or 1, execution.run_time_limit_s)
+    return drive_campaign(prepared.design, prepared.execute, store, workers, execution, report)
