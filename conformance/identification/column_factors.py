@@ -11,6 +11,8 @@ References
    Electronic Transactions on Numerical Analysis 44 (2015) 306-326.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 import scipy.linalg
 from scipy.linalg.blas import dtrsm
@@ -26,6 +28,74 @@ The method holds up to a condition number of 1e8; the diagonal may overestimate 
 
 REFINEMENTS = 2
 """Number of refinements of a solution; each reduces its error by 1e-16 times the squared condition number."""
+
+
+@dataclass(frozen=True)
+class Elimination:
+    """Signals without their part in the span of columns.
+
+    Parameters
+    ----------
+    coefficients : (m, c) ndarray
+        Coefficients of the columns in x; of dependent columns those with the smallest norm.
+    residual : (n, c) ndarray
+        Residual of x.
+    remainder : (n, d) ndarray
+        Residual of the other signals.
+    """
+
+    coefficients: RealArray
+    residual: RealArray
+    remainder: RealArray
+
+
+def eliminate_columns(columns: RealArray, x: RealArray, others: RealArray) -> Elimination:
+    """Subtract from signals their part in the span of columns.
+
+    Parameters
+    ----------
+    columns : (n, m) ndarray
+        Columns, n >= m.
+    x : (n, c) ndarray
+        Signals whose coefficients and residual are accurate to rounding.
+    others : (n, d) ndarray
+        Signals whose coefficients are not needed. Their solution is not refined: the error of the remainder lies in the
+        span of the columns, so that products of remainders have the square of its relative error.
+
+    Returns
+    -------
+    Elimination
+        Coefficients and residual of x, and remainder of the other signals.
+    """
+    try:
+        factor = _factor_gram_matrix(columns)
+    except np.linalg.LinAlgError:
+        q, r = _factor_by_householder(columns)
+        projected = q.T @ x
+        return Elimination(solve_factor(r, projected), x - q @ projected, others - q @ (q.T @ others))
+    coefficients, residual = factor.solve(x, 1 + REFINEMENTS)
+    return Elimination(coefficients, residual, factor.solve(others, 1)[1])
+
+
+def solve_least_squares(columns: RealArray, x: RealArray) -> tuple[RealArray, RealArray]:
+    """Solve columns c = x by least squares.
+
+    Parameters
+    ----------
+    columns : (n, m) ndarray
+        Columns, n >= m.
+    x : (n, c) ndarray
+        Right-hand sides.
+
+    Returns
+    -------
+    (m, c) ndarray
+        Coefficients; of dependent columns those with the smallest norm.
+    (n, c) ndarray
+        Residual.
+    """
+    solved = eliminate_columns(columns, x, np.zeros((x.shape[0], 0)))
+    return solved.coefficients, solved.residual
 
 
 def factor_columns(columns: RealArray) -> tuple[RealArray, RealArray]:
@@ -44,14 +114,11 @@ def factor_columns(columns: RealArray) -> tuple[RealArray, RealArray]:
         Upper triangular factor R.
     """
     try:
-        scaled, length = _scale(columns)
-        first = _factor_gram_matrix(scaled)
-        q = dtrsm(1.0, first.T, scaled.T, trans_a=1).T
-        second = _factor_gram_matrix(q)
+        first = _factor_gram_matrix(columns)
+        second = _factor_gram_matrix(first.orthogonalise())
     except np.linalg.LinAlgError:
-        q, r = scipy.linalg.qr(columns, mode="economic", check_finite=False)
-        return q, r
-    return dtrsm(1.0, second.T, q.T, trans_a=1).T, second.T @ first.T * length
+        return _factor_by_householder(columns)
+    return second.orthogonalise(), second.upper @ first.upper
 
 
 def solve_factor(r: RealArray, projected: RealArray) -> RealArray:
@@ -62,44 +129,45 @@ def solve_factor(r: RealArray, projected: RealArray) -> RealArray:
     return np.asarray(np.linalg.lstsq(r, projected, rcond=1e-13)[0])
 
 
-def solve_least_squares(columns: RealArray, x: RealArray) -> RealArray:
-    """Solve columns c = x by least squares.
+@dataclass(frozen=True)
+class _GramFactor:
+    """Columns, (n, m), their lengths, (m,), and the upper factor of the Gram matrix of columns of unit length."""
 
-    Parameters
-    ----------
-    columns : (n, m) ndarray
-        Columns, n >= m.
-    x : (n, c) ndarray
-        Right-hand sides.
+    columns: RealArray
+    length: RealArray
+    unit_upper: RealArray
 
-    Returns
-    -------
-    (m, c) ndarray
-        Coefficients; of dependent columns those with the smallest norm.
-    """
-    try:
-        scaled, length = _scale(columns)
-        lower = _factor_gram_matrix(scaled)
-    except np.linalg.LinAlgError:
-        q, r = scipy.linalg.qr(columns, mode="economic", check_finite=False)
-        return solve_factor(r, q.T @ x)
-    solution = np.zeros((columns.shape[1], x.shape[1]))
-    for _ in range(1 + REFINEMENTS):
-        solution += dpotrs(lower.T, scaled.T @ (x - scaled @ solution))[0]
-    return np.asarray(solution / length[:, None])
+    @property
+    def upper(self) -> RealArray:
+        """Upper triangular factor R of the columns, (m, m)."""
+        return self.unit_upper * self.length
+
+    def orthogonalise(self) -> RealArray:
+        """Basis of the columns, (n, m): orthonormal up to rounding times the squared condition number."""
+        return np.asarray(dtrsm(1.0, self.upper, self.columns.T, trans_a=1).T)
+
+    def solve(self, x: RealArray, passes: int) -> tuple[RealArray, RealArray]:
+        """Coefficients, (m, c), and residual, (n, c), of right-hand sides x; every pass after the first refines."""
+        length = self.length[:, None]
+        residual, solution = x, np.zeros((self.columns.shape[1], x.shape[1]))
+        for _ in range(passes):
+            solution += dpotrs(self.unit_upper, self.columns.T @ residual / length)[0] / length
+            residual = x - self.columns @ solution
+        return solution, residual
 
 
-def _scale(columns: RealArray) -> tuple[RealArray, RealArray]:
-    """Columns of unit length, and their lengths; LinAlgError if a column is zero."""
-    length = np.sqrt(np.einsum("ij,ij->j", columns, columns))
+def _factor_gram_matrix(columns: RealArray) -> _GramFactor:
+    """Cholesky factor of the Gram matrix of columns; LinAlgError if they are nearly dependent or zero."""
+    gram = columns.T @ columns
+    length = np.sqrt(gram.diagonal())
     if not np.all(length > 0):
         raise np.linalg.LinAlgError
-    return columns / length, length
-
-
-def _factor_gram_matrix(columns: RealArray) -> RealArray:
-    """Lower Cholesky factor of the Gram matrix of columns; LinAlgError if they are nearly dependent."""
-    lower = np.linalg.cholesky(columns.T @ columns)
-    if not np.all(lower.diagonal() > LEAST_DIAGONAL):
+    upper = np.linalg.cholesky(gram / length / length[:, None]).T
+    if not np.all(upper.diagonal() > LEAST_DIAGONAL):
         raise np.linalg.LinAlgError
-    return np.asarray(lower)
+    return _GramFactor(columns, np.asarray(length), np.asarray(upper))
+
+
+def _factor_by_householder(columns: RealArray) -> tuple[RealArray, RealArray]:
+    q, r = scipy.linalg.qr(columns, mode="economic", check_finite=False)
+    return q, r

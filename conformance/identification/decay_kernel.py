@@ -39,10 +39,10 @@ def kernel_and_derivative(
     poles: ComplexArray, omega: RealArray, dt: float, n: int
 ) -> tuple[ComplexArray, ComplexArray]:
     """Kernel [-] and its derivative with respect to lambda [s], each (k, m); parameters as in `decay_kernel`."""
-    grown = np.exp(poles * (n * dt))
-    one_minus_q = _one_minus_q(poles, omega, dt)
-    value = (1 - grown) / one_minus_q
-    slope = (-n * dt * grown + value * dt * (1 - one_minus_q)) / one_minus_q
+    growth = np.expm1(poles * (n * dt))
+    inverse = 1 / _one_minus_q(poles, omega, dt)
+    value = inverse * -growth
+    slope = dt * (inverse * (value - n * (1 + growth)) - value)
     return np.asarray(value), np.asarray(slope)
 
 
@@ -55,22 +55,30 @@ def _one_minus_q(poles: ComplexArray, omega: RealArray, dt: float) -> ComplexArr
     return np.asarray(-np.outer(1 + at_line, np.expm1(poles * dt)) - at_line[:, None])
 
 
-def real_columns(towards_pole: ComplexArray, towards_conjugate: ComplexArray) -> RealArray:
+def join_conjugates(poles: ComplexArray) -> ComplexArray:
+    """Poles followed by their conjugates, (2 m,)."""
+    return np.concatenate([poles, poles.conj()])
+
+
+def real_columns(kernels: ComplexArray) -> RealArray:
     """Real least-squares columns of A K(lambda) + conj(A) K(conj lambda).
 
     Parameters
     ----------
-    towards_pole, towards_conjugate : (k, m) complex ndarray
-        K (or its derivative) at lambda and at conj lambda.
+    kernels : (k, 2 m) complex ndarray
+        K (or its derivative) at the poles lambda, then at their conjugates.
 
     Returns
     -------
     (2 k, 2 m) ndarray
         Rows: real parts, then imaginary parts. Columns: factors of Re A of all poles, then of Im A of all poles.
     """
-    with_real = towards_pole + towards_conjugate
-    with_imaginary = 1j * (towards_pole - towards_conjugate)
-    return stack_real_imaginary(np.hstack([with_real, with_imaginary]))
+    k, m = kernels.shape[0], kernels.shape[1] // 2
+    total, difference = kernels[:, :m] + kernels[:, m:], kernels[:, :m] - kernels[:, m:]
+    columns = np.empty((2 * k, 2 * m))
+    columns[:k, :m], columns[k:, :m] = total.real, total.imag
+    columns[:k, m:], columns[k:, m:] = -difference.imag, difference.real
+    return columns
 
 
 def stack_real_imaginary(spectrum: ComplexArray) -> RealArray:

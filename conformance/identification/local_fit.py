@@ -11,7 +11,12 @@ from numpy.typing import NDArray
 
 from pantocheck.conformance.array_types import ComplexArray, RealArray
 from pantocheck.conformance.identification.column_factors import factor_columns
-from pantocheck.conformance.identification.decay_kernel import decay_kernel, far_pole_columns, stack_real_imaginary
+from pantocheck.conformance.identification.decay_kernel import (
+    decay_kernel,
+    far_pole_columns,
+    join_conjugates,
+    stack_real_imaginary,
+)
 from pantocheck.conformance.identification.projection import DataBlock, ProjectionFit, pole_columns
 
 MIN_LOCAL_LINES = 8
@@ -65,10 +70,9 @@ def restrict_fit(
         if window.sum() < MIN_LOCAL_LINES:
             continue
         omega = data.omega[window]
-        residues = fit.residues[near]
-        contribution = decay_kernel(poles[near], omega, data.dt, data.n) @ residues
-        contribution += decay_kernel(poles[near].conj(), omega, data.dt, data.n) @ residues.conj()
-        spectrum = fit.residual[window] + contribution
+        residues = np.concatenate([fit.residues[near], fit.residues[near].conj()])
+        kernels = decay_kernel(join_conjugates(poles[near]), omega, data.dt, data.n)
+        spectrum = fit.residual[window] + kernels @ residues
         local.append(DataBlock(data.lines[window], spectrum, data.dt, data.n, far_pole_columns(omega, 2)))
     return LocalFit(poles[near], near, local)
 

@@ -4,10 +4,17 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg
+from scipy.linalg.lapack import dposv
 
 from pantocheck.conformance.array_types import ComplexArray, RealArray
-from pantocheck.conformance.identification.decay_kernel import kernel_and_derivative, real_columns
-from pantocheck.conformance.identification.projection import DataBlock, project_spectrum
+from pantocheck.conformance.identification.column_factors import eliminate_columns
+from pantocheck.conformance.identification.decay_kernel import (
+    join_conjugates,
+    kernel_and_derivative,
+    real_columns,
+    stack_real_imaginary,
+)
+from pantocheck.conformance.identification.projection import DataBlock
 
 SMALLEST_DAMPING_RATIO = 1e-6
 """Lower limit of a damping ratio [-]; slower decays are not observable in a record of some minutes."""
@@ -23,13 +30,20 @@ class RefinedPoles:
         Poles [1/s].
     cost : float
         Sum of squared residuals, with channels in units of their noise [-].
-    covariance : (2 m, 2 m) ndarray
-        Covariance of the decay rates [1/s], followed by the angular frequencies [rad/s].
+    information : (2 m, 2 m) ndarray
+        Fisher information of the decay rates [s], followed by the angular frequencies [s/rad].
     """
 
     poles: ComplexArray
     cost: float
-    covariance: RealArray
+    information: RealArray
+
+    @property
+    def covariance(self) -> RealArray:
+        """Covariance of the decay rates [1/s], followed by the angular frequencies [rad/s], (2 m, 2 m)."""
+        scale = np.sqrt(np.maximum(np.diag(self.information), np.finfo(float).tiny))
+        both = np.outer(scale, scale)
+        return np.asarray(scipy.linalg.pinvh(self.information / both) / both)
 
 
 def refine_poles(
@@ -51,7 +65,7 @@ def refine_poles(
     Returns
     -------
     RefinedPoles
-        Poles with cost and covariance.
+        Poles with cost and information.
     """
     poles = poles[np.argsort(poles.imag)]
     current = build_normal_equations(poles, blocks)
@@ -72,26 +86,24 @@ def refine_poles(
             damping *= 10
     order = np.argsort(poles.imag)
     both = np.concatenate([order, order + poles.size])
-    return RefinedPoles(poles[order], current.cost, _inverse(current.matrix)[np.ix_(both, both)])
+    return RefinedPoles(poles[order], current.cost, current.matrix[np.ix_(both, both)])
 
 
 def _step(poles: ComplexArray, matrix: RealArray, gradient: RealArray, damping: float) -> ComplexArray:
+    m, decay = poles.size, -poles.real
     scale = np.sqrt(np.maximum(np.diag(matrix), np.finfo(float).tiny))
     normalised = matrix / np.outer(scale, scale)
     normalised[np.diag_indices_from(normalised)] += damping
-    change = np.linalg.lstsq(normalised, gradient / scale, rcond=1e-14)[0] / scale
-    m = poles.size
-    decay = -poles.real
+    right = gradient / scale
+    _, change, failed = dposv(normalised, right)
+    if failed:
+        change = np.linalg.lstsq(normalised, right, rcond=1e-14)[0]
+    change = change / scale
     # The model is nearly linear within a threefold decay rate and a frequency shift of a few bandwidths.
     decay_new = np.clip(decay + change[:m], decay / 3, decay * 3)
     reach = 3 * np.maximum(decay, 0.02)
     omega = np.maximum(poles.imag + np.clip(change[m:], -reach, reach), 1e-3)
     return np.asarray(-np.maximum(decay_new, SMALLEST_DAMPING_RATIO * omega) + 1j * omega)
-
-
-def _inverse(matrix: RealArray) -> RealArray:
-    scale = np.sqrt(np.maximum(np.diag(matrix), np.finfo(float).tiny))
-    return np.asarray(scipy.linalg.pinvh(matrix / np.outer(scale, scale)) / np.outer(scale, scale))
 
 
 @dataclass(frozen=True)
@@ -124,14 +136,12 @@ def build_normal_equations(poles: ComplexArray, blocks: list[DataBlock]) -> Norm
     m = poles.size
     cost, matrix, gradient = 0.0, np.zeros((2 * m, 2 * m)), np.zeros(2 * m)
     for data in blocks:
-        value, slope = kernel_and_derivative(poles, data.omega, data.dt, data.n)
-        mirrored, mirrored_slope = kernel_and_derivative(poles.conj(), data.omega, data.dt, data.n)
-        q, coefficients, residual = project_spectrum(real_columns(value, mirrored), data)
-        derivative = real_columns(slope, mirrored_slope)
-        correlation = derivative.T @ residual
-        derivative -= q @ (q.T @ derivative)
-        cost += float(np.sum(residual**2))
-        _accumulate(matrix, gradient, derivative.T @ derivative, correlation, coefficients[: 2 * m])
+        value, slope = kernel_and_derivative(join_conjugates(poles), data.omega, data.dt, data.n)
+        columns, derivative = np.hstack([real_columns(value), data.residual_terms]), real_columns(slope)
+        fit = eliminate_columns(columns, stack_real_imaginary(data.spectrum), derivative)
+        gram, correlation = fit.remainder.T @ fit.remainder, derivative.T @ fit.residual
+        cost += float(np.sum(fit.residual**2))
+        _accumulate(matrix, gradient, gram, correlation, fit.coefficients[: 2 * m])
     return NormalEquations(cost, matrix, gradient)
 
 

@@ -18,11 +18,12 @@ import numpy as np
 import scipy.linalg
 
 from pantocheck.conformance.array_types import ComplexArray, IntegerArray, RealArray
-from pantocheck.conformance.identification.column_factors import factor_columns, solve_factor, solve_least_squares
+from pantocheck.conformance.identification.column_factors import solve_least_squares
 from pantocheck.conformance.identification.decay_kernel import (
     decay_kernel,
     drift_columns,
     far_pole_columns,
+    join_conjugates,
     real_columns,
     stack_real_imaginary,
 )
@@ -113,27 +114,15 @@ def build_block(samples: RealArray, dt: float, low: float, high: float) -> DataB
 
 def pole_columns(poles: ComplexArray, data: DataBlock) -> RealArray:
     """Real columns for the residues of the poles at the lines of a block, (2 k, 2 m)."""
-    return real_columns(
-        decay_kernel(poles, data.omega, data.dt, data.n), decay_kernel(poles.conj(), data.omega, data.dt, data.n)
-    )
+    return real_columns(decay_kernel(join_conjugates(poles), data.omega, data.dt, data.n))
 
 
 def solve_residues(poles: ComplexArray, data: DataBlock) -> ProjectionFit:
     """Solve for the residues of known poles, (m,) [1/s], by least squares."""
     columns = np.hstack([pole_columns(poles, data), data.residual_terms])
-    x = stack_real_imaginary(data.spectrum)
-    coefficients = solve_least_squares(columns, x)
-    residual = x - columns @ coefficients
+    coefficients, residual = solve_least_squares(columns, stack_real_imaginary(data.spectrum))
     m, k = poles.size, data.lines.size
     return ProjectionFit(coefficients[:m] + 1j * coefficients[m : 2 * m], residual[:k] + 1j * residual[k:])
-
-
-def project_spectrum(columns: RealArray, data: DataBlock) -> tuple[RealArray, RealArray, RealArray]:
-    """Project a spectrum: orthonormal basis of columns and residual terms, their coefficients, and the residual."""
-    q, r = factor_columns(np.hstack([columns, data.residual_terms]))
-    x = stack_real_imaginary(data.spectrum)
-    projected = q.T @ x
-    return q, solve_factor(r, projected), np.asarray(x - q @ projected)
 
 
 def residue_spread(poles: ComplexArray, data: DataBlock) -> RealArray:

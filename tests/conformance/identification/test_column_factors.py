@@ -5,7 +5,12 @@ import pytest
 import scipy.linalg
 
 from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.identification.column_factors import factor_columns, solve_factor, solve_least_squares
+from pantocheck.conformance.identification.column_factors import (
+    eliminate_columns,
+    factor_columns,
+    solve_factor,
+    solve_least_squares,
+)
 
 
 def columns_with_condition(condition: float, seed: int = 1) -> RealArray:
@@ -33,7 +38,9 @@ def test_solution_is_that_of_singular_values(condition: float) -> None:
     length = np.linalg.norm(columns, axis=0)
     expected = np.linalg.lstsq(columns / length, x, rcond=None)[0]
     tolerance = 1e-14 * condition * np.abs(expected).max()
-    assert solve_least_squares(columns, x) * length[:, None] == pytest.approx(expected, abs=tolerance)
+    solution, residual = solve_least_squares(columns, x)
+    assert solution * length[:, None] == pytest.approx(expected, abs=tolerance)
+    assert residual == pytest.approx(x - columns / length @ expected, abs=tolerance)
     q, r = factor_columns(columns)
     assert solve_factor(r, q.T @ x) * length[:, None] == pytest.approx(expected, abs=tolerance)
 
@@ -44,4 +51,25 @@ def test_dependent_columns_have_the_smallest_solution(repeat: float) -> None:
     columns = np.random.default_rng(3).standard_normal((50, 4))
     columns[:, 3] = repeat * columns[:, 0]
     x = np.random.default_rng(4).standard_normal((50, 2))
-    assert solve_least_squares(columns, x) == pytest.approx(np.linalg.pinv(columns) @ x, abs=1e-13)
+    assert solve_least_squares(columns, x)[0] == pytest.approx(np.linalg.pinv(columns) @ x, abs=1e-13)
+
+
+@pytest.mark.parametrize(("condition", "tolerance"), [(1.0, 1e-9), (1e4, 1e-9), (1e5, 1e-9), (1e7, 1e-4), (1e12, 1e-9)])
+def test_products_of_remainders_are_those_of_householder(condition: float, tolerance: float) -> None:
+    """A remainder has an error of 1e-16 times the squared condition number; its products have the square of that.
+
+    That is 1e-4 at 1e7, below which the Gram matrix is used. One signal lies in the span of the columns up to 1e-6 of
+    its length, as the derivative of a fast decay; the rounding of this signal is 1e-10 of its remainder.
+    """
+    columns, random = columns_with_condition(condition), np.random.default_rng(5)
+    others = random.standard_normal((120, 3))
+    length = np.linalg.norm(columns, axis=0)
+    others[:, 0] = (columns / length).sum(axis=1) + 1e-6 * others[:, 0]
+    q = scipy.linalg.qr(columns, mode="economic")[0]
+    expected = others - q @ (q.T @ others)
+    expected -= q @ (q.T @ expected)
+    remainder = eliminate_columns(columns, others, others).remainder
+    size = np.linalg.norm(expected, axis=0)
+    assert (remainder.T @ remainder) / np.outer(size, size) == pytest.approx(
+        expected.T @ expected / np.outer(size, size), abs=tolerance
+    )

@@ -9,6 +9,7 @@ from pantocheck.conformance.identification.decay_kernel import (
     decay_kernel,
     drift_columns,
     far_pole_columns,
+    join_conjugates,
     kernel_and_derivative,
     real_columns,
 )
@@ -45,9 +46,9 @@ def test_derivative_is_that_of_the_kernel() -> None:
 def test_real_columns_carry_residues_as_real_numbers() -> None:
     poles, residue = np.array([-0.1 + 5.0j]), 0.7 - 1.9j
     omega = 2 * np.pi * np.arange(1, 50) / (N * DT)
-    towards, away = decay_kernel(poles, omega, DT, N), decay_kernel(poles.conj(), omega, DT, N)
-    expected = (residue * towards + np.conj(residue) * away)[:, 0]
-    rows = real_columns(towards, away) @ np.array([residue.real, residue.imag])
+    kernels = decay_kernel(join_conjugates(poles), omega, DT, N)
+    expected = kernels @ np.array([residue, np.conj(residue)])
+    rows = real_columns(kernels) @ np.array([residue.real, residue.imag])
     assert rows == pytest.approx(np.concatenate([expected.real, expected.imag]), rel=1e-12, abs=1e-12)
 
 
