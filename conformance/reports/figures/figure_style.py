@@ -7,6 +7,7 @@ from importlib.resources import as_file
 from typing import Any, ParamSpec, TypeVar
 
 import matplotlib
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
@@ -22,6 +23,8 @@ LINES = ("-", "--", "-.", ":")
 LIMIT_LINE = (0, (6, 2))
 FULL, HALF = 6.9, 3.4
 """Widths of a figure [in]: the text of an A4 page, and half of it."""
+
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 Arguments = ParamSpec("Arguments")
 Content = TypeVar("Content")
@@ -81,6 +84,16 @@ def render_pdf_pages(paint: Callable[[Content], Figure], contents: Iterable[Cont
 def add_legend(axes: Axes, columns: int = 5) -> None:
     """A legend above the axes, where it cannot cover the data."""
     axes.legend(loc="lower left", bbox_to_anchor=(0, 1.02), ncols=columns, borderaxespad=0.2, columnspacing=1.4)
+
+
+def use_decades(axes: Axes) -> None:
+    """A logarithmic vertical axis with one tick per decade.
+
+    Its labels are plain letters, and it has no ticks between decades: both take most of the time of a figure.
+    """
+    axes.set_yscale("log")
+    axes.yaxis.set_major_formatter(lambda value, _: "10" + f"{round(np.log10(value)):d}".translate(SUPERSCRIPTS))
+    axes.minorticks_off()
 
 
 def add_box(axes: Axes, values: RealArray, place: float) -> None:

@@ -14,6 +14,7 @@ from pantocheck.conformance.reports.figures.figure_style import (
     add_box,
     add_legend,
     render_svg,
+    use_decades,
 )
 
 
@@ -47,7 +48,7 @@ def draw_spectra(data: dict[str, Any], unit: str) -> Figure:
         axes.plot(data["frequency_Hz"], measured, color=SHADES[3], linewidth=2.4, label="measured")
         axes.plot(data["frequency_Hz"], fitted, color=INK, linewidth=0.8, label="identified")
         axes.plot(data["frequency_Hz"], residual, ":", color=GREY, linewidth=0.7, label="residual")
-        axes.set_yscale("log")
+        use_decades(axes)
         ticks, top = np.ones(len(data["poles_Hz"])), axes.get_xaxis_transform()
         axes.plot(data["poles_Hz"], ticks, "|", color=INK, markersize=6, transform=top, clip_on=False)
         axes.set_ylabel(f"{channel} [{unit} s]")
@@ -67,7 +68,7 @@ def draw_responses(data: dict[str, Any]) -> Figure:
     ):
         upper.plot(data["frequency_Hz"], measured["abs"], color=SHADES[3], linewidth=2.4, label="measured")
         upper.plot(data["frequency_Hz"], identified["abs"], color=INK, linewidth=0.8, label="identified")
-        upper.set_yscale("log")
+        use_decades(upper)
         upper.set_ylabel(f"{channel}\n[m/s²/N]")
         lower.plot(data["frequency_Hz"], np.degrees(measured["phase_rad"]), ".", color=SHADES[3], markersize=2.5)
         lower.plot(data["frequency_Hz"], np.degrees(identified["phase_rad"]), color=INK, linewidth=0.6)
