@@ -5,15 +5,16 @@ Functions import the writers that they need, because matplotlib, Typst and the t
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pantocheck.conformance.input_files.atomic_writing import write_atomically
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.reports.document import Document
 from pantocheck.conformance.reports.formats.badge import render_badge
-from pantocheck.conformance.reports.formats.junit import render_junit
-from pantocheck.conformance.results.results_format import Results
+
+if TYPE_CHECKING:
+    from pantocheck.conformance.results.results_format import Results
 
 FILES = {
     "html": "certificate.html",
@@ -65,7 +66,7 @@ def check_formats(names: Sequence[str]) -> tuple[str, ...]:
     return ("json", *(name for name in FILES if name in names and name != "json"))
 
 
-def write_all(results: Results, folder: Path, formats: Sequence[str]) -> list[Path]:
+def write_all(results: "Results", folder: Path, formats: Sequence[str]) -> list[Path]:
     """Write results in several formats.
 
     Returns
@@ -98,6 +99,8 @@ def write_pages(results: dict[str, Any], folder: Path, formats: Sequence[str]) -
 
         write_report(build_summary(results), folder / FILES["md"])
     if "junit" in formats:
+        from pantocheck.conformance.reports.formats.junit import render_junit
+
         write_atomically(folder / FILES["junit"], render_junit(results))
     if "csv" in formats:
         from pantocheck.conformance.reports.formats.quantity_list import render_quantity_list
