@@ -40,7 +40,7 @@ def analyse_identification(identification: Identification) -> IdentifiedLine:
         modes=modes,
         half_power=count_half_power_lines(modes),
         repeatability=tuple(compare_records(repeats) for repeats in repeated),
-        overlays=tuple(overlay_records(repeats) for repeats in repeated),
+        overlays=tuple(overlay_records(records) for records in repeated or drops[:1]),
         spectra=tuple(_spectra(fit, record, modes) for record in fit.records),
         frequency_responses=tuple(response for response in responses if response is not None),
     )

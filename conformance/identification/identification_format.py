@@ -77,10 +77,12 @@ class Repeatability(RoundedModel):
 
 
 class CurveWindow(RoundedModel):
-    """Signal of one channel in a time window after the release."""
+    """Motion at one channel in a time window after the release, low-pass filtered."""
 
     time_s: Curve
-    signal: Curve
+    signal: Annotated[Curve, Field(description="measured quantity [SI unit]")]
+    velocity_m_s: Curve
+    acceleration_m_s2: Curve
 
 
 class OverlayRun(RoundedModel):
@@ -91,7 +93,7 @@ class OverlayRun(RoundedModel):
 
 
 class Overlay(RoundedModel):
-    """Signals of the repeats of a drop at the channel with the largest motion."""
+    """Signals of the records of a drop at the channel with the largest motion."""
 
     channel: str
     runs: tuple[OverlayRun, ...]
@@ -154,7 +156,9 @@ class IdentifiedLine(RoundedModel):
     modes: tuple[Mode, ...]
     half_power: Annotated[HalfPowerLines | None, Field(description="spectral lines in the half-power band")] = None
     repeatability: Annotated[tuple[Repeatability, ...], Field(description="repeatability of each repeated drop")]
-    overlays: Annotated[tuple[Overlay, ...], Field(description="signals of each repeated drop")]
+    overlays: Annotated[
+        tuple[Overlay, ...], Field(description="signals of each repeated drop; of the first drop if none is repeated")
+    ]
     spectra: Annotated[tuple[RecordSpectra, ...], Field(description="spectra of each record")]
     frequency_responses: Annotated[
         tuple[RecordResponses, ...], Field(description="frequency responses of each record with a known mass")

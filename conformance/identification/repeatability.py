@@ -13,6 +13,7 @@ from pantocheck.conformance.identification.identification_format import (
     OverlayRun,
     Repeatability,
 )
+from pantocheck.conformance.identification.motion_conversion import convert_motion
 
 WINDOW = 10.0
 """Length of a compared window [s]."""
@@ -48,20 +49,26 @@ def compare_records(repeats: tuple[PreparedDecay, ...]) -> Repeatability:
 
 
 def overlay_records(repeats: tuple[PreparedDecay, ...]) -> Overlay:
-    """Curves of the repeats of a drop at the channel with the largest motion."""
+    """Curves of the records of a drop at the channel with the largest motion."""
     lowest_rate = min(decay.record.rate for decay in repeats)
     curves = [_align_record(decay, lowest_rate) for decay in repeats]
     channel = int(np.argmax(curves[0][1].std(axis=0)))
     runs = []
     for decay, (time, samples) in zip(repeats, curves, strict=True):
-        windows = []
-        for begin in (0.0, LATER):
-            grid = np.arange(begin, begin + WINDOW, CURVE_STEP)
-            if grid[-1] <= time[-1]:
-                signal = np.interp(grid, time, samples[:, channel])
-                windows.append(CurveWindow(time_s=round_curve(grid), signal=round_curve(signal - signal.mean())))
-        runs.append(OverlayRun(name=decay.record.name, windows=tuple(windows)))
+        measured, rate, given = samples[:, [channel]], decay.record.rate, decay.record.quantity
+        velocity, acceleration = (convert_motion(measured, rate, given, q) for q in ("velocity", "acceleration"))
+        motion = np.hstack([measured, velocity, acceleration])
+        windows = tuple(_cut_window(time, motion, begin) for begin in (0.0, LATER) if begin + WINDOW <= time[-1])
+        runs.append(OverlayRun(name=decay.record.name, windows=windows))
     return Overlay(channel=repeats[0].channel_names[channel], runs=tuple(runs))
+
+
+def _cut_window(time: RealArray, motion: RealArray, begin: float) -> CurveWindow:
+    """Measured quantity, velocity and acceleration, (n, 3), in a window after the release, each without its mean."""
+    grid = np.arange(begin, begin + WINDOW, CURVE_STEP)
+    curves = [np.interp(grid, time, column) for column in motion.T]
+    signal, velocity, acceleration = (round_curve(curve - curve.mean()) for curve in curves)
+    return CurveWindow(time_s=round_curve(grid), signal=signal, velocity_m_s=velocity, acceleration_m_s2=acceleration)
 
 
 def round_curve(values: RealArray) -> Curve:

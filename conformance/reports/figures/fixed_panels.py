@@ -8,7 +8,7 @@ from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
-SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 @dataclass(frozen=True)
@@ -88,4 +88,4 @@ def use_powers_of_ten(axis: Axis) -> None:
 def format_power_of_ten(value: float) -> str:
     """A power of ten as text: `10⁻³`, and 0.1, 1 and 10 as they are."""
     exponent = round(np.log10(value))
-    return f"{value:g}" if abs(exponent) <= 1 else f"10{str(exponent).translate(SUPERSCRIPTS)}"
+    return f"{value:g}" if abs(exponent) <= 1 else f"10{str(exponent).translate(_SUPERSCRIPTS)}"

@@ -9,31 +9,12 @@ from pantocheck.conformance.reports.figures.figure_style import (
     FULL,
     GREY,
     INK,
-    LINES,
     SHADES,
     add_box,
     add_legend,
     render_svg,
     use_decades,
 )
-
-
-@render_svg
-def draw_overlay(runs: list[dict[str, Any]], channel: str, unit: str) -> Figure:
-    """Repeats of one drop laid over each other at the start and a minute later; one entry of `overlays` of a line."""
-    windows = max(len(run["windows"]) for run in runs)
-    figure = Figure(figsize=(FULL, 2.4 * windows))
-    panels = np.atleast_1d(figure.subplots(windows, 1))
-    for window, axes in enumerate(panels):
-        for number, run in enumerate(runs):
-            if window < len(run["windows"]):
-                data = run["windows"][window]
-                shade, style = SHADES[number % len(SHADES)], LINES[number % len(LINES)]
-                axes.plot(data["time_s"], data["signal"], style, color=shade, linewidth=1.0, label=run["name"])
-        axes.set_ylabel(f"{channel} [{unit}]")
-    panels[-1].set_xlabel("time after the release [s]")
-    add_legend(panels[0])
-    return figure
 
 
 @render_svg

@@ -5,6 +5,7 @@ from typing import Any
 
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.figures import identification_figures as figures
+from pantocheck.conformance.reports.figures.motion_figure import draw_motion
 from pantocheck.conformance.reports.mass_drop.mode_section import list_mode_blocks
 from pantocheck.conformance.reports.mass_drop.record_section import list_record_blocks
 from pantocheck.conformance.reports.mass_drop.response_section import list_response_figures
@@ -41,8 +42,10 @@ def _list_sections(line: dict[str, Any], suffix: str) -> Iterator[doc.Section]:
     # The records stand before the fit: its tall figure starts a page, and they fill the one before.
     yield doc.Section(f"Records{suffix}", tuple(list_record_blocks(line)))
     yield doc.Section(f"Fit{suffix}", tuple(_fit(line, unit)))
+    if motion := tuple(_list_motion_figures(line["overlays"])):
+        yield doc.Section(f"Motion{suffix}", (doc.Figures(motion),))
     if line["repeatability"]:
-        yield doc.Section(f"Repeatability{suffix}", tuple(_repeatability(line, unit)))
+        yield doc.Section(f"Repeatability{suffix}", tuple(_repeatability(line)))
     if response_figures := tuple(list_response_figures(line)):
         yield doc.Section(f"Frequency responses{suffix}", (doc.Figures(response_figures),))
 
@@ -97,19 +100,23 @@ def _skip_repeats(line: dict[str, Any]) -> list[dict[str, Any]]:
     return [data for data in line["spectra"] if data["record"] not in repeats]
 
 
-def _repeatability(line: dict[str, Any], unit: str) -> Iterator[doc.Block]:
+def _list_motion_figures(overlays: list[dict[str, Any]]) -> Iterator[doc.Figure]:
+    for overlay in overlays:
+        names = [run["name"] for run in overlay["runs"] if run["windows"]]
+        if names:
+            later = max(len(run["windows"]) for run in overlay["runs"]) > 1
+            windows = "in the first ten seconds" + (" and a minute later" if later else "")
+            yield doc.Figure(
+                draw_motion(overlay["runs"]),
+                f"Velocity and acceleration at {overlay['channel']} after the release, {windows}: "
+                f"{', '.join(names)}, laid over each other.",
+                f"Velocity and acceleration at {overlay['channel']}, {windows}; low-passed at 6 Hz.",
+            )
+
+
+def _repeatability(line: dict[str, Any]) -> Iterator[doc.Block]:
     for result in line["repeatability"]:
         yield doc.Paragraph(f"{result['verdict'].capitalize()}: {result['reason']}.")
-    overlays = tuple(
-        doc.Figure(
-            figures.draw_overlay(overlay["runs"], overlay["channel"], unit),
-            "Repeats of the drop laid over each other; their correlations are in the table.",
-            f"Repeats at {overlay['channel']} at the start and a minute later.",
-        )
-        for overlay in line["overlays"]
-    )
-    if overlays:
-        yield doc.Figures(overlays)
     cells = {
         "Records": lambda pair: f"{pair['first']} / {pair['second']}",
         "Channel": lambda pair: pair["channel"],

@@ -94,3 +94,20 @@ def test_overlay_shows_the_sensor_that_moves_most() -> None:
         later = grid > begin + 0.5  # before it the low-pass smooths the release
         difference = np.array(window.signal) - (signal - signal.mean())
         assert np.abs(difference[later]).max() < 0.03 * np.abs(signal).max()
+        assert window.acceleration_m_s2 == window.signal
+
+
+def test_overlay_has_the_velocity_of_the_decay() -> None:
+    """Velocity 2 Re(v exp(p t)) with imaginary v, which is zero at the release; residues of the acceleration are v p.
+
+    Within 5 % of the largest value: the high-pass below 0.08 Hz leaves out the rise of the wire to its new rest.
+    """
+    velocity = 0.1j * RESIDUES.real
+    decay = build_exact_decay(POLES, POLES[:, None] * velocity, duration=80.0)
+    overlay = overlay_records((decay,))
+    column = ("S1_z", "S2_z").index(overlay.channel)
+    for window, begin in zip(overlay.runs[0].windows, (0.0, 60.0), strict=True):
+        t = np.array(window.time_s)
+        expected = 2 * (np.exp(np.outer(t, POLES)) @ velocity[:, column]).real
+        difference = (np.array(window.velocity_m_s) - (expected - expected.mean()))[t > begin + 0.5]
+        assert np.abs(difference).max() < 0.05 * np.abs(expected).max()

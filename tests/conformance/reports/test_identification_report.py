@@ -16,6 +16,7 @@ from pantocheck.conformance.reports.document import Figures as PageFigures
 from pantocheck.conformance.reports.figures.drop_layout_figure import draw_drop_layout
 from pantocheck.conformance.reports.figures.fixed_panels import format_power_of_ten
 from pantocheck.conformance.reports.figures.half_power_figure import draw_half_power
+from pantocheck.conformance.reports.figures.motion_figure import draw_motion
 from pantocheck.conformance.reports.figures.response_zoom import draw_response_zoom
 from pantocheck.conformance.reports.figures.shape_figure import draw_shapes
 from pantocheck.conformance.reports.formats.html import render_html
@@ -132,6 +133,30 @@ def test_zoom_shows_the_first_two_groups(line: dict[str, Any], document: Documen
     assert any(figure.caption.endswith("the first 2 groups of span modes.") for figure in list_figures(document))
 
 
+def test_motion_shows_velocity_and_acceleration_of_every_record(line: dict[str, Any]) -> None:
+    """Rows: velocity, acceleration; columns: windows. The example of 80 s has both windows."""
+    runs = line["overlays"][0]["runs"]
+    panels = paint(draw_motion, runs)
+    assert [axes.get_ylabel() for axes in panels] == ["velocity [m/s]", "", "acceleration [m/s²]", ""]
+    keys = ("velocity_m_s", "velocity_m_s", "acceleration_m_s2", "acceleration_m_s2")
+    for number, (axes, key) in enumerate(zip(panels, keys, strict=True)):
+        assert [curve.get_label() for curve in axes.lines] == ["run 1", "run 2"]
+        for curve, run in zip(axes.lines, runs, strict=True):
+            np.testing.assert_array_equal(curve.get_ydata(), run["windows"][number % 2][key])
+
+
+def test_motion_of_a_short_record_has_one_window(line: dict[str, Any]) -> None:
+    """No window fits into a record of less than ten seconds: it has no figure."""
+    overlay = line["overlays"][0]
+    short = {"channel": "S1_z", "runs": [{"name": "run 1", "windows": overlay["runs"][0]["windows"][:1]}]}
+    document = build_identification_document([line | {"overlays": [short]}])
+    (figure,) = [figure for figure in list_figures(document) if figure.caption.startswith("Velocity")]
+    assert figure.caption == "Velocity and acceleration at S1_z, in the first ten seconds; low-passed at 6 Hz."
+    none = {"channel": "S1_z", "runs": [{"name": "run 1", "windows": []}]}
+    document = build_identification_document([line | {"overlays": [none]}])
+    assert not any(figure.caption.startswith("Velocity") for figure in list_figures(document))
+
+
 def test_layout_shows_sensors_and_mass_on_their_wires(line: dict[str, Any], document: Document) -> None:
     """Two sensors on the contact wire, and one mass; the repeat has the same places and adds nothing."""
     (figure,) = [figure for figure in list_figures(document) if "masses" in figure.caption]
@@ -153,6 +178,8 @@ def test_names_in_figures_are_not_read_as_mathematics(line: dict[str, Any]) -> N
     """A channel named $S$ keeps its name; a lone formula such as $_$ would be an error."""
     sensors = [{"label": "$_$", "wire": "CW", "position_m": 30.0}]
     assert draw_drop_layout([60.0], sensors, []).startswith("<svg")
+    runs = [run | {"name": "$_$"} for run in line["overlays"][0]["runs"]]
+    assert draw_motion(runs).startswith("<svg")
     data = line["frequency_responses"][0] | {"channels": ["$_$", "$^$"]}
     assert draw_response_zoom(data, [0.9], (0.8, 2.0)).startswith("<svg")
 
