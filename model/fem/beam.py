@@ -53,9 +53,10 @@ def springs(stiffness: Array) -> Array:
     return np.asarray(stiffness[:, None, None] * np.outer(elongation, elongation))
 
 
-def uniform_load(h: float, load_per_length: float) -> Array:
-    """Nodal forces (4,) of a load per length [N/m], consistent with the shape functions [N, N m]."""
-    return load_per_length * h / 12 * np.array([6, h, 6, -h])
+def uniform_load(h: Array, load_per_length: Array) -> Array:
+    """Nodal forces (..., 4) of loads per length [N/m], consistent with the shape functions [N, N m]."""
+    lever = np.stack([np.full_like(h, 6.0), h, np.full_like(h, 6.0), -h], axis=-1)
+    return np.asarray((load_per_length * h / 12)[..., None] * lever)
 
 
 def shape(s: float, h: float) -> Array:

@@ -74,7 +74,7 @@ def build_beams(catenary: Catenary, mesh: Mesh) -> Beams:
         free[row, first : last + 1] = True
         if wire.kind is not Kind.STITCH_WIRE:  # a stitch wire ends in clamps, not in anchors
             free[row, [first, last], 0] = False
-    flexibility = np.array([element_flexibility(length, *row) for row in zip(tension, bending_stiffness, strict=True)])
+    flexibility = _flexibility_of_rows(mesh, length, tension, bending_stiffness)
     at_station = np.array([station_flexibility(elements) for elements in flexibility])
     lumped_mass, lumped_stiffness, lumped_damping = sum_lumped_parts(catenary, mesh)
     rayleigh = [catenary.rayleigh(kind) for kind in mesh.row_kind]
@@ -92,6 +92,13 @@ def build_beams(catenary: Catenary, mesh: Mesh) -> Beams:
         free=free,
         flexibility=flexibility,
     )
+
+
+def _flexibility_of_rows(mesh: Mesh, length: Array, tension: Array, bending_stiffness: Array) -> Array:
+    """Residual flexibility of every element of all rows; a lateral row has the wires of its vertical row."""
+    fields = len(set(mesh.row_field))
+    vertical = range(mesh.rows // fields)
+    return np.array([element_flexibility(length, tension[row], bending_stiffness[row]) for row in vertical] * fields)
 
 
 def element_stiffness(beams: Beams, row: int) -> Array:
@@ -120,7 +127,12 @@ def assemble_row(elements: Array) -> sp.csr_array:
 
 def weight(beams: Beams, row: int, gravity: float) -> Array:
     """Weight of the wires of one row as nodal forces, (2 S,), negative downwards [N, N m]; gravity in [m/s2]."""
-    force = np.zeros(2 * beams.free.shape[1])
-    for e in np.flatnonzero(beams.mass_per_length[row]):
-        force[2 * e : 2 * e + 4] -= beam.uniform_load(beams.length[e], beams.mass_per_length[row, e] * gravity)
-    return force
+    return -load_row(beam.uniform_load(beams.length, beams.mass_per_length[row] * gravity))
+
+
+def load_row(elements: Array) -> Array:
+    """Assemble the nodal forces of the elements of a row, (S-1, 4), to those of its unknowns (w, r) by station."""
+    force = np.zeros((len(elements) + 1, 2))
+    force[:-1] += elements[:, :2]
+    force[1:] += elements[:, 2:]
+    return force.ravel()

@@ -6,6 +6,7 @@ that each row is a separate tensioned beam.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -40,8 +41,15 @@ class Mesh:
         """Number of rows."""
         return len(self.row_kind)
 
+    @cached_property
+    def _station_at(self) -> dict[float, int]:
+        """Station of every position; connectors have the position of their station but for the last digits."""
+        return {position: station for station, position in enumerate(self.position.tolist())}
+
     def station(self, position: float) -> int:
         """Index of the station at the position of a connector or another requested station [m]."""
+        if position in self._station_at:
+            return self._station_at[position]
         after = min(max(int(np.searchsorted(self.position, position)), 1), self.position.size - 1)
         nearest = after if self.position[after] - position < position - self.position[after - 1] else after - 1
         if abs(self.position[nearest] - position) > 1e-6:

@@ -55,9 +55,10 @@ def element_flexibility(length: Array, tension: Array, bending_stiffness: Array)
     inside &= tension[np.where(inside, patch, 0)] > 0
     # Beyond its ends a wire continues like the element itself.
     patch = np.where(inside, patch, present[:, None])
-    data = np.stack([length.round(9), tension, bending_stiffness], axis=-1)[patch].reshape(present.size, -1)
+    data = np.stack([length.round(9), tension, bending_stiffness], axis=-1)[patch].tobytes()
+    size = len(data) // present.size
     places: dict[bytes, int] = {}  # a hash finds equal patches a hundred times faster than sorting
-    number = np.array([places.setdefault(row.tobytes(), len(places)) for row in data])
+    number = np.array([places.setdefault(data[at : at + size], len(places)) for at in range(0, len(data), size)])
     different = np.frombuffer(b"".join(places)).reshape(len(places), -1)
     h, stretched, bending = np.moveaxis(different.reshape(len(different), -1, 3), -1, 0)
     values = _point_flexibility(h, stretched, bending)

@@ -23,7 +23,7 @@ from pantocheck.model.arrays import Array
 from pantocheck.model.catenary import Catenary, Clamp, Dropper
 from pantocheck.model.curves import curvature
 from pantocheck.model.fem.beam import uniform_load
-from pantocheck.model.fem.beams import Beams, wire_stiffness
+from pantocheck.model.fem.beams import Beams, load_row, wire_stiffness
 from pantocheck.model.fem.mesh import Mesh
 from pantocheck.model.statics.prescribed_displacements import solve_with_prescribed_displacements
 
@@ -93,7 +93,4 @@ def _radial_load(catenary: Catenary, mesh: Mesh, beams: Beams, row: int) -> Arra
     """Nodal forces of the tension in a curve, T / R per length towards its centre, of one row [N, N m]."""
     middle = (mesh.position[:-1] + mesh.position[1:]) / 2
     radial = beams.tension[row] * curvature(catenary.curves, middle)
-    force = np.zeros(2 * mesh.position.size)
-    for element in np.flatnonzero(radial):
-        force[2 * element : 2 * element + 4] += uniform_load(beams.length[element], radial[element])
-    return force
+    return load_row(uniform_load(beams.length, radial))
