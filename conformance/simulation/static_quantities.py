@@ -7,12 +7,13 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.track_table import TrackTable
 from pantocheck.conformance.quantities.evaluation import Value
-from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.simulation.line_discretisation import discretise_line
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 from pantocheck.model import Catenary, DiscretisedLine, Kind, discretise
 from pantocheck.model.curves import head_shift
 from pantocheck.model.fem.beam import wave_speed
 from pantocheck.model.fem.contact_wires import touched_wires
+from pantocheck.model.kept_results import keep_with_line
 from pantocheck.model.modal.modes import Modes, compute_modes
 from pantocheck.model.pantograph import apparent_mass
 from pantocheck.model.statics.elasticity import non_uniformity, static_uplift
@@ -47,7 +48,8 @@ def compute_static_quantities(case: Case, line: DiscretisedLine) -> dict[str, Va
         Values by name of quantity.
     """
     quantities: dict[str, Value] = {"presag_mm": _presag(case.line, line)}
-    quantities |= _dropper_lengths(case.line, line) | _elasticity(case.line, line) | _waves(case, line.catenary)
+    span = case.line.geometry.span(case.line.middle_span)
+    quantities |= _dropper_lengths(line, *span) | _elasticity(line, *span) | _waves(case, line.catenary)
     if case.line.track is not None and line.catenary.has_lateral_field:
         quantities["head_offset_mm"] = 1e3 * largest_head_offset(case.line.track, line)
     if case.is_static:
@@ -99,7 +101,7 @@ def first_modes(line: LineFile, element: float) -> Modes:
     Modes
         Modes of the first spans of the line.
     """
-    short = discretise(build_catenary(line.shorten(SPANS_OF_MODES)), element)
+    short = discretise_line(line.shorten(SPANS_OF_MODES), element)
     lateral = [row for row in range(short.mesh.rows) if short.mesh.row_field[row] == "y"]
     count = MODES * (2 if lateral else 1)
     while True:
@@ -111,9 +113,8 @@ def first_modes(line: LineFile, element: float) -> Modes:
         count *= 2
 
 
-def _droppers(line: LineFile, catenary: Catenary) -> list[int]:
-    """Indices of the droppers of the middle span."""
-    start, end = line.geometry.span(line.middle_span)
+def _droppers(catenary: Catenary, start: float, end: float) -> list[int]:
+    """Indices of the droppers of a span."""
     return [i for i, dropper in enumerate(catenary.droppers) if start <= dropper.position < end]
 
 
@@ -122,15 +123,17 @@ def _element(line: DiscretisedLine) -> float:
 
 
 def _presag(file: LineFile, line: DiscretisedLine) -> tuple[float, ...]:
-    droppers = [line.catenary.droppers[i] for i in _droppers(file, line.catenary)]
+    span = file.geometry.span(file.middle_span)
+    droppers = [line.catenary.droppers[i] for i in _droppers(line.catenary, *span)]
     height = [line.state.deflection[line.mesh.row_of[d.lower, "z"], line.mesh.station(d.position), 0] for d in droppers]
     chord = file.layout.chord_height(np.array([dropper.position for dropper in droppers]))
     return tuple(float(1e3 * (straight - z)) for straight, z in zip(chord, height, strict=True))
 
 
-def _dropper_lengths(file: LineFile, line: DiscretisedLine) -> dict[str, Value]:
+@keep_with_line
+def _dropper_lengths(line: DiscretisedLine, start: float, end: float) -> dict[str, Value]:
     """Lengths by string statics, with bending, and with bending and stagger, to show each effect."""
-    droppers = _droppers(file, line.catenary)
+    droppers = _droppers(line.catenary, start, end)
     lengths = {"dropper_length_m": compute_string_state(line.catenary).dropper_length}
     if line.catenary.has_lateral_field:
         straight = discretise(remove_staggers(line.catenary), _element(line))
@@ -141,8 +144,9 @@ def _dropper_lengths(file: LineFile, line: DiscretisedLine) -> dict[str, Value]:
     return {name: tuple(map(float, length[droppers])) for name, length in lengths.items()}
 
 
-def _elasticity(file: LineFile, line: DiscretisedLine) -> dict[str, Value]:
-    positions = sample_span(*file.geometry.span(file.middle_span))
+@keep_with_line
+def _elasticity(line: DiscretisedLine, start: float, end: float) -> dict[str, Value]:
+    positions = sample_span(start, end)
     quantities: dict[str, Value] = {}
     for name, load in (("elasticity", SMALL_LOAD), ("elasticity_200_N", LARGE_LOAD)):
         elasticity = 1e3 * static_uplift(line, positions, load) / load

@@ -11,6 +11,7 @@ from pantocheck.conformance.cases.section_rises import lowest_rise
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 from pantocheck.conformance.simulation.static_quantities import sample_span
 from pantocheck.model import DiscretisedLine, Pantograph
+from pantocheck.model.kept_results import keep_with_line
 from pantocheck.model.statics.elasticity import static_uplift
 
 
@@ -54,5 +55,11 @@ def compute_working_height(case: Case, line: DiscretisedLine, file: PantographFi
     uplift_force : float
         Its uplift force [N].
     """
-    uplift = static_uplift(line, working_height_positions(case), uplift_force)
-    return nominal_wire_height(case) + (float(uplift.mean()) + uplift_force / file.contact.stiffness_N_m)
+    uplift = mean_static_uplift(line, tuple(working_height_positions(case).tolist()), uplift_force)
+    return nominal_wire_height(case) + (uplift + uplift_force / file.contact.stiffness_N_m)
+
+
+@keep_with_line
+def mean_static_uplift(line: DiscretisedLine, positions: tuple[float, ...], force: float) -> float:
+    """Mean uplift under a static force [N] at each of some positions in turn [m]."""
+    return float(static_uplift(line, np.array(positions), force).mean())

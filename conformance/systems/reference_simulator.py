@@ -10,13 +10,12 @@ from pantocheck.conformance.cases.start_and_section import list_other_starts
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.simulation.case_run import run_passage, run_starts
-from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.simulation.line_discretisation import discretise_line
 from pantocheck.conformance.simulation.model_uncertainty import list_model_uncertainty
 from pantocheck.conformance.simulation.resolution import resolution_warnings
 from pantocheck.conformance.simulation.static_quantities import compute_static_quantities
 from pantocheck.conformance.simulation.statics_along_line import compute_quantities_along_line
 from pantocheck.conformance.simulation.window_warning import window_warnings
-from pantocheck.model import discretise
 from pantocheck.model.failures import SimulationError
 
 
@@ -61,7 +60,7 @@ def _run_other_starts(
     starts = list_other_starts(case)
     if not starts:
         return ()
-    line = discretise(build_catenary(case.line), discretisation.element_m)
+    line = discretise_line(case.line, discretisation.element_m)
     return tuple(map(Delivered, run_starts(starts, case, line, discretisation, uplift_forces)))
 
 
@@ -69,7 +68,7 @@ def _deliver(
     case: Case, discretisation: Discretisation, uplift_forces: tuple[float, ...] | None = None
 ) -> tuple[Delivered, tuple[float, ...] | None]:
     """Simulate a case; result, and uplift forces of its passage [N]."""
-    line = discretise(build_catenary(case.line), discretisation.element_m)
+    line = discretise_line(case.line, discretisation.element_m)
     static = compute_static_quantities(case, line)
     if case.is_static:
         static |= compute_quantities_along_line(case.line, line)

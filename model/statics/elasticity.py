@@ -9,7 +9,7 @@ from pantocheck.model.fem.contact_wires import touched_rows, touched_wires
 from pantocheck.model.fem.mesh import find_element
 from pantocheck.model.fem.residual_flexibility import residual_flexibility
 from pantocheck.model.irregularity_spline import NO_IRREGULARITY, irregularity_height
-from pantocheck.model.statics.static_solver import static_solver
+from pantocheck.model.statics.static_solver import point_product, static_solver
 
 
 def static_uplift(line: DiscretisedLine, position: Array, force: float) -> Array:
@@ -55,7 +55,10 @@ def rest_height(line: DiscretisedLine, position: Array) -> Array:
         Height above the datum of the line, mean over the contact wires that a head touches there [m].
     """
     deflection = line.state.deflection.transpose(1, 0, 2).ravel()
-    heights = [np.mean([point_load(line, row, x) @ deflection for row in touched_rows(line, x)]) for x in position]
+    heights = [
+        np.mean([point_product(point_load(line, row, x), deflection) for row in touched_rows(line, x)])
+        for x in position
+    ]
     return np.asarray(np.array(heights) + _mean_irregularity(line, position))
 
 
@@ -87,7 +90,8 @@ def height_under_forces(line: DiscretisedLine, position: Array, force: Array) ->
         f / len(under) * _mean_residual(line, under, float(x))
         for x, f, under in zip(position, force, rows, strict=True)
     ]
-    return np.asarray(np.array([shape @ height for shape in shapes]) + residual + _mean_irregularity(line, position))
+    heights = np.array([point_product(shape, height) for shape in shapes])
+    return np.asarray(heights + residual + _mean_irregularity(line, position))
 
 
 def _mean_residual(line: DiscretisedLine, rows: Indices, position: float) -> float:

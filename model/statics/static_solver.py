@@ -103,11 +103,11 @@ class StaticSolver:
         NoEquilibrium
             The set of slack droppers does not settle.
         """
-        unit, loaded = self._stiffness.solve(direction), np.flatnonzero(direction)
+        unit = self._stiffness.solve(direction)
         elongation = self._direction.T @ unit
         slack, release, _ = self._release_slack(force * elongation)
         # A unit force elongates a dropper as much as a unit elongating force of the dropper moves the unit force.
-        return float(force * (direction[loaded] @ unit[loaded]) + elongation[slack] @ release)
+        return float(force * point_product(direction, unit) + elongation[slack] @ release)
 
     def _release_slack(self, elongation: Array) -> tuple[Indices, Array, Array]:
         """Indices of slack droppers, the forces that release them, and all tensions, from elongations of taut ones."""
@@ -136,6 +136,12 @@ class StaticSolver:
             force = self._direction[:, [connector]].toarray()[:, 0]
             self._compliance[connector] = self._direction.T @ self._stiffness.solve(force)
         return self._compliance[connector]
+
+
+def point_product(direction: Array, displacement: Array) -> float:
+    """Scalar product with a direction that is zero but for a few unknowns; only these are multiplied."""
+    loaded = np.flatnonzero(direction)
+    return float(direction[loaded] @ displacement[loaded])
 
 
 @keep_with_line

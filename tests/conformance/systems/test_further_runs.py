@@ -13,8 +13,10 @@ from pantocheck.conformance.cases.start_and_section import list_other_starts
 from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
 from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.simulation import case_run
+from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.systems import reference_simulator
 from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
+from pantocheck.model import discretise
 from pantocheck.model.failures import SimulationError
 
 
@@ -93,10 +95,10 @@ def test_coarse_run_that_does_not_converge_leaves_two_meshes(
 
 
 def test_runs_are_reproducible(case: Case, delivered: Delivered) -> None:
-    """The same start twice gives the same samples."""
+    """The same start twice gives the same samples, whether the line served other runs before or is new."""
     start = list_other_starts(case)[-1]
     discretisation = case.file.discretisation
-    line = reference_simulator.discretise(reference_simulator.build_catenary(case.line), discretisation.element_m)
+    line = discretise(build_catenary(case.line), discretisation.element_m)
     (again,) = case_run.run_starts([start], case, line, discretisation, (120.0, 120.0))
     before = delivered.starts[-1].record
     assert before is not None
