@@ -18,7 +18,7 @@ from pantocheck.conformance.identification.identify import Identification
 from pantocheck.conformance.identification.line_fit import LineFit, RecordFit
 from pantocheck.conformance.identification.mode import Mode
 from pantocheck.conformance.identification.repeatability import compare_records, overlay_records, round_curve
-from pantocheck.conformance.one_thread import use_one_thread
+from pantocheck.model.one_thread import use_one_thread
 
 
 @use_one_thread

@@ -22,7 +22,7 @@ from pantocheck.conformance.identification.projection import DataBlock, build_bl
 from pantocheck.conformance.identification.start_poles import find_start_poles
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
-from pantocheck.conformance.one_thread import use_one_thread
+from pantocheck.model.one_thread import use_one_thread
 
 SHARED_POLES = 1.5
 """Misfit above which the line is not linear, or its records have different poles [-]."""

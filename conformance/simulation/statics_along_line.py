@@ -4,10 +4,10 @@ import numpy as np
 
 from pantocheck.conformance.cases.geometry import ListedSpans
 from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.one_thread import use_one_thread
 from pantocheck.conformance.quantities.evaluation import Value
 from pantocheck.conformance.simulation.static_quantities import LARGE_LOAD, SAMPLES_PER_SPAN, SMALL_LOAD, sample_span
 from pantocheck.model import DiscretisedLine
+from pantocheck.model.one_thread import use_one_thread
 from pantocheck.model.statics.elasticity import non_uniformity, static_uplift
 
 

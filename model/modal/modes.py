@@ -10,6 +10,7 @@ from pantocheck.model.catenary import Kind, Rayleigh
 from pantocheck.model.discretised_line import DiscretisedLine, with_damping
 from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, free_unknowns
 from pantocheck.model.fem.line_stiffness import factored_stiffness
+from pantocheck.model.one_thread import use_one_thread
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,7 @@ class ComponentEnergies:
     mass: Array
 
 
+@use_one_thread
 def compute_modes(line: DiscretisedLine, count: int) -> Modes:
     """Compute the lowest modes of a line.
 

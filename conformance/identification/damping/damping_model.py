@@ -19,9 +19,9 @@ from pantocheck.conformance.array_types import IntegerArray, RealArray
 from pantocheck.conformance.identification.damping.damping_format import Coefficient
 from pantocheck.conformance.identification.damping.damping_terms import DampingBasis, Term
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.one_thread import use_one_thread
 from pantocheck.model import Kind
 from pantocheck.model.catenary import ModalBand
+from pantocheck.model.one_thread import use_one_thread
 
 MODEL_ERROR = 0.01
 """Relative error of a computed damping ratio that is due to the line model [-]."""

@@ -15,9 +15,9 @@ from pantocheck.conformance.identification.damping.mode_pairing import (
 )
 from pantocheck.conformance.identification.mode import Mode
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.one_thread import use_one_thread
 from pantocheck.model import Catenary, DiscretisedLine, discretise
 from pantocheck.model.modal.modes import Modes, compute_modes_below
+from pantocheck.model.one_thread import use_one_thread
 
 HIGHEST_OVER_USABLE = 1.1
 """Highest frequency of the computed modes over that of the usable modes: room for a line that is too stiff."""

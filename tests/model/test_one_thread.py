@@ -3,7 +3,7 @@
 import numpy as np
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from pantocheck.conformance.one_thread import use_one_thread
+from pantocheck.model.one_thread import use_one_thread
 
 
 def count_threads() -> set[int]:
