@@ -6,11 +6,10 @@ A local fit with one pole more or less takes milliseconds.
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg
 from numpy.typing import NDArray
 
 from pantocheck.conformance.array_types import ComplexArray, RealArray
-from pantocheck.conformance.identification.column_factors import factor_columns
+from pantocheck.conformance.identification.column_factors import factor_columns, solve_factor
 from pantocheck.conformance.identification.decay_kernel import (
     decay_kernel,
     far_pole_columns,
@@ -21,6 +20,9 @@ from pantocheck.conformance.identification.projection import DataBlock, Projecti
 
 MIN_LOCAL_LINES = 8
 """Smallest number of spectral lines of a block in a local fit."""
+
+LEAST_DETERMINANT = 1e-10
+"""Smallest determinant of the Gram matrix of two columns of unit length that count as independent [-]."""
 
 DAMPING_TRIALS = (0.3, 1.0, 3.0)
 """Decay rates of trial poles over the median decay rate of their neighbours [-]."""
@@ -91,11 +93,19 @@ def find_best_candidate(local: LocalFit, centre: float) -> tuple[complex, float]
         residual = x - q @ (q.T @ x)
         new = pole_columns(trials, data)
         new -= q @ (q.T @ new)
-        for t in range(trials.size):
-            pair = np.linalg.qr(new[:, [t, t + trials.size]])[0]
-            gain[t] += float(np.sum((pair.T @ residual) ** 2))
+        gain += _pair_gains(new[:, : trials.size], new[:, trials.size :], residual)
     best = int(np.argmax(gain))
     return (complex(trials[best]), float(gain[best])) if gain[best] > 0 else None
+
+
+def _pair_gains(first: RealArray, second: RealArray, residual: RealArray) -> RealArray:
+    """Reduction of the squared residual, (n, c), by each pair of columns, (n, t) and (n, t): b' G^-1 b, (t,)."""
+    g11, g12, g22 = (np.einsum("nt,nt->t", a, b) for a, b in ((first, first), (first, second), (second, second)))
+    b1, b2 = first.T @ residual, second.T @ residual
+    forms = g22 * np.sum(b1**2, axis=1) - 2 * g12 * np.sum(b1 * b2, axis=1) + g11 * np.sum(b2**2, axis=1)
+    determinant = g11 * g22 - g12**2
+    independent = determinant > LEAST_DETERMINANT * g11 * g22
+    return np.asarray(np.where(independent, forms / np.where(independent, determinant, 1.0), 0.0))
 
 
 def pole_contributions(poles: ComplexArray, blocks: list[DataBlock]) -> RealArray:
@@ -104,7 +114,7 @@ def pole_contributions(poles: ComplexArray, blocks: list[DataBlock]) -> RealArra
     reduction = np.zeros(m)
     for data in blocks:
         q, r = factor_columns(np.hstack([pole_columns(poles, data), data.residual_terms]))
-        inverse = scipy.linalg.pinv(r)
+        inverse = solve_factor(r, np.eye(r.shape[0]))
         coefficients = inverse @ (q.T @ stack_real_imaginary(data.spectrum))
         for j in range(m):
             pair = [j, j + m]
