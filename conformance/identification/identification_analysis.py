@@ -18,6 +18,7 @@ from pantocheck.conformance.identification.identify import Identification
 from pantocheck.conformance.identification.line_fit import LineFit, RecordFit
 from pantocheck.conformance.identification.mode import Mode
 from pantocheck.conformance.identification.repeatability import compare_records, overlay_records, round_curve
+from pantocheck.conformance.identification.spectrogram import compute_spectrogram
 from pantocheck.model.one_thread import use_one_thread
 
 
@@ -41,6 +42,7 @@ def analyse_identification(identification: Identification) -> IdentifiedLine:
         half_power=count_half_power_lines(modes),
         repeatability=tuple(compare_records(repeats) for repeats in repeated),
         overlays=tuple(overlay_records(records) for records in repeated or drops[:1]),
+        spectrogram=compute_spectrogram(decays[0]),
         spectra=tuple(_spectra(fit, record, modes) for record in fit.records),
         frequency_responses=tuple(response for response in responses if response is not None),
     )

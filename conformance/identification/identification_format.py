@@ -99,6 +99,26 @@ class Overlay(RoundedModel):
     runs: tuple[OverlayRun, ...]
 
 
+class SpectrogramPart(RoundedModel):
+    """Levels of the amplitude of one channel over time and frequency."""
+
+    time_s: Annotated[Curve, Field(description="middle of each window after the release [s]")]
+    frequency_Hz: Curve
+    level_dB: Annotated[
+        tuple[tuple[int, ...], ...],
+        Field(description="levels at each time, one per frequency [dB]; 0 dB: largest amplitude; lowest: -60 dB"),
+    ]
+
+
+class Spectrogram(RoundedModel):
+    """Spectrogram of the channel of a record with the largest motion."""
+
+    record: str
+    channel: str
+    whole: Annotated[SpectrogramPart, Field(description="whole record, in windows of 4 s")]
+    start: Annotated[SpectrogramPart, Field(description="around the release, in windows of 1 s")]
+
+
 class RecordSpectra(RoundedModel):
     """Transforms of the channels of a record, measured and fitted [unit of the record times s]."""
 
@@ -159,6 +179,7 @@ class IdentifiedLine(RoundedModel):
     overlays: Annotated[
         tuple[Overlay, ...], Field(description="signals of each repeated drop; of the first drop if none is repeated")
     ]
+    spectrogram: Annotated[Spectrogram, Field(description="spectrogram of the first record")]
     spectra: Annotated[tuple[RecordSpectra, ...], Field(description="spectra of each record")]
     frequency_responses: Annotated[
         tuple[RecordResponses, ...], Field(description="frequency responses of each record with a known mass")

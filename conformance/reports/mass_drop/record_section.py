@@ -5,6 +5,7 @@ from typing import Any
 
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.figures.drop_layout_figure import draw_drop_layout
+from pantocheck.conformance.reports.figures.spectrogram_figure import draw_spectrogram
 from pantocheck.conformance.reports.page_text import format_plain, format_value
 
 
@@ -23,6 +24,20 @@ def list_record_blocks(line: dict[str, Any]) -> Iterator[doc.Block]:
         )
         yield doc.Figures((figure,))
     yield _record_table(line["records"])
+    yield doc.Figures((_spectrogram_figure(line["spectrogram"], line["records"][0]),))
+
+
+def _spectrogram_figure(data: dict[str, Any], record: dict[str, Any]) -> doc.Figure:
+    start, end = (record[key] - record["release_s"] for key in ("used_from_s", "used_to_s"))
+    last = max(record["length_s"] - record["release_s"], end)
+    marks = {"release": 0.0, "start of the linear decay": start, "end of the linear decay": end}
+    return doc.Figure(
+        draw_spectrogram(data, marks, (-record["release_s"], last)),
+        f"Amplitude of {data['channel']} over time and frequency: whole record, and first seconds. The linear decay "
+        f"lasts from {format_value(start, 3)} s to {format_value(end)} s after the release.",
+        f"{data['record']}: spectrogram of {data['channel']}, left in windows of 4 s, right in windows of 1 s. "
+        f"Droppers may be slack from the release to the start of the linear decay, for {format_value(start, 3)} s.",
+    )
 
 
 def _list_sensors(records: list[dict[str, Any]]) -> list[dict[str, Any]]:

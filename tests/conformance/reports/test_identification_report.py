@@ -19,6 +19,7 @@ from pantocheck.conformance.reports.figures.half_power_figure import draw_half_p
 from pantocheck.conformance.reports.figures.motion_figure import draw_motion
 from pantocheck.conformance.reports.figures.response_zoom import draw_response_zoom
 from pantocheck.conformance.reports.figures.shape_figure import draw_shapes
+from pantocheck.conformance.reports.figures.spectrogram_figure import draw_spectrogram
 from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.reports.mass_drop.identification_report import build_identification_document
 from pantocheck.conformance.reports.mass_drop.shape_rows import list_measured_shapes
@@ -155,6 +156,25 @@ def test_motion_of_a_short_record_has_one_window(line: dict[str, Any]) -> None:
     none = {"channel": "S1_z", "runs": [{"name": "run 1", "windows": []}]}
     document = build_identification_document([line | {"overlays": [none]}])
     assert not any(figure.caption.startswith("Velocity") for figure in list_figures(document))
+
+
+def test_spectrogram_marks_release_and_linear_decay(line: dict[str, Any], document: Document) -> None:
+    """The linear decay of the example begins 1 s after the release and lasts to the end, 80 s after it."""
+    (figure,) = [figure for figure in list_figures(document) if "spectrogram" in figure.caption]
+    assert "start of the linear decay, for 1.00 s" in figure.caption
+    assert "from 1.00 s to 80.00 s after the release" in figure.alternative
+    marks = {"release": 0.0, "start of the linear decay": 1.0, "end of the linear decay": 80.0}
+    whole, start, scale = paint(draw_spectrogram, line["spectrogram"], marks, (-2.0, 80.0))
+    # Each mark is drawn twice, on a white ground.
+    assert [curve.get_xdata()[0] for curve in whole.lines] == [0.0, 0.0, 1.0, 1.0, 80.0, 80.0]
+    assert [curve.get_xdata()[0] for curve in start.lines] == [0.0, 0.0, 1.0, 1.0]
+    for axes, key in ((whole, "whole"), (start, "start")):
+        part = line["spectrogram"][key]
+        left, right, *_ = axes.images[0].get_extent()
+        half = (part["time_s"][1] - part["time_s"][0]) / 2
+        assert (left, right) == pytest.approx((part["time_s"][0] - half, part["time_s"][-1] + half))
+        np.testing.assert_array_equal(axes.images[0].get_array(), np.array(part["level_dB"]).T)
+    assert scale.get_ylabel() == "level [dB]"
 
 
 def test_layout_shows_sensors_and_mass_on_their_wires(line: dict[str, Any], document: Document) -> None:
