@@ -29,6 +29,7 @@ from pantocheck.conformance.mass_drops.drop_sidecar import DropSidecar as MassDr
 from pantocheck.conformance.plan import Plan
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.record_summary import RecordSummary
+from pantocheck.conformance.results.campaign_format import CampaignResults
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.simulation.model_uncertainty import ModelUncertaintyFile
 from pantocheck.conformance.systems.command.protocol_messages import answer_schema, request_schema
@@ -57,6 +58,7 @@ WRITTEN_FORMATS: dict[str, type[BaseModel]] = {
     "identification": IdentificationFile,
     "damping-fit": DampingResults,
     "static-comparison": StaticComparison,
+    "campaign-results": CampaignResults,
 }
 """JSON files that the suite writes."""
 

@@ -5,15 +5,12 @@ from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from dataclasses import dataclass, field
-from typing import Literal
 
 from pantocheck.conformance.campaigns.campaign_design import CampaignDesign, PlannedRun
 from pantocheck.conformance.campaigns.campaign_file import Execution
 from pantocheck.conformance.campaigns.campaign_store import CampaignStore
 from pantocheck.conformance.campaigns.run_executor import Execute, RunExecutor
-
-Ending = Literal["complete", "failure share", "time budget"]
-"""Reason of the end of a campaign: all runs are finished, too many failed, or the time is used up."""
+from pantocheck.conformance.results.campaign_format import CampaignEnding
 
 FEWEST_JUDGED = 20
 """Fewest finished runs from which the share of failed runs is judged: one failure in them is a share of 5 %."""
@@ -56,7 +53,7 @@ class _Session:
     failed: int
     started: float = field(default_factory=time.monotonic)
     ends: deque[float] = field(default_factory=lambda: deque(maxlen=RATED_RUNS))
-    ending: Ending = "complete"
+    ending: CampaignEnding = "complete"
 
     def add(self, failed: bool) -> None:
         """Count a finished run."""
@@ -86,7 +83,7 @@ def drive_campaign(
     executor: RunExecutor,
     execution: Execution,
     report: Callable[[CampaignProgress], None],
-) -> Ending:
+) -> CampaignEnding:
     """Execute the runs of a campaign that its store does not hold.
 
     Parameters

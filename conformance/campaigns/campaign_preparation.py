@@ -9,7 +9,7 @@ from typing import Any
 
 from pantocheck.conformance.campaigns.campaign_design import CampaignDesign
 from pantocheck.conformance.campaigns.campaign_file import CampaignFile
-from pantocheck.conformance.campaigns.campaign_run import RunExecution, vary_inputs
+from pantocheck.conformance.campaigns.campaign_run import RunExecution, name_column, vary_inputs
 from pantocheck.conformance.campaigns.design_axes import build_axis, sample_inputs
 from pantocheck.conformance.campaigns.design_conditions import parse_condition
 from pantocheck.conformance.cases.case import Case, json_digest
@@ -38,12 +38,16 @@ class PreparedCampaign:
         Function that executes one run.
     identity : dict
         Parts of the campaign on which its results depend.
+    limits : dict
+        Lower and upper bound of each limit by the column of its value, such as `1.std_force_N`; limits that differ
+        between the cases are left out.
     """
 
     file: CampaignFile
     design: CampaignDesign
     execute: RunExecution
     identity: dict[str, Any]
+    limits: dict[str, tuple[float | None, float | None]]
 
 
 def read_campaign(path: Path) -> PreparedCampaign:
@@ -79,7 +83,7 @@ def prepare_campaign(file: CampaignFile, folder: Path) -> PreparedCampaign:
     files = {case_id: str(path) for case_id, (path, _) in cases.items()}
     execute = RunExecution(files, changes, limits, file.trust, file.refined, file.execution.timeout_s)
     _check_systems(design.systems, file.execution.timeout_s)
-    _check_first_designs(design, execute)
+    first_cases = _check_first_designs(design, execute)
     limited = overlay_limits([case for _, case in cases.values()], limits)
     identity = {
         "campaign": file.model_dump(mode="json", exclude={"execution", "title", "cases", "limits"}),
@@ -87,7 +91,16 @@ def prepare_campaign(file: CampaignFile, folder: Path) -> PreparedCampaign:
         "designs": json_digest([_describe_axis(design) for design in design.axes]),
         "suite": suite_digest(),
     }
-    return PreparedCampaign(file, design, execute, identity)
+    return PreparedCampaign(file, design, execute, identity, _list_limits(first_cases))
+
+
+def _list_limits(cases: Sequence[Case]) -> dict[str, tuple[float | None, float | None]]:
+    """Bounds by the column of the limited value, where all cases that limit it agree."""
+    bounds: dict[str, set[tuple[float | None, float | None]]] = {}
+    for limit in (limit for case in cases for limit in case.limits):
+        column = name_column(str(limit.owner), limit.quantity, limit.item)
+        bounds.setdefault(column, set()).add((limit.lower, limit.upper))
+    return {column: pairs.pop() for column, pairs in bounds.items() if len(pairs) == 1}
 
 
 def _read_cases(patterns: Sequence[str], changes: Sequence[InputChange]) -> dict[str, tuple[Path, Case]]:
@@ -134,8 +147,8 @@ def _check_systems(systems: Sequence[str], timeout_s: float) -> None:
             choose_system(system, timeout_s)
 
 
-def _check_first_designs(design: CampaignDesign, execute: RunExecution) -> None:
-    """Refuse a campaign without designs, with an unknown key, or whose first designs are all invalid.
+def _check_first_designs(design: CampaignDesign, execute: RunExecution) -> list[Case]:
+    """Cases of the first designs. Refuse a campaign without designs, with an unknown key, or with invalid designs only.
 
     A key, a unit or a list item is usually wrong in all designs; a single invalid design is a failed run.
     """
@@ -143,14 +156,15 @@ def _check_first_designs(design: CampaignDesign, execute: RunExecution) -> None:
     if not first:
         raise InputError("campaign, key conditions", "no design meets them", "Relax a condition.")
     vary_inputs(first[0].inputs)
-    problems = []
+    cases, problems = [], []
     for run in first:
         try:
-            execute.read_case(run)
+            cases.append(execute.read_case(run))
         except InputError as error:
             problems.append(error)
-    if len(problems) == len(first):
+    if not cases:
         raise problems[0]
+    return cases
 
 
 CHECKED_DESIGNS = 5

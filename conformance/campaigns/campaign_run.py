@@ -148,4 +148,9 @@ def _name_quantities(quantities: Mapping[str, Mapping[str, Number]]) -> Iterator
     for owner, values in quantities.items():
         for name, value in values.items():
             for item, number in enumerate(value, 1) if isinstance(value, list) else ((None, value),):
-                yield f"{owner}.{name}" + ("" if item is None else f"[{item}]"), number
+                yield name_column(owner, name, item), number
+
+
+def name_column(owner: str, quantity: str, item: int | None = None) -> str:
+    """Name of the column of a value: number of the pantograph (0: line), quantity, and number of the item in a list."""
+    return f"{owner}.{quantity}" + ("" if item is None else f"[{item}]")

@@ -7,24 +7,30 @@ from typing import Annotated
 
 import typer
 
-from pantocheck.conformance.campaigns.campaign_driver import CampaignProgress, Ending, drive_campaign
+from pantocheck.conformance.campaigns.campaign_driver import CampaignProgress, drive_campaign
 from pantocheck.conformance.campaigns.campaign_file import CampaignFile, Execution
 from pantocheck.conformance.campaigns.campaign_preparation import PreparedCampaign, prepare_campaign
 from pantocheck.conformance.campaigns.campaign_store import CampaignStore, open_store
 from pantocheck.conformance.campaigns.campaign_table import write_campaign_table
+from pantocheck.conformance.campaigns.evaluation.campaign_evaluation import evaluate_campaign
 from pantocheck.conformance.campaigns.local_workers import LocalWorkers
 from pantocheck.conformance.campaigns.short_form import parse_variation
 from pantocheck.conformance.command_line.campaign_progress import report_campaign
 from pantocheck.conformance.command_line.console import console, escape_text
 from pantocheck.conformance.command_line.options import SetOption, TrustOption
+from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_toml, validate_model
+from pantocheck.conformance.reports.campaign.campaign_page import build_campaign_report
+from pantocheck.conformance.reports.formats.report_writers import write_report
+from pantocheck.conformance.results.campaign_format import CampaignEnding, CampaignResults
 from pantocheck.conformance.systems.process_control import interruption_exit_code
 
-STOPPED: dict[Ending, str] = {
+STOPPED: dict[CampaignEnding, str] = {
     "complete": "",
     "failure share": "Stopped: too many runs failed. ",
     "time budget": "Stopped: the time budget is used up. ",
+    "interrupted": "Interrupted: the same command resumes the campaign. ",
 }
 
 
@@ -61,7 +67,7 @@ def campaign_command(
 
     pantocheck campaign tolerances.toml --out tolerances
 
-    pantocheck campaign en50318-2018/ac-simple/320-twin --vary speed_km_h=200:350:10 --vary spacing_m=85,200 --out map
+    pantocheck campaign en50318-2018/ac-simple/320-twin --vary speed_km_h=200:350:10 --out map
     """
     design: dict[str, object] = {
         "vary": [parse_variation(text) for text in vary or ()] or None,
@@ -76,19 +82,18 @@ def campaign_command(
     with open_store(out, prepared.identity) as store:
         if retry_failed:
             store.forget_failed()
-        ending: Ending = "complete"
         try:
             with report_campaign() as report:
                 ending = _drive(prepared, store, report)
         except KeyboardInterrupt as interruption:
-            interrupted = interruption_exit_code(interruption)
-            typer.echo("Interrupted: the finished runs are stored. The same command resumes the campaign.", err=True)
-        write_campaign_table(store, out / "campaign.csv")
-        finished, failed = store.count()
-    total = prepared.design.count_runs()
-    output.print(escape_text(f"{STOPPED[ending]}{finished} of {total} runs finished, {failed} failed"))
-    output.print(escape_text(str(out / "campaign.csv")), soft_wrap=True)
-    raise typer.Exit(interrupted or int(finished < total or failed > 0))
+            ending, interrupted = "interrupted", interruption_exit_code(interruption)
+        results = evaluate_campaign(prepared, store, ending)
+        files = _write_results(results, store, out)
+    counts = f"{results.finished} of {results.total} runs finished, {results.failed} failed"
+    output.print(escape_text(STOPPED[ending] + counts))
+    for path in files:
+        output.print(escape_text(str(path)), soft_wrap=True)
+    raise typer.Exit(interrupted or int(results.finished < results.total or results.failed > 0))
 
 
 def _prepare(source: str, design: dict[str, object], execution: dict[str, object]) -> PreparedCampaign:
@@ -108,8 +113,21 @@ def _prepare(source: str, design: dict[str, object], execution: dict[str, object
     return prepare_campaign(file.model_copy(update={"execution": changed}), Path(source).parent)
 
 
-def _drive(prepared: PreparedCampaign, store: CampaignStore, report: Callable[[CampaignProgress], None]) -> Ending:
+def _drive(
+    prepared: PreparedCampaign, store: CampaignStore, report: Callable[[CampaignProgress], None]
+) -> CampaignEnding:
     """Execute the open runs in local processes."""
     execution = prepared.file.execution
     workers = LocalWorkers(execution.workers or os.cpu_count() or 1, execution.run_time_limit_s)
     return drive_campaign(prepared.design, prepared.execute, store, workers, execution, report)
+
+
+def _write_results(results: CampaignResults, store: CampaignStore, folder: Path) -> list[Path]:
+    """Write the table, the evaluation and the report of a campaign; return their paths."""
+    files = [folder / name for name in ("campaign.csv", "campaign.json", "campaign.html", "campaign.pdf")]
+    write_campaign_table(store, files[0])
+    write_model(files[1], results)
+    report = build_campaign_report(results.model_dump(mode="json", by_alias=True))
+    for path in files[2:]:
+        write_report(report, path)
+    return files

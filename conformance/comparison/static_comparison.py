@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from importlib.metadata import version
 
 import numpy as np
 
@@ -24,8 +23,7 @@ from pantocheck.conformance.comparison.static_differences import (
 from pantocheck.conformance.comparison.static_record import StaticRecord, StaticValue
 from pantocheck.conformance.comparison.value_pair import ValuePair
 from pantocheck.conformance.grading.verdicts import worst_verdict
-from pantocheck.conformance.results.results_format import Suite
-from pantocheck.conformance.results.suite_identity import find_suite_commit, suite_digest
+from pantocheck.conformance.results.results_building import build_suite
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.simulation.static_quantities import sample_span
 from pantocheck.model import DiscretisedLine, discretise
@@ -88,7 +86,7 @@ def compare_statics(
         grade_tolerance(quantity, tolerance, pairs, sidecar, section) for quantity, tolerance in tolerances.items()
     )
     return StaticComparison(
-        suite=Suite(version=version("pantocheck"), commit=find_suite_commit(), digest=suite_digest()),
+        suite=build_suite(),
         line=line.title,
         line_digest=json_digest(line.model_dump(mode="json")),
         record=record.source,

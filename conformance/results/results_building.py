@@ -58,6 +58,11 @@ def describe_uncertainty(uncertainty: Uncertainty) -> dict[str, Any]:
     }
 
 
+def build_suite() -> Suite:
+    """Identity of the installed suite."""
+    return Suite(version=version("pantocheck"), commit=find_suite_commit(), digest=suite_digest())
+
+
 def build_results(
     cases: Sequence[CaseResult],
     system: SystemIdentity,
@@ -81,7 +86,7 @@ def build_results(
         Cases and verdicts that decide the verdict of the run, and accepted unverified records.
     """
     results = Results(
-        suite=Suite(version=version("pantocheck"), commit=find_suite_commit(), digest=suite_digest()),
+        suite=build_suite(),
         system=system,
         verdict="info",
         trust=trust,

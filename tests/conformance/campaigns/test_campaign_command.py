@@ -54,6 +54,7 @@ def test_campaign_in_processes_equals_that_in_one_process(campaign: Path, tmp_pa
     result = call("campaign", campaign, "--out", out, "--workers", 2)
     assert result.exit_code == 1, result.output
     assert "3 of 3 runs finished, 1 failed" in result.output
+    assert {path.suffix for path in out.iterdir()} >= {".csv", ".json", ".html", ".pdf", ".sqlite"}
     rows = list(csv.DictReader((out / "campaign.csv").read_text().splitlines()))
     assert [row["verdict"] for row in rows] == ["pass", "fail", "error"]
     assert [row["pantograph.uplift_force_N"] for row in rows] == ["110.0", "130.0", "-1.0"]

@@ -1,0 +1,1 @@
+"""Evaluation of a campaign: charts against inputs, maps, and statistics of random designs."""

@@ -1,0 +1,76 @@
+"""Evaluation of a campaign: from the rows of its store to campaign.json."""
+
+from collections.abc import Iterator
+
+from pantocheck.conformance.campaigns.campaign_preparation import PreparedCampaign
+from pantocheck.conformance.campaigns.campaign_store import CampaignStore
+from pantocheck.conformance.campaigns.design_axes import DesignAxis, SampleAxis
+from pantocheck.conformance.campaigns.evaluation.campaign_columns import (
+    choose_values,
+    count_reasons,
+    drop_constant,
+    read_columns,
+)
+from pantocheck.conformance.campaigns.evaluation.input_charts import build_input_charts, build_maps
+from pantocheck.conformance.campaigns.evaluation.sample_evaluation import build_sample_charts, build_statistics
+from pantocheck.conformance.quantities.limit_text import format_stated
+from pantocheck.conformance.results.campaign_format import CampaignEnding, CampaignResults
+from pantocheck.conformance.results.results_building import build_suite
+
+
+def evaluate_campaign(prepared: PreparedCampaign, store: CampaignStore, ending: CampaignEnding) -> CampaignResults:
+    """Evaluate the finished runs of a campaign.
+
+    Parameters
+    ----------
+    prepared : PreparedCampaign
+        The campaign.
+    store : CampaignStore
+        Its finished runs.
+    ending : str
+        Reason of its end.
+    """
+    design = prepared.design
+    grid = [key for axis in design.axes if not isinstance(axis, SampleAxis) for key in axis.keys]
+    sampled = [key for axis in design.axes if isinstance(axis, SampleAxis) for key in axis.keys]
+    values = choose_values(store, prepared.limits)
+    columns = read_columns(store, values)
+    charted = drop_constant(values, columns)
+    verdicts, reasons = count_reasons(store)
+    finished, failed = store.count()
+    return CampaignResults(
+        suite=build_suite(),
+        title=prepared.file.title,
+        ending=ending,
+        cases=list(design.case_ids),
+        systems=list(design.systems),
+        inputs=dict(_describe_inputs(prepared)),
+        total=design.count_runs(),
+        finished=finished,
+        failed=failed,
+        verdicts=verdicts,
+        reasons=reasons,
+        charts=[
+            *build_input_charts(columns, charted, grid),
+            *build_sample_charts(columns, charted, grid, sampled),
+        ],
+        maps=list(build_maps(columns, charted, grid)),
+        statistics=list(build_statistics(columns, values, grid)),
+    )
+
+
+def _describe_inputs(prepared: PreparedCampaign) -> Iterator[tuple[str, str]]:
+    """Varied inputs with their ranges, distributions or links."""
+    for axis in prepared.design.axes:
+        yield from ((key, _describe_axis(axis, key)) for key in axis.keys)
+    for link in prepared.design.links:
+        yield link.key, f"{format_stated(link.factor)} x {link.follows} + {format_stated(link.offset)}"
+
+
+def _describe_axis(axis: DesignAxis, key: str) -> str:
+    if isinstance(axis, SampleAxis):
+        distribution = next(item.distribution for item in axis.sampling.input if item.key == key)
+        facts = ", ".join(f"{name} {value}" for name, value in distribution if name != "kind" and value is not None)
+        return f"{distribution.kind}: {facts}; {len(axis)} designs, {axis.sampling.method}"
+    first, last = axis.row(0)[key], axis.row(len(axis) - 1)[key]
+    return f"{first} to {last}, {len(axis)} values" if len(axis) > 1 else str(first)

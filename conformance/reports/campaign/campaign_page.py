@@ -1,0 +1,83 @@
+"""Report on a campaign, from campaign.json."""
+
+from collections.abc import Callable
+from typing import Any
+
+from pantocheck.conformance.reports import document as doc
+from pantocheck.conformance.reports.figures.heat_map import draw_map
+from pantocheck.conformance.reports.figures.study_chart import draw_chart
+from pantocheck.conformance.reports.page_text import clean_tree, format_percent, format_value
+
+CAMPAIGN_ENDINGS = {
+    "complete": "",
+    "failure share": " It stopped because too many runs failed.",
+    "time budget": " It stopped at the end of its time budget.",
+    "interrupted": " It was interrupted.",
+}
+
+CAMPAIGN_SCOPE = (
+    "Each run is one simulation with the discretisation of its case, unless the campaign asks for refined runs. The "
+    "table campaign.csv has all inputs, verdicts and quantities of every run."
+)
+
+
+def build_campaign_report(results: dict[str, Any]) -> doc.Document:
+    """The report on the content of campaign.json."""
+    results = clean_tree(results)
+    counts = f"{results['finished']} of {results['total']} runs are finished, {results['failed']} of them failed."
+    header = doc.PlainHeader(results["title"], counts + CAMPAIGN_ENDINGS[results["ending"]])
+    blocks: list[doc.Block] = [doc.Paragraph(CAMPAIGN_SCOPE), doc.Facts(_list_facts(results))]
+    blocks += _list_reasons(results["reasons"])
+    maps = [doc.Figure(draw_map(data), data["alternative"], data["caption"]) for data in results["maps"]]
+    charts = [
+        doc.Figure(draw_chart(data), data["alternative"], data["caption"], data["wide"]) for data in results["charts"]
+    ]
+    if results["statistics"]:
+        blocks.append(doc.Section("Random inputs", (_build_statistics_table(results["statistics"]),)))
+    if maps or charts:
+        blocks.append(doc.Section("Figures", (doc.Figures((*maps, *charts)),)))
+    return doc.Document(results["title"], header, tuple(blocks))
+
+
+def _list_facts(results: dict[str, Any]) -> tuple[tuple[str, str], ...]:
+    verdicts = ", ".join(f"{verdict}: {count}" for verdict, count in results["verdicts"].items())
+    facts = {
+        "Cases": ", ".join(results["cases"]),
+        "Systems": ", ".join(results["systems"]),
+        "Verdicts of the runs": verdicts,
+        **results["inputs"],
+        "Suite": f"Pantocheck {results['suite']['version']}",
+        "Digest of the suite": results["suite"]["digest"] or "not known",
+    }
+    return tuple((name, text) for name, text in facts.items() if text)
+
+
+def _list_reasons(reasons: dict[str, int]) -> list[doc.Block]:
+    """Section on runs without a result."""
+    if not reasons:
+        return []
+    items = tuple(f"{count} run{'s' if count > 1 else ''}: {reason}" for reason, count in reasons.items())
+    return [doc.Section("Runs without a result", (doc.BulletList(items),))]
+
+
+def _build_statistics_table(statistics: list[dict[str, Any]]) -> doc.Table:
+    def interval(estimate: dict[str, float] | None) -> str:
+        if estimate is None:
+            return "–"
+        value, low, high = (format_percent(estimate[part], 3) for part in ("value", "low", "high"))
+        return f"{value} ({low} to {high})"
+
+    def quantile(name: str) -> Callable[[Any], str]:
+        return lambda row: format_value(row["quantiles"][name])
+
+    cells: dict[str, Callable[[Any], str]] = {
+        "Value": lambda row: row["label"] + (f", {row['group']}" if row["group"] else ""),
+        "Runs": lambda row: str(row["runs"]),
+        "Mean": lambda row: format_value(row["mean"]["value"]),
+        "Std": lambda row: format_value(row["std"], 3),
+        **{name: quantile(name) for name in ("5 %", "50 %", "95 %")},
+        "Limit": lambda row: row["limit"] or "–",
+        "Outside [%]": lambda row: interval(row["exceedance"]),
+    }
+    caption = "Values over the random designs; share of runs outside the limit with its 95 % interval (Wilson 1927)"
+    return doc.make_grid(caption, statistics, cells)

@@ -1,0 +1,70 @@
+"""Format of campaign.json: facts, charts, maps and statistics of a campaign, from which its report is made."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from pantocheck.conformance.results.figure_data import Chart
+from pantocheck.conformance.results.results_format import Suite
+from pantocheck.conformance.results.results_part import FiniteNumber, ResultsPart
+
+CampaignEnding = Literal["complete", "failure share", "time budget", "interrupted"]
+"""Reason of the end of a campaign."""
+
+
+class ValueMap(ResultsPart):
+    """Values over two inputs, with the limits whose contour is drawn."""
+
+    caption: str
+    alternative: str
+    x_label: str
+    y_label: str
+    value_label: str
+    x: list[float]
+    y: list[float]
+    values: Annotated[list[list[FiniteNumber | None]], Field(description="one list per y; null: no result")]
+    lower: FiniteNumber | None
+    upper: FiniteNumber | None
+
+
+class Estimate(ResultsPart):
+    """Estimate from random designs with its interval."""
+
+    value: FiniteNumber
+    low: FiniteNumber
+    high: FiniteNumber
+
+
+class ValueStatistics(ResultsPart):
+    """Statistics of a value over the random designs of one point of the grid."""
+
+    label: str
+    group: Annotated[str, Field(description="case, system and grid inputs; empty if there is one group")]
+    runs: int
+    mean: Annotated[Estimate, Field(description="mean with its 95 % interval (normal approximation)")]
+    std: FiniteNumber
+    quantiles: Annotated[dict[str, FiniteNumber], Field(description="quantiles 5, 50 and 95 %")]
+    limit: Annotated[str | None, Field(description="bounds of the limit; null: no limit")]
+    exceedance: Annotated[
+        Estimate | None, Field(description="share of runs outside the limit, with its 95 % interval (Wilson 1927)")
+    ]
+
+
+class CampaignResults(ResultsPart):
+    """Evaluation of a campaign."""
+
+    schema_: Annotated[Literal["pantocheck.campaign/1"], Field(alias="schema")] = "pantocheck.campaign/1"
+    suite: Suite
+    title: str
+    ending: CampaignEnding
+    cases: list[str]
+    systems: list[str]
+    inputs: Annotated[dict[str, str], Field(description="varied inputs with their ranges as text")]
+    total: int
+    finished: int
+    failed: int
+    verdicts: Annotated[dict[str, int], Field(description="number of runs by verdict")]
+    reasons: Annotated[dict[str, int], Field(description="most frequent reasons of runs without a result")]
+    charts: list[Chart]
+    maps: list[ValueMap]
+    statistics: list[ValueStatistics]

@@ -1,0 +1,107 @@
+"""Evaluation of a campaign: charts, maps and statistics of known columns, and their report."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from pantocheck.conformance.campaigns.evaluation.campaign_columns import CampaignColumns, EvaluatedValue, drop_constant
+from pantocheck.conformance.campaigns.evaluation.input_charts import build_input_charts, build_maps
+from pantocheck.conformance.campaigns.evaluation.sample_evaluation import build_sample_charts, build_statistics
+from pantocheck.conformance.reports.campaign.campaign_page import build_campaign_report
+from pantocheck.conformance.reports.formats.html import render_html
+from pantocheck.conformance.results.campaign_format import CampaignResults
+from pantocheck.conformance.results.results_building import build_suite
+
+FRONT, REAR = EvaluatedValue("1.std_force_N", upper=50.0), EvaluatedValue("2.std_force_N", upper=50.0)
+GRID = ("speed_km_h", "spacing_m")
+
+
+@pytest.fixture
+def columns() -> CampaignColumns:
+    """Three speeds and three spacings of two pantographs; the last run has no value of the rear one."""
+    designs = list(itertools.product((200, 250, 300), (85.0, 120.0, 200.0)))
+    front = np.array([speed / 6 for speed, _ in designs])
+    rear = np.array([speed / 6 + spacing / 20 for speed, spacing in designs])
+    rear[-1] = np.nan
+    speeds, spacings = zip(*designs, strict=True)
+    inputs = {"speed_km_h": speeds, "spacing_m": spacings}
+    return CampaignColumns(("a",) * 9, ("builtin",) * 9, inputs, {FRONT.column: front, REAR.column: rear})
+
+
+def test_chart_has_a_curve_per_pantograph_and_other_input_with_the_limit(columns: CampaignColumns) -> None:
+    chart, other = build_input_charts(columns, [FRONT, REAR], GRID)
+    assert (chart.x_label, other.x_label) == GRID
+    labels = [series.label for series in chart.series]
+    assert labels[0] == "pantograph 1, spacing_m = 85.0"
+    assert labels[-1] == "pantograph 2, spacing_m = 200.0"
+    assert chart.series[3].x == [200, 250, 300]
+    assert chart.series[3].y == pytest.approx([200 / 6 + 4.25, 250 / 6 + 4.25, 300 / 6 + 4.25])
+    assert chart.series[5].x == [200, 250]  # the missing value is left out
+    assert [(mark.axis, mark.low) for mark in chart.marks] == [("y", 50.0)]
+
+
+def test_many_curves_become_points(columns: CampaignColumns) -> None:
+    values = [EvaluatedValue(FRONT.column), REAR, EvaluatedValue("3.std_force_N")]
+    columns.values["3.std_force_N"] = columns.values[FRONT.column]
+    chart, _ = build_input_charts(columns, values, GRID)
+    assert {series.style for series in chart.series} == {"points"}
+    assert sum(len(series.x) for series in chart.series) == 26
+
+
+def test_map_has_a_cell_per_run(columns: CampaignColumns) -> None:
+    (value_map,) = build_maps(columns, [REAR], GRID)
+    assert value_map.x == [200, 250, 300]
+    assert value_map.y == [85, 120, 200]
+    assert value_map.values[0] == pytest.approx([200 / 6 + 4.25, 250 / 6 + 4.25, 300 / 6 + 4.25])
+    assert value_map.values[2][2] is None
+    assert (value_map.lower, value_map.upper) == (None, 50.0)
+
+
+def test_constant_values_without_a_limit_are_not_drawn(columns: CampaignColumns) -> None:
+    loss = EvaluatedValue("1.contact_loss_pct")
+    columns.values[loss.column] = np.zeros(9)
+    assert drop_constant([FRONT, loss], columns) == [FRONT]
+
+
+def test_statistics_of_random_designs_are_those_of_each_point_of_the_grid() -> None:
+    """At both speeds 100 runs with the values 1 to 100, and 101 to 200: a limit of 150 is exceeded by 0 and 50 %."""
+    numbers = np.arange(1.0, 201.0)
+    inputs = {"speed_km_h": (200,) * 100 + (300,) * 100, "tension": tuple(numbers)}
+    value = EvaluatedValue("1.mean_force_N", upper=150.0)
+    columns = CampaignColumns(("a",) * 200, ("builtin",) * 200, inputs, {value.column: numbers})
+    low, high = build_statistics(columns, [value], ["speed_km_h"])
+    assert (low.group, high.group) == ("speed_km_h = 200", "speed_km_h = 300")
+    assert (low.runs, low.mean.value, high.mean.value) == (100, 50.5, 150.5)
+    assert low.quantiles == pytest.approx({"5 %": 5.95, "50 %": 50.5, "95 %": 95.05})
+    assert low.exceedance is not None
+    assert high.exceedance is not None
+    assert (low.exceedance.value, low.exceedance.low, high.exceedance.value) == (0.0, 0.0, 0.5)
+    distribution, *convergence = build_sample_charts(columns, [value], ["speed_km_h"], ["tension"])
+    assert [series.y[-1] for series in distribution.series] == [1.0, 1.0]
+    assert [chart.series[0].y[-1] for chart in convergence] == [0.0, 0.5]
+
+
+def test_report_has_facts_statistics_maps_and_charts(columns: CampaignColumns) -> None:
+    results = CampaignResults(
+        suite=build_suite(),
+        title="Map <b>",
+        ending="time budget",
+        cases=["a"],
+        systems=["builtin"],
+        inputs={"speed_km_h": "200 to 300, 3 values"},
+        total=12,
+        finished=10,
+        failed=1,
+        verdicts={"pass": 6, "fail": 3, "error": 1},
+        reasons={"SimulationError: diverged": 1},
+        charts=list(build_input_charts(columns, [FRONT, REAR], GRID)),
+        maps=list(build_maps(columns, [REAR], GRID)),
+        statistics=list(build_statistics(columns, [FRONT], [])),
+    )
+    text = render_html(build_campaign_report(results.model_dump(mode="json")))
+    assert "10 of 12 runs are finished, 1 of them failed. It stopped at the end of its time budget." in text
+    assert "Map &lt;b&gt;" in text
+    assert "1 run: SimulationError: diverged" in text
+    assert "pass: 6, fail: 3, error: 1" in text
+    assert text.count("<figure") == 3
