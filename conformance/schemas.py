@@ -20,6 +20,8 @@ from pantocheck.conformance.cases.limits import LimitsFile
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.cases.profile_file import Profile
+from pantocheck.conformance.comparison.drop_comparison_format import DropComparison
+from pantocheck.conformance.comparison.drop_limits import DropLimits
 from pantocheck.conformance.comparison.static_comparison_format import StaticComparison
 from pantocheck.conformance.comparison.static_sidecar import StaticSidecar
 from pantocheck.conformance.identification.damping.damping_format import DampingResults
@@ -45,6 +47,7 @@ READ_FORMATS: dict[str, type[BaseModel]] = {
     "record": RecordSidecar,
     "mass-drop": MassDropSidecar,
     "static": StaticSidecar,
+    "drop-limits": DropLimits,
     "summary": RecordSummary,
     "profile": Profile,
     "converged": ConvergedFile,
@@ -59,6 +62,7 @@ WRITTEN_FORMATS: dict[str, type[BaseModel]] = {
     "damping-fit": DampingResults,
     "static-comparison": StaticComparison,
     "campaign-results": CampaignResults,
+    "drop-comparison": DropComparison,
 }
 """JSON files that the suite writes."""
 

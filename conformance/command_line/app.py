@@ -21,6 +21,7 @@ COMMANDS = {
     "drop": "Simulate the mass drops of a case and write their records.",
     "identify": "Identify frequencies, damping ratios and mode shapes from mass-drop records.",
     "fit-damping": "Fit a damping model of a line to identified modes.",
+    "compare-drop": "Compare a recorded mass drop with its simulation under one or more damping models.",
     "import-line": "Write a line file from tables of its supports and droppers.",
     "export-line": "Write the supports and droppers of a line as tables for a spreadsheet.",
     "compare-statics": "Compare elasticities and contact wire heights measured along a line with its model.",

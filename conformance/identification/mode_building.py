@@ -55,7 +55,7 @@ def _build_mode(fit: LineFit, j: int, lateral_share: float | None) -> Mode:
         sensor_shape=_sensor_shape(best, residues, spread, scale),
         error=_band_error(fit.blocks, pole),
         record=decay.record.name,
-        line=_describe_line(decay.record.line),
+        line=describe_line(decay.record.line),
         certain=damping_std < UNCERTAIN * damping,
         lateral=lateral_share is not None and lateral_share > LATERAL,
         amplitude_at_release=_finite(amplitude),
@@ -66,7 +66,8 @@ def _build_mode(fit: LineFit, j: int, lateral_share: float | None) -> Mode:
     return mode.model_copy(update={"warnings": _list_warnings(mode, linear.duration, nearest)})
 
 
-def _describe_line(line: DropLine) -> MeasuredLine:
+def describe_line(line: DropLine) -> MeasuredLine:
+    """Facts about the line of a record, as a damping fit compares them with its line."""
     return MeasuredLine(
         spans_m=line.spans,
         contact_wire_tension_N=line.contact_wire_tension,

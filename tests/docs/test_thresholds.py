@@ -9,7 +9,17 @@ import pytest
 
 from pantocheck.conformance.authenticity import attachment, reported_numbers
 from pantocheck.conformance.cases import start_and_section
-from pantocheck.conformance.comparison import static_comparison, static_criteria, static_differences, static_record
+from pantocheck.conformance.comparison import (
+    drop_comparison,
+    drop_motion,
+    drop_statistics,
+    motion_bands,
+    release_alignment,
+    static_comparison,
+    static_criteria,
+    static_differences,
+    static_record,
+)
 from pantocheck.conformance.consistency import (
     force_content,
     force_copy,
@@ -49,6 +59,7 @@ MODULES: list[ModuleType] = [
     extended_band, record_mismatch, record_uncertainty, start_agreement, start_and_section, validity_warnings,
     verification_limits, bands, filters, limit_text, signals, record, block_bootstrap, force_checks, usable_sections,
     results_part, results_reading, traces, static_comparison, static_criteria, static_differences, static_record,
+    drop_comparison, drop_motion, drop_statistics, motion_bands, release_alignment,
 ]  # fmt: skip
 BY_FILE = {"/".join(module.__name__.split(".")[2:]) + ".py": module for module in MODULES}
 FOLDERS = ("quantities", "consistency", "grading", "records", "results", "authenticity", "comparison")

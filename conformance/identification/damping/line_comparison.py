@@ -20,6 +20,9 @@ TENSION_TOLERANCE = 0.01
 
 UNKNOWN_LINE = MeasuredLine()
 
+SensorFacts = tuple[int, str, float | None]
+"""Number of a sensor, its wire in the record, and its position [m]; None if not known."""
+
 
 def compare_line(modes: Sequence[Mode], line: Catenary) -> LineComparison:
     """Compare spans, tensions and sensor positions of the records of identified modes with a line."""
@@ -33,13 +36,13 @@ def compare_line(modes: Sequence[Mode], line: Catenary) -> LineComparison:
         differences += [row.model_copy(update={"fact": prefix + row.fact}) for row in facts]
         missing += [prefix + fact for fact in _list_missing(measured)]
     sensors = sorted({(s.sensor, s.wire, s.position_m) for mode in modes for s in mode.sensor_shape}, key=str)
-    for number, wire, position in sensors:
-        if wire not in KIND_OF_WIRE or position is None:
-            missing.append(f"wire and position of sensor {number}")
-        else:
-            differences += _compare_sensor(number, wire, position, line)
-    state = "contradicted" if differences else "unverified" if missing else "verified"
-    return LineComparison(state=state, differences=tuple(differences), missing=tuple(dict.fromkeys(missing)))
+    return _add_sensors(differences, missing, sensors, line)
+
+
+def compare_record_line(measured: MeasuredLine, sensors: Sequence[SensorFacts], line: Catenary) -> LineComparison:
+    """Compare spans, tensions and sensor positions of one record with a line."""
+    differences = [*_compare_spans(measured, line), *_compare_tensions(measured, line)]
+    return _add_sensors(differences, list(_list_missing(measured)), sensors, line)
 
 
 def refuse_other_line(comparison: LineComparison, source: str) -> None:
@@ -80,6 +83,19 @@ def list_differences(comparison: LineComparison) -> str:
     return "; ".join(
         f"{row.fact} is {row.record} in the record, {row.line} on the line" for row in comparison.differences
     )
+
+
+def _add_sensors(
+    differences: list[LineDifference], missing: list[str], sensors: Sequence[SensorFacts], line: Catenary
+) -> LineComparison:
+    """Comparison of a line with the differences and missing facts of the sensors, too."""
+    for number, wire, position in sensors:
+        if wire not in KIND_OF_WIRE or position is None:
+            missing.append(f"wire and position of sensor {number}")
+        else:
+            differences += _compare_sensor(number, wire, position, line)
+    state = "contradicted" if differences else "unverified" if missing else "verified"
+    return LineComparison(state=state, differences=tuple(differences), missing=tuple(dict.fromkeys(missing)))
 
 
 def _compare_spans(measured: MeasuredLine, line: Catenary) -> Iterator[LineDifference]:

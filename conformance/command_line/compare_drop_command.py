@@ -1,0 +1,169 @@
+"""`pantocheck compare-drop`: a recorded mass drop beside its simulation under one or more damping models."""
+
+import math
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pantocheck.conformance.cases.damping_file import DampingFile
+from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.command_line.console import build_table, console, escape_text, format_number, style_verdict
+from pantocheck.conformance.command_line.options import read_line
+from pantocheck.conformance.command_line.results_output import EXIT_CODES
+from pantocheck.conformance.comparison.drop_comparison import DampingChoice, DropTask, compare_drop
+from pantocheck.conformance.comparison.drop_comparison_format import DropComparison
+from pantocheck.conformance.comparison.drop_limits import read_drop_limits
+from pantocheck.conformance.comparison.motion_bands import GRAPHIC_BAND
+from pantocheck.conformance.identification.rounded_model import write_model
+from pantocheck.conformance.input_files.atomic_writing import check_writable
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.toml_file import read_model
+from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
+from pantocheck.conformance.mass_drops.drop_record import DropRecord
+from pantocheck.conformance.reports.comparison.drop_comparison_page import (
+    DROP_HEADLINES,
+    build_drop_comparison,
+    name_criterion,
+)
+from pantocheck.conformance.reports.formats.report_writers import write_report
+
+DEFAULT_WINDOWS = ((0.0, 10.0), (60.0, 70.0))
+"""Windows after the release [s]: the first ten seconds, and ten seconds a minute later."""
+
+SHORTEST_WINDOW_S, LATEST_WINDOW_S = 1.0, 900.0
+"""Shortest window, about a period of the lowest mode, and latest end of one [s]."""
+
+
+def compare_drop_command(
+    record: Annotated[Path, typer.Argument(help="Record of a mass drop, with its sidecar (docs/identification.md).")],
+    line: Annotated[str, typer.Option(help="Line of the record: id of a case, or path of a case or line file.")],
+    out: Annotated[Path, typer.Option(help="Folder for drop_comparison.json, .html and .pdf.")],
+    damping: Annotated[
+        list[Path] | None,
+        typer.Option(help="Damping file; repeat the option for several. The first is graded. Default: the line's own."),
+    ] = None,
+    limits: Annotated[Path | None, typer.Option(help="File of limits (docs/compare-drop.md).")] = None,
+    run: Annotated[int, typer.Option(help="Number of the run in a record with several, from 1.", min=1)] = 1,
+    window: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="START:END", help="Window after the release [s]; repeat for several.", show_default="0:10, 60:70"
+        ),
+    ] = None,
+    release_duration: Annotated[
+        float, typer.Option("--release-s", help="Time in which the weight decreases to zero [s].", min=0.0, max=5.0)
+    ] = 0.0,
+    element: Annotated[float, typer.Option(help="Element length [m].", min=0.05, max=5.0)] = 0.5,
+    time_step: Annotated[float, typer.Option(help="Time step [s].", min=1e-5, max=0.005)] = 0.001,
+) -> None:
+    """Compare a recorded mass drop with its simulation under one or more damping models.
+
+    The record states mass, wire and position; the release is found in the record. Limits make criteria; without them,
+    the differences are shown and not graded.
+
+    Example: pantocheck compare-drop T1.h5 --line my-line.toml --damping measured.toml --out drop
+    """
+    line_file = read_line(line)
+    task = DropTask(
+        line=line_file,
+        models=_read_models(damping or [], line_file),
+        windows=tuple(dict.fromkeys(map(_parse_window, window))) if window else DEFAULT_WINDOWS,
+        element=element,
+        time_step=time_step,
+        release_duration=release_duration,
+        limits=None if limits is None else read_drop_limits(limits),
+    )
+    drop = _choose_run(record, run)
+    check_writable(out)
+    output = console()
+    with output.status("simulating the drop"):
+        comparison = compare_drop(drop, task)
+        files = _write(comparison, out)
+    output.print(style_verdict(comparison.verdict), escape_text(f" {DROP_HEADLINES[comparison.verdict]}"))
+    _print_agreement(comparison)
+    for path in files:
+        output.print(escape_text(str(path)), soft_wrap=True)
+    raise typer.Exit(EXIT_CODES[comparison.verdict])
+
+
+def _read_models(paths: list[Path], line: LineFile) -> dict[str, DampingChoice]:
+    """Damping models by the stem of their file; the damping of the line if there is no file."""
+    if not paths:
+        return {"line": DampingChoice(line.title, line.damping)}
+    models: dict[str, DampingChoice] = {}
+    for path in paths:
+        if path.stem in models:
+            raise InputError("--damping", f"two files have the name {path.stem}", "Rename one: reports name the stem.")
+        models[path.stem] = DampingChoice(path.name, read_model(path, DampingFile, "damping").damping)
+    return models
+
+
+def _parse_window(text: str) -> tuple[float, float]:
+    """Start and end of a window [s]."""
+    try:
+        start, end = map(float, text.split(":"))
+    except ValueError:
+        start, end = math.nan, math.nan
+    if not (start >= 0 and start + SHORTEST_WINDOW_S <= end <= LATEST_WINDOW_S):
+        raise InputError(
+            "--window",
+            f"{text[:40]!r} is not a window after the release",
+            f"Give START:END in seconds, e.g. 0:10; at least {SHORTEST_WINDOW_S:g} s, up to {LATEST_WINDOW_S:g} s.",
+        )
+    return start, end
+
+
+def _choose_run(path: Path, number: int) -> DropRecord:
+    """Run of a record, from 1."""
+    records = read_drop_records(path)
+    if number > len(records):
+        raise InputError("--run", f"there is no run {number}", f"'{path.name}' has {len(records)}, numbered from 1.")
+    return records[number - 1]
+
+
+def _write(comparison: DropComparison, folder: Path) -> list[Path]:
+    """Write all files of a comparison; return their paths."""
+    files = [folder / "drop_comparison.json"]
+    write_model(files[0], comparison)
+    document = build_drop_comparison(comparison.model_dump(mode="json", by_alias=True))
+    for suffix in (".html", ".pdf"):
+        files.append(folder / f"drop_comparison{suffix}")
+        write_report(document, files[-1])
+    return files
+
+
+def _print_agreement(comparison: DropComparison) -> None:
+    """Print the agreement of velocity and acceleration below 20 Hz, the criteria and the warnings."""
+    output = console()
+    drop = comparison.drop
+    output.print(
+        escape_text(f"{comparison.record}: {drop.mass_kg:g} kg on {drop.wire}, released at {drop.release_s:.4f} s")
+    )
+    numbers = ("RMS ratio", "correlation")
+    table = build_table("motion", "window", "place", "model", *numbers, title=f"{GRAPHIC_BAND.text}", right=numbers)
+    for row in comparison.statistics:
+        if row.band_Hz == GRAPHIC_BAND and row.record_rms is not None:
+            start, end = row.window_s
+            for model in row.models:
+                table.add_row(
+                    row.motion,
+                    f"{start:g} to {end:g} s",
+                    escape_text(row.place),
+                    escape_text(model.model),
+                    format_number(model.rms_ratio),
+                    format_number(model.correlation),
+                )
+    output.print(table)
+    if comparison.criteria:
+        criteria = build_table("criterion", "value", "limits", "verdict", right=("value",))
+        for item in comparison.criteria:
+            bounds = f"{format_number(item.lower)} to {format_number(item.upper)}"
+            name = name_criterion(item.model_dump(mode="json"))
+            criteria.add_row(name, format_number(item.value), bounds, style_verdict(item.verdict))
+        output.print(criteria)
+    for item in comparison.criteria:
+        for remark in filter(None, (item.reason, *item.close)):
+            output.print(escape_text(f"  {name_criterion(item.model_dump(mode='json'))}: {remark}"))
+    for warning in comparison.warnings:
+        output.print(escape_text(f"warning: {warning}"))

@@ -1,0 +1,271 @@
+"""Comparison of a recorded mass drop with its simulation under one or more damping models."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from importlib.metadata import version
+from pathlib import Path
+
+from pantocheck.conformance.cases.case import json_digest
+from pantocheck.conformance.cases.damping_file import Damping, overlay_damping
+from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.comparison.drop_comparison_format import (
+    ComparedDrop,
+    ComparedModel,
+    ComparedPlace,
+    DropComparison,
+    DropCriterion,
+    WindowStatistics,
+)
+from pantocheck.conformance.comparison.drop_criteria import grade_limits
+from pantocheck.conformance.comparison.drop_limits import DropLimits, TimeWindow
+from pantocheck.conformance.comparison.drop_motion import DropMotion, DropSimulation, simulate_models
+from pantocheck.conformance.comparison.drop_statistics import compute_energies, compute_statistics, sample_curves
+from pantocheck.conformance.comparison.motion_bands import MOTION_BANDS, MotionBand
+from pantocheck.conformance.comparison.recorded_drop import RecordedDrop, locate_drop
+from pantocheck.conformance.grading.verdicts import Verdict, worst_verdict
+from pantocheck.conformance.identification.damping.line_comparison import warn_about_line
+from pantocheck.conformance.input_files.bounded_file import file_digest
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.mass_drops.clipping import find_clipping
+from pantocheck.conformance.mass_drops.drop_record import DropRecord
+from pantocheck.conformance.quantities.filters import is_observable
+from pantocheck.conformance.results.results_format import Suite
+from pantocheck.conformance.results.suite_identity import find_suite_commit, suite_digest
+from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.model import Catenary
+
+LEAST_CORRELATION = 0.7
+"""Correlation over the first seconds below which mass, place, line or units are doubted [-]."""
+
+MASS = "mass"
+"""Name of the place of the mass, where no sensor is."""
+
+
+@dataclass(frozen=True)
+class DampingChoice:
+    """Damping model of a comparison.
+
+    Parameters
+    ----------
+    source : str
+        Name of its file, or of the line.
+    damping : Damping
+        Damping; its tables replace those of the line.
+    """
+
+    source: str
+    damping: Damping
+
+
+@dataclass(frozen=True)
+class DropTask:
+    """Task of a comparison.
+
+    Parameters
+    ----------
+    line : LineFile
+        Line of the record.
+    models : mapping of str to DampingChoice
+        Damping models by name; the first one is graded.
+    windows : tuple of TimeWindow
+        Compared windows after the release [s].
+    element, time_step : float
+        Largest element length [m] and time step [s].
+    release_duration : float
+        Time in which the weight decreases linearly to zero [s].
+    limits : DropLimits or None
+        Limits of the user; None: the differences are shown and not graded.
+    """
+
+    line: LineFile
+    models: Mapping[str, DampingChoice]
+    windows: tuple[TimeWindow, ...]
+    element: float
+    time_step: float
+    release_duration: float
+    limits: DropLimits | None
+
+    @property
+    def settings(self) -> DropSimulation:
+        """Settings of the simulations."""
+        last = max(end for _, end in self.windows)
+        return DropSimulation(self.element, self.time_step, self.release_duration, last)
+
+    def build_models(self) -> dict[str, Catenary]:
+        """Line with the damping of each model."""
+        return {
+            name: build_catenary(
+                self.line.model_copy(update={"damping": overlay_damping(self.line.damping, choice.damping)})
+            )
+            for name, choice in self.models.items()
+        }
+
+
+def compare_drop(record: DropRecord, task: DropTask) -> DropComparison:
+    """Compare a recorded drop with its simulation under each damping model.
+
+    Parameters
+    ----------
+    record : DropRecord
+        Record of one drop.
+    task : DropTask
+        Line, damping models, windows and limits.
+
+    Returns
+    -------
+    DropComparison
+        Content of drop_comparison.json.
+
+    Raises
+    ------
+    InputError
+        The record is not one of a drop on this line, or ends before the first window does.
+    NoInitialState, NoEquilibrium, DidNotConverge
+        A simulation has no solution.
+    """
+    catenaries = task.build_models()
+    drop = locate_drop(record, next(iter(catenaries.values())))
+    _check_sensor_numbers(drop, task)
+    motion = simulate_models(drop, catenaries, task.settings)
+    windows = tuple(window for window in task.windows if window[1] <= motion.end + 1e-9)
+    if not windows:
+        raise InputError(
+            f"record '{record.source}'",
+            f"can be compared until {motion.end:.1f} s after the release",
+            f"The first window ends at {min(end for _, end in task.windows):g} s: record longer, or give --window.",
+        )
+    bands = tuple(band for band in MOTION_BANDS if is_observable(band.high, motion.rate))
+    places = _list_places(drop)
+    names = tuple(place.name for place in places)
+    statistics = compute_statistics(motion, names, windows, bands)
+    criteria = _grade(drop, task, motion, statistics)
+    verdict = worst_verdict(criterion.verdict for criterion in criteria)
+    return DropComparison(
+        suite=Suite(version=version("pantocheck"), commit=find_suite_commit(), digest=suite_digest()),
+        line=task.line.title,
+        line_digest=json_digest(task.line.model_dump(mode="json")),
+        record=record.name,
+        record_source=record.source,
+        record_digest=f"sha256:{file_digest(Path(record.file))}" if record.file else None,
+        line_comparison=drop.line,
+        verdict=_demote(verdict, drop),
+        drop=_describe_drop(drop, task, motion),
+        rate_Hz=motion.rate,
+        element_m=task.element,
+        time_step_s=task.time_step,
+        windows_s=windows,
+        bands_Hz=bands,
+        models=tuple(
+            ComparedModel(name=name, source=choice.source, damping=choice.damping, last_slack_s=motion.last_slack[name])
+            for name, choice in task.models.items()
+        ),
+        places=places,
+        statistics=statistics,
+        energies=compute_energies(motion, names),
+        curves=sample_curves(motion, names, windows),
+        criteria=criteria,
+        warnings=(*record.warnings, *motion.release.warnings, *warn_about_line(drop.line), *_warn(task, motion)),
+    ).rounded()
+
+
+def _check_sensor_numbers(drop: RecordedDrop, task: DropTask) -> None:
+    """Refuse limits whose windows are not compared, and sensors with several vertical channels."""
+    if task.limits is None:
+        return
+    if (unknown := task.limits.find_unknown_window(task.windows)) is not None:
+        number, window = unknown
+        raise InputError(
+            f"limits, key limit[{number}].window_s",
+            f"{list(window)} is not a compared window",
+            f"Add --window {window[0]:g}:{window[1]:g}.",
+        )
+    numbers = [channel.sensor for channel in drop.channels]
+    repeated = [number for number in numbers if numbers.count(number) > 1]
+    if repeated:
+        raise InputError(
+            f"record '{drop.record.source}', key channel.sensor",
+            f"{numbers.count(repeated[0])} vertical channels have the number {repeated[0]}",
+            "Limits name sensors by number: give each sensor its own.",
+        )
+
+
+def _list_places(drop: RecordedDrop) -> tuple[ComparedPlace, ...]:
+    """Places of the columns of the simulated motion: the sensors, then the mass."""
+    sensors = [
+        ComparedPlace(name=channel.name, sensor=channel.sensor, wire=channel.wire, position_m=channel.position or 0.0)
+        for channel in drop.channels
+    ]
+    mass = ComparedPlace(name=MASS, sensor=None, wire=drop.wire, position_m=drop.position)
+    return (*sensors, mass)
+
+
+def _describe_drop(drop: RecordedDrop, task: DropTask, motion: DropMotion) -> ComparedDrop:
+    return ComparedDrop(
+        mass_kg=drop.mass,
+        wire=drop.wire,
+        position_m=drop.position,
+        release_duration_s=task.release_duration,
+        planned_release_s=drop.record.drop.trigger_nominal,
+        release_s=motion.release_time,
+        release_correlation=motion.correlation,
+    )
+
+
+def _grade(
+    drop: RecordedDrop, task: DropTask, motion: DropMotion, statistics: tuple[WindowStatistics, ...]
+) -> tuple[DropCriterion, ...]:
+    """Criteria of the limits; a refined simulation of the first model gives the error of the mesh and time step."""
+    if task.limits is None:
+        return ()
+    name, choice = next(iter(task.models.items()))
+    fine_task = replace(task, models={name: choice}, element=task.element / 2, time_step=task.time_step / 2)
+    fine = simulate_models(drop, fine_task.build_models(), fine_task.settings)
+    places = tuple(place.name for place in _list_places(drop))
+    windows = tuple(dict.fromkeys(row.window_s for row in statistics))
+    bands = tuple(dict.fromkeys(MotionBand(*row.band_Hz) for row in statistics))
+    numbers = {place.name: place.sensor for place in _list_places(drop)}
+    computed, refined = (
+        {
+            (number, row.motion, row.window_s, MotionBand(*row.band_Hz)): row
+            for row in rows
+            if (number := numbers[row.place]) is not None
+        }
+        for rows in (statistics, compute_statistics(fine, places, windows, bands))
+    )
+    return grade_limits(task.limits, computed, refined, _find_clipped(drop, motion, task.windows))
+
+
+def _find_clipped(
+    drop: RecordedDrop, motion: DropMotion, windows: tuple[TimeWindow, ...]
+) -> frozenset[tuple[int, TimeWindow]]:
+    """Sensors and windows with clipped samples; a clipped sample before a window damages it, too."""
+    record = drop.record
+    clipped = set()
+    for column, channel in zip(drop.columns, drop.channels, strict=True):
+        tops = find_clipping(record.signals[:, column])
+        clipped |= {
+            (channel.sensor, window)
+            for window in windows
+            if any(start / record.rate < motion.release_time + window[1] for start, _ in tops)
+        }
+    return frozenset(clipped)
+
+
+def _demote(verdict: Verdict, drop: RecordedDrop) -> Verdict:
+    """Verdict of a record whose line is not fully known: at best unverified."""
+    return "unverified" if verdict == "pass" and drop.line.state != "verified" else verdict
+
+
+def _warn(task: DropTask, motion: DropMotion) -> list[str]:
+    """Caveats on windows that the record does not contain, and on a poor fit of the release."""
+    warnings = [
+        f"window from {start:g} to {end:g} s: the record can be compared until {motion.end:.1f} s after the release"
+        for start, end in task.windows
+        if end > motion.end + 1e-9
+    ]
+    if motion.correlation < LEAST_CORRELATION:
+        warnings.append(
+            f"record and model have a correlation of {motion.correlation:.2f} over the first seconds: mass, place, "
+            "line or units may be wrong"
+        )
+    return warnings

@@ -1,0 +1,208 @@
+"""Motion of a recorded drop and of its simulations on one time grid that begins before the release."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import ceil
+
+import numpy as np
+
+from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.comparison.motion_bands import GRAPHIC_BAND, TAPER_S, MotionBand, filter_motion, noise_rms
+from pantocheck.conformance.comparison.recorded_drop import RecordedDrop
+from pantocheck.conformance.comparison.release_alignment import ALIGNED_S, SEARCH_S, align_release
+from pantocheck.conformance.identification.release import MIN_REST, Release, find_release
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.simulation.drop_simulation import ORDER, decimate
+from pantocheck.model import Catenary
+from pantocheck.model.dynamics.mass_drop import MassDropSetup, simulate_mass_drop
+
+WORKING_RATE_HZ = 200.0
+"""Rate to which faster records are decimated [Hz]: the highest band ends at half of its Nyquist frequency."""
+
+LEAD_S = 2.0
+"""Rest before the release that is compared [s]."""
+
+MARGIN_S = 1.0
+"""Simulated time between the last window and the fade at the end [s]."""
+
+
+@dataclass(frozen=True)
+class DropSimulation:
+    """Settings of the simulations of a recorded drop.
+
+    Parameters
+    ----------
+    element : float
+        Largest element length [m].
+    time_step : float
+        Largest time step [s]; the used one divides the sampling interval.
+    release_duration : float
+        Time in which the weight decreases linearly to zero [s].
+    last : float
+        End of the last compared window after the release [s].
+    """
+
+    element: float
+    time_step: float
+    release_duration: float
+    last: float
+
+
+@dataclass(frozen=True)
+class DropMotion:
+    """Motion of a record and of models at the sensors, and of models at the mass; n samples, c sensors.
+
+    Parameters
+    ----------
+    rate : float
+        Sampling rate [Hz].
+    lead : int
+        Number of samples before the release.
+    quantity : str
+        Quantity of the samples: displacement, velocity or acceleration.
+    record : (n, c) ndarray
+        Record, from `lead` samples before the sample that precedes the release.
+    advance : float
+        Time from this sample to the release [s].
+    rest : (r, c) ndarray
+        Record at rest; empty if it is too short for an estimate of the noise.
+    models : mapping of str to (n, c + 1) ndarray
+        Simulated motion by model; the last column is that of the mass.
+    last_slack : mapping of str to float or None
+        Last time with a slack dropper by model [s].
+    release : Release
+        First motion of the record and its warnings.
+    release_time : float
+        Release in the time of the record [s].
+    correlation : float
+        Correlation of the record and the first model at this release [-].
+    """
+
+    rate: float
+    lead: int
+    quantity: str
+    record: RealArray
+    advance: float
+    rest: RealArray
+    models: Mapping[str, RealArray]
+    last_slack: Mapping[str, float | None]
+    release: Release
+    release_time: float
+    correlation: float
+
+    @property
+    def time(self) -> RealArray:
+        """Time of the samples after the release [s]."""
+        return np.asarray((np.arange(self.record.shape[0]) - self.lead) / self.rate, dtype=np.float64)
+
+    @property
+    def end(self) -> float:
+        """Latest end of a window after the release [s]."""
+        return float(self.time[-1] + 1 / self.rate - TAPER_S)
+
+    def filter_record(self, motion: str, band: MotionBand) -> RealArray:
+        """Velocity or acceleration of the record in a band, (n, c)."""
+        return filter_motion(self.record, self.rate, self._derivatives(motion), band, self.advance)
+
+    def filter_model(self, name: str, motion: str, band: MotionBand) -> RealArray:
+        """Velocity or acceleration of a model in a band, (n, c + 1)."""
+        return filter_motion(self.models[name], self.rate, self._derivatives(motion), band)
+
+    def noise(self, motion: str, band: MotionBand) -> RealArray | None:
+        """RMS of the noise of each sensor in a band, (c,); None if it is not known."""
+        return noise_rms(self.rest, self.rate, self._derivatives(motion), band) if self.rest.size else None
+
+    def _derivatives(self, motion: str) -> int:
+        return ORDER[motion] - ORDER[self.quantity]
+
+
+def simulate_models(drop: RecordedDrop, models: Mapping[str, Catenary], settings: DropSimulation) -> DropMotion:
+    """Simulate a recorded drop under several models, and align the record with the first one.
+
+    Parameters
+    ----------
+    drop : RecordedDrop
+        The drop.
+    models : mapping of str to Catenary
+        Line with the damping of each model; the first one finds the release.
+    settings : DropSimulation
+        Settings of the simulations.
+
+    Returns
+    -------
+    DropMotion
+        Motion on one time grid.
+
+    Raises
+    ------
+    InputError
+        The record has no release, or ends too early.
+    NoInitialState, NoEquilibrium, DidNotConverge
+        A simulation has no solution.
+    """
+    record = drop.record
+    every = max(1, int(record.rate / WORKING_RATE_HZ))
+    signals = record.signals[:, list(drop.columns)]
+    release = find_release(signals, record.rate, record.drop.trigger_nominal, record.name)
+    rest_end = round(release.rest_end * record.rate)
+    offset = np.median(signals[: max(rest_end, 1)], axis=0) if rest_end else np.zeros(signals.shape[1])
+    rate, samples = record.rate / every, decimate(signals - offset, every)
+    available = samples.shape[0] / rate - release.time
+    if available < ALIGNED_S + SEARCH_S:
+        raise InputError(
+            f"record '{record.source}'",
+            f"ends {available:.2f} s after the first motion",
+            f"At least {ALIGNED_S + SEARCH_S:g} s are needed to find the release.",
+        )
+    lead = min(round(LEAD_S * rate), max(int((release.time - SEARCH_S) * rate) - 1, 0))
+    duration = min(settings.last + MARGIN_S + TAPER_S, available)
+    simulated, slack = {}, {}
+    for name, catenary in models.items():
+        simulated[name], slack[name] = _simulate(drop, catenary, settings, (rate, lead, duration))
+    first = next(iter(simulated.values()))[:, :-1]
+    low_passed = (filter_motion(part, rate, 0, GRAPHIC_BAND) for part in (samples, first))
+    time, correlation = align_release(next(low_passed), next(low_passed)[lead:], rate, release.time)
+    begin = int(time * rate)
+    length = min(first.shape[0], samples.shape[0] - begin + lead)
+    rest = samples[: int(release.rest_end * rate)] if release.rest_end >= MIN_REST else samples[:0]
+    return DropMotion(
+        rate=rate,
+        lead=lead,
+        quantity=record.quantity,
+        record=samples[begin - lead : begin - lead + length],
+        advance=time - begin / rate,
+        rest=rest,
+        models={name: motion[:length] for name, motion in simulated.items()},
+        last_slack=slack,
+        release=release,
+        release_time=time,
+        correlation=correlation,
+    )
+
+
+def _simulate(
+    drop: RecordedDrop, catenary: Catenary, settings: DropSimulation, grid: tuple[float, int, float]
+) -> tuple[RealArray, float | None]:
+    """Motion in the quantity of the record on a grid of a rate [Hz], a number of samples before the release and a
+    duration after it [s]; last time with a slack dropper [s].
+    """
+    rate, lead, duration = grid
+    steps = ceil(1 / (rate * settings.time_step) - 1e-9)
+    wire, position = drop.places[-1]
+    decay = simulate_mass_drop(
+        catenary,
+        settings.element,
+        MassDropSetup(
+            mass=drop.mass,
+            wire=wire,
+            position=position,
+            release_duration=settings.release_duration,
+            # The first of the simulated samples is one step after the start.
+            hanging=(lead * steps + 1) / (rate * steps),
+            duration=duration,
+            time_step=1 / (rate * steps),
+            sensors=drop.places,
+        ),
+    )
+    motion = decay.motion[:, :, ORDER[drop.record.quantity]].T
+    return decimate(motion - motion[0], steps), decay.last_slack
