@@ -111,6 +111,39 @@ class PairedMode(RoundedModel):
     used: Annotated[bool, Field(description="false: outlier of its group, left out of the fit")]
 
 
+class WireShape(RoundedModel):
+    """Computed shape of one wire."""
+
+    wire: Annotated[str, Field(description="CW (contact wire) or MW (messenger wire)")]
+    position_m: tuple[float, ...]
+    value: Annotated[tuple[float, ...], Field(description="deflection over the largest deflection of the mode [-]")]
+
+
+class MeasuredDeflection(RoundedModel):
+    """Measured component of a shape at one sensor."""
+
+    wire: str
+    position_m: float
+    value: Annotated[Rounded, Field(description="real part in the scale of the computed shape [-]")]
+
+
+class PairedShape(RoundedModel):
+    """Shapes of an identified mode and of its computed counterpart."""
+
+    measured_Hz: Rounded
+    group: int
+    mac: Annotated[Rounded, Field(description="modal assurance criterion of the shapes at the sensors [-]")]
+    sensors: tuple[MeasuredDeflection, ...]
+    curves: tuple[WireShape, ...]
+
+
+class PairedShapes(RoundedModel):
+    """Shapes of the pairs of the first groups of span modes."""
+
+    supports_m: Annotated[tuple[float, ...], Field(description="positions of the supports [m]")] = ()
+    modes: tuple[PairedShape, ...] = ()
+
+
 class MeasuredRatios(RoundedModel):
     """Measured damping ratios of the paired modes."""
 
@@ -143,6 +176,7 @@ class DampingResults(RoundedModel):
     observability: tuple[Observability, ...]
     thresholds: Thresholds
     pairs: tuple[PairedMode, ...]
+    shapes: PairedShapes = PairedShapes()
     comparison: ModelComparison
     unpaired: Annotated[
         tuple[Rounded, ...], Field(description="frequencies of the measured modes without computed counterpart [Hz]")

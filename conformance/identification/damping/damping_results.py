@@ -26,6 +26,7 @@ from pantocheck.conformance.identification.damping.observability import (
     compute_observability,
     judge_coefficients,
 )
+from pantocheck.conformance.identification.damping.paired_shapes import list_paired_shapes
 from pantocheck.conformance.identification.mode import Mode
 from pantocheck.model import Catenary
 from pantocheck.model.catenary import ModalBand
@@ -81,6 +82,7 @@ def build_damping_results(modes: Sequence[Mode], line: Catenary, element: float,
         observability=observability,
         thresholds=THRESHOLDS,
         pairs=_list_pairs(matched, fit),
+        shapes=list_paired_shapes(matched, line),
         comparison=_compare_models(matched, rayleigh, bands),
         unpaired=tuple(mode.frequency_Hz for mode in matched.unpaired),
     ).rounded()

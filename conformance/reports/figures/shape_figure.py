@@ -30,14 +30,14 @@ def draw_shapes(columns: list[dict[str, Any]], supports: list[float]) -> Figure:
     Parameters
     ----------
     columns : list of dict
-        Groups with `title` and `rows`. Each row has `label` and `remark` (left and right of it), `sensors` (`wire`,
-        `position_m`, `value`) and `curves` (`wire`, `position_m`, `value`); the largest value of a row is 1.
+        Groups with `title` and `rows`. Each row has `label`, `sensors` (`wire`, `position_m`, `value`) and `curves`
+        (`wire`, `position_m`, `value`); the largest value of a row is 1.
     supports : list of float
         Positions of the supports [m]; empty: unknown.
     """
     count = max(len(column["rows"]) for column in columns)
     grid = PanelGrid(
-        FULL, ROW_HEIGHT * count, columns=len(columns), left=0.7, right=0.55, top=0.45, between_columns=1.1
+        FULL, ROW_HEIGHT * count, columns=len(columns), left=0.75, right=0.15, top=0.45, between_columns=0.9
     )
     figure, panels = add_panels(grid)
     for axes, column in zip(panels[0], columns, strict=True):
@@ -56,8 +56,6 @@ def _draw_column(axes: Axes, column: dict[str, Any], count: int, supports: list[
             style, shade, width = CURVE_STYLES.get(curve["wire"], CURVE_STYLES["CW"])
             values = level + DRAWN_AMPLITUDE * np.array(curve["value"])
             axes.plot(curve["position_m"], values, style, color=shade, linewidth=width)
-        if row["remark"]:
-            axes.text(1.02, level, row["remark"], transform=axes.get_yaxis_transform(), va="center", fontsize=7.5)
     for wire in sorted({sensor["wire"] for row in rows for sensor in row["sensors"]}):
         _draw_sensors(axes, rows, wire)
     axes.set_yticks(_list_levels(rows), [row["label"] for row in rows])

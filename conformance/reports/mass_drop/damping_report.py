@@ -1,9 +1,12 @@
 """Report on a damping fit, from damping.json."""
 
+from collections.abc import Iterator
 from typing import Any
 
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.figures.damping_figures import draw_comparison, draw_observability
+from pantocheck.conformance.reports.figures.shape_figure import draw_shapes
+from pantocheck.conformance.reports.mass_drop.shape_rows import list_paired_rows
 from pantocheck.conformance.reports.page_text import clean_tree, format_percent, format_value
 
 COEFFICIENT_UNITS = {"stiffness": "s", "mass": "1/s"}
@@ -49,6 +52,7 @@ def build_damping_document(results: dict[str, Any], block: str) -> doc.Document:
     sections: dict[str, tuple[doc.Block, ...]] = {
         "Result": (doc.Paragraph(RESULT), doc.CodeBlock(block), _coefficient_table(results["coefficients"])),
         "Comparison": (doc.Paragraph(COMPARISON), doc.Figures((comparison,))),
+        "Mode shapes": tuple(_list_shape_figures(results["shapes"])),
         "Observability": (
             doc.Paragraph(explanation),
             doc.Figures((observability,)),
@@ -56,7 +60,7 @@ def build_damping_document(results: dict[str, Any], block: str) -> doc.Document:
         ),
         "Pairs of modes": (_pair_table(results["pairs"]),),
     }
-    blocks += (doc.Section(heading, parts) for heading, parts in sections.items())
+    blocks += (doc.Section(heading, parts) for heading, parts in sections.items() if parts)
     return doc.Document(header.heading, header, tuple(blocks))
 
 
@@ -80,6 +84,19 @@ def describe_matching(matching: dict[str, Any], thresholds: dict[str, float]) ->
         f"least {100 * thresholds['matched_share']:g} % of the modes are matched, and if their median MAC is at least "
         f"{thresholds['median_mac']:g}."
     )
+
+
+def _list_shape_figures(shapes: dict[str, Any]) -> Iterator[doc.Figures]:
+    """One figure with the shapes of all listed groups; none without modes of two sensors."""
+    if columns := list_paired_rows(shapes["modes"]):
+        values = "; ".join(row["label"].replace("\n", ", ") for column in columns for row in column["rows"])
+        figure = doc.Figure(
+            draw_shapes(columns, shapes["supports_m"]),
+            f"Computed shapes of contact and messenger wire with the measured values at the sensors: {values}.",
+            "Mode shapes: computed along the line, and measured at the sensors (real part), with the frequency and the "
+            "MAC; vertical lines are supports.",
+        )
+        yield doc.Figures((figure,))
 
 
 def _component(row: dict[str, Any]) -> str:

@@ -29,10 +29,25 @@ def list_measured_shapes(modes: list[dict[str, Any]]) -> list[dict[str, Any]]:
             ]
             if len(sensors) > 1:
                 label = f"{format_value(mode['frequency_Hz'], 4)} Hz"
-                rows.append({"label": label, "remark": "", "sensors": sensors, "curves": []})
+                rows.append({"label": label, "sensors": sensors, "curves": []})
         if rows:
             columns.append({"title": f"group {group}", "rows": rows[:DRAWN_MODES]})
     return columns
+
+
+def list_paired_rows(shapes: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Groups of measured and computed shapes, the `shapes.modes` of damping.json, for `draw_shapes`."""
+    columns: dict[int, dict[str, Any]] = {}
+    for shape in shapes:
+        column = columns.setdefault(shape["group"], {"title": f"group {shape['group']}", "rows": []})
+        column["rows"].append(
+            {
+                "label": f"{format_value(shape['measured_Hz'], 4)} Hz\nMAC {shape['mac']:.3f}",
+                "sensors": shape["sensors"],
+                "curves": shape["curves"],
+            }
+        )
+    return [columns[group] for group in sorted(columns)]
 
 
 def list_supports(spans: Iterable[float]) -> list[float]:

@@ -127,6 +127,10 @@ def test_fit_damping_recovers_the_damping_of_the_line(folder: Path) -> None:
     modal = tomllib.loads((folder / "fit" / "damping_with_modal.toml").read_text())["damping"]
     assert len(Damping.model_validate(modal).modal) >= 1
     assert (folder / "fit" / "damping.pdf").read_bytes().startswith(b"%PDF")
+    page = (folder / "fit" / "damping.html").read_text()
+    assert "Mode shapes" in page
+    first = results["shapes"]["modes"][0]
+    assert f"{first['measured_Hz']:.4f} Hz, MAC {first['mac']:.3f}" in page
 
 
 @pytest.mark.parametrize(

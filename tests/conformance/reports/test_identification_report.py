@@ -22,7 +22,7 @@ from pantocheck.conformance.reports.figures.shape_figure import draw_shapes
 from pantocheck.conformance.reports.figures.spectrogram_figure import draw_spectrogram
 from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.reports.mass_drop.identification_report import build_identification_document
-from pantocheck.conformance.reports.mass_drop.shape_rows import list_measured_shapes
+from pantocheck.conformance.reports.mass_drop.shape_rows import list_measured_shapes, list_paired_rows
 
 
 @pytest.fixture(scope="module")
@@ -118,6 +118,22 @@ def test_shapes_need_two_sensors_with_positions(line: dict[str, Any]) -> None:
     alone = mode | {"sensor_shape": mode["sensor_shape"][:1]}
     nowhere = mode | {"sensor_shape": [part | {"position_m": None} for part in mode["sensor_shape"]]}
     assert list_measured_shapes([alone, nowhere, mode | {"certain": False}, mode | {"lateral": True}]) == []
+
+
+def test_computed_shapes_are_drawn_with_the_measured_values() -> None:
+    """Rows of damping.json: one curve per wire, markers of their own for the sensors of each wire."""
+    curves = [{"wire": wire, "position_m": [0.0, 30.0, 60.0], "value": [0.0, 1.0, 0.0]} for wire in ("CW", "MW")]
+    sensors = [{"wire": wire, "position_m": x, "value": 0.5} for wire, x in (("CW", 15.0), ("MW", 45.0))]
+    shape = {"measured_Hz": 0.9, "group": 1, "mac": 0.9876, "sensors": sensors, "curves": curves}
+    columns = list_paired_rows([shape, shape | {"group": 2}, shape])
+    assert [(column["title"], len(column["rows"])) for column in columns] == [("group 1", 2), ("group 2", 1)]
+    left, _ = paint(draw_shapes, columns, [0.0, 60.0])
+    assert [text.get_text() for text in left.get_yticklabels()] == ["0.9000 Hz\nMAC 0.988"] * 2
+    *drawn, contact, messenger = left.lines
+    assert [line.get_linestyle() for line in drawn] == ["-", "--"] * 2
+    np.testing.assert_allclose(drawn[2].get_ydata(), [-1.0, -1.0 + 0.42, -1.0])
+    assert (contact.get_marker(), messenger.get_marker()) == ("o", "s")
+    np.testing.assert_allclose(messenger.get_xydata(), [[45.0, 0.21], [45.0, -0.79]])
 
 
 def test_zoom_shows_the_first_two_groups(line: dict[str, Any], document: Document) -> None:
