@@ -47,7 +47,7 @@ class TunedForce:
     target_mean_force : float
         Mean contact force over the analysis section [N].
     stated_uplift_force : float, optional
-        Start value of the tuning [N]; default: the mean contact force.
+        Start value of the tuning [N]; None: not stated.
     """
 
     target_mean_force: float
@@ -60,7 +60,7 @@ class TunedForce:
 
     @property
     def uplift_force(self) -> float:
-        """Start value of the tuning [N]."""
+        """Stated start value of the tuning; without one, the mean contact force [N]."""
         return self.stated_uplift_force or self.target_mean_force
 
 

@@ -69,3 +69,21 @@ def test_kernels_are_loaded_from_a_read_only_installation_without_home() -> None
     assert result.returncode == 0, result.stderr
     assert result.stderr.count("kernels are compiled for this run only") == 1
     assert not Path(result.stdout.strip()).exists()  # removed at the exit
+
+
+def test_second_process_loads_the_kernels_of_the_first(tmp_path: Path) -> None:
+    """Also a worker of a pool or of pytest: a fresh process with the same folder compiles nothing."""
+    code = """
+import numpy as np
+from pantocheck.model.fem.residual_flexibility import residual_flexibility
+residual_flexibility(np.ones(7), 0.5)
+print(sum(residual_flexibility.stats.cache_misses.values()), sum(residual_flexibility.stats.cache_hits.values()))
+"""
+    environment = os.environ | {kernel_cache.VARIABLE: str(tmp_path)}
+    runs = [
+        subprocess.run(
+            [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True, timeout=120
+        ).stdout.split()
+        for _ in range(2)
+    ]
+    assert runs == [["1", "0"], ["0", "1"]]
