@@ -99,10 +99,11 @@ def _end_flexibility(
     Droppers at one point of a wire, such as those of two contact wires, are loaded alike: each feels the sum.
     """
     at_station = np.array([station_flexibility(elements) for elements in beams.flexibility])[:, station].T
+    places, place = np.unique(station[dropper], return_inverse=True)
+    total = np.zeros((places.size, coefficient.shape[1]))
+    np.add.at(total, place, coefficient[dropper])
     load = coefficient.copy()
-    for place in np.unique(station[dropper]):
-        together = np.flatnonzero(dropper & (station == place))
-        load[together] = coefficient[together].sum(axis=0)
+    load[dropper] = total[place]
     ends = coefficient * load * at_station
     return np.asarray(ends.sum(axis=1)), np.asarray(ends @ beams.stiffness_coefficient)
 
