@@ -129,12 +129,25 @@ class InputLink(InputTable):
     offset: Annotated[float, Field(description="summand, in the unit of `key`")] = 0.0
 
 
+ClusterKind = Literal["slurm", "pbs", "sge", "lsf", "htcondor", "oar", "moab"]
+"""Batch system of a cluster."""
+
+
 class Execution(InputTable):
     """Execution of a campaign; it has no influence on the results of a run."""
 
     workers: Annotated[
-        int | None, Field(ge=1, le=1024, description="number of processes; default: number of processors")
+        int | None,
+        Field(ge=1, le=100_000, description="number of processes, or of jobs of a cluster; default: processors"),
     ] = None
+    scheduler: Annotated[
+        str | None, Field(max_length=500, description="address of a running scheduler of Dask, e.g. tcp://host:8786")
+    ] = None
+    cluster: Annotated[ClusterKind | None, Field(description="batch system to which workers are submitted")] = None
+    cluster_options: Annotated[
+        dict[str, InputValue],
+        Field(max_length=100, description='options of the jobs as in dask-jobqueue, e.g. walltime = "02:00:00"'),
+    ] = Field(default_factory=dict)
     max_failed_share: Annotated[
         float | None, Field(ge=0, le=1, description="share of failed runs above which the campaign stops early")
     ] = None
@@ -143,6 +156,11 @@ class Execution(InputTable):
     ] = None
     run_time_limit_s: Annotated[float | None, Field(gt=0, description="time after which a single run fails [s]")] = None
     timeout_s: Annotated[Positive, Field(description="time limit of a program for a case [s]")] = TIMEOUT_S
+
+    @cross_check
+    def _check_cluster(self) -> Problems:
+        if self.scheduler is not None and self.cluster is not None:
+            yield validation_problem("scheduler", "stands beside cluster", "Give either scheduler or cluster.")
 
 
 Texts = Annotated[tuple[str, ...], Field(strict=False, max_length=1000)]

@@ -11,7 +11,7 @@ from multiprocessing.process import BaseProcess
 
 from pantocheck.conformance.campaigns.campaign_design import PlannedRun
 from pantocheck.conformance.campaigns.campaign_run import RunRow, build_failed_row
-from pantocheck.conformance.campaigns.run_executor import MOST_ATTEMPTS, Execute, describe_death
+from pantocheck.conformance.campaigns.run_executor import MOST_ATTEMPTS, PROCESS_ENDED, Execute
 from pantocheck.conformance.systems.process_control import adopt_orphans
 from pantocheck.conformance.systems.worker_process import end_workers, handle_worker_signals, limit_threads
 
@@ -33,6 +33,11 @@ class LocalWorkers:
 
     workers: int
     run_time_limit_s: float | None = None
+
+    @property
+    def description(self) -> str:
+        """Number of the processes."""
+        return f"{self.workers} process{'es' if self.workers > 1 else ''} on this machine"
 
     def execute_all(self, runs: Iterator[PlannedRun], execute: Execute) -> Generator[RunRow, None, None]:
         """Execute runs as in `RunExecutor`."""
@@ -63,7 +68,7 @@ class LocalWorkers:
                         elif deaths[worker.run.number] < MOST_ATTEMPTS:
                             waiting.append(worker.run)
                         else:
-                            yield build_failed_row(worker.run, describe_death(MOST_ATTEMPTS), worker.age)
+                            yield build_failed_row(worker.run, PROCESS_ENDED, worker.age)
 
     def _wait(self, busy: "dict[Connection, _Worker]") -> "list[_Worker]":
         """Wait for workers that answer, end or are late, and take them out of the busy ones."""

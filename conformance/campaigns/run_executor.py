@@ -12,9 +12,16 @@ Execute = Callable[[PlannedRun], RunRow]
 MOST_ATTEMPTS = 3
 """Largest number of times that a run is started whose process ends unexpectedly, by itself or from outside."""
 
+PROCESS_ENDED = "the process of this run ended unexpectedly at every attempt"
+"""Reason of a run whose process, by itself or from outside, always ended before the run was finished."""
+
 
 class RunExecutor(Protocol):
     """Executor of runs, on this machine or on others."""
+
+    @property
+    def description(self) -> str:
+        """Place of the runs in words."""
 
     def execute_all(self, runs: Iterator[PlannedRun], execute: Execute) -> Generator[RunRow, None, None]:
         """Execute runs, and yield each row as soon as its run is finished.
@@ -22,8 +29,3 @@ class RunExecutor(Protocol):
         Runs are taken from the iterator one at a time, when a process is free. A run whose process ends unexpectedly is
         repeated. Closing the generator ends all processes.
         """
-
-
-def describe_death(attempts: int) -> str:
-    """Reason of a run whose process ended unexpectedly at every attempt."""
-    return f"the process of this run ended unexpectedly {attempts} times"

@@ -1,19 +1,17 @@
 """`pantocheck campaign`: many runs with varied inputs, which can be interrupted and resumed."""
 
-import os
-from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from pantocheck.conformance.campaigns.campaign_driver import CampaignProgress, drive_campaign
+from pantocheck.conformance.campaigns.campaign_driver import drive_campaign
 from pantocheck.conformance.campaigns.campaign_file import CampaignFile, Execution
 from pantocheck.conformance.campaigns.campaign_preparation import PreparedCampaign, prepare_campaign
 from pantocheck.conformance.campaigns.campaign_store import CampaignStore, open_store
 from pantocheck.conformance.campaigns.campaign_table import write_campaign_table
 from pantocheck.conformance.campaigns.evaluation.campaign_evaluation import evaluate_campaign
-from pantocheck.conformance.campaigns.local_workers import LocalWorkers
+from pantocheck.conformance.campaigns.executor_choice import choose_executor
 from pantocheck.conformance.campaigns.short_form import parse_variation
 from pantocheck.conformance.command_line.campaign_progress import report_campaign
 from pantocheck.conformance.command_line.console import console, escape_text
@@ -49,7 +47,13 @@ def campaign_command(
     limits: Annotated[Path | None, typer.Option(help="TOML file of your limits.")] = None,
     trust: TrustOption = None,
     workers: Annotated[
-        int | None, typer.Option(help="Number of processes.", show_default="number of processors")
+        int | None, typer.Option(help="Number of processes, or of jobs.", show_default="number of processors")
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(help="Running scheduler of Dask, e.g. tcp://host:8786, in place of processes.")
+    ] = None,
+    cluster: Annotated[
+        str | None, typer.Option(help="Submit workers to a batch system: slurm, pbs, sge, lsf, htcondor, oar, moab.")
     ] = None,
     max_failed: Annotated[
         float | None, typer.Option(metavar="SHARE", help="Stop if a larger share of the runs fails.")
@@ -76,15 +80,20 @@ def campaign_command(
         "limits": None if limits is None else str(limits.resolve()),
         "trust": trust,
     }
-    execution = {"workers": workers, "max_failed_share": max_failed, "time_budget_s": time_budget}
+    execution = {
+        "workers": workers,
+        "scheduler": scheduler,
+        "cluster": cluster,
+        "max_failed_share": max_failed,
+        "time_budget_s": time_budget,
+    }
     prepared = _prepare(campaign, design, {key: value for key, value in execution.items() if value is not None})
     output, interrupted = console(), 0
     with open_store(out, prepared.identity) as store:
         if retry_failed:
             store.forget_failed()
         try:
-            with report_campaign() as report:
-                ending = _drive(prepared, store, report)
+            ending = _drive(prepared, store)
         except KeyboardInterrupt as interruption:
             ending, interrupted = "interrupted", interruption_exit_code(interruption)
         results = evaluate_campaign(prepared, store, ending)
@@ -113,13 +122,13 @@ def _prepare(source: str, design: dict[str, object], execution: dict[str, object
     return prepare_campaign(file.model_copy(update={"execution": changed}), Path(source).parent)
 
 
-def _drive(
-    prepared: PreparedCampaign, store: CampaignStore, report: Callable[[CampaignProgress], None]
-) -> CampaignEnding:
-    """Execute the open runs in local processes."""
+def _drive(prepared: PreparedCampaign, store: CampaignStore) -> CampaignEnding:
+    """Execute the open runs, and show the progress."""
     execution = prepared.file.execution
-    workers = LocalWorkers(execution.workers or os.cpu_count() or 1, execution.run_time_limit_s)
-    return drive_campaign(prepared.design, prepared.execute, store, workers, execution, report)
+    with choose_executor(execution) as executor:
+        typer.echo(f"Runs in {executor.description}.", err=True)
+        with report_campaign() as report:
+            return drive_campaign(prepared.design, prepared.execute, store, executor, execution, report)
 
 
 def _write_results(results: CampaignResults, store: CampaignStore, folder: Path) -> list[Path]:

@@ -56,6 +56,8 @@ def misbehave(run: PlannedRun) -> RunRow:
 class ThisProcess:
     """Executor without other processes, the obvious one."""
 
+    description = "this process"
+
     def execute_all(self, runs: Iterator[PlannedRun], execute: Execute) -> Generator[RunRow, None, None]:
         for run in runs:
             yield execute(run)

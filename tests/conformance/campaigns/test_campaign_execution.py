@@ -75,7 +75,7 @@ def test_failing_runs_become_rows_with_their_reason(tmp_path: Path) -> None:
         drive_campaign(design, misbehave, store, LocalWorkers(2, 2.0), Execution(), lambda _: None)
         reasons = {row.run.number: row.reason for row in store.rows()}
         assert reasons == {
-            1: "the process of this run ended unexpectedly 3 times",
+            1: "the process of this run ended unexpectedly at every attempt",
             2: "ZeroDivisionError: no mass",
             3: "longer than 2 s",
             4: None,

@@ -1,0 +1,76 @@
+"""Executor on a cluster of Dask: worker processes on this machine, and a batch system with a mocked command."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from helpers.cheap_campaign import ThisProcess, compute_row, speed_design
+from pantocheck.conformance.campaigns.campaign_driver import drive_campaign
+from pantocheck.conformance.campaigns.campaign_file import Execution
+from pantocheck.conformance.campaigns.campaign_store import open_store
+from pantocheck.conformance.campaigns.campaign_table import write_campaign_table
+from pantocheck.conformance.campaigns.executor_choice import choose_executor
+from pantocheck.conformance.input_files.input_error import InputError
+
+RUNS = 80
+
+SUBMIT = """#!/bin/sh
+# Stands in for the command of Slurm: it starts the job script on this machine.
+echo $$ >> "$0.jobs"
+sh "$1" > "$0.log" 2>&1 &
+echo "Submitted batch job 7"
+"""
+
+
+def build_table(folder: Path, runs: int) -> bytes:
+    with open_store(folder, {"runs": runs}) as store:
+        drive_campaign(speed_design(runs), compute_row, store, ThisProcess(), Execution(), lambda _: None)
+        write_campaign_table(store, folder / "campaign.csv")
+    return (folder / "campaign.csv").read_bytes()
+
+
+def run_helper(module: str, *arguments: str, **environment: str) -> None:
+    """Run a helper in its own process: the threads of Dask would outlive a test."""
+    settings = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), **environment}
+    command = [sys.executable, "-m", f"helpers.{module}", *arguments]
+    result = subprocess.run(command, env=settings, timeout=120, capture_output=True, text=True, check=False)
+    assert result.returncode == 0, result.stderr[-2000:]
+
+
+def test_table_of_a_cluster_with_lost_and_added_workers_is_that_of_one_process(tmp_path: Path) -> None:
+    pytest.importorskip("distributed")
+    run_helper("dask_campaign", str(tmp_path / "cluster"), str(RUNS))
+    assert (tmp_path / "cluster" / "campaign.csv").read_bytes() == build_table(tmp_path / "one", RUNS)
+
+
+def test_jobs_are_submitted_to_a_batch_system(tmp_path: Path) -> None:
+    """Slurm is not installed here: a mocked `sbatch` starts the job script on this machine."""
+    pytest.importorskip("dask_jobqueue")
+    commands = tmp_path / "bin"
+    commands.mkdir()
+    for name, text in (("sbatch", SUBMIT), ("scancel", "#!/bin/sh\n")):
+        (commands / name).write_text(text)
+        (commands / name).chmod(0o755)
+    path = os.pathsep.join([str(commands), os.environ["PATH"]])
+    run_helper("batch_campaign", str(tmp_path / "batch"), "20", PATH=path)
+    assert (commands / "sbatch.jobs").read_text().count("\n") == 2
+    assert (tmp_path / "batch" / "campaign.csv").read_bytes() == build_table(tmp_path / "one", 20)
+
+
+def test_scheduler_that_cannot_be_reached_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("distributed")
+    wrong = Execution(scheduler="nowhere://host")
+    with pytest.raises(InputError, match="scheduler 'nowhere://host': cannot be reached"), choose_executor(wrong):
+        pass
+
+
+def test_missing_package_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "dask_jobqueue", None)
+    with (
+        pytest.raises(InputError, match=r"pip install 'pantocheck\[cluster\]'"),
+        choose_executor(Execution(cluster="pbs")),
+    ):
+        pass
