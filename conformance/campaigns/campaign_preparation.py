@@ -13,8 +13,9 @@ from pantocheck.conformance.campaigns.campaign_run import RunExecution, name_col
 from pantocheck.conformance.campaigns.design_axes import build_axis, sample_inputs
 from pantocheck.conformance.campaigns.design_conditions import parse_condition
 from pantocheck.conformance.cases.case import Case, json_digest
-from pantocheck.conformance.cases.input_changes import InputChange, parse_changes
+from pantocheck.conformance.cases.input_changes import parse_changes
 from pantocheck.conformance.cases.library import find_case_files, load_case, overlay_limits, read_limits
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.grading.case_identity import limits_digest
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.suggestions import suggest_names
@@ -50,6 +51,12 @@ class PreparedCampaign:
     limits: dict[str, tuple[float | None, float | None]]
 
 
+def find_campaign_file(name: str) -> Path | None:
+    """File of a campaign of the library, such as `campaigns/ac-simple-speed`; None: the name is that of no campaign."""
+    path = library_folder() / f"{name}.toml"
+    return path if name.startswith("campaigns/") and path.is_file() else None
+
+
 def read_campaign(path: Path) -> PreparedCampaign:
     """Read and prepare a campaign file; paths in it are relative to the file.
 
@@ -77,7 +84,7 @@ def prepare_campaign(file: CampaignFile, folder: Path) -> PreparedCampaign:
         A case, table, key, condition, limit or system is wrong.
     """
     changes = parse_changes(file.set)
-    cases = _read_cases(place_cases(file.cases, folder), changes)
+    cases = _read_cases(place_cases(file.cases, folder))
     limits = () if file.limits is None else read_limits(folder / file.limits)
     design = _build_design(file, folder, tuple(cases))
     files = {case_id: str(path) for case_id, (path, _) in cases.items()}
@@ -103,11 +110,11 @@ def _list_limits(cases: Sequence[Case]) -> dict[str, tuple[float | None, float |
     return {column: pairs.pop() for column, pairs in bounds.items() if len(pairs) == 1}
 
 
-def _read_cases(patterns: Sequence[str], changes: Sequence[InputChange]) -> dict[str, tuple[Path, Case]]:
-    """Base cases with their files, by id."""
+def _read_cases(patterns: Sequence[str]) -> dict[str, tuple[Path, Case]]:
+    """Base cases with their files, by id; a changed input may be valid only beside a varied one."""
     cases: dict[str, tuple[Path, Case]] = {}
     for path in find_case_files(patterns):
-        case = load_case(path, changes)
+        case = load_case(path)
         if case.id in cases:
             raise InputError(f"case '{case.id}'", "two files have this id", "Give each case a different id.")
         cases[case.id] = path.resolve(), case

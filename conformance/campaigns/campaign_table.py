@@ -1,9 +1,13 @@
 """Tables of a campaign: one row per run with all inputs, verdicts and quantities."""
 
 import csv
+import importlib.util
 import json
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
+
+import numpy as np
 
 from pantocheck.conformance.campaigns.campaign_run import RunRow
 from pantocheck.conformance.campaigns.campaign_store import CampaignStore
@@ -35,6 +39,43 @@ def _write(store: CampaignStore, path: Path) -> None:
         writer.writerow((*RUN_COLUMNS, *inputs, *VERDICT_COLUMNS, *quantities))
         for row in store.rows():
             writer.writerow([*_list_cells(row, list(inputs)), *(row.quantities.get(name, "") for name in quantities)])
+
+
+def write_parquet(table: Path) -> Path | None:
+    """Write a CSV table as Parquet beside it; None if the package pyarrow is not installed."""
+    if importlib.util.find_spec("pyarrow") is None:
+        return None
+    import pyarrow.csv
+    import pyarrow.parquet
+
+    path = table.with_suffix(".parquet")
+    content = pyarrow.csv.read_csv(table)
+    produce_atomically(path, lambda temporary: pyarrow.parquet.write_table(content, temporary))
+    return path
+
+
+def collect_columns(store: CampaignStore) -> dict[str, np.ndarray[Any, Any]]:
+    """Columns of the CSV table as arrays: numbers where all cells are numbers or missing, otherwise texts and lists."""
+    columns: dict[str, list[Any]] = {}
+    for place, row in enumerate(store.rows()):
+        run = row.run
+        plan = zip(RUN_COLUMNS, (run.number, run.design, run.case_id, run.system), strict=True)
+        for name, value in {**dict(plan), **run.inputs, **row.verdicts, "reason": row.reason, **row.quantities}.items():
+            column = columns.setdefault(name, [])
+            column += [None] * (place - len(column))  # cells of earlier runs without this value
+            column.append(value)
+    length = len(columns.get("run", ()))
+    return {name: _build_array([*column, *[None] * (length - len(column))]) for name, column in columns.items()}
+
+
+def _build_array(values: list[Any]) -> np.ndarray[Any, Any]:
+    if all(value is None or (isinstance(value, int | float) and not isinstance(value, bool)) for value in values):
+        if all(isinstance(value, int) for value in values):
+            return np.array(values)
+        return np.array([np.nan if value is None else float(value) for value in values])
+    array = np.empty(len(values), object)
+    array[:] = values
+    return array
 
 
 def _list_cells(row: RunRow, inputs: list[str]) -> Iterator[object]:

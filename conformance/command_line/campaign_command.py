@@ -7,9 +7,13 @@ import typer
 
 from pantocheck.conformance.campaigns.campaign_driver import drive_campaign
 from pantocheck.conformance.campaigns.campaign_file import CampaignFile, Execution
-from pantocheck.conformance.campaigns.campaign_preparation import PreparedCampaign, prepare_campaign
+from pantocheck.conformance.campaigns.campaign_preparation import (
+    PreparedCampaign,
+    find_campaign_file,
+    prepare_campaign,
+)
 from pantocheck.conformance.campaigns.campaign_store import CampaignStore, open_store
-from pantocheck.conformance.campaigns.campaign_table import write_campaign_table
+from pantocheck.conformance.campaigns.campaign_table import write_campaign_table, write_parquet
 from pantocheck.conformance.campaigns.evaluation.campaign_evaluation import evaluate_campaign
 from pantocheck.conformance.campaigns.executor_choice import choose_executor
 from pantocheck.conformance.campaigns.short_form import parse_variation
@@ -33,7 +37,7 @@ STOPPED: dict[CampaignEnding, str] = {
 
 
 def campaign_command(
-    campaign: Annotated[str, typer.Argument(help="Campaign file (TOML), or id, glob or path of the base cases.")],
+    campaign: Annotated[str, typer.Argument(help="Campaign (TOML file or name), or id, glob or path of base cases.")],
     out: Annotated[Path, typer.Option(help="Folder of the runs and tables; the same command resumes the campaign.")],
     vary: Annotated[
         list[str] | None,
@@ -70,6 +74,8 @@ def campaign_command(
     Examples:
 
     pantocheck campaign tolerances.toml --out tolerances
+
+    pantocheck campaign campaigns/ac-simple-speed --out speeds
 
     pantocheck campaign en50318-2018/ac-simple/320-twin --vary speed_km_h=200:350:10 --out map
     """
@@ -108,7 +114,8 @@ def campaign_command(
 def _prepare(source: str, design: dict[str, object], execution: dict[str, object]) -> PreparedCampaign:
     """Prepare a campaign file, or the cases and variations of the command line."""
     given = {key: value for key, value in design.items() if value is not None}
-    tree = read_toml(Path(source), "campaign") if source.endswith(".toml") else {"id": source}
+    path = find_campaign_file(source) or Path(source)
+    tree = read_toml(path, "campaign") if path.suffix == ".toml" else {"id": source}
     if "id" in tree:  # only a case has an id
         content = {"title": source, "cases": [source], **given, "execution": execution}
         return prepare_campaign(validate_model(content, CampaignFile, "command line"), Path())
@@ -116,10 +123,10 @@ def _prepare(source: str, design: dict[str, object], execution: dict[str, object
         raise InputError(
             f"option {'--' + min(given).removesuffix('s')}", "stands beside a campaign file", "Edit the campaign file."
         )
-    file = validate_model(tree, CampaignFile, f"campaign '{Path(source).name}'")
+    file = validate_model(tree, CampaignFile, f"campaign '{path.name}'")
     stated = file.execution.model_dump(exclude_unset=True)
     changed = validate_model({**stated, **execution}, Execution, "command line")
-    return prepare_campaign(file.model_copy(update={"execution": changed}), Path(source).parent)
+    return prepare_campaign(file.model_copy(update={"execution": changed}), path.parent)
 
 
 def _drive(prepared: PreparedCampaign, store: CampaignStore) -> CampaignEnding:
@@ -135,8 +142,10 @@ def _write_results(results: CampaignResults, store: CampaignStore, folder: Path)
     """Write the table, the evaluation and the report of a campaign; return their paths."""
     files = [folder / name for name in ("campaign.csv", "campaign.json", "campaign.html", "campaign.pdf")]
     write_campaign_table(store, files[0])
+    if (parquet := write_parquet(files[0])) is not None:
+        files.append(parquet)
     write_model(files[1], results)
     report = build_campaign_report(results.model_dump(mode="json", by_alias=True))
-    for path in files[2:]:
+    for path in (folder / "campaign.html", folder / "campaign.pdf"):
         write_report(report, path)
     return files

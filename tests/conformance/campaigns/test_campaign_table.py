@@ -1,0 +1,83 @@
+"""Tables of a campaign: CSV, Parquet and columns of Python; campaigns of the library; the call from Python."""
+
+import importlib.util
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from helpers.cheap_campaign import ThisProcess, compute_row, fail_even, speed_design
+from pantocheck.conformance.campaigns.campaign_design import PlannedRun
+from pantocheck.conformance.campaigns.campaign_driver import drive_campaign
+from pantocheck.conformance.campaigns.campaign_file import Execution
+from pantocheck.conformance.campaigns.campaign_preparation import find_campaign_file, read_campaign
+from pantocheck.conformance.campaigns.campaign_run import RunRow
+from pantocheck.conformance.campaigns.campaign_session import run_campaign
+from pantocheck.conformance.campaigns.campaign_store import open_store
+from pantocheck.conformance.campaigns.campaign_table import collect_columns, write_campaign_table, write_parquet
+from pantocheck.conformance.cases.library_folder import library_folder
+
+NAMES = sorted(path.stem for path in (library_folder() / "campaigns").glob("*.toml"))
+
+
+def test_columns_have_numbers_texts_and_gaps(tmp_path: Path) -> None:
+    with open_store(tmp_path, {}) as store:
+        drive_campaign(speed_design(4), fail_even, store, ThisProcess(), Execution(), lambda _: None)
+        columns = collect_columns(store)
+        write_campaign_table(store, tmp_path / "campaign.csv")
+    head = (tmp_path / "campaign.csv").read_text().splitlines()[0].split(",")
+    assert head == list(columns)
+    assert columns["run"].tolist() == [1, 2, 3, 4]
+    assert columns["speed_km_h"].tolist() == [200.0, 200.1, 200.2, 200.3]
+    assert columns["reason"].tolist() == [None, "even", None, "even"]
+    assert np.isnan(columns["1.mean_force_N"]).tolist() == [False, True, False, True]
+
+
+@pytest.mark.skipif(importlib.util.find_spec("pyarrow") is None, reason="pyarrow is optional")
+def test_parquet_has_the_columns_of_the_table(tmp_path: Path) -> None:
+    import pyarrow.parquet
+
+    with open_store(tmp_path, {}) as store:
+        drive_campaign(speed_design(3), compute_row, store, ThisProcess(), Execution(), lambda _: None)
+        write_campaign_table(store, tmp_path / "campaign.csv")
+        expected = collect_columns(store)["1.mean_force_N"].tolist()
+    path = write_parquet(tmp_path / "campaign.csv")
+    assert path == tmp_path / "campaign.parquet"
+    assert pyarrow.parquet.read_table(path)["1.mean_force_N"].to_pylist() == expected
+
+
+def test_list_of_values_is_a_json_cell(tmp_path: Path) -> None:
+    def deliver(run: PlannedRun) -> RunRow:
+        row = compute_row(run)
+        return RunRow(PlannedRun(1, 1, "cheap", "builtin", {"spacing_m": [85, 200]}), row.verdicts, None, {}, 0.0)
+
+    with open_store(tmp_path, {}) as store:
+        drive_campaign(speed_design(1), deliver, store, ThisProcess(), Execution(), lambda _: None)
+        write_campaign_table(store, tmp_path / "campaign.csv")
+    assert (tmp_path / "campaign.csv").read_text().splitlines()[1] == '1,1,cheap,builtin,"[85, 200]",pass,pass,,'
+
+
+@pytest.mark.parametrize(
+    ("name", "runs"),
+    [("ac-simple-damping", 12), ("ac-simple-spacing", 133), ("ac-simple-speed", 32), ("ac-simple-tolerances", 64)],
+)
+def test_campaign_of_the_library_is_valid(name: str, runs: int) -> None:
+    """Reading it also reads the cases of its first designs."""
+    path = find_campaign_file(f"campaigns/{name}")
+    assert path is not None
+    assert read_campaign(path).design.count_runs() == runs
+    assert name in NAMES
+    assert len(NAMES) == 4
+
+
+def test_campaign_from_python_gives_a_table(tmp_path: Path) -> None:
+    content = {
+        "cases": ["en50318-2002/250"],
+        "set": ["discretisation.element_m=3", "discretisation.time_step_s=0.005"],
+        "vary": [{"key": "pantograph.uplift_force_N", "values": [110.0, 130.0]}],
+        "execution": {"workers": 1},
+    }
+    table = run_campaign(content, tmp_path)
+    assert list(table["pantograph.uplift_force_N"]) == [110.0, 130.0]
+    # The mean force of a passage is the uplift force within some newtons.
+    assert list(table["1.mean_force_N"]) == pytest.approx([110, 130], abs=5)
