@@ -61,7 +61,10 @@ class DroppersAndContact:
             )
         )
         self.constant_force = np.concatenate([np.zeros(n), *(p.force for p in passage.pantographs)])
-        at_rest = np.stack([motion.w[0], motion.r[0]], axis=-1).ravel()[place][matrices.free]
+        stations = line.mesh.position.size
+        at_rest = np.stack([motion.w[0, :, :stations], motion.r[0, :, :stations]], axis=-1).ravel()[place][
+            matrices.free
+        ]
         moving = [train.z[0, p, :size] for p, size in enumerate(sizes)]
         self.at_rest = np.concatenate([at_rest, *moving])
         self.rest = line.state.deflection.ravel()[place]

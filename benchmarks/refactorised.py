@@ -9,6 +9,7 @@ from scipy.sparse.linalg import splu
 
 from pantocheck.model import DiscretisedLine, Passage
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays
+from pantocheck.model.dynamics.motion import end_of_step
 from pantocheck.model.dynamics.simulation import start_motion
 from pantocheck.model.fem.assembly import (
     assemble_matrices,
@@ -28,7 +29,9 @@ def run_refactorised(line: DiscretisedLine, passage: Passage) -> tuple[np.ndarra
     tuple of ((T, P) ndarray, float)
         Contact force [N], process time of the steps [s].
     """
-    motion, train = start_motion(line, build_kernel_arrays(line, passage.time_step), passage)
+    kernel = build_kernel_arrays(line, passage.time_step)
+    motion, train = start_motion(line, kernel, passage)
+    w, r = end_of_step(motion, kernel.layout, passage.time_step)
     matrices, connectors, dt = assemble_matrices(line), line.connectors, passage.time_step
     n, sizes = matrices.free.size, [p.head.size for p in passage.pantographs]
     at = n + np.concatenate([[0], np.cumsum(sizes)])
@@ -42,12 +45,10 @@ def run_refactorised(line: DiscretisedLine, passage: Passage) -> tuple[np.ndarra
     damping = sp.block_diag([bare_c, *(p.damping for p in passage.pantographs)], format="csc")
     stiffness = sp.block_diag([bare_k, *(p.stiffness for p in passage.pantographs)], format="csc")
     place = bandwidth_order(line)[matrices.free]
-    q, v, a = (
-        np.concatenate([np.stack([motion.w[i], motion.r[i]], axis=-1).ravel()[place], *train.z[i]]) for i in range(3)
-    )
+    q, v, a = (np.concatenate([np.stack([w[i], r[i]], axis=-1).ravel()[place], *train.z[i]]) for i in range(3))
     force = np.concatenate([np.zeros(n), *(p.force for p in passage.pantographs)])
     stiff = np.zeros(len(sizes))
-    tension, contact = motion.tension.copy(), train.contact[:, 0].copy()
+    tension, contact = motion.force[: connectors.station.size].copy(), train.contact[:, 0].copy()
     rest = line.state.deflection.ravel()[bandwidth_order(line)]
     row = line.contact_rows[0]
     steps = round(passage.duration / dt)

@@ -21,9 +21,11 @@ from numpy.typing import NDArray
 
 from pantocheck.model.arrays import Array
 from pantocheck.model.discretised_line import DiscretisedLine
-from pantocheck.model.dynamics.motion import Motion
+from pantocheck.model.dynamics.binary_search import search
+from pantocheck.model.dynamics.kernel_compilation import kernel
 from pantocheck.model.dynamics.passage import Passage
 from pantocheck.model.dynamics.train import Train
+from pantocheck.model.dynamics.vectors import LANES
 
 MIN_HALF_WIDTH = 30.0
 """Half-width that is active around a pantograph from the first step, and distance from a cut at which motion counts as
@@ -66,7 +68,7 @@ class WindowArrays(NamedTuple):
 
 
 class Window(NamedTuple):
-    """First and last active station."""
+    """First and last active station; whole vectors of stations are active, also beyond the end of the line."""
 
     first: int
     last: int
@@ -100,14 +102,14 @@ def max_wave_speed(line: DiscretisedLine) -> float:
     return 1.1 * math.sqrt(float(np.max(line.beams.tension[present] / line.beams.mass_per_length[present])))
 
 
-@njit(cache=True)
+@kernel
 def influence(limits: WindowArrays, speed: float, elapsed: float) -> tuple[float, float]:
     """Largest distances behind the last and ahead of the first pantograph that waves can have reached [m]."""
     front = MIN_HALF_WIDTH + limits.wave_speed * elapsed
     return front + speed * elapsed, max(front - speed * elapsed, MIN_HALF_WIDTH)
 
 
-@njit(cache=True)
+@kernel
 def half_widths(limits: WindowArrays, speed: float, elapsed: float) -> tuple[float, float]:
     """Half-widths of the window behind the last and ahead of the first pantograph at a time after the start [m].
 
@@ -120,26 +122,18 @@ def half_widths(limits: WindowArrays, speed: float, elapsed: float) -> tuple[flo
     return min(behind, limits.reach), min(ahead, limits.reach)
 
 
-@njit(cache=True)
+@kernel
 def active_window(limits: WindowArrays, train: Train) -> Window:
-    """Stations inside the window; the whole line without a pantograph."""
+    """Stations inside the window, rounded outwards to whole vectors; the whole line without a pantograph."""
     first, last = 0, limits.position.size - 1
     if train.position.size > 0 and not limits.whole_line:
         behind, ahead = half_widths(limits, train.speed[0], train.elapsed[0])
-        first = max(first, np.searchsorted(limits.position, train.position.min() - behind))
-        last = min(last, np.searchsorted(limits.position, train.position.max() + ahead))
-    return Window(first, last)
-
-
-@njit(cache=True)
-def pin_neighbours(motion: Motion, window: Window) -> None:
-    """Hold the stations next to the active window at rest, so that an approaching train finds them at rest."""
-    for s in (window.first - 1, window.last + 1):
-        if 0 <= s < motion.w.shape[2]:
-            for b in range(motion.w.shape[1]):
-                for i in range(1, 3):
-                    motion.w[i, b, s] = 0.0
-                    motion.r[i, b, s] = 0.0
+        rear, front = train.position[0], train.position[0]
+        for p in range(1, train.position.size):
+            rear, front = min(rear, train.position[p]), max(front, train.position[p])
+        first = search(limits.position, first, last, rear - behind)
+        last = search(limits.position, first, last, front + ahead)
+    return Window(first // LANES * LANES, last // LANES * LANES + LANES - 1)
 
 
 def find_unknown(limits: WindowArrays, passage: Passage, time: Array) -> NDArray[np.bool_]:

@@ -1,32 +1,62 @@
-"""Connectors in a time step: Gauss-Seidel sweeps over their tensions.
+"""Connectors in a time step: their tensions are scalar forces (`scalar_forces`) at a few nodes.
 
-With the predicted elongation d and its rate d', the tension N at the end of a step of a connector with coefficients c
-on the rows at its station is
-
-    N = max(0, N0 + k d + c_d d' + g a),    a = sum of c times the row accelerations,    g = k dt^2/4 + c_d dt/2
-
-A change of N changes a by -(compliance) N, through the local columns of the inverse (`inverse_columns`). With all other
-forces held, N is solved exactly: N = (N0 + k d + c_d d' + g a + g_c N_old) / (1 + g_c), with g_c = g times compliance.
+A node is a row and a station at which connectors end; connectors at the same place share it. The acceleration of a node
+under all forces of a row is the inner product of these forces with the local column of the inverse (`inverse_columns`)
+of the node. It is needed for the forces of the predicted motion only: the sweeps change it by the compliances of the
+tensions. The changes of the tensions are then loads at the nodes.
 """
 
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
-from numpy.typing import NDArray
+from scipy.sparse import coo_array, csc_array
 
 from pantocheck.model.arrays import Array, Indices
 from pantocheck.model.dynamics.active_window import Window
+from pantocheck.model.dynamics.binary_search import search
 from pantocheck.model.dynamics.block_tridiagonal import Factor
 from pantocheck.model.dynamics.extents import active_run, find_runs
-from pantocheck.model.dynamics.inverse_columns import add_column, inverse_columns
-from pantocheck.model.dynamics.motion import Motion
-from pantocheck.model.dynamics.sweeps import NEGLIGIBLE_FORCE, maximum
+from pantocheck.model.dynamics.inverse_columns import inverse_columns
+from pantocheck.model.dynamics.kernel_compilation import kernel
+from pantocheck.model.dynamics.motion import Layout, Motion
+from pantocheck.model.dynamics.scalar_forces import ScalarForces, ScalarWorkspace
+from pantocheck.model.dynamics.vectors import LANES, align, lane_sum, load, splat
 from pantocheck.model.fem.connectors import Connectors
 
 
+class NodeArrays(NamedTuple):
+    """Nodes of the connectors, row by row; J nodes, L ends of connectors, B rows.
+
+    Parameters
+    ----------
+    first : (B + 1,) int ndarray
+        First node of each row, and J.
+    row, station : (J,) int ndarray
+        Places of the nodes; the stations of a row increase.
+    column : (J, 2, n) ndarray
+        Columns of the inverse around the nodes: deflection and slope [1/kg, 1/(kg m)].
+    column_start : (J,) int ndarray
+        Station of the first value of each column, a multiple of the size of a vector.
+    first_end : (J + 1,) int ndarray
+        First end of a connector at each node, and L.
+    connector : (L,) int ndarray
+        Connector of each end.
+    coefficient : (L,) ndarray
+        Its coefficient in the elongation of the connector [-].
+    """
+
+    first: Indices
+    row: Indices
+    station: Indices
+    column: Array
+    column_start: Indices
+    first_end: Indices
+    connector: Indices
+    coefficient: Array
+
+
 class ConnectorArrays(NamedTuple):
-    """Connectors of a line in a time step; N connectors in R runs with at most E ends, L ends in total.
+    """Connectors of a line in a time step; N connectors in R runs with at most E ends.
 
     Parameters
     ----------
@@ -34,34 +64,20 @@ class ConnectorArrays(NamedTuple):
         First connector of each run (`find_runs`), and N.
     station : (N,) int ndarray
         Stations of the connectors.
-    end_row, end_column : (N, E) int ndarray
-        Row of each end, and its column in `columns`.
+    end_node, end_index : (N, E) int ndarray
+        Node of each end, and its index in a flattened plane of rows.
     end_coefficient : (N, E) ndarray
         Coefficient of each end in the elongation; zero for a missing end [-].
-    columns : (L, 2, 2H) ndarray
-        Columns of the inverse around the ends.
-    stiffness, damping, preload : (N,) ndarray
-        Coefficients and tension in the initial state [N/m, N s/m, N].
-    tension_per_acceleration : (N,) ndarray
-        Tension per acceleration of the elongation within a step, g [kg].
-    self_compliance : (N,) ndarray
-        g times the acceleration of the elongation per tension [-].
-    unilateral : (N,) ndarray
-        Whether the tension cannot be negative.
+    nodes : NodeArrays
+        Nodes.
     """
 
     run: Indices
     station: Indices
-    end_row: Indices
-    end_column: Indices
+    end_node: Indices
+    end_index: Indices
     end_coefficient: Array
-    columns: Array
-    stiffness: Array
-    damping: Array
-    preload: Array
-    tension_per_acceleration: Array
-    self_compliance: Array
-    unilateral: NDArray[np.bool_]
+    nodes: NodeArrays
 
 
 def connector_ends(connectors: Connectors) -> list[tuple[int, int]]:
@@ -70,75 +86,148 @@ def connector_ends(connectors: Connectors) -> list[tuple[int, int]]:
     return list(zip(row.tolist(), connectors.station[number].tolist(), strict=True))
 
 
-def build_connector_arrays(
-    connectors: Connectors, factor: Factor, time_step: float, half_width: int
-) -> ConnectorArrays:
-    """Build the arrays of the connectors for a time step [s]; `half_width` as in `inverse_columns`."""
+def build_connector_arrays(connectors: Connectors, factor: Factor, layout: Layout, half_width: int) -> ConnectorArrays:
+    """Build the arrays of the connectors for a time step; `half_width` as in `column_half_width`."""
     number, row = np.nonzero(connectors.coefficient)
     end = np.arange(number.size) - np.searchsorted(number, number)
+    coefficient = connectors.coefficient[number, row]
+    place, node = np.unique(row * layout.width + connectors.station[number], return_inverse=True)
     shape = (len(connectors.station), int(end.max(initial=-1)) + 1)
-    end_row, end_column = (np.zeros(shape, dtype=np.int64) for _ in range(2))
+    end_node, end_index = (np.zeros(shape, dtype=np.int64) for _ in range(2))
     end_coefficient = np.zeros(shape)
-    end_row[number, end], end_column[number, end] = row, np.arange(number.size)
-    end_coefficient[number, end] = connectors.coefficient[number, row]
-    columns = inverse_columns(factor, row, connectors.station[number], np.zeros_like(row), half_width)
-    gain = time_step**2 / 4 * connectors.stiffness + time_step / 2 * connectors.damping
-    return ConnectorArrays(
-        run=find_runs(connectors.station),
-        station=connectors.station,
-        end_row=end_row,
-        end_column=end_column,
-        end_coefficient=end_coefficient,
-        columns=columns,
-        stiffness=connectors.stiffness,
-        damping=connectors.damping,
-        preload=connectors.preload,
-        tension_per_acceleration=gain,
-        self_compliance=gain * (end_coefficient**2 * columns[end_column, 0, half_width]).sum(axis=1),
-        unilateral=connectors.unilateral,
+    end_node[number, end], end_index[number, end], end_coefficient[number, end] = node, place[node], coefficient
+    node_row, node_station = place // layout.width, place % layout.width
+    column_start = (node_station - half_width) // LANES * LANES
+    column = align(np.zeros((place.size, 2, 2 * half_width + LANES)))
+    inverse_columns(factor, node_row, node_station, column_start, column)
+    order = np.argsort(node, kind="stable")
+    nodes = NodeArrays(
+        first=np.searchsorted(node_row, np.arange(connectors.coefficient.shape[1] + 1)),
+        row=node_row,
+        station=node_station,
+        column=column,
+        column_start=column_start,
+        first_end=np.searchsorted(node[order], np.arange(place.size + 1)),
+        connector=number[order],
+        coefficient=coefficient[order],
     )
+    run = find_runs(connectors.station)
+    return ConnectorArrays(run, connectors.station, end_node, end_index, end_coefficient, nodes)
 
 
-@njit(cache=True)
-def predict_connectors(connectors: ConnectorArrays, motion: Motion, predicted: Array, window: Window) -> None:
-    """Fill the predicted tensions, and load the rows with the tensions of the last step as a first guess."""
+def coefficients_at_nodes(connectors: ConnectorArrays) -> csc_array:
+    """Coefficients of N connectors at J nodes, (N, J)."""
+    nodes = connectors.nodes
+    shape = (connectors.station.size, nodes.station.size)
+    return csc_array((nodes.coefficient, nodes.connector, nodes.first_end), shape=shape)
+
+
+def node_compliance(nodes: NodeArrays) -> coo_array:
+    """Acceleration of each node per force at any other node, (J, J) [1/kg]; zero outside of the local columns."""
+    size, width = nodes.station.size, nodes.column.shape[2]
+    values, rows, columns = [np.zeros(0)], [np.zeros(0, dtype=np.int64)], [np.zeros(0, dtype=np.int64)]
+    for distance in range(size):
+        one, other = np.arange(size - distance), np.arange(distance, size)
+        index = nodes.station[other] - nodes.column_start[one]
+        near = np.flatnonzero((nodes.row[one] == nodes.row[other]) & (index < width))
+        if not near.size:
+            break
+        value = nodes.column[near, 0, index[near]]
+        pairs = [(near, near + distance), (near + distance, near)]
+        for row, column in pairs[: 1 + (distance > 0)]:
+            values.append(value)
+            rows.append(row)
+            columns.append(column)
+    places = np.concatenate(rows), np.concatenate(columns)
+    return coo_array((np.concatenate(values), places), shape=(size, size))
+
+
+@kernel
+def predict_connectors(
+    connectors: ConnectorArrays, forces: ScalarForces, motion: Motion, work: ScalarWorkspace, window: Window
+) -> None:
+    """Fill the predicted tensions, and load the nodes with the tensions of the last step as a first guess."""
+    w, law = motion.w.reshape(motion.w.size), forces.law
+    plane = motion.w.shape[1] * motion.w.shape[2]
     for k in range(connectors.run.size - 1):
-        first, end = active_run(connectors.station[connectors.run[k] : connectors.run[k + 1]], window)
-        for n in range(connectors.run[k] + first, connectors.run[k] + end):
-            s = connectors.station[n]
-            change = motion.tension[n] - connectors.preload[n]
+        first, end = active_run(connectors.station, connectors.run, k, window)
+        for n in range(first, end):
+            change = motion.force[n] - law.preload[n]
             elongation, rate = 0.0, 0.0
-            for e in range(connectors.end_row.shape[1]):
-                row, c = connectors.end_row[n, e], connectors.end_coefficient[n, e]
-                elongation += c * motion.w[0, row, s]
-                rate += c * motion.w[1, row, s]
-                motion.w[2, row, s] -= c * change
-            predicted[n] = connectors.preload[n] + connectors.stiffness[n] * elongation + connectors.damping[n] * rate
+            for e in range(connectors.end_index.shape[1]):
+                at, c = connectors.end_index[n, e], connectors.end_coefficient[n, e]
+                elongation += c * w[at]
+                rate += c * w[at + plane]
+                w[at + 2 * plane] -= c * change
+            work.predicted[n] = law.preload[n] + law.stiffness[n] * elongation + law.damping[n] * rate
+            work.change[n] = 0.0
 
 
-@njit(cache=True)
-def sweep_connectors(connectors: ConnectorArrays, motion: Motion, predicted: Array, window: Window) -> float:
-    """Solve every active connector once, all other forces held; return the largest change of a tension [N]."""
-    w, r = motion.w[2], motion.r[2]
-    largest = 0.0
+@kernel
+def accelerate_connectors(
+    connectors: ConnectorArrays, motion: Motion, node: Array, work: ScalarWorkspace, window: Window
+) -> None:
+    """Compute the accelerations of the active nodes and elongations under all forces.
+
+    Parameters
+    ----------
+    connectors : ConnectorArrays
+        Connectors of a line.
+    motion : Motion
+        Forces in place of the accelerations.
+    node : (J,) ndarray
+        Accelerations of the nodes, replaced [m/s2].
+    work : ScalarWorkspace
+        Its accelerations are replaced.
+    window : Window
+        Active window.
+    """
+    nodes, width = connectors.nodes, motion.w.shape[2]
+    size = nodes.column.shape[2]
+    for row in range(nodes.first.size - 1):
+        first = search(nodes.station, nodes.first[row], nodes.first[row + 1], window.first)
+        end = search(nodes.station, first, nodes.first[row + 1], window.last + 1)
+        plane = (2 * motion.w.shape[1] + row) * width
+        for j in range(first, end):
+            node[j] = inner_product(nodes.column, 2 * j * size, size, motion.w, motion.r, plane + nodes.column_start[j])
     for k in range(connectors.run.size - 1):
-        first, end = active_run(connectors.station[connectors.run[k] : connectors.run[k + 1]], window)
-        for n in range(connectors.run[k] + first, connectors.run[k] + end):
-            s, acceleration = connectors.station[n], 0.0
-            for e in range(connectors.end_row.shape[1]):
-                acceleration += connectors.end_coefficient[n, e] * w[connectors.end_row[n, e], s]
-            linear = predicted[n] + connectors.tension_per_acceleration[n] * acceleration
-            compliance = connectors.self_compliance[n]
-            tension = (linear + compliance * motion.tension[n]) / (1 + compliance)
-            if connectors.unilateral[n] and tension < 0.0:
-                tension = 0.0
-            change = tension - motion.tension[n]
-            if abs(change) > NEGLIGIBLE_FORCE:
-                motion.tension[n] = tension
-                for e in range(connectors.end_row.shape[1]):
-                    row, c = connectors.end_row[n, e], connectors.end_coefficient[n, e]
-                    if c != 0.0:
-                        column = connectors.columns[connectors.end_column[n, e]]
-                        add_column(w[row], r[row], column, s, -c * change, window)
-            largest = maximum(largest, abs(change))
-    return largest
+        first, end = active_run(connectors.station, connectors.run, k, window)
+        for n in range(first, end):
+            acceleration = 0.0
+            for e in range(connectors.end_node.shape[1]):
+                acceleration += connectors.end_coefficient[n, e] * node[connectors.end_node[n, e]]
+            work.acceleration[n] = acceleration
+
+
+@kernel
+def inner_product(pair: Array, first: int, size: int, w: Array, r: Array, at: int) -> float:
+    """Inner product of two rows, deflections and slopes, with parts of two fields.
+
+    Parameters
+    ----------
+    pair : ndarray
+        Array with both rows one after the other.
+    first, size : int
+        Index of the first row in the flattened array, and length of a row: whole vectors.
+    w, r : ndarray
+        Deflections and slopes.
+    at : int
+        Index of their parts in the flattened arrays.
+    """
+    product, other = splat(0.0), splat(0.0)
+    for i in range(0, size, LANES):
+        product = product + load(pair, first + i) * load(w, at + i)
+        other = other + load(pair, first + size + i) * load(r, at + i)
+    return float(lane_sum(product + other))
+
+
+@kernel
+def load_connectors(connectors: ConnectorArrays, motion: Motion, work: ScalarWorkspace, window: Window) -> None:
+    """Load the nodes with the changes of the active tensions since the last step."""
+    w = motion.w.reshape(motion.w.size)
+    plane = motion.w.shape[1] * motion.w.shape[2]
+    for k in range(connectors.run.size - 1):
+        first, end = active_run(connectors.station, connectors.run, k, window)
+        for n in range(first, end):
+            for e in range(connectors.end_index.shape[1]):
+                w[connectors.end_index[n, e] + 2 * plane] -= connectors.end_coefficient[n, e] * work.change[n]

@@ -8,33 +8,39 @@ in series (`residual_flexibility`). With the predicted overlap d of head and wir
 
     F = max(0, k (d + dt^2/4 a)),    a = acceleration of the head minus acceleration of the wire
 
-A change of F changes a by -(compliance) F, and F is solved exactly with all other forces held.
+A change of F changes a by -(compliance) F, and F is solved exactly with all other forces held. The sweeps need the
+wire at its contacts only: its response to a unit force of a head, a local column of the inverse (`inverse_columns`), is
+solved anew in every step, and gives the influence of the contact on the other contacts and on the scalar forces.
 """
 
 import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from pantocheck.model.arrays import Array, Indices
 from pantocheck.model.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.active_window import Window
-from pantocheck.model.dynamics.block_tridiagonal import Factor
-from pantocheck.model.dynamics.inverse_columns import add_column, inverse_columns
+from pantocheck.model.dynamics.binary_search import search
+from pantocheck.model.dynamics.block_tridiagonal import Factor, solve_stations
+from pantocheck.model.dynamics.connector_step import ConnectorArrays, inner_product
+from pantocheck.model.dynamics.distributed_step import DistributedArrays
 from pantocheck.model.dynamics.irregularity_step import (
     IrregularityArrays,
     build_irregularity_arrays,
     height_of_irregularity,
 )
+from pantocheck.model.dynamics.kernel_compilation import kernel
 from pantocheck.model.dynamics.motion import Motion
+from pantocheck.model.dynamics.scalar_forces import ScalarWorkspace
 from pantocheck.model.dynamics.sweeps import NEGLIGIBLE_FORCE, maximum
 from pantocheck.model.dynamics.train import Train
+from pantocheck.model.dynamics.vectors import LANES, align
 from pantocheck.model.fem.contact_wires import ContactWires, locate_contact_wires
 from pantocheck.model.fem.mesh import find_element
 from pantocheck.model.fem.residual_flexibility import residual_flexibility
 
-_find_element = njit(cache=True)(find_element)
+_find_element = kernel(find_element)
 
 
 class ContactArrays(NamedTuple):
@@ -48,30 +54,30 @@ class ContactArrays(NamedTuple):
         Positions of the stations [m].
     wires : ContactWires
         Rows and extents of the contact wires.
-    first_column : (W,) int ndarray
-        Index of the first station of each contact wire in `columns`.
     rest : (B, S, 2) ndarray
         Height and slope of the rows in the initial state [m, -].
     flexibility : (B, S-1, 7) ndarray
         Residual flexibility of the elements, see `element_flexibility` [m/N].
     irregularity : IrregularityArrays
         Additional heights of the contact wires.
-    columns : (L, 2, 2, 2H) ndarray
-        Columns of the inverse around the stations of all contact wires, for a force and for a moment.
+    factor : Factor
+        Block factors of the effective matrix.
+    half_width : int
+        Number of stations that a force influences on either side of an element (`column_half_width`).
     """
 
     time_step: float
     position: Array
     wires: ContactWires
-    first_column: Indices
     rest: Array
     flexibility: Array
     irregularity: IrregularityArrays
-    columns: Array
+    factor: Factor
+    half_width: int
 
 
 class ContactWorkspace(NamedTuple):
-    """Predictors of the contacts of one step; P pantographs, W contact wires.
+    """Predictors of the contacts of one step; P pantographs, W contact wires, N scalar forces near a contact at most.
 
     Parameters
     ----------
@@ -87,8 +93,24 @@ class ContactWorkspace(NamedTuple):
         Penalty and residual flexibility in series [N/m].
     overlap : (P, W) ndarray
         Predicted overlap of head and wire [m].
-    compliance : (P, W) ndarray
-        Relative acceleration of head and wire per contact force [1/kg].
+    head_compliance : (P,) ndarray
+        Acceleration of each head per contact force [1/kg].
+    response : (P, W, 2, n) ndarray
+        Accelerations of deflection and slope around each contact per contact force [1/kg, 1/(kg m)].
+    start : (P,) int ndarray
+        Station of their first values, a multiple of the size of a vector; it can lie before the line.
+    wire_compliance : (P, P, W) ndarray
+        Acceleration of each wire at one contact per force at another [1/kg].
+    wire_acceleration : (P, W) ndarray
+        Acceleration of each wire at its contacts under the forces of the last step [m/s2].
+    first_guess : (P, W) ndarray
+        Contact forces of the last step [N].
+    near : (P, W, N) int ndarray
+        Scalar forces that a contact influences.
+    influence : (P, W, N) ndarray
+        Acceleration of their elongations per contact force [1/kg].
+    number_near : (P, W) int ndarray
+        Their number.
     """
 
     element: Indices
@@ -97,41 +119,62 @@ class ContactWorkspace(NamedTuple):
     shape: Array
     stiffness: Array
     overlap: Array
-    compliance: Array
+    head_compliance: Array
+    response: Array
+    start: Indices
+    wire_compliance: Array
+    wire_acceleration: Array
+    first_guess: Array
+    near: Indices
+    influence: Array
+    number_near: Indices
 
 
 def build_contact_arrays(line: DiscretisedLine, factor: Factor, time_step: float, half_width: int) -> ContactArrays:
-    """Build the arrays of the contact wires for a time step [s]; `half_width` as in `inverse_columns`."""
-    wires = locate_contact_wires(line)
-    count = wires.last - wires.first + 1
-    first_column = np.cumsum(count) - count
-    row = np.repeat(wires.row, count)
-    station = np.arange(row.size) + np.repeat(wires.first - first_column, count)
-    columns = inverse_columns(
-        factor, np.repeat(row, 2), np.repeat(station, 2), np.tile(np.arange(2), row.size), half_width
-    )
+    """Build the arrays of the contact wires for a time step [s]; `half_width` as in `column_half_width`."""
     return ContactArrays(
         time_step=time_step,
         position=line.mesh.position,
-        wires=wires,
-        first_column=first_column,
+        wires=locate_contact_wires(line),
         rest=np.ascontiguousarray(line.state.deflection),
         flexibility=line.beams.flexibility,
         irregularity=build_irregularity_arrays(line.catenary.contact_wires),
-        columns=columns.reshape(row.size, 2, 2, 2 * half_width),
+        factor=factor,
+        half_width=half_width,
     )
 
 
-def allocate_contact_workspace(train: Train) -> ContactWorkspace:
+def allocate_contact_workspace(
+    contact: ContactArrays, connectors: ConnectorArrays, distributed: DistributedArrays, train: Train
+) -> ContactWorkspace:
     """Allocate the scratch arrays for the simulation of a train."""
     pantographs, wires = train.contact.shape
-    stiffness, overlap, compliance = (np.zeros((pantographs, wires)) for _ in range(3))
-    element, number_above = (np.zeros(pantographs, dtype=np.int64) for _ in range(2))
-    above, shape = np.zeros((pantographs, wires), dtype=np.int64), np.zeros((pantographs, wires, 4))
-    return ContactWorkspace(element, above, number_above, shape, stiffness, overlap, compliance)
+    stiffness, overlap, wire_acceleration, first_guess = (np.zeros((pantographs, wires)) for _ in range(4))
+    width = 2 * contact.half_width + 2 * LANES
+    nodes = connectors.nodes
+    place = nodes.row * (contact.position.size + width) + nodes.station
+    ends_before = nodes.first_end[np.searchsorted(place, place + width)]
+    near = int((ends_before - nodes.first_end[:-1]).max(initial=0)) + distributed.force.size
+    return ContactWorkspace(
+        element=np.zeros(pantographs, dtype=np.int64),
+        above=np.zeros((pantographs, wires), dtype=np.int64),
+        number_above=np.zeros(pantographs, dtype=np.int64),
+        shape=np.zeros((pantographs, wires, 4)),
+        stiffness=stiffness,
+        overlap=overlap,
+        head_compliance=np.zeros(pantographs),
+        response=align(np.zeros((pantographs, wires, 2, width))),
+        start=np.zeros(pantographs, dtype=np.int64),
+        wire_compliance=np.zeros((pantographs, pantographs, wires)),
+        wire_acceleration=wire_acceleration,
+        first_guess=first_guess,
+        near=np.zeros((pantographs, wires, near), dtype=np.int64),
+        influence=np.zeros((pantographs, wires, near)),
+        number_near=np.zeros((pantographs, wires), dtype=np.int64),
+    )
 
 
-@njit(cache=True)
+@kernel
 def predict_train(contact: ContactArrays, motion: Motion, train: Train, work: ContactWorkspace) -> None:
     """Move and predict the pantographs, and press with the contact forces of the last step as a first guess."""
     dt = contact.time_step
@@ -162,13 +205,15 @@ def predict_train(contact: ContactArrays, motion: Motion, train: Train, work: Co
                 compliance += train.head[p, i] * train.inverse[p, i, j] * train.head[p, j]
             train.z[2, p, i] = acceleration
             head += train.head[p, i] * train.z[0, p, i]
-        work.overlap[p] = head
-        work.compliance[p] = compliance
+        work.head_compliance[p] = compliance
         for n in range(work.number_above[p]):
-            _predict_contact(contact, motion, train, work, p, work.above[p, n])
+            wire = work.above[p, n]
+            work.overlap[p, wire] = head
+            _predict_contact(contact, motion, train, work, p, wire)
+            _solve_response(contact, work, p, wire)
 
 
-@njit(cache=True)
+@kernel
 def _find_wires_above(contact: ContactArrays, train: Train, work: ContactWorkspace, p: int) -> None:
     """Find the element and the contact wires above pantograph p; a wire that it has left presses no more."""
     e, _, _ = _find_element(contact.position, train.position[p])
@@ -181,65 +226,167 @@ def _find_wires_above(contact: ContactArrays, train: Train, work: ContactWorkspa
             train.contact[p, wire] = 0.0
 
 
-@njit(cache=True)
+@kernel
 def _predict_contact(
     contact: ContactArrays, motion: Motion, train: Train, work: ContactWorkspace, p: int, wire: int
 ) -> None:
-    """Complete overlap and compliance of pantograph p, so far those of its head, by those of a contact wire."""
-    half_width = contact.columns.shape[3] // 2
+    """Complete the overlap of pantograph p, so far the height of its head, and load a wire with the contact force."""
     row, n = contact.wires.row[wire], work.shape[p, wire]
     e, h, s = _find_element(contact.position, train.position[p])
     # Hermite functions, as in `beam.shape`.
     n[0], n[1] = (1 + 2 * s) * (1 - s) ** 2, h * s * (1 - s) ** 2
     n[2], n[3] = s * s * (3 - 2 * s), h * s * s * (s - 1)
-    first_column = contact.first_column[wire] + e - contact.wires.first[wire]
-    height, compliance = 0.0, work.compliance[p, wire]
+    force, height = train.contact[p, wire], 0.0
+    work.first_guess[p, wire] = force
     for i in range(2):
         height += n[2 * i] * (contact.rest[row, e + i, 0] + motion.w[0, row, e + i])
         height += n[2 * i + 1] * (contact.rest[row, e + i, 1] + motion.r[0, row, e + i])
-        motion.w[2, row, e + i] += n[2 * i] * train.contact[p, wire]
-        motion.r[2, row, e + i] += n[2 * i + 1] * train.contact[p, wire]
-        for j in range(2):
-            for slope in range(2):
-                column = contact.columns[first_column + j, slope]
-                station = half_width + i - j
-                compliance += n[2 * j + slope] * (n[2 * i] * column[0, station] + n[2 * i + 1] * column[1, station])
+        motion.w[2, row, e + i] += n[2 * i] * force
+        motion.r[2, row, e + i] += n[2 * i + 1] * force
     work.stiffness[p, wire] = 1 / (
         1 / train.contact_stiffness[p] + residual_flexibility(contact.flexibility[row, e], s)
     )
     work.overlap[p, wire] -= height + height_of_irregularity(contact.irregularity, wire, train.position[p])
-    work.compliance[p, wire] = compliance
 
 
-@njit(cache=True)
-def sweep_contacts(
-    contact: ContactArrays, motion: Motion, train: Train, work: ContactWorkspace, window: Window
-) -> float:
-    """Solve every contact once, all other forces held; return the largest change of a contact force [N]."""
-    dt = contact.time_step
-    w, r = motion.w[2], motion.r[2]
+@kernel
+def _solve_response(contact: ContactArrays, work: ContactWorkspace, p: int, wire: int) -> None:
+    """Response of a wire to a unit force of pantograph p."""
+    e, half_width, response = work.element[p], contact.half_width, work.response[p, wire]
+    start = (e - half_width) // LANES * LANES
+    work.start[p] = start
+    response[:] = 0.0
+    for i in range(2):
+        for slope in range(2):
+            response[slope, e + i - start] = work.shape[p, wire, 2 * i + slope]
+    first, last = max(0, e - half_width), min(contact.position.size - 1, e + 1 + half_width)
+    solve_stations(contact.factor, contact.wires.row[wire], first, last, response[0], response[1], -start)
+
+
+@kernel
+def accelerate_contacts(
+    contact: ContactArrays,
+    connectors: ConnectorArrays,
+    distributed: DistributedArrays,
+    motion: Motion,
+    work: ContactWorkspace,
+    window: Window,
+) -> None:
+    """Compute the accelerations of the wires at the contacts under all forces, and the influence of the contacts.
+
+    Parameters
+    ----------
+    contact, connectors, distributed : ContactArrays, ConnectorArrays, DistributedArrays
+        Contact wires, connectors and distributed forces of a line.
+    motion : Motion
+        Forces in place of the accelerations.
+    work : ContactWorkspace
+        Responses of the wires; the rest is filled.
+    window : Window
+        Active window.
+    """
+    pantographs, size = work.element.size, work.response.shape[3]
+    wires, rows, width = work.shape.shape[1], motion.w.shape[1], motion.w.shape[2]
+    for p in range(pantographs):
+        for n in range(work.number_above[p]):
+            wire = work.above[p, n]
+            at = (2 * rows + contact.wires.row[wire]) * width + work.start[p]
+            response = 2 * (p * wires + wire) * size
+            work.wire_acceleration[p, wire] = inner_product(work.response, response, size, motion.w, motion.r, at)
+            for other in range(pantographs):
+                work.wire_compliance[p, other, wire] = _at_contact(work, p, other, wire)
+            _list_near_connectors(contact, connectors, work, p, wire, window)
+            _list_near_distributed(contact, distributed, motion, work, p, wire)
+
+
+@kernel
+def _at_contact(work: ContactWorkspace, p: int, other: int, wire: int) -> float:
+    """Acceleration of a wire at the contact of another pantograph, or of p itself, per force of pantograph p."""
+    acceleration, s = 0.0, work.element[other] - work.start[p]
+    if s < 0 or s + 1 >= work.response.shape[3]:
+        return 0.0
+    for i in range(2):
+        for slope in range(2):
+            acceleration += work.shape[other, wire, 2 * i + slope] * work.response[p, wire, slope, s + i]
+    return acceleration
+
+
+@kernel
+def _list_near_connectors(
+    contact: ContactArrays, connectors: ConnectorArrays, work: ContactWorkspace, p: int, wire: int, window: Window
+) -> None:
+    """List the connectors with a node inside the response to a contact, and their accelerations."""
+    nodes, row, start, number = connectors.nodes, contact.wires.row[wire], work.start[p], 0
+    low, high = max(start, window.first), min(start + work.response.shape[3], window.last + 1)
+    j = search(nodes.station, nodes.first[row], nodes.first[row + 1], low)
+    while j < nodes.first[row + 1] and nodes.station[j] < high:
+        acceleration = work.response[p, wire, 0, nodes.station[j] - start]
+        for end in range(nodes.first_end[j], nodes.first_end[j + 1]):
+            work.near[p, wire, number] = nodes.connector[end]
+            work.influence[p, wire, number] = nodes.coefficient[end] * acceleration
+            number += 1
+        j += 1
+    work.number_near[p, wire] = number
+
+
+@kernel
+def _list_near_distributed(
+    contact: ContactArrays, distributed: DistributedArrays, motion: Motion, work: ContactWorkspace, p: int, wire: int
+) -> None:
+    """List the distributed forces whose response covers a contact, and their accelerations."""
+    number, n, e = work.number_near[p, wire], work.shape[p, wire], work.element[p]
+    for z in range(distributed.force.size):
+        size = (distributed.first[z + 1] - distributed.first[z]) // 2
+        s = e - distributed.station[z]
+        if distributed.row[z] == contact.wires.row[wire] and s >= 0 and s + 1 < size:
+            at = distributed.first[z] + s
+            work.near[p, wire, number] = motion.force.size - distributed.number + distributed.force[z]
+            work.influence[p, wire, number] = (
+                n[0] * distributed.response[at]
+                + n[1] * distributed.response[at + size]
+                + n[2] * distributed.response[at + 1]
+                + n[3] * distributed.response[at + size + 1]
+            )
+            number += 1
+    work.number_near[p, wire] = number
+
+
+@kernel
+def sweep_contacts(dt: float, train: Train, work: ContactWorkspace, scalar: ScalarWorkspace) -> float:
+    """Solve every contact once, all other forces held; return the largest change of a contact force [N].
+
+    Parameters
+    ----------
+    dt : float
+        Time step [s].
+    train : Train
+        Pantographs; contact forces and accelerations are updated.
+    work : ContactWorkspace
+        Predictors of the contacts.
+    scalar : ScalarWorkspace
+        Scalar forces, whose accelerations are updated.
+    """
     largest = 0.0
     for p in range(train.position.size):
-        e = work.element[p]
         for number in range(work.number_above[p]):
             wire = work.above[p, number]
-            row, n, k = contact.wires.row[wire], work.shape[p, wire], work.stiffness[p, wire]
-            approach = 0.0
+            old, k = train.contact[p, wire], work.stiffness[p, wire]
+            approach = -work.wire_acceleration[p, wire]
             for i in range(train.z.shape[2]):
                 approach += train.head[p, i] * train.z[2, p, i]
-            approach -= n[0] * w[row, e] + n[1] * r[row, e] + n[2] * w[row, e + 1] + n[3] * r[row, e + 1]
+            for other in range(train.position.size):
+                change = train.contact[other, wire] - work.first_guess[other, wire]
+                approach -= work.wire_compliance[p, other, wire] * change
+            for i in range(work.number_near[p, wire]):
+                approach += work.influence[p, wire, i] * scalar.change[work.near[p, wire, i]]
             gain = k * dt * dt / 4
-            compliance = gain * work.compliance[p, wire]
-            linear = k * work.overlap[p, wire] + gain * approach
-            force = max((linear + compliance * train.contact[p, wire]) / (1 + compliance), 0.0)
-            change = force - train.contact[p, wire]
+            compliance = gain * (work.head_compliance[p] + work.wire_compliance[p, p, wire])
+            force = max((k * work.overlap[p, wire] + gain * approach + compliance * old) / (1 + compliance), 0.0)
+            change = force - old
             if abs(change) > NEGLIGIBLE_FORCE:
                 train.contact[p, wire] = force
-                first_column = contact.first_column[wire] + e - contact.wires.first[wire]
-                for i in range(2):
-                    for j in range(2):
-                        column, value = contact.columns[first_column + i, j], n[2 * i + j] * change
-                        add_column(w[row], r[row], column, e + i, value, window)
+                for i in range(work.number_near[p, wire]):
+                    scalar.acceleration[work.near[p, wire, i]] += work.influence[p, wire, i] * change
                 for i in range(train.z.shape[2]):
                     for j in range(train.z.shape[2]):
                         train.z[2, p, i] -= train.inverse[p, i, j] * train.head[p, j] * change
@@ -247,7 +394,19 @@ def sweep_contacts(
     return largest
 
 
-@njit(cache=True)
+@kernel
+def load_contacts(contact: ContactArrays, motion: Motion, train: Train, work: ContactWorkspace) -> None:
+    """Load the wires with the changes of the contact forces since the last step."""
+    for p in range(train.position.size):
+        for number in range(work.number_above[p]):
+            wire, e = work.above[p, number], work.element[p]
+            row, change = contact.wires.row[wire], train.contact[p, wire] - work.first_guess[p, wire]
+            for i in range(2):
+                motion.w[2, row, e + i] += work.shape[p, wire, 2 * i] * change
+                motion.r[2, row, e + i] += work.shape[p, wire, 2 * i + 1] * change
+
+
+@kernel
 def correct_train(dt: float, train: Train) -> None:
     """Complete the predictors of the pantographs with the accelerations at the end of the step."""
     for p in range(train.position.size):

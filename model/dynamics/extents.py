@@ -11,10 +11,12 @@ beyond its own ends. Parts of the line are searched for in runs of increasing st
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from pantocheck.model.arrays import Indices
 from pantocheck.model.dynamics.active_window import Window
+from pantocheck.model.dynamics.binary_search import search
+from pantocheck.model.dynamics.kernel_compilation import kernel
+from pantocheck.model.dynamics.vectors import LANES
 from pantocheck.model.fem.beams import Beams
 
 
@@ -40,7 +42,22 @@ def find_extents(beams: Beams) -> Extents:
     return Extents(*map(np.ascontiguousarray, (row, first, np.nonzero(change == -1)[1])))
 
 
-@njit(cache=True)
+def merge_extents(extents: Extents, gap: int) -> Extents:
+    """Round extents outwards to whole vectors of stations, and merge those of a row with less than a gap between them.
+
+    The merged extents of a row have no vector in common, nor any other group of `gap` stations.
+    """
+    merged: list[list[int]] = []
+    for row, first, last in zip(*(part.tolist() for part in extents), strict=True):
+        if merged and merged[-1][0] == row and first - merged[-1][2] < gap:
+            merged[-1][2] = last
+        else:
+            merged.append([row, first, last])
+    row, first, last = np.array(merged, dtype=np.int64).reshape(-1, 3).T
+    return Extents(row.copy(), first // LANES * LANES, last // LANES * LANES + LANES - 1)
+
+
+@kernel
 def clip_extent(extents: Extents, n: int, window: Window) -> Window:
     """First and last station of a wire inside the window; the last is before the first if the wire lies outside."""
     return Window(max(extents.first[n], window.first), min(extents.last[n], window.last))
@@ -52,9 +69,11 @@ def find_runs(station: Indices) -> Indices:
     return np.append(starts, station.size)
 
 
-@njit(cache=True)
-def active_run(station: Indices, window: Window) -> tuple[int, int]:
-    """First of the parts of a run at their stations inside the window, and one after the last."""
-    if station[-1] < window.first or station[0] > window.last:
-        return 0, 0
-    return int(np.searchsorted(station, window.first)), int(np.searchsorted(station, window.last, "right"))
+@kernel
+def active_run(station: Indices, run: Indices, k: int, window: Window) -> tuple[int, int]:
+    """First part of run k at a station inside the window, and one after the last."""
+    start, end = run[k], run[k + 1]
+    if station[end - 1] < window.first or station[start] > window.last:
+        return start, start
+    first = search(station, start, end, window.first)
+    return first, search(station, first, end, window.last + 1)

@@ -4,14 +4,14 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from pantocheck.model.arrays import Array, Indices
 from pantocheck.model.catenary import Wire
+from pantocheck.model.dynamics.kernel_compilation import kernel
 from pantocheck.model.fem.mesh import find_element
 from pantocheck.model.irregularity_spline import NO_IRREGULARITY, spline_polynomials
 
-_find_interval = njit(cache=True)(find_element)
+_find_interval = kernel(find_element)
 
 
 class IrregularityArrays(NamedTuple):
@@ -43,7 +43,7 @@ def build_irregularity_arrays(wires: Sequence[Wire]) -> IrregularityArrays:
     )
 
 
-@njit(cache=True)
+@kernel
 def height_of_irregularity(arrays: IrregularityArrays, wire: int, position: float) -> float:
     """Additional height of a contact wire at a position [m]."""
     first, end = arrays.first[wire], arrays.first[wire + 1]

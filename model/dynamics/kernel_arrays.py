@@ -3,24 +3,50 @@
 from typing import NamedTuple
 
 import numpy as np
+from scipy.sparse import block_array, csr_array
 
 from pantocheck.model.arrays import Array
 from pantocheck.model.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.active_window import WindowArrays, whole_line
-from pantocheck.model.dynamics.block_tridiagonal import Factor
-from pantocheck.model.dynamics.connector_step import ConnectorArrays, build_connector_arrays, connector_ends
+from pantocheck.model.dynamics.connector_step import (
+    ConnectorArrays,
+    build_connector_arrays,
+    coefficients_at_nodes,
+    connector_ends,
+    node_compliance,
+)
 from pantocheck.model.dynamics.contact_step import (
     ContactArrays,
     ContactWorkspace,
     allocate_contact_workspace,
     build_contact_arrays,
 )
+from pantocheck.model.dynamics.distributed_step import (
+    DistributedArrays,
+    build_distributed_arrays,
+    distributed_laws,
+    sparse_vectors,
+)
 from pantocheck.model.dynamics.effective_matrix import factorise
+from pantocheck.model.dynamics.extents import find_extents, merge_extents
 from pantocheck.model.dynamics.inverse_columns import column_half_width
-from pantocheck.model.dynamics.modal_step import ModalArrays, build_modal_arrays
-from pantocheck.model.dynamics.stretch_step import StretchArrays, build_stretch_arrays
+from pantocheck.model.dynamics.motion import Layout
+from pantocheck.model.dynamics.panels import (
+    PanelFactor,
+    PanelWorkspace,
+    allocate_panel_workspace,
+    build_panels,
+)
+from pantocheck.model.dynamics.scalar_forces import (
+    ScalarForces,
+    ScalarLaw,
+    ScalarWorkspace,
+    allocate_scalar_workspace,
+    build_scalar_forces,
+)
 from pantocheck.model.dynamics.train import Train
-from pantocheck.model.dynamics.wire_step import WireArrays, WireWorkspace, allocate_wire_workspace, build_wire_arrays
+from pantocheck.model.dynamics.vectors import LANES
+from pantocheck.model.dynamics.wire_step import WireArrays, build_wire_arrays
 from pantocheck.model.fem.contact_wires import locate_contact_wires
 from pantocheck.model.modal.modal_damping import build_modal_terms
 
@@ -39,32 +65,35 @@ class KernelArrays(NamedTuple):
     ----------
     time_step : float
         Time step [s].
+    layout : Layout
+        Layout of the rows of a motion.
     window : WindowArrays
         Limits of the active window.
-    factor : Factor
+    panels : PanelFactor
         Block factors of the effective matrix.
     wires : WireArrays
         Wires and lumped parts.
     connectors : ConnectorArrays
         Droppers and other connectors.
+    distributed : DistributedArrays
+        Held stretches and modes with modal damping.
+    forces : ScalarForces
+        Scalar forces: tensions of the connectors, then distributed forces.
     contact : ContactArrays
         Contact wires under the pantographs.
-    stretches : StretchArrays
-        Held stretches.
-    modal : ModalArrays
-        Modes with modal damping.
     load : Load
         Position of the external load.
     """
 
     time_step: float
+    layout: Layout
     window: WindowArrays
-    factor: Factor
+    panels: PanelFactor
     wires: WireArrays
     connectors: ConnectorArrays
+    distributed: DistributedArrays
+    forces: ScalarForces
     contact: ContactArrays
-    stretches: StretchArrays
-    modal: ModalArrays
     load: Load
 
 
@@ -73,23 +102,20 @@ class Workspace(NamedTuple):
 
     Parameters
     ----------
-    wires : WireWorkspace
-        Forces of a piece of wire.
-    tension : (N,) ndarray
-        Predicted tensions of the connectors, without the condition that a dropper cannot push [N].
+    panels : PanelWorkspace
+        Active panels.
+    scalar : ScalarWorkspace
+        Scalar forces.
+    node : (J,) ndarray
+        Accelerations of the nodes of the connectors [m/s2].
     contact : ContactWorkspace
         Predictors of the contacts.
-    elongation : (K,) ndarray
-        Predicted elongations of the held stretches [m].
-    modal_velocity : (J,) ndarray
-        Predicted velocities of the modes with modal damping [m kg^1/2 / s].
     """
 
-    wires: WireWorkspace
-    tension: Array
+    panels: PanelWorkspace
+    scalar: ScalarWorkspace
+    node: Array
     contact: ContactWorkspace
-    elongation: Array
-    modal_velocity: Array
 
 
 def build_kernel_arrays(
@@ -116,32 +142,55 @@ def build_kernel_arrays(
     """
     factor = factorise(line.beams, time_step)
     terms = build_modal_terms(line)
-    moves_as_a_whole = terms.damping.size > 0 or line.stretches.stiffness.size > 0
     stations = line.mesh.position.size
     contact_loads = [
         (row, s) for row, first, last in np.transpose(locate_contact_wires(line)) for s in range(first, last + 1)
     ]
     sample = contact_loads[:: max(1, stations // 200)]
     half_width = column_half_width(factor, connector_ends(line.connectors) + sample)
+    # A vector or a local column that begins on the line ends before the end of its row.
+    panels = build_panels(factor, line.mesh.position, 2 * half_width + 2 * LANES)
+    panel = panels.piece * LANES
+    layout = Layout(stations, panels.panels * panel)
+    connectors = build_connector_arrays(line.connectors, factor, layout, half_width)
+    distributed = build_distributed_arrays(line.stretches, terms, factor, layout, half_width)
+    tensions = ScalarLaw(
+        line.connectors.preload, line.connectors.stiffness, line.connectors.damping, line.connectors.unilateral
+    )
+    laws = (tensions, distributed_laws(line.stretches, terms))
+    law = ScalarLaw(*(np.concatenate(parts) for parts in zip(*laws, strict=True)))
+    compliance = _compliance(connectors, distributed, layout, line.mesh.rows)
     return KernelArrays(
         time_step=time_step,
-        window=whole_line(line) if window is None or moves_as_a_whole else window,
-        factor=factor,
-        wires=build_wire_arrays(line.beams),
-        connectors=build_connector_arrays(line.connectors, factor, time_step, half_width),
+        layout=layout,
+        window=whole_line(line) if window is None or distributed.number else window,
+        panels=panels,
+        wires=build_wire_arrays(line.beams, merge_extents(find_extents(line.beams), panel), layout),
+        connectors=connectors,
+        distributed=distributed,
+        forces=build_scalar_forces(law, compliance, time_step),
         contact=build_contact_arrays(line, factor, time_step, half_width),
-        stretches=build_stretch_arrays(line.stretches, factor, time_step, half_width),
-        modal=build_modal_arrays(terms, factor, time_step),
         load=load or Load(0, 0),
+    )
+
+
+def _compliance(connectors: ConnectorArrays, distributed: DistributedArrays, layout: Layout, rows: int) -> csr_array:
+    """Acceleration of the elongation of each scalar force per any other one, (F, F) [1/kg]."""
+    nodes, ends = connectors.nodes, coefficients_at_nodes(connectors)
+    coefficient, response = (
+        sparse_vectors(distributed, values, layout, rows) for values in (distributed.coefficient, distributed.response)
+    )
+    mutual = ends @ response[:, nodes.row * layout.width + nodes.station].T
+    return csr_array(
+        block_array([[ends @ node_compliance(nodes) @ ends.T, mutual], [mutual.T, coefficient @ response.T]])
     )
 
 
 def build_workspace(kernel: KernelArrays, train: Train) -> Workspace:
     """Allocate the scratch arrays for one simulation."""
     return Workspace(
-        wires=allocate_wire_workspace(),
-        tension=np.zeros(kernel.connectors.station.size),
-        contact=allocate_contact_workspace(train),
-        elongation=np.zeros(kernel.stretches.stiffness.size),
-        modal_velocity=np.zeros(kernel.modal.damping.size),
+        panels=allocate_panel_workspace(kernel.panels),
+        scalar=allocate_scalar_workspace(kernel.forces.settling.size),
+        node=np.zeros(kernel.connectors.nodes.station.size),
+        contact=allocate_contact_workspace(kernel.contact, kernel.connectors, kernel.distributed, train),
     )

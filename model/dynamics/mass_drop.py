@@ -106,7 +106,7 @@ def simulate_mass_drop(
     kernel = build_kernel_arrays(line, test.time_step, load=load)
     weight = -test.mass * GRAVITY
     hanging = static_solver(line).deflection(weight * point_load(line, load.row, test.position))
-    motion = motion_at_rest(hanging, kernel.modal.damping.size, kernel.stretches.stiffness.size)
+    motion = motion_at_rest(kernel.layout, hanging, kernel.distributed.number)
     train = build_empty_train(len(catenary.contact_wires))
     before, after = (round(duration / test.time_step) for duration in (test.hanging, test.duration))
     time: Array = test.time_step * np.arange(1 - before, after + 1).astype(np.float64)

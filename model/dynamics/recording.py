@@ -4,13 +4,13 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from pantocheck.model.arrays import Array, Indices
 from pantocheck.model.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.active_window import active_window
 from pantocheck.model.dynamics.extents import active_run
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, Workspace, build_workspace
+from pantocheck.model.dynamics.kernel_compilation import kernel
 from pantocheck.model.dynamics.motion import Motion
 from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.train import Train
@@ -94,12 +94,12 @@ def simulate_steps(
             progress(block.stop / load.size)
 
 
-@njit(cache=True)
+@kernel
 def _advance(
     kernel: KernelArrays, motion: Motion, train: Train, work: Workspace, load: Array, recording: Recording
 ) -> int:
     """Advance by one step per value of the load and record; return the number of completed steps."""
-    connectors = kernel.connectors
+    connectors, dt = kernel.connectors, kernel.time_step
     for n in range(load.size):
         motion.load[0] = load[n]
         if step(kernel, motion, train, work) == 0:
@@ -112,14 +112,16 @@ def _advance(
                 head += train.head[p, i] * train.z[0, p, i]
             recording.contact[n, p], recording.height[n, p] = total, head
         for u in range(recording.row.size):
-            for i in range(3):
-                recording.motion[n, u, i] = motion.w[i, recording.row[u], recording.station[u]]
+            b, s = recording.row[u], recording.station[u]
+            a = motion.w[2, b, s]
+            recording.motion[n, u, 0] = motion.w[0, b, s] + dt * dt / 4 * a
+            recording.motion[n, u, 1] = motion.w[1, b, s] + dt / 2 * a
+            recording.motion[n, u, 2] = a
         slack, window = 0, active_window(kernel.window, train)
         for k in range(connectors.run.size - 1):
-            start = connectors.run[k]
-            first, end = active_run(connectors.station[start : connectors.run[k + 1]], window)
-            for c in range(start + first, start + end):
-                if connectors.unilateral[c] and motion.tension[c] == 0.0:
+            first, end = active_run(connectors.station, connectors.run, k, window)
+            for c in range(first, end):
+                if kernel.forces.law.unilateral[c] and motion.force[c] == 0.0:
                     slack += 1
         recording.slack[n] = slack
     return int(load.size)

@@ -91,7 +91,7 @@ def start_motion(line: DiscretisedLine, kernel: KernelArrays, passage: Passage) 
     for p, wire in np.argwhere(touched):
         height[p, wire], flexibility[p, wire] = _contact_point(kernel.contact, profile, wire, passage.start[p])
     train = build_train(passage, touched, height, flexibility)
-    return motion_at_rest(deflection, kernel.modal.damping.size, kernel.stretches.stiffness.size), train
+    return motion_at_rest(kernel.layout, deflection, kernel.distributed.number), train
 
 
 def _contact_point(contact: ContactArrays, profile: Array, wire: int, position: float) -> tuple[float, float]:

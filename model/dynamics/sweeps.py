@@ -10,9 +10,7 @@ force changes any more; forces far apart hardly influence each other within a st
 
 import math
 
-from numba import njit
-
-from pantocheck.model.arrays import Array
+from pantocheck.model.dynamics.kernel_compilation import kernel
 
 FORCE_TOLERANCE = 1e-9
 """A step has converged when no force changes by more than this in a sweep [N]; forces are of the order of 100 N."""
@@ -22,17 +20,7 @@ MAX_SWEEPS = 200
 """A step without convergence after this number of sweeps is abandoned."""
 
 
-@njit(cache=True)
+@kernel
 def maximum(a: float, b: float) -> float:
     """Larger of two numbers, or NaN if either is NaN: `max` would drop it, and a diverged step would look converged."""
     return a if a >= b or math.isnan(a) else b
-
-
-# The order of the sum is free, so that it compiles to vector instructions.
-@njit(cache=True, fastmath={"reassoc"})
-def inner_product(a: Array, b: Array) -> float:
-    """Inner product of two arrays; the second can be shorter."""
-    total = 0.0
-    for s in range(b.size):
-        total += a[s] * b[s]
-    return total

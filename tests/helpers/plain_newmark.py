@@ -15,7 +15,7 @@ from scipy.linalg import solve
 from helpers.lines import Array, without_connectors
 from pantocheck.model import Passage
 from pantocheck.model.discretised_line import DiscretisedLine
-from pantocheck.model.dynamics.motion import Motion
+from pantocheck.model.dynamics.motion import Layout, Motion, end_of_step
 from pantocheck.model.dynamics.train import Train
 from pantocheck.model.fem.assembly import (
     assemble_matrices,
@@ -76,16 +76,18 @@ class PlainNewmark:
     def copy_state(self, motion: Motion, train: Train) -> State:
         """Copy the initial state of the kernel."""
         place = bandwidth_order(self.line)[self.free]
+        layout = Layout(self.line.mesh.position.size, motion.w.shape[2])
+        w, r = end_of_step(motion, layout, self.passage.time_step)
         fields = [
             np.concatenate(
                 [
-                    np.stack([motion.w[i], motion.r[i]], axis=-1).ravel()[place],
+                    np.stack([w[i], r[i]], axis=-1).ravel()[place],
                     *(train.z[i, p, : pan.head.size] for p, pan in enumerate(self.passage.pantographs)),
                 ]
             )
             for i in range(3)
         ]
-        return State(*fields, motion.tension.copy(), train.contact.ravel())
+        return State(*fields, motion.force[: self.line.connectors.station.size].copy(), train.contact.ravel())
 
     def advance(self, state: State) -> None:
         """Advance by one time step, in place."""

@@ -7,6 +7,7 @@ from helpers.plain_newmark import PlainNewmark
 from pantocheck.model import Passage, chain
 from pantocheck.model.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
+from pantocheck.model.dynamics.motion import end_of_step
 from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.simulation import start_motion
 from pantocheck.model.fem.assembly import bandwidth_order
@@ -42,11 +43,12 @@ def largest_differences(
     for _ in range(steps):
         assert step(kernel, motion, train, work)
         plain.advance(state)
+        w, r = end_of_step(motion, kernel.layout, kernel.time_step)
         for i, name in enumerate(("q", "v", "a")):
-            wires = np.stack([motion.w[i], motion.r[i]], axis=-1).ravel()[place[plain.free]]
+            wires = np.stack([w[i], r[i]], axis=-1).ravel()[place[plain.free]]
             masses = [train.z[i, p, : pan.head.size] for p, pan in enumerate(passage.pantographs)]
             computed[name].append(np.concatenate([wires, *masses]))
-        computed["tension"].append(motion.tension.copy())
+        computed["tension"].append(motion.force[: line.connectors.station.size].copy())
         computed["contact"].append(train.contact.ravel().copy())
         for name, values in expected.items():
             values.append(getattr(state, name))

@@ -68,10 +68,10 @@ def test_step_reports_nan_in_the_state(where: str) -> None:
     spot = {
         "w": motion.w[0, 0, 20:21],
         "r": motion.r[1, 1, 20:21],
-        "tension": motion.tension[3:4],
+        "tension": motion.force[3:4],
         "z": train.z[0, 0, :1],
         "contact": train.contact[0, :1],
-        "far away": motion.w[0, 0, -3:-2],
+        "far away": motion.w[0, 0, kernel.layout.stations - 3 : kernel.layout.stations - 2],
     }
     spot[where][:] = np.nan
     work = build_workspace(kernel, train)

@@ -9,8 +9,8 @@ from scipy.sparse import csc_array
 from helpers.lines import Array, fix_along_track, simple_line, without_connectors
 from pantocheck.model.catenary import Kind, Rayleigh
 from pantocheck.model.discretised_line import DiscretisedLine, discretise
-from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
-from pantocheck.model.dynamics.motion import Motion, motion_at_rest
+from pantocheck.model.dynamics.kernel_arrays import KernelArrays, build_kernel_arrays, build_workspace
+from pantocheck.model.dynamics.motion import Motion, build_motion, end_of_step
 from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.train import build_empty_train
 from pantocheck.model.fem.assembly import (
@@ -39,31 +39,34 @@ def free_decay(line: DiscretisedLine, time_step: float, steps: int) -> tuple[Arr
     place, bars = bandwidth_order(line)[matrices.free], csc_array(connector_directions(line)[matrices.free])
     stretches = csc_array(stretch_directions(line)[matrices.free])
     stiffness, preload = line.connectors.stiffness, line.connectors.preload
-    motion = motion_at_rest(StaticSolver(line).deflection(-600.0 * load), stretches=line.stretches.stiffness.size)
-    _accelerate(line, time_step, motion, load)
     kernel, train = build_kernel_arrays(line, time_step), build_empty_train(1)
+    motion = _release(line, kernel, load)
     work = build_workspace(kernel, train)
     energy, tensions = [], np.zeros((steps, stiffness.size))
     for n in range(steps):
         if n % EVERY == 0:
-            q, v = (np.stack([motion.w[i], motion.r[i]], axis=-1).ravel()[place] for i in range(2))
+            w, r = end_of_step(motion, kernel.layout, time_step)
+            q, v = (np.stack([w[i], r[i]], axis=-1).ravel()[place] for i in range(2))
             tension = preload + stiffness * (bars.T @ q)
             tension = np.where(line.connectors.unilateral, np.maximum(0.0, tension), tension)
             bars_store = (tension**2 - preload**2) / (2 * stiffness) - preload * (bars.T @ q)
             stretched = line.stretches.stiffness @ (stretches.T @ q) ** 2 / 2
             energy.append(v @ mass @ v / 2 + q @ matrices.stiffness @ q / 2 + bars_store.sum() + stretched)
         assert step(kernel, motion, train, work)
-        tensions[n] = motion.tension
+        tensions[n] = motion.force[: stiffness.size]
     return np.array(energy), tensions
 
 
-def _accelerate(line: DiscretisedLine, time_step: float, motion: Motion, load: Array) -> None:
-    """Set the acceleration of the line at the release: M^-1 times the removed weight."""
-    mass, free = stepping_mass(line, time_step).toarray(), free_unknowns(line)
+def _release(line: DiscretisedLine, kernel: KernelArrays, load: Array) -> Motion:
+    """State at the release: deflected by 600 N, with the acceleration M^-1 times the removed weight."""
+    deflection = StaticSolver(line).deflection(-600.0 * load)
+    mass, free = stepping_mass(line, kernel.time_step).toarray(), free_unknowns(line)
     acceleration = np.zeros(line.beams.free.size)
     acceleration[bandwidth_order(line)[free]] = np.linalg.solve(mass, 600.0 * load[free])
-    shaped = acceleration.reshape(line.beams.free.shape)
-    motion.w[2], motion.r[2] = shaped[..., 0], shaped[..., 1]
+    fields = np.zeros((3, *line.beams.free.shape))
+    fields[0], fields[2] = deflection.displacement, acceleration.reshape(line.beams.free.shape)
+    force = np.append(deflection.tension, np.zeros(line.stretches.stiffness.size))
+    return build_motion(kernel.layout, kernel.time_step, (fields[..., 0], fields[..., 1]), force)
 
 
 def damped_line(damping: dict[Kind, Rayleigh]) -> DiscretisedLine:

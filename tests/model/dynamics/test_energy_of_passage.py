@@ -14,6 +14,7 @@ from helpers.lines import Array, overlapping_line, simple_line
 from pantocheck.model import Passage, chain, discretise, make_droppers_bilateral
 from pantocheck.model.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
+from pantocheck.model.dynamics.motion import end_of_step
 from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.simulation import start_motion
 from pantocheck.model.dynamics.train import Train
@@ -50,7 +51,8 @@ def test_energy_of_line_and_heads_is_the_work_of_the_forces_over_the_change_of_w
 
     def state() -> tuple[Array, Array, Array, float]:
         """Displacements and nodal forces of the line, displacements of the heads, and the energy of line and heads."""
-        q, v = (np.stack([motion.w[i], motion.r[i]], axis=-1).ravel()[place] for i in range(2))
+        w, r = end_of_step(motion, kernel.layout, passage.time_step)
+        q, v = (np.stack([w[i], r[i]], axis=-1).ravel()[place] for i in range(2))
         energy = v @ mass @ v / 2 + q @ matrices.stiffness @ q / 2
         z, u = train.z[0], train.z[1]
         energy += sum(u[p] @ HEAD.mass @ u[p] + z[p] @ HEAD.stiffness @ z[p] for p in range(pantographs)) / 2

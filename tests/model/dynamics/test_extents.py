@@ -9,10 +9,12 @@ import pytest
 from helpers.lines import DAMPED, PANTOGRAPH_2002, overlapping_line, simple_line
 from pantocheck.model import Catenary, Clamp, Kind, Passage, Wire, discretise
 from pantocheck.model.dynamics.active_window import Window
-from pantocheck.model.dynamics.extents import active_run, clip_extent, find_extents, find_runs
+from pantocheck.model.dynamics.extents import active_run, clip_extent, find_extents, find_runs, merge_extents
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
+from pantocheck.model.dynamics.motion import end_of_step
 from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.simulation import start_motion
+from pantocheck.model.dynamics.vectors import LANES
 
 
 def stitched_line() -> Catenary:
@@ -53,6 +55,26 @@ def test_clipped_extent_is_the_part_inside_the_window() -> None:
             assert set(range(first, last + 1)) == both
 
 
+@pytest.mark.parametrize("gap", [8, 40, 200])
+def test_merged_extents_have_no_group_of_stations_in_common(gap: int) -> None:
+    """They cover the same stations and at most a vector more at each end; no group of `gap` stations is in two."""
+    extents = find_extents(discretise(overlapping_line(4, 3), 2.0).beams)
+    merged = merge_extents(extents, gap)
+    groups = [
+        (row, group)
+        for row, first, last in zip(*(part.tolist() for part in merged), strict=True)
+        for group in range(first // gap, last // gap + 1)
+    ]
+    assert len(groups) == len(set(groups))
+    assert ((merged.first % LANES == 0) & (merged.last % LANES == LANES - 1)).all()
+    for row, first, last in zip(*extents, strict=True):
+        assert ((merged.row == row) & (merged.first <= first) & (last <= merged.last)).sum() == 1
+    for row, first, last in zip(*merged, strict=True):
+        inside = (extents.row == row) & (first <= extents.first) & (extents.last <= last)
+        assert extents.first[inside].min() - first < LANES
+        assert last - extents.last[inside].max() < LANES
+
+
 def test_stations_without_a_wire_never_move() -> None:
     """A head runs over an overlap of three sections; forces, speeds and deflections between the wires of a row stay 0.
 
@@ -68,7 +90,7 @@ def test_stations_without_a_wire_never_move() -> None:
     for row, first, last in plain_extents(line.catenary, 2.0):
         covered[row, first : last + 1] = True
     assert 0.2 < covered.mean() < 0.9
-    for field in (motion.w, motion.r):
+    for field in end_of_step(motion, kernel.layout, 1e-3):
         assert not field[:, ~covered].any()
         assert np.abs(field[0]).max(axis=1).min() > 1e-6  # every row has moved
 
@@ -81,10 +103,9 @@ def test_runs_hold_the_parts_inside_a_window(stations: list[int]) -> None:
     assert runs[-1] == station.size
     for window in (Window(0, 9), Window(3, 5), Window(5, 5), Window(8, 8), Window(10, 12)):
         found = []
-        for start, end in pairwise(runs.tolist()):
+        for k, (start, end) in enumerate(pairwise(runs.tolist())):
             assert (np.diff(station[start:end]) >= 0).all()
-            first, last = active_run(station[start:end], window)
-            found += range(start + first, start + last)
+            found += range(*active_run(station, runs, k, window))
         assert found == [n for n, s in enumerate(stations) if window.first <= s <= window.last]
 
 

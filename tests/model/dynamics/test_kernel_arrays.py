@@ -7,11 +7,11 @@ import pytest
 
 from helpers.lines import DAMPED, PANTOGRAPH_2002, Array, bare_wire, fix_along_track, simple_line
 from pantocheck.model import Catenary, Kind, ModalBand, Passage, discretise
-from pantocheck.model.dynamics.active_window import Window, build_window_arrays, max_wave_speed
-from pantocheck.model.dynamics.block_tridiagonal import solve_wires
+from pantocheck.model.dynamics.active_window import build_window_arrays, max_wave_speed
 from pantocheck.model.dynamics.inverse_columns import column_half_width
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, build_kernel_arrays, build_workspace
 from pantocheck.model.dynamics.train import build_empty_train
+from pantocheck.model.dynamics.vectors import ALIGNMENT, LANES
 
 PASSAGE = Passage((PANTOGRAPH_2002,), (70.0,), 50.0, 1.0, 1e-3, kept_behind=60.0, reach=50.0)
 
@@ -33,19 +33,6 @@ def test_kernel_arrays_are_contiguous_and_finite(catenary: Catenary) -> None:
         assert array.dtype == np.bool_ or np.isfinite(array).all()
 
 
-def test_self_compliance_is_the_response_of_a_connector_to_its_own_tension() -> None:
-    """A unit tension on one dropper, solved on the whole line; the column is cut at 1e-12 of its peak."""
-    line = discretise(simple_line(damping=DAMPED), 1.0)
-    kernel = build_kernel_arrays(line, 1e-3)
-    number = 4
-    station, coefficient = line.connectors.station[number], line.connectors.coefficient[number]
-    w, r = np.zeros(line.beams.free.shape[:2]), np.zeros(line.beams.free.shape[:2])
-    w[:, station] = coefficient
-    solve_wires(kernel.factor, kernel.wires.extents, Window(0, w.shape[1] - 1), w, r)
-    response = kernel.connectors.tension_per_acceleration[number] * (coefficient @ w[:, station])
-    assert kernel.connectors.self_compliance[number] == pytest.approx(response, rel=1e-10)
-
-
 def test_columns_reach_far_enough_for_every_contact_wire() -> None:
     """Two contact wires without connectors; waves on the second one are 12 times as fast, and its columns wider.
 
@@ -57,9 +44,9 @@ def test_columns_reach_far_enough_for_every_contact_wire() -> None:
         line = discretise(replace(bare_wire(60.0), wires=wires), 0.25)
         kernel = build_kernel_arrays(line, 2e-3)
         loads = [(row, s) for row in line.contact_rows for s in range(line.mesh.position.size)]
-        width = kernel.contact.columns.shape[-1] // 2
-        assert width == column_half_width(kernel.factor, loads)
-        assert width > column_half_width(kernel.factor, [(line.mesh.row_of["a", "z"], s) for _, s in loads])
+        factor, width = kernel.contact.factor, kernel.contact.half_width
+        assert width == column_half_width(factor, loads)
+        assert width > column_half_width(factor, [(line.mesh.row_of["a", "z"], s) for _, s in loads])
 
 
 def test_modal_damping_makes_the_whole_line_active() -> None:
@@ -73,9 +60,19 @@ def test_modal_damping_makes_the_whole_line_active() -> None:
 
 
 def test_workspace_fits_the_kernel_arrays() -> None:
-    """One predicted tension per connector, one velocity per mode, no contact without a pantograph."""
+    """One predicted tension per connector, one acceleration per node, no contact without a pantograph."""
     kernel: KernelArrays = build_kernel_arrays(discretise(simple_line(), 1.0), 1e-3)
     work = build_workspace(kernel, build_empty_train(1))
-    assert work.tension.size == kernel.connectors.station.size == 18
-    assert work.modal_velocity.size == 0
+    assert work.scalar.predicted.size == kernel.connectors.station.size == 18
+    assert work.node.size == kernel.connectors.nodes.station.size == 36
     assert work.contact.shape.shape == (0, 1, 4)
+
+
+def test_rows_of_a_motion_are_whole_panels_longer_than_a_column() -> None:
+    """A column or a vector that begins on the line must end within its row; vectors are aligned with the cache."""
+    kernel = build_kernel_arrays(discretise(simple_line(), 1.0), 1e-3)
+    layout, panel = kernel.layout, kernel.panels.piece * LANES
+    assert layout.width % panel == 0
+    assert layout.width >= layout.stations + kernel.connectors.nodes.column.shape[2]
+    for array in (kernel.wires.elements, kernel.panels.link, kernel.panels.inverse, kernel.connectors.nodes.column):
+        assert array.ctypes.data % ALIGNMENT == 0

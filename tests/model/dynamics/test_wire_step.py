@@ -7,7 +7,9 @@ from helpers.lines import DAMPED, Array, bare_wire
 from pantocheck.model.discretised_line import discretise, with_damping
 from pantocheck.model.dynamics import wire_step
 from pantocheck.model.dynamics.active_window import Window
-from pantocheck.model.dynamics.motion import Motion
+from pantocheck.model.dynamics.extents import find_extents, merge_extents
+from pantocheck.model.dynamics.motion import Layout, build_motion
+from pantocheck.model.dynamics.vectors import round_up
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.beams import wire_mass, wire_stiffness
 
@@ -31,16 +33,40 @@ def test_constants_of_the_splitting_give_the_consistent_mass(h: float) -> None:
 
 
 def test_wire_forces_equal_matrix_products() -> None:
-    """Random state of 600 elements, more than two pieces: -K (q + beta v) - alpha M v with the assembled matrices."""
-    line = with_damping(discretise(bare_wire(300.0), 0.5), DAMPED)
+    """Random state of 600 elements: -K (q + beta v) - alpha M v in the predicted state, with the assembled matrices.
+
+    The predictors are q + dt v + dt^2 a and v + dt a.
+    """
+    line, dt = with_damping(discretise(bare_wire(300.0), 0.5), DAMPED), 1e-3
     beams, stations = line.beams, line.mesh.position.size
-    assert stations > 2 * wire_step.PIECE
-    w, r = np.random.default_rng(0).normal(size=(2, 3, 1, stations))
-    motion = Motion(w, r, np.zeros(0), np.zeros(0), np.zeros(1), np.zeros(0))
-    q, v = (np.stack([w[i, 0], r[i, 0]], axis=-1).ravel() for i in range(2))
+    layout = Layout(stations, round_up(stations) + 16)
+    state = np.random.default_rng(0).normal(size=(2, 3, 1, stations))
+    motion = build_motion(layout, 0.0, (state[0], state[1]), np.zeros(0))
+    q, v, a = state.transpose(1, 3, 0, 2).reshape(3, -1)
+    q, v = q + dt * v + dt**2 * a, v + dt * a
     alpha, beta = beams.mass_coefficient[0], beams.stiffness_coefficient[0]
     expected = -wire_stiffness(beams, 0) @ (q + beta * v) - alpha * (wire_mass(beams, 0) @ v)
-    wires, work = wire_step.build_wire_arrays(beams), wire_step.allocate_wire_workspace()
-    wire_step.apply_wire_forces(wires, motion, work, Window(0, stations - 1))
-    forces = np.stack([w[2, 0], r[2, 0]], axis=-1).ravel()
-    np.testing.assert_allclose(forces, expected, rtol=0, atol=1e-13 * np.abs(expected).max())
+    wires = wire_step.build_wire_arrays(beams, merge_extents(find_extents(beams), 8), layout)
+    wire_step.predict_wires(dt, wires, motion, Window(0, round_up(stations) - 1))
+    computed = np.stack([motion.w, motion.r], axis=-1)[:, 0, :stations].reshape(3, -1)
+    for values, exact in zip(computed, (q, v, expected), strict=True):
+        np.testing.assert_allclose(values, exact, rtol=0, atol=1e-13 * np.abs(exact).max())
+
+
+@pytest.mark.parametrize(("first", "last"), [(0, 63), (64, 127), (320, 359)])
+def test_window_is_held_by_its_neighbours(first: int, last: int) -> None:
+    """Inside a window the forces are those of the whole line with the neighbours at rest; outside nothing changes."""
+    line, dt = with_damping(discretise(bare_wire(180.0), 0.5), DAMPED), 1e-3
+    stations = line.mesh.position.size
+    layout = Layout(stations, round_up(stations) + 16)
+    state = np.random.default_rng(1).normal(size=(2, 3, 1, stations))
+    state[:, 1:, :, :first] = state[:, 1:, :, last + 1 :] = 0.0
+    wires = wire_step.build_wire_arrays(line.beams, merge_extents(find_extents(line.beams), 8), layout)
+    whole, inside = (build_motion(layout, 0.0, (state[0], state[1]), np.zeros(0)) for _ in range(2))
+    before = inside.w.copy()
+    wire_step.predict_wires(dt, wires, whole, Window(0, round_up(stations) - 1))
+    wire_step.predict_wires(dt, wires, inside, Window(first, last))
+    np.testing.assert_array_equal(inside.w[..., first : last + 1], whole.w[..., first : last + 1])
+    np.testing.assert_array_equal(
+        np.delete(inside.w, np.r_[first : last + 1], 2), np.delete(before, np.r_[first : last + 1], 2)
+    )

@@ -1,0 +1,30 @@
+"""Decorators of the compiled functions of a time step.
+
+These functions allocate no memory, so that numba need not count references to their arrays. Counting them takes half of
+the time of a step: a line has a hundred arrays, and every function that receives them counts each one up and down.
+Without counting, numba refuses to compile a function that allocates an array.
+"""
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import numba
+
+_njit: Any = numba.njit  # The type of some versions lists public options only.
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def kernel(function: Function) -> Function:
+    """Compile a function of a time step, and keep it for other processes."""
+    compiled: Function = _njit(cache=True, _nrt=False)(function)
+    return compiled
+
+
+def inline_kernel(function: Function) -> Function:
+    """Compile a function of a time step as part of its callers.
+
+    For functions of vectors, and for those that receive all arrays of a line: a call would copy their descriptions.
+    """
+    compiled: Function = _njit(cache=True, _nrt=False, forceinline=True)(function)
+    return compiled

@@ -1,0 +1,144 @@
+"""Scalar forces in a time step: Gauss-Seidel sweeps over all forces except those of the contacts.
+
+A scalar force X acts on the line along a vector g of coefficients, with the elongation e = g'q: the tension of a
+connector, the additional tension of a held stretch, the damping force of a mode. At the end of a step
+
+    X = X0 + k e + c e',    of connectors that cannot push    X = max(0, X0 + k e + c e')
+
+With the predicted e*, e*' and the acceleration a = g'q'' of the elongation, X = X* + h a with h = k dt^2/4 + c dt/2. A
+change of the force Y along another vector changes a by -(compliance) times the change, compliance = g' A^-1 g_Y with
+the effective matrix A. The sweeps need these compliances only, not the motion of the line: with all other forces held,
+
+    X = (X* + h a + h_c X_old) / (1 + h_c),    h_c = h times the compliance of X to itself
+
+Within one step forces far apart hardly influence each other: the compliances are a sparse matrix, and two or three
+sweeps suffice.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+from pantocheck.model.arrays import Array, Indices
+from pantocheck.model.dynamics.kernel_compilation import kernel
+from pantocheck.model.dynamics.sweeps import NEGLIGIBLE_FORCE, maximum
+
+
+class ScalarLaw(NamedTuple):
+    """Laws of F scalar forces.
+
+    Parameters
+    ----------
+    preload, stiffness, damping : (F,) ndarray
+        Force at rest X0, and its coefficients k, c [N, N/m, N s/m].
+    unilateral : (F,) ndarray of bool
+        Whether the force cannot be negative.
+    """
+
+    preload: Array
+    stiffness: Array
+    damping: Array
+    unilateral: NDArray[np.bool_]
+
+
+class ScalarForces(NamedTuple):
+    """Scalar forces of a line in a time step; F forces, M pairs of forces that influence each other.
+
+    Parameters
+    ----------
+    law : ScalarLaw
+        Laws of the forces.
+    per_acceleration : (F,) ndarray
+        Force per acceleration of the elongation within a step, h [kg].
+    self_compliance : (F,) ndarray
+        Change of the force within a step per force, h_c [-].
+    settling : (F,) ndarray
+        1 / (1 + h_c) [-].
+    first : (F + 1,) int ndarray
+        First pair of each force, and M.
+    other : (M,) int ndarray
+        The other force of each pair; every force is also a pair with itself.
+    compliance : (M,) ndarray
+        Acceleration of its elongation per force [1/kg].
+    """
+
+    law: ScalarLaw
+    per_acceleration: Array
+    self_compliance: Array
+    settling: Array
+    first: Indices
+    other: Indices
+    compliance: Array
+
+
+class ScalarWorkspace(NamedTuple):
+    """Scratch arrays of a step for F scalar forces.
+
+    Parameters
+    ----------
+    predicted : (F,) ndarray
+        Forces of the predicted motion, X* [N].
+    acceleration : (F,) ndarray
+        Accelerations of the elongations under all forces so far [m/s2].
+    change : (F,) ndarray
+        Changes of the forces since the last step [N].
+    """
+
+    predicted: Array
+    acceleration: Array
+    change: Array
+
+
+def build_scalar_forces(law: ScalarLaw, compliance: csr_array, time_step: float) -> ScalarForces:
+    """Build the scalar forces for a time step [s] from their laws and the (F, F) matrix of compliances [1/kg]."""
+    compliance.sum_duplicates()
+    per_acceleration = time_step**2 / 4 * law.stiffness + time_step / 2 * law.damping
+    self_compliance = per_acceleration * compliance.diagonal()
+    return ScalarForces(
+        law=law,
+        per_acceleration=per_acceleration,
+        self_compliance=self_compliance,
+        settling=1 / (1 + self_compliance),
+        first=compliance.indptr.astype(np.int64),
+        other=compliance.indices.astype(np.int64),
+        compliance=compliance.data.astype(np.float64),
+    )
+
+
+def allocate_scalar_workspace(forces: int) -> ScalarWorkspace:
+    """Scratch arrays for a number of scalar forces."""
+    return ScalarWorkspace(*(np.zeros(forces) for _ in range(3)))
+
+
+@kernel
+def sweep_forces(forces: ScalarForces, work: ScalarWorkspace, force: Array, first: int, end: int) -> float:
+    """Solve the forces from `first` to before `end` once, all others held; return the largest change [N].
+
+    Parameters
+    ----------
+    forces : ScalarForces
+        Scalar forces of a line.
+    work : ScalarWorkspace
+        Predicted forces; accelerations and changes are updated.
+    force : (F,) ndarray
+        Forces, replaced [N].
+    first, end : int
+        Range of the forces.
+    """
+    largest = 0.0
+    for n in range(first, end):
+        old = force[n]
+        new = work.predicted[n] + forces.per_acceleration[n] * work.acceleration[n] + forces.self_compliance[n] * old
+        new *= forces.settling[n]
+        if forces.law.unilateral[n] and new < 0.0:
+            new = 0.0
+        change = new - old
+        if abs(change) > NEGLIGIBLE_FORCE:
+            force[n] = new
+            work.change[n] += change
+            for i in range(forces.first[n], forces.first[n + 1]):
+                work.acceleration[forces.other[i]] -= forces.compliance[i] * change
+        largest = maximum(largest, abs(change))
+    return largest

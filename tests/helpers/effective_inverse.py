@@ -1,0 +1,20 @@
+"""Inverse of the effective matrix from assembled sparse matrices."""
+
+import numpy as np
+from scipy.sparse.linalg import splu
+
+from helpers.lines import Array, without_connectors
+from pantocheck.model.discretised_line import DiscretisedLine
+from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, stepping_mass
+
+
+def inverse_of_assembled(line: DiscretisedLine, time_step: float) -> Array:
+    """Inverse of M + dt/2 C + dt^2/4 K of the rows, indexed by (rows, stations, 2) twice; zero for fixed unknowns."""
+    matrices = assemble_matrices(without_connectors(line))
+    effective = (
+        stepping_mass(line, time_step) + time_step / 2 * matrices.damping + time_step**2 / 4 * matrices.stiffness
+    )
+    order = bandwidth_order(line)[matrices.free]
+    inverse = np.zeros((line.beams.free.size,) * 2)
+    inverse[np.ix_(order, order)] = splu(effective.tocsc()).solve(np.eye(order.size))
+    return inverse.reshape(line.beams.free.shape * 2)
