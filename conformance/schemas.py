@@ -27,6 +27,7 @@ from pantocheck.conformance.comparison.static_sidecar import StaticSidecar
 from pantocheck.conformance.identification.damping.damping_format import DampingResults
 from pantocheck.conformance.identification.identification_format import IdentificationFile
 from pantocheck.conformance.identification.mode import ModesFile
+from pantocheck.conformance.identification.population_format import PopulationFile
 from pantocheck.conformance.mass_drops.drop_sidecar import DropSidecar as MassDropSidecar
 from pantocheck.conformance.plan import Plan
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
@@ -59,6 +60,7 @@ WRITTEN_FORMATS: dict[str, type[BaseModel]] = {
     "results": Results,
     "modes": ModesFile,
     "identification": IdentificationFile,
+    "population": PopulationFile,
     "damping-fit": DampingResults,
     "static-comparison": StaticComparison,
     "campaign-results": CampaignResults,
