@@ -6,12 +6,14 @@ from typing import Annotated
 import typer
 
 from pantocheck.conformance.command_line.console import console, escape_text, format_number
+from pantocheck.conformance.command_line.population_output import write_population
 from pantocheck.conformance.identification.hand_placed_poles import read_poles
 from pantocheck.conformance.identification.identification_analysis import analyse_identification
 from pantocheck.conformance.identification.identification_format import IdentificationFile
 from pantocheck.conformance.identification.identify import identify_modes
 from pantocheck.conformance.identification.mode import ModesFile
 from pantocheck.conformance.identification.mode_export import MODE_FORMATS, select_mode_writer
+from pantocheck.conformance.identification.population import identify_population
 from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.table_formats import TABLE_FORMATS, list_suffixes
@@ -40,6 +42,9 @@ def identify_command(
         list[Path] | None,
         typer.Option(help=f"Also write the modes to this file ({', '.join(MODE_FORMATS)}); may be repeated."),
     ] = None,
+    each: Annotated[
+        bool, typer.Option("--each", help="Also identify every record on its own, and compare the tests: population.*")
+    ] = False,
 ) -> None:
     """Identify frequencies, damping ratios and mode shapes from mass-drop records.
 
@@ -52,6 +57,8 @@ def identify_command(
     pantocheck identify T1.h5 T2.csv --out both --highest 6
 
     pantocheck identify T1.h5 --out T1 --export modes.csv --export modes.uff
+
+    pantocheck identify T1.h5 T2.csv T3.uff --out all --each
     """
     output = console()
     exports = [(path, select_mode_writer(path)) for path in export or ()]
@@ -60,9 +67,9 @@ def identify_command(
     for folder in (out, *(path.parent for path, _ in exports)):
         check_writable(folder)
     with output.status("reading") as status:
-        identifications = identify_modes(
-            drop_records, highest, start_poles, progress=lambda text: status.update(escape_text(text))
-        )
+        inputs = (drop_records, highest, start_poles, lambda text: status.update(escape_text(text)))
+        population = identify_population(*inputs) if each else None
+        identifications = identify_modes(*inputs) if population is None else population.joint
         status.update("writing the report")
         lines = tuple(analyse_identification(identification) for identification in identifications)
         data = [line.model_dump(mode="json", by_alias=True) for line in lines]
@@ -74,6 +81,7 @@ def identify_command(
         write_model(out / "identification.json", IdentificationFile(lines=lines))
         for suffix in (".html", ".pdf"):
             write_report(document, out / f"identification{suffix}")
+        population_lines = () if population is None else tuple(write_population(population, out))
     output.print(escape_text(document.header.headline))
     for group in (group for line in lines for group in line.groups):
         median = None if group.median_damping_ratio is None else 100 * group.median_damping_ratio
@@ -90,3 +98,5 @@ def identify_command(
     )
     for path, _ in exports:
         output.print(escape_text(str(path)), soft_wrap=True)
+    for text in population_lines:
+        output.print(escape_text(text), soft_wrap=True)

@@ -163,3 +163,19 @@ def test_missing_record_is_refused(tmp_path: Path) -> None:
     result = CliRunner().invoke(app, ["identify", str(tmp_path / "none.csv"), "--out", str(tmp_path)])
     assert result.exit_code == 2
     assert "cannot be read" in result.output
+
+
+def test_identify_each_writes_the_population(folder: Path) -> None:
+    """One record: a population of one test, which agrees with itself."""
+    command = ["identify", str(folder / "T.csv"), "--out", str(folder / "each"), "--highest", "2.2", "--each"]
+    result = CliRunner(env={"SOURCE_DATE_EPOCH": "0"}).invoke(app, command)
+    assert result.exit_code == 0, result.output
+    population = json.loads((folder / "each" / "population.json").read_text())
+    jsonschema.validate(population, build_schema("population"))
+    assert [record["record"] for record in population["records"]] == ["T"]
+    assert all(group["agrees"] for group in population["groups"])
+    assert "group 1: median over tests" in result.output
+    assert (folder / "each" / "population.pdf").read_bytes().startswith(b"%PDF")
+    page = (folder / "each" / "population.html").read_text()
+    assert "1 test identified one by one" in page
+    assert (folder / "each" / "modes.json").read_bytes() == (folder / "out" / "modes.json").read_bytes()
