@@ -17,6 +17,7 @@ from pantocheck.conformance.identification.identification_format import (
 from pantocheck.conformance.identification.identify import Identification
 from pantocheck.conformance.identification.line_fit import LineFit, RecordFit
 from pantocheck.conformance.identification.mode import Mode
+from pantocheck.conformance.identification.order_search import describe_search
 from pantocheck.conformance.identification.repeatability import compare_records, overlay_records, round_curve
 from pantocheck.conformance.identification.spectrogram import compute_spectrogram
 from pantocheck.model.one_thread import use_one_thread
@@ -43,6 +44,7 @@ def analyse_identification(identification: Identification) -> IdentifiedLine:
         repeatability=tuple(compare_records(repeats) for repeats in repeated),
         overlays=tuple(overlay_records(records) for records in repeated or drops[:1]),
         spectrogram=compute_spectrogram(decays[0]),
+        order_search=describe_search(identification.search),
         spectra=tuple(_spectra(fit, record, modes) for record in fit.records),
         frequency_responses=tuple(response for response in responses if response is not None),
     )

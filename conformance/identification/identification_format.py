@@ -119,6 +119,33 @@ class Spectrogram(RoundedModel):
     start: Annotated[SpectrogramPart, Field(description="around the release, in windows of 1 s")]
 
 
+class BandOrders(RoundedModel):
+    """Poles of all orders in one band of the search for start poles; three lists with one entry per pole."""
+
+    from_Hz: Rounded
+    to_Hz: Rounded
+    selected_order: Annotated[int, Field(description="order with the lowest Bayesian information criterion; 0: none")]
+    order: Annotated[tuple[int, ...], Field(description="number of poles in the band and its flanks")]
+    frequency_Hz: Curve
+    stable: Annotated[
+        tuple[bool, ...], Field(description="true: frequency and damping ratio differ little from the order before")
+    ]
+
+
+class SearchStep(RoundedModel):
+    """Frequencies of the poles after one step of the search."""
+
+    name: str
+    frequency_Hz: Curve
+
+
+class OrderSearch(RoundedModel):
+    """Search for the model order: trials of start poles, and steps that add and remove poles."""
+
+    bands: Annotated[tuple[BandOrders, ...], Field(description="bands of the trials; empty: start poles were given")]
+    steps: tuple[SearchStep, ...]
+
+
 class RecordSpectra(RoundedModel):
     """Transforms of the channels of a record, measured and fitted [unit of the record times s]."""
 
@@ -180,6 +207,7 @@ class IdentifiedLine(RoundedModel):
         tuple[Overlay, ...], Field(description="signals of each repeated drop; of the first drop if none is repeated")
     ]
     spectrogram: Annotated[Spectrogram, Field(description="spectrogram of the first record")]
+    order_search: Annotated[OrderSearch, Field(description="search for the number of poles")]
     spectra: Annotated[tuple[RecordSpectra, ...], Field(description="spectra of each record")]
     frequency_responses: Annotated[
         tuple[RecordResponses, ...], Field(description="frequency responses of each record with a known mass")

@@ -7,7 +7,7 @@ import numpy as np
 
 from pantocheck.conformance.array_types import ComplexArray, RealArray
 from pantocheck.conformance.identification.decay_filters import FrequencyBand
-from pantocheck.conformance.identification.decay_preparation import PreparedDecay, prepare_decay
+from pantocheck.conformance.identification.decay_preparation import LinearDecay, PreparedDecay, prepare_decay
 from pantocheck.conformance.identification.line_fit import SAME_LENGTH, LineFit, fit_line, share_blocks
 from pantocheck.conformance.identification.mode import Mode
 from pantocheck.conformance.identification.mode_building import build_modes
@@ -19,13 +19,29 @@ from pantocheck.conformance.identification.model_order import (
 )
 from pantocheck.conformance.identification.pole_refinement import refine_poles
 from pantocheck.conformance.identification.projection import DataBlock, build_block, whiten
-from pantocheck.conformance.identification.start_poles import find_start_poles
+from pantocheck.conformance.identification.start_poles import BandTrials, join_start_poles, try_orders
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
 from pantocheck.model.one_thread import use_one_thread
 
 SHARED_POLES = 1.5
 """Misfit above which the line is not linear, or its records have different poles [-]."""
+
+
+@dataclass(frozen=True)
+class PoleSearch:
+    """Steps of the search for the poles of a line.
+
+    Parameters
+    ----------
+    trials : tuple of BandTrials
+        Poles of all orders of the search for start poles; empty if there was none.
+    steps : tuple of (str, (m,) complex ndarray)
+        Name of each step, and the poles after it [1/s].
+    """
+
+    trials: tuple[BandTrials, ...] = ()
+    steps: tuple[tuple[str, ComplexArray], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -40,11 +56,14 @@ class Identification:
         Modes in the reported band, by frequency.
     warnings : tuple of str
         Caveats on the whole identification.
+    search : PoleSearch
+        Steps of the search for the poles.
     """
 
     fit: LineFit
     modes: tuple[Mode, ...]
     warnings: tuple[str, ...]
+    search: PoleSearch = PoleSearch()
 
 
 @use_one_thread
@@ -104,13 +123,10 @@ def _identify_line(
     samples, places = share_blocks(decays)
     data = [build_block(channels, dt, band.low, band.fitted) for channels, dt in samples]
     progress(f"{records[0].name}: poles")
-    if start is None:
-        selection = find_hidden_poles(select_poles(_find_start_poles(decays, samples, band), data), data)
-    else:
-        selection = _refine_start_poles(start, data)
+    selection, search = _search_poles(decays, samples, data, band) if start is None else _use_poles(start, data)
     progress(f"{records[0].name}: uncertainty")
     fit = fit_line(decays, places, data, selection.poles, selection.noise, band)
-    return Identification(fit, build_modes(fit, len(records[0].line.spans) or None), _list_warnings(fit))
+    return Identification(fit, build_modes(fit, len(records[0].line.spans) or None), _list_warnings(fit), search)
 
 
 def _choose_band(records: list[DropRecord], highest: float) -> FrequencyBand:
@@ -125,21 +141,42 @@ def _choose_band(records: list[DropRecord], highest: float) -> FrequencyBand:
     return band
 
 
-def _find_start_poles(
-    decays: list[PreparedDecay], samples: list[tuple[RealArray, float]], band: FrequencyBand
-) -> ComplexArray:
+def _search_poles(
+    decays: list[PreparedDecay], samples: list[tuple[RealArray, float]], data: list[DataBlock], band: FrequencyBand
+) -> tuple[PoleSelection, PoleSearch]:
+    trials = _try_start_orders(samples, band)
+    start = join_start_poles(trials) if trials else _find_longest(decays).poles
+    selected = select_poles(start, data)
+    complete = find_hidden_poles(selected, data)
+    steps = (
+        ("start poles", start),
+        ("added and removed", selected.poles),
+        ("hidden poles tried", complete.poles),
+    )
+    return complete, PoleSearch(trials, steps)
+
+
+def _find_longest(decays: list[PreparedDecay]) -> LinearDecay:
+    """Longest linear decay, whose poles are the start poles of records with different sampling rates."""
+    return max((decay.linear for decay in decays), key=lambda linear: linear.duration)
+
+
+def _try_start_orders(samples: list[tuple[RealArray, float]], band: FrequencyBand) -> tuple[BandTrials, ...]:
+    """Poles of all orders in all records together; none if their sampling rates differ: the search needs one rate."""
     intervals = {dt for _, dt in samples}
     if len(intervals) > 1:
-        # The search needs one sampling rate; otherwise the poles of the longest linear decay are the start poles.
-        return max(decays, key=lambda decay: decay.linear.duration).linear.poles
+        return ()
     scaled = [np.asarray(channels / channels.std(axis=0)) for channels, _ in samples]
-    return find_start_poles(scaled, 1 / intervals.pop(), band.low, band.fitted + 0.5)
+    return try_orders(scaled, 1 / intervals.pop(), band.low, band.fitted + 0.5)
 
 
-def _refine_start_poles(poles: ComplexArray, data: list[DataBlock]) -> PoleSelection:
+def _use_poles(start: ComplexArray, data: list[DataBlock]) -> tuple[PoleSelection, PoleSearch]:
+    """Refine poles placed by hand, whose number is kept."""
+    poles = start
     for _ in range(3):
         poles = refine_poles(poles, whiten(data, estimate_block_noise(poles, data))).poles
-    return PoleSelection(poles, estimate_block_noise(poles, data))
+    steps = (("placed by hand", start), ("refined", poles))
+    return PoleSelection(poles, estimate_block_noise(poles, data)), PoleSearch((), steps)
 
 
 def _list_warnings(fit: LineFit) -> tuple[str, ...]:

@@ -10,6 +10,7 @@ References
    reduction, J. Guidance 8 (1985) 620-627. doi:10.2514/3.20031
 """
 
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -23,6 +24,31 @@ BAND = 1.0
 
 LARGEST_ORDER = 24
 """Largest number of poles in a band and its flanks."""
+
+
+@dataclass(frozen=True)
+class BandTrials:
+    """Poles of all orders in one band.
+
+    Parameters
+    ----------
+    low, high : float
+        Edges of the band [Hz].
+    poles : tuple of (m,) complex ndarray
+        Poles in the band for the orders 1, 2, ..., an order being the number of poles in the band and its flanks [1/s].
+    selected : int
+        Order with the lowest Bayesian information criterion; 0 if there is none.
+    """
+
+    low: float
+    high: float
+    poles: tuple[ComplexArray, ...]
+    selected: int
+
+    @property
+    def start_poles(self) -> ComplexArray:
+        """Poles of the selected order."""
+        return self.poles[self.selected - 1] if self.selected else np.zeros(0, dtype=np.complex128)
 
 
 def find_start_poles(records: list[RealArray], rate: float, low: float, high: float) -> ComplexArray:
@@ -42,12 +68,22 @@ def find_start_poles(records: list[RealArray], rate: float, low: float, high: fl
     (m,) ndarray
         Poles, in the order of frequency [1/s].
     """
-    edges = np.linspace(low, high, max(1, round((high - low) / BAND)) + 1)
-    poles = np.concatenate([_band_poles(records, rate, a, b) for a, b in pairwise(edges)])
+    return join_start_poles(try_orders(records, rate, low, high))
+
+
+def join_start_poles(trials: tuple[BandTrials, ...]) -> ComplexArray:
+    """Poles of the selected orders of all bands, in the order of frequency [1/s]."""
+    poles = np.concatenate([band.start_poles for band in trials])
     return np.asarray(poles[np.argsort(poles.imag)])
 
 
-def _band_poles(records: list[RealArray], rate: float, low: float, high: float) -> ComplexArray:
+def try_orders(records: list[RealArray], rate: float, low: float, high: float) -> tuple[BandTrials, ...]:
+    """Compute the poles of every order band by band, and select the order of each; parameters as `find_start_poles`."""
+    edges = np.linspace(low, high, max(1, round((high - low) / BAND)) + 1)
+    return tuple(_try_band_orders(records, rate, float(a), float(b)) for a, b in pairwise(edges))
+
+
+def _try_band_orders(records: list[RealArray], rate: float, low: float, high: float) -> BandTrials:
     width = high - low
     # A narrow flank needs a long filter, which may take at most a tenth of the record.
     flank = max(0.4 * width, 25.0 * rate / min(samples.shape[0] for samples in records))
@@ -61,8 +97,13 @@ def _band_poles(records: list[RealArray], rate: float, low: float, high: float) 
     dt = step / rate
     basis = _signal_subspace(signals)
     trials = [_subspace_poles(basis[:, :order], dt) for order in range(1, basis.shape[1] + 1)]
-    best = min(trials, key=lambda poles: _information_criterion(signals, poles, dt), default=np.zeros(0))
-    poles = best + 1j * middle
+    scores = [_information_criterion(signals, poles, dt) for poles in trials]
+    selected = 1 + int(np.argmin(scores)) if scores else 0
+    return BandTrials(low, high, tuple(_keep_in_band(poles + 1j * middle, low, high) for poles in trials), selected)
+
+
+def _keep_in_band(poles: ComplexArray, low: float, high: float) -> ComplexArray:
+    """Poles with a decay in a band [Hz]."""
     inside = (poles.imag >= 2 * np.pi * low) & (poles.imag < 2 * np.pi * high) & (poles.real < 0)
     # Faster decays are shorter than the filter: they are flanks of other modes.
     return np.asarray(poles[inside & (-poles.real < 0.1 * poles.imag)])

@@ -24,7 +24,7 @@ NAME_OFFSET = 0.16
 @render_svg
 def draw_drop_layout(spans: list[float], sensors: list[dict[str, Any]], masses: list[dict[str, Any]]) -> Figure:
     """Wires over spans [m]; sensors stand above and masses below their wires (`label`, `wire`, `position_m`)."""
-    figure, panels = add_panels(PanelGrid(FULL, 1.25, left=0.15, right=0.15, top=0.02))
+    figure, panels = add_panels(PanelGrid(FULL, 1.1, left=0.15, right=0.15, top=0.02))
     axes = panels[0][0]
     supports = np.concatenate([[0.0], np.cumsum(spans)])
     for start, end in pairwise(supports):
@@ -50,7 +50,8 @@ def _draw_points(axes: Axes, supports: RealArray, points: list[dict[str, Any]], 
         # A mass hangs below its wire.
         axes.plot(x, [height - 0.1 * (marker == "v")], marker, color=INK, markersize=6 if marker == "v" else 4)
         side = "bottom" if offset > 0 else "top"
-        axes.text(x[0], height + offset, point["label"], ha="center", va=side, fontsize=7, parse_math=False)
+        ground = {"facecolor": "white", "edgecolor": "none", "pad": 0.4}
+        axes.text(x[0], height + offset, point["label"], ha="center", va=side, size=7, bbox=ground, parse_math=False)
 
 
 def _messenger_height(x: RealArray, supports: RealArray) -> RealArray:

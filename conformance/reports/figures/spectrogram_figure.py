@@ -33,7 +33,7 @@ def draw_spectrogram(data: dict[str, Any], marks: dict[str, float], limits: tupl
     limits : tuple of float
         Start and end of the record after the release [s].
     """
-    grid = PanelGrid(FULL, 1.9, columns=2, right=0.85, between_columns=0.5)
+    grid = PanelGrid(FULL, 1.6, columns=2, right=0.85, between_columns=0.5)
     figure, panels = add_panels(grid)
     whole, start = panels[0]
     _draw_levels(whole, data["whole"])

@@ -6,12 +6,11 @@ from typing import Any
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.figures import identification_figures as figures
 from pantocheck.conformance.reports.figures.motion_figure import draw_motion
+from pantocheck.conformance.reports.mass_drop.fit_section import list_fit_blocks
 from pantocheck.conformance.reports.mass_drop.mode_section import list_mode_blocks
 from pantocheck.conformance.reports.mass_drop.record_section import list_record_blocks
 from pantocheck.conformance.reports.mass_drop.response_section import list_response_figures
 from pantocheck.conformance.reports.page_text import clean_tree, format_percent, format_value
-
-UNITS = {"acceleration": "m/s²", "velocity": "m/s", "displacement": "m"}
 
 
 def build_identification_document(lines: list[dict[str, Any]]) -> doc.Document:
@@ -36,12 +35,11 @@ def collect_warnings(lines: list[dict[str, Any]]) -> tuple[str, ...]:
 
 
 def _list_sections(line: dict[str, Any], suffix: str) -> Iterator[doc.Section]:
-    unit = UNITS[line["quantity"]]
     yield doc.Section(f"Damping{suffix}", (*_damping_figures(line["modes"]), _group_table(line["groups"])))
     yield doc.Section(f"Modes{suffix}", tuple(list_mode_blocks(line)))
     # The records stand before the fit: its tall figure starts a page, and they fill the one before.
     yield doc.Section(f"Records{suffix}", tuple(list_record_blocks(line)))
-    yield doc.Section(f"Fit{suffix}", tuple(_fit(line, unit)))
+    yield doc.Section(f"Fit{suffix}", tuple(list_fit_blocks(line)))
     if motion := tuple(_list_motion_figures(line["overlays"])):
         yield doc.Section(f"Motion{suffix}", (doc.Figures(motion),))
     if line["repeatability"]:
@@ -75,29 +73,6 @@ def _group_table(groups: list[dict[str, Any]]) -> doc.Table:
         "Range [%]": lambda group: f"{format_percent(group['lowest'])} to {format_percent(group['highest'])}",
     }
     return doc.make_grid("Groups of span modes", groups, cells)
-
-
-def _fit(line: dict[str, Any], unit: str) -> Iterator[doc.Block]:
-    yield doc.Paragraph(
-        f"The squared residual is {format_value(line['misfit'], 3)} times that of noise alone "
-        f"(1 for a complete model); modes between {line['band_Hz'][0]:g} and {line['band_Hz'][1]:g} Hz."
-    )
-    yield doc.Figures(
-        tuple(
-            doc.Figure(
-                figures.draw_spectra(data, unit),
-                f"Spectra of the vertical sensors of {data['record']} with the identified fit over them.",
-                f"{data['record']}: spectrum of the free decay, the identified modes and the residual.",
-            )
-            for data in _skip_repeats(line)
-        )
-    )
-
-
-def _skip_repeats(line: dict[str, Any]) -> list[dict[str, Any]]:
-    """Spectra of one record of each drop: those of its repeats look alike."""
-    repeats = {pair["second"] for result in line["repeatability"] for pair in result["comparisons"]}
-    return [data for data in line["spectra"] if data["record"] not in repeats]
 
 
 def _list_motion_figures(overlays: list[dict[str, Any]]) -> Iterator[doc.Figure]:

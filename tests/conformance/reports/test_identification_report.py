@@ -17,6 +17,7 @@ from pantocheck.conformance.reports.figures.drop_layout_figure import draw_drop_
 from pantocheck.conformance.reports.figures.fixed_panels import format_power_of_ten
 from pantocheck.conformance.reports.figures.half_power_figure import draw_half_power
 from pantocheck.conformance.reports.figures.motion_figure import draw_motion
+from pantocheck.conformance.reports.figures.order_figure import draw_order_search
 from pantocheck.conformance.reports.figures.response_zoom import draw_response_zoom
 from pantocheck.conformance.reports.figures.shape_figure import draw_shapes
 from pantocheck.conformance.reports.figures.spectrogram_figure import draw_spectrogram
@@ -172,6 +173,32 @@ def test_motion_of_a_short_record_has_one_window(line: dict[str, Any]) -> None:
     none = {"channel": "S1_z", "runs": [{"name": "run 1", "windows": []}]}
     document = build_identification_document([line | {"overlays": [none]}])
     assert not any(figure.caption.startswith("Velocity") for figure in list_figures(document))
+
+
+def test_order_search_is_drawn_with_its_steps_and_selected_orders(line: dict[str, Any]) -> None:
+    """One band of two orders; the first pole of the second order is stable."""
+    band = {"from_Hz": 0.3, "to_Hz": 1.3, "selected_order": 2, "order": [1, 2, 2], "frequency_Hz": [0.9, 0.9, 1.1]}
+    steps = [{"name": "start poles", "frequency_Hz": [0.9, 1.1]}, {"name": "added", "frequency_Hz": [0.9, 1.0, 1.1]}]
+    search = {"bands": [band | {"stable": [False, True, False]}], "steps": steps}
+    lower, upper = paint(draw_order_search, search)
+    assert [text.get_text() for text in upper.get_yticklabels()] == ["start poles: 2", "added: 3"]
+    assert [list(row.get_ydata()) for row in upper.lines] == [[0, 0], [-1, -1, -1]]
+    unstable, stable = lower.lines
+    np.testing.assert_array_equal(stable.get_xydata(), [[0.9, 2.0]])
+    np.testing.assert_array_equal(unstable.get_xydata(), [[0.9, 1.0], [1.1, 2.0]])
+    (bar,) = lower.collections
+    np.testing.assert_array_equal(bar.get_segments()[0], [[0.3, 2.0], [1.3, 2.0]])
+    (figure,) = [
+        figure
+        for figure in list_figures(build_identification_document([line | {"order_search": search}]))
+        if "model order" in figure.caption
+    ]
+    assert "start poles: 2 poles; added: 3 poles. Selected orders of the bands, by frequency: 2." in figure.alternative
+
+
+def test_search_without_trials_is_not_drawn(document: Document) -> None:
+    """The example has no search; poles placed by hand have none either."""
+    assert not any("model order" in figure.caption for figure in list_figures(document))
 
 
 def test_spectrogram_marks_release_and_linear_decay(line: dict[str, Any], document: Document) -> None:

@@ -1,0 +1,48 @@
+"""Section on the fit of an identification: residual, model order and spectra."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from pantocheck.conformance.reports import document as doc
+from pantocheck.conformance.reports.figures.identification_figures import draw_spectra
+from pantocheck.conformance.reports.figures.order_figure import draw_order_search
+from pantocheck.conformance.reports.page_text import format_value
+
+UNITS = {"acceleration": "m/s²", "velocity": "m/s", "displacement": "m"}
+
+
+def list_fit_blocks(line: dict[str, Any]) -> Iterator[doc.Block]:
+    """Residual, search for the model order and spectra of one line of identification.json."""
+    yield doc.Paragraph(
+        f"The squared residual is {format_value(line['misfit'], 3)} times that of noise alone "
+        f"(1 for a complete model); modes between {line['band_Hz'][0]:g} and {line['band_Hz'][1]:g} Hz."
+    )
+    if line["order_search"]["bands"]:
+        yield doc.Figures((_order_figure(line["order_search"]),))
+    yield doc.Figures(
+        tuple(
+            doc.Figure(
+                draw_spectra(data, UNITS[line["quantity"]]),
+                f"Spectra of the vertical sensors of {data['record']} with the identified fit over them.",
+                f"{data['record']}: spectrum of the free decay, the identified modes and the residual.",
+            )
+            for data in _skip_repeats(line)
+        )
+    )
+
+
+def _skip_repeats(line: dict[str, Any]) -> list[dict[str, Any]]:
+    """Spectra of one record of each drop: those of its repeats look alike."""
+    repeats = {pair["second"] for result in line["repeatability"] for pair in result["comparisons"]}
+    return [data for data in line["spectra"] if data["record"] not in repeats]
+
+
+def _order_figure(search: dict[str, Any]) -> doc.Figure:
+    counts = "; ".join(f"{step['name']}: {len(step['frequency_Hz'])} poles" for step in search["steps"])
+    orders = ", ".join(str(band["selected_order"]) for band in search["bands"])
+    return doc.Figure(
+        draw_order_search(search),
+        f"Stabilisation diagram. {counts}. Selected orders of the bands, by frequency: {orders}.",
+        "Search for the model order. Above: poles after each step. Below: poles of every order of the start search, "
+        "stable from one order to the next or not; bars: order of each band with the lowest information criterion.",
+    )
