@@ -105,16 +105,21 @@ class InputSampling(InputTable):
     """Random designs of several inputs; the seed makes them repeatable."""
 
     method: Annotated[
-        Literal["latin-hypercube", "sobol", "random"],
-        Field(description="latin-hypercube; sobol: scrambled sequence of a power of two runs; random: independent"),
+        Literal["latin-hypercube", "sobol", "random", "saltelli"],
+        Field(
+            description="latin-hypercube; sobol: scrambled sequence of a power of two runs; random: independent; "
+            "saltelli: designs for Sobol indices"
+        ),
     ]
-    runs: Annotated[int, Field(ge=1, le=1_000_000, description="number of designs")]
+    runs: Annotated[
+        int, Field(ge=1, le=1_000_000, description="number of designs; of saltelli: of the first of its k + 2 sets")
+    ]
     seed: Annotated[int, Field(ge=0, le=2**63 - 1, description="seed of the generator")] = 0
     input: Annotated[tuple[SampledInput, ...], Field(strict=False, min_length=1, max_length=1000)]
 
     @cross_check
     def _check_balance(self) -> Problems:
-        if self.method == "sobol" and self.runs & (self.runs - 1):
+        if self.method in ("sobol", "saltelli") and self.runs & (self.runs - 1):
             less = 2 ** (self.runs.bit_length() - 1)
             hint = f"A Sobol sequence is balanced for powers of two, e.g. {less} or {2 * less}."
             yield validation_problem("runs", f"{self.runs} is no power of two", hint)

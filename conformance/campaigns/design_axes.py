@@ -105,7 +105,7 @@ class SampleAxis:
 
     def __len__(self) -> int:
         """Number of designs."""
-        return self.sampling.runs
+        return self.values[0].size
 
     def row(self, number: int) -> Inputs:
         """Values of a design."""
@@ -139,7 +139,11 @@ def build_axis(
 
 def sample_inputs(sampling: InputSampling) -> SampleAxis:
     """Draw the random designs of a campaign; the same seed gives the same designs."""
-    points = _draw_points(sampling.method, len(sampling.input), sampling.runs, sampling.seed)
+    dimension = len(sampling.input)
+    if sampling.method == "saltelli":
+        points = _exchange_inputs(_draw_points("sobol", 2 * dimension, sampling.runs, sampling.seed))
+    else:
+        points = _draw_points(sampling.method, dimension, sampling.runs, sampling.seed)
     values = []
     for column, sampled in zip(points.T, sampling.input, strict=True):
         distribution = sampled.distribution
@@ -158,6 +162,20 @@ def _draw_points(method: str, dimension: int, runs: int, seed: int) -> RealArray
         return np.random.default_rng(seed).random((runs, dimension))
     points: RealArray = samplers[method](dimension, rng=seed).random(runs)
     return points
+
+
+def _exchange_inputs(points: RealArray) -> RealArray:
+    """Designs of Saltelli (2010) from points of twice the dimension k: A, B, and A with input i of B, side by side.
+
+    The k + 2 designs of a point follow each other, so that a part of the runs is a smaller design.
+    """
+    runs, dimension = points.shape[0], points.shape[1] // 2
+    base, other = points[:, :dimension], points[:, dimension:]
+    sets = np.repeat(base[:, None, :], dimension + 2, axis=1)
+    sets[:, 1] = other
+    for i in range(dimension):
+        sets[:, 2 + i, i] = other[:, i]
+    return sets.reshape(runs * (dimension + 2), dimension)
 
 
 def _read_table(path: Path) -> ColumnAxis:

@@ -50,6 +50,23 @@ class ValueStatistics(ResultsPart):
     ]
 
 
+class InputShare(ResultsPart):
+    """Sobol indices of one random input."""
+
+    input: str
+    first: Annotated[Estimate, Field(description="share of the variance that the input causes alone")]
+    total: Annotated[Estimate, Field(description="share that the input causes, its interactions included")]
+
+
+class SobolIndices(ResultsPart):
+    """Sobol indices of a value over the random inputs, with 95 % intervals."""
+
+    label: str
+    group: Annotated[str, Field(description="case, system and grid inputs; empty if there is one group")]
+    runs: Annotated[int, Field(description="number of the designs of each set")]
+    shares: list[InputShare]
+
+
 class CampaignResults(ResultsPart):
     """Evaluation of a campaign."""
 
@@ -68,3 +85,4 @@ class CampaignResults(ResultsPart):
     charts: list[Chart]
     maps: list[ValueMap]
     statistics: list[ValueStatistics]
+    indices: list[SobolIndices] = []

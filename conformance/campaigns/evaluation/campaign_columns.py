@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.array_types import IntegerArray, RealArray
 from pantocheck.conformance.campaigns.campaign_store import CampaignStore
 from pantocheck.conformance.quantities.limit_text import format_bounds
 from pantocheck.conformance.quantities.registry import QUANTITIES
@@ -80,12 +80,15 @@ class CampaignColumns:
         Values of every varied input.
     values : dict
         Numbers of every evaluated value by its column; NaN: not in the result.
+    designs : (n,) ndarray
+        Number of the design of every run, from 1.
     """
 
     cases: tuple[str, ...]
     systems: tuple[str, ...]
     inputs: dict[str, tuple[Any, ...]]
     values: dict[str, RealArray]
+    designs: IntegerArray
 
     def is_numeric(self, key: str) -> bool:
         """Whether an input is a number in all runs."""
@@ -94,6 +97,16 @@ class CampaignColumns:
     def distinct(self, key: str) -> list[Any]:
         """Different values of an input, in the order of the runs."""
         return list(dict.fromkeys(map(_make_hashable, self.inputs[key])))
+
+    def select(self, places: IntegerArray) -> "CampaignColumns":
+        """Some of the runs, by their places from 0."""
+        return CampaignColumns(
+            tuple(self.cases[i] for i in places),
+            tuple(self.systems[i] for i in places),
+            {key: tuple(values[i] for i in places) for key, values in self.inputs.items()},
+            {name: numbers[places] for name, numbers in self.values.items()},
+            self.designs[places],
+        )
 
     def group(self, keys: Sequence[str]) -> dict[str, RealArray]:
         """Numbers of the runs (from 0) that agree in case, system and some inputs, by a text with what differs."""
@@ -145,6 +158,7 @@ def read_columns(store: CampaignStore, values: Sequence[EvaluatedValue]) -> Camp
     names = [value.column for value in values]
     rows = [
         (
+            row.run.design,
             row.run.case_id,
             row.run.system,
             row.run.inputs,
@@ -153,13 +167,14 @@ def read_columns(store: CampaignStore, values: Sequence[EvaluatedValue]) -> Camp
         for row in store.rows()
         if row.quantities
     ]
-    keys = dict.fromkeys(key for _, _, inputs, _ in rows for key in inputs)
+    keys = dict.fromkeys(key for *_, inputs, _ in rows for key in inputs)
     numbers = np.array([numbers for *_, numbers in rows]).reshape(len(rows), len(values))
     return CampaignColumns(
-        tuple(case for case, *_ in rows),
-        tuple(system for _, system, *_ in rows),
-        {key: tuple(inputs.get(key) for _, _, inputs, _ in rows) for key in keys},
+        tuple(case for _, case, *_ in rows),
+        tuple(system for _, _, system, *_ in rows),
+        {key: tuple(inputs.get(key) for *_, inputs, _ in rows) for key in keys},
         {value.column: numbers[:, i] for i, value in enumerate(values)},
+        np.array([design for design, *_ in rows], np.int64),
     )
 
 

@@ -12,6 +12,7 @@ from pantocheck.conformance.campaigns.evaluation.campaign_columns import (
     read_columns,
 )
 from pantocheck.conformance.campaigns.evaluation.input_charts import build_input_charts, build_maps
+from pantocheck.conformance.campaigns.evaluation.saltelli_evaluation import build_indices, select_independent
 from pantocheck.conformance.campaigns.evaluation.sample_evaluation import build_sample_charts, build_statistics
 from pantocheck.conformance.quantities.limit_text import format_stated
 from pantocheck.conformance.results.campaign_format import CampaignEnding, CampaignResults
@@ -36,6 +37,8 @@ def evaluate_campaign(prepared: PreparedCampaign, store: CampaignStore, ending: 
     values = choose_values(store, prepared.limits)
     columns = read_columns(store, values)
     charted = drop_constant(values, columns)
+    saltelli = [axis for axis in design.axes if isinstance(axis, SampleAxis) and axis.sampling.method == "saltelli"]
+    independent = select_independent(columns, saltelli[0]) if saltelli else columns
     verdicts, reasons = count_reasons(store)
     finished, failed = store.count()
     return CampaignResults(
@@ -52,10 +55,11 @@ def evaluate_campaign(prepared: PreparedCampaign, store: CampaignStore, ending: 
         reasons=reasons,
         charts=[
             *build_input_charts(columns, charted, grid),
-            *build_sample_charts(columns, charted, grid, sampled),
+            *build_sample_charts(independent, charted, grid, sampled),
         ],
         maps=list(build_maps(columns, charted, grid)),
-        statistics=list(build_statistics(columns, values, grid)),
+        indices=[item for axis in saltelli for item in build_indices(columns, charted, grid, axis)],
+        statistics=list(build_statistics(independent, values, grid)),
     )
 
 

@@ -20,6 +20,11 @@ CAMPAIGN_SCOPE = (
     "table campaign.csv has all inputs, verdicts and quantities of every run."
 )
 
+INDICES = (
+    "First order (Saltelli et al. 2010): share of the variance that an input causes alone. Total (Jansen 1999): share "
+    "that it causes with its interactions. Estimates of small shares can be negative."
+)
+
 
 def build_campaign_report(results: dict[str, Any]) -> doc.Document:
     """The report on the content of campaign.json."""
@@ -34,6 +39,8 @@ def build_campaign_report(results: dict[str, Any]) -> doc.Document:
     ]
     if results["statistics"]:
         blocks.append(doc.Section("Random inputs", (_build_statistics_table(results["statistics"]),)))
+    if results["indices"]:
+        blocks.append(doc.Section("Sobol indices", (_build_indices_table(results["indices"]), doc.SmallPrint(INDICES))))
     if maps or charts:
         blocks.append(doc.Section("Figures", (doc.Figures((*maps, *charts)),)))
     return doc.Document(results["title"], header, tuple(blocks))
@@ -60,13 +67,27 @@ def _list_reasons(reasons: dict[str, int]) -> list[doc.Block]:
     return [doc.Section("Runs without a result", (doc.BulletList(items),))]
 
 
-def _build_statistics_table(statistics: list[dict[str, Any]]) -> doc.Table:
-    def interval(estimate: dict[str, float] | None) -> str:
-        if estimate is None:
-            return "–"
-        value, low, high = (format_percent(estimate[part], 3) for part in ("value", "low", "high"))
-        return f"{value} ({low} to {high})"
+def _build_indices_table(indices: list[dict[str, Any]]) -> doc.Table:
+    rows = [{**item, **share} for item in indices for share in item["shares"]]
+    cells: dict[str, Callable[[Any], str]] = {
+        "Value": lambda row: row["label"] + (f", {row['group']}" if row["group"] else ""),
+        "Runs per set": lambda row: str(row["runs"]),
+        "First order [%]": lambda row: _format_share(row["first"]),
+        "Total [%]": lambda row: _format_share(row["total"]),
+        "Input": lambda row: row["input"],
+    }
+    return doc.make_grid("Shares of the variance with their 95 % intervals (bootstrap)", rows, cells)
 
+
+def _format_share(estimate: dict[str, float] | None) -> str:
+    """Share in per cent with its interval; a dash for no estimate."""
+    if estimate is None:
+        return "–"
+    value, low, high = (format_percent(estimate[part], 3) for part in ("value", "low", "high"))
+    return f"{value} ({low} to {high})"
+
+
+def _build_statistics_table(statistics: list[dict[str, Any]]) -> doc.Table:
     def quantile(name: str) -> Callable[[Any], str]:
         return lambda row: format_value(row["quantiles"][name])
 
@@ -77,7 +98,7 @@ def _build_statistics_table(statistics: list[dict[str, Any]]) -> doc.Table:
         "Std": lambda row: format_value(row["std"], 3),
         **{name: quantile(name) for name in ("5 %", "50 %", "95 %")},
         "Limit": lambda row: row["limit"] or "–",
-        "Outside [%]": lambda row: interval(row["exceedance"]),
+        "Outside [%]": lambda row: _format_share(row["exceedance"]),
     }
     caption = "Values over the random designs; share of runs outside the limit with its 95 % interval (Wilson 1927)"
     return doc.make_grid(caption, statistics, cells)

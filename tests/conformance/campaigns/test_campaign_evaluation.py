@@ -26,7 +26,9 @@ def columns() -> CampaignColumns:
     rear[-1] = np.nan
     speeds, spacings = zip(*designs, strict=True)
     inputs = {"speed_km_h": speeds, "spacing_m": spacings}
-    return CampaignColumns(("a",) * 9, ("builtin",) * 9, inputs, {FRONT.column: front, REAR.column: rear})
+    return CampaignColumns(
+        ("a",) * 9, ("builtin",) * 9, inputs, {FRONT.column: front, REAR.column: rear}, np.arange(1, 10)
+    )
 
 
 def test_chart_has_a_curve_per_pantograph_and_other_input_with_the_limit(columns: CampaignColumns) -> None:
@@ -69,7 +71,7 @@ def test_statistics_of_random_designs_are_those_of_each_point_of_the_grid() -> N
     numbers = np.arange(1.0, 201.0)
     inputs = {"speed_km_h": (200,) * 100 + (300,) * 100, "tension": tuple(numbers)}
     value = EvaluatedValue("1.mean_force_N", upper=150.0)
-    columns = CampaignColumns(("a",) * 200, ("builtin",) * 200, inputs, {value.column: numbers})
+    columns = CampaignColumns(("a",) * 200, ("builtin",) * 200, inputs, {value.column: numbers}, np.arange(1, 201))
     low, high = build_statistics(columns, [value], ["speed_km_h"])
     assert (low.group, high.group) == ("speed_km_h = 200", "speed_km_h = 300")
     assert (low.runs, low.mean.value, high.mean.value) == (100, 50.5, 150.5)

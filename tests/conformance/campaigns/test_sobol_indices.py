@@ -1,0 +1,91 @@
+"""Sobol indices, checked on the function of Ishigami, and their path from the designs of a campaign to the estimate."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy import stats
+
+from pantocheck.conformance.campaigns.campaign_file import InputSampling
+from pantocheck.conformance.campaigns.design_axes import sample_inputs
+from pantocheck.conformance.campaigns.evaluation.campaign_columns import CampaignColumns, EvaluatedValue
+from pantocheck.conformance.campaigns.evaluation.saltelli_evaluation import build_indices, select_independent
+from pantocheck.conformance.campaigns.evaluation.sobol_indices import estimate_sobol_indices
+
+KEYS = ("x1", "x2", "x3")
+A, B = 7.0, 0.1
+VARIANCE = A**2 / 8 + B * np.pi**4 / 5 + B**2 * np.pi**8 / 18 + 0.5
+FIRST = np.array([0.5 * (1 + B * np.pi**4 / 5) ** 2, A**2 / 8, 0.0]) / VARIANCE
+TOTAL = FIRST + np.array([1, 0, 1]) * B**2 * np.pi**8 * (1 / 18 - 1 / 50) / VARIANCE
+"""Exact indices of the function of Ishigami and Homma (1990)."""
+
+
+def ishigami(x: np.ndarray) -> np.ndarray:
+    return np.sin(x[..., 0]) + A * np.sin(x[..., 1]) ** 2 + B * x[..., 2] ** 4 * np.sin(x[..., 0])
+
+
+def build_columns(runs: int) -> tuple[CampaignColumns, list[EvaluatedValue], object]:
+    """Finished campaign of Saltelli designs of the function."""
+    uniform = {"kind": "uniform", "lower": -np.pi, "upper": np.pi}
+    table = [{"key": key, "distribution": uniform} for key in KEYS]
+    axis = sample_inputs(InputSampling.model_validate({"method": "saltelli", "runs": runs, "seed": 2, "input": table}))
+    rows = [axis.row(i) for i in range(len(axis))]
+    inputs = {key: tuple(row[key] for row in rows) for key in KEYS}
+    value = EvaluatedValue("1.mean_force_N")
+    numbers = ishigami(np.column_stack([inputs[key] for key in KEYS]))
+    count = len(rows)
+    columns = CampaignColumns(
+        ("a",) * count, ("builtin",) * count, inputs, {value.column: numbers}, np.arange(1, count + 1)
+    )
+    return columns, [value], axis
+
+
+def test_indices_of_the_ishigami_function() -> None:
+    """With 2048 designs per set, the estimates of a Sobol sequence are within 0.02 of the exact indices."""
+    columns, values, axis = build_columns(2048)
+    (indices,) = build_indices(columns, values, (), axis)
+    assert [share.input for share in indices.shares] == list(KEYS)
+    assert_allclose([share.first.value for share in indices.shares], FIRST, atol=0.02)
+    assert_allclose([share.total.value for share in indices.shares], TOTAL, atol=0.02)
+    for share, first, total in zip(indices.shares, FIRST, TOTAL, strict=True):
+        assert share.first.low - 1e-9 <= first <= share.first.high + 1e-9
+        assert share.total.low - 1e-9 <= total <= share.total.high + 1e-9
+
+
+def test_designs_that_are_not_finished_are_left_out() -> None:
+    """A set of 64 designs of three inputs has 320 runs; without runs 6 to 10 the second design is missing."""
+    columns, values, axis = build_columns(64)
+    some = columns.select(np.array([i for i in range(len(columns.cases)) if i // 5 != 1]))
+    (indices,) = build_indices(some, values, (), axis)
+    assert indices.runs == 63
+
+
+def test_independent_designs_are_those_of_the_first_two_sets() -> None:
+    columns, _, axis = build_columns(64)
+    independent = select_independent(columns, axis)
+    assert len(independent.cases) == 128
+    assert len(set(independent.inputs["x1"])) == 128
+
+
+def test_estimates_are_those_of_scipy() -> None:
+    """The same estimators; scipy centres and normalises in the same way."""
+    columns, values, _ = build_columns(256)
+    table = columns.values[values[0].column].reshape(256, 5)
+    shares = estimate_sobol_indices(table[:, 0], table[:, 1], table[:, 2:])
+    expected = stats.sobol_indices(
+        func={"f_A": table[:, 0][None], "f_B": table[:, 1][None], "f_AB": table[:, 2:].T[:, None, :]}, n=256
+    )
+    assert_allclose(shares.first[0], expected.first_order, rtol=1e-9)
+    assert_allclose(shares.total[0], expected.total_order, rtol=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_interval_of_an_additive_model_contains_the_exact_share(seed: int) -> None:
+    """3 x + 4 y of normal inputs: shares 0.36 and 0.64, first order and total alike."""
+    points = np.random.default_rng(seed).standard_normal((1024, 4))
+    base, other = points[:, :2], points[:, 2:]
+    weights = np.array([3.0, 4.0])
+    exchanged = np.column_stack([base @ weights + (other[:, i] - base[:, i]) * weights[i] for i in range(2)])
+    shares = estimate_sobol_indices(base @ weights, other @ weights, exchanged)
+    for estimate in (shares.first, shares.total):
+        assert np.all(estimate[1] <= [0.36, 0.64])
+        assert np.all(estimate[2] >= [0.36, 0.64])
