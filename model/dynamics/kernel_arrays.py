@@ -48,6 +48,7 @@ from pantocheck.model.dynamics.train import Train
 from pantocheck.model.dynamics.vectors import LANES
 from pantocheck.model.dynamics.wire_step import WireArrays, build_wire_arrays
 from pantocheck.model.fem.contact_wires import locate_contact_wires
+from pantocheck.model.kept_results import keep_with_line
 from pantocheck.model.modal.modal_damping import build_modal_terms
 
 
@@ -138,8 +139,17 @@ def build_kernel_arrays(
     Returns
     -------
     KernelArrays
-        Arrays of the line.
+        Arrays of the line, shared by all simulations with this time step.
     """
+    kernel = _build_line_arrays(line, time_step)
+    if window is not None and not kernel.distributed.number:
+        kernel = kernel._replace(window=window)
+    return kernel if load is None else kernel._replace(load=load)
+
+
+@keep_with_line
+def _build_line_arrays(line: DiscretisedLine, time_step: float) -> KernelArrays:
+    """Build the arrays with the whole line active and without a load."""
     factor = factorise(line.beams, time_step)
     terms = build_modal_terms(line)
     stations = line.mesh.position.size
@@ -163,14 +173,14 @@ def build_kernel_arrays(
     return KernelArrays(
         time_step=time_step,
         layout=layout,
-        window=whole_line(line) if window is None or distributed.number else window,
+        window=whole_line(line),
         panels=panels,
         wires=build_wire_arrays(line.beams, merge_extents(find_extents(line.beams), panel), layout),
         connectors=connectors,
         distributed=distributed,
         forces=build_scalar_forces(law, compliance, time_step),
         contact=build_contact_arrays(line, factor, time_step, half_width),
-        load=load or Load(0, 0),
+        load=Load(0, 0),
     )
 
 

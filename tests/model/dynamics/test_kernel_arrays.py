@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from helpers.lines import DAMPED, PANTOGRAPH_2002, Array, bare_wire, fix_along_track, simple_line
-from pantocheck.model import Catenary, Kind, ModalBand, Passage, discretise
+from pantocheck.model import Catenary, Kind, ModalBand, Passage, discretise, simulate_passage
 from pantocheck.model.dynamics.active_window import build_window_arrays, max_wave_speed
 from pantocheck.model.dynamics.inverse_columns import column_half_width
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, build_kernel_arrays, build_workspace
@@ -76,3 +76,18 @@ def test_rows_of_a_motion_are_whole_panels_longer_than_a_column() -> None:
     assert layout.width >= layout.stations + kernel.connectors.nodes.column.shape[2]
     for array in (kernel.wires.elements, kernel.panels.link, kernel.panels.inverse, kernel.connectors.nodes.column):
         assert array.ctypes.data % ALIGNMENT == 0
+
+
+def test_simulations_share_the_arrays_of_a_line_without_changing_them() -> None:
+    """Passages at two speeds, with two pantographs and one: the same forces as on lines of their own, bit by bit."""
+    line = discretise(simple_line(3, damping=DAMPED), 2.0)
+    twin = Passage((PANTOGRAPH_2002,) * 2, (70.0, 50.0), 40.0, 0.5, 2e-3, kept_behind=60.0, reach=50.0)
+    passages = (twin, replace(twin, speed=60.0), replace(twin, pantographs=(PANTOGRAPH_2002,), start=(60.0,)))
+    shared = build_kernel_arrays(line, twin.time_step)
+    before = [array.copy() for array in leaves(shared)]
+    for passage in passages:
+        alone = simulate_passage(replace(line), passage)
+        np.testing.assert_array_equal(simulate_passage(line, passage).force, alone.force)
+    assert all(np.array_equal(array, copy) for array, copy in zip(leaves(shared), before, strict=True))
+    assert build_kernel_arrays(line, twin.time_step, build_window_arrays(line, twin)).panels is shared.panels
+    assert build_kernel_arrays(line, 1e-3).panels is not shared.panels
