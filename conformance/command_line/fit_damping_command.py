@@ -7,7 +7,12 @@ import typer
 
 from pantocheck.conformance.command_line.console import console, escape_text
 from pantocheck.conformance.command_line.options import read_line
-from pantocheck.conformance.identification.damping.damping_results import build_damping_results
+from pantocheck.conformance.identification.damping.damping_model import MODAL_GROUPS
+from pantocheck.conformance.identification.damping.damping_results import (
+    FitOptions,
+    WireCoefficients,
+    build_damping_results,
+)
 from pantocheck.conformance.identification.damping.damping_toml import write_damping_toml
 from pantocheck.conformance.identification.damping.line_comparison import compare_line, refuse_other_line
 from pantocheck.conformance.identification.damping.mode_matching import select_usable
@@ -26,6 +31,16 @@ def fit_damping_command(
         Path, typer.Option(help="Folder for damping.toml, damping_with_modal.toml, damping.json, .html and .pdf.")
     ],
     element: Annotated[float, typer.Option(help="Element length [m].", min=0.05, max=5.0)] = 0.5,
+    wires: Annotated[
+        WireCoefficients,
+        typer.Option(help="separate: each wire has its own coefficients; common: both wires have the same."),
+    ] = "separate",
+    modal_groups: Annotated[
+        int,
+        typer.Option(
+            help="Groups of span modes with a band of modal damping in damping_with_modal.toml.", min=1, max=8
+        ),
+    ] = MODAL_GROUPS,
     other_line: Annotated[
         bool,
         typer.Option("--other-line", help="Permit a line that differs from that of the record; the result is marked."),
@@ -45,7 +60,7 @@ def fit_damping_command(
     check_writable(out)
     output = console()
     with output.status("modes of the line"):
-        results = build_damping_results(identified, catenary, element, modes.name)
+        results = build_damping_results(identified, catenary, element, modes.name, FitOptions(wires, modal_groups))
         block = write_damping_toml(results)
         document = build_damping_document(results.model_dump(mode="json", by_alias=True), block)
         write_atomically(out / "damping.toml", block.encode("utf-8"))

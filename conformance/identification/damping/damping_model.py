@@ -17,9 +17,8 @@ from numpy.typing import NDArray
 
 from pantocheck.conformance.array_types import IntegerArray, RealArray
 from pantocheck.conformance.identification.damping.damping_format import Coefficient
-from pantocheck.conformance.identification.damping.damping_terms import DampingBasis, Term
+from pantocheck.conformance.identification.damping.damping_terms import JOINED_WIRES, WIRES, DampingBasis, Term
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.model import Kind
 from pantocheck.model.catenary import ModalBand
 from pantocheck.model.one_thread import use_one_thread
 
@@ -29,11 +28,8 @@ MODEL_ERROR = 0.01
 FIT_REPLICATES = 400
 """Replicates of the confidence intervals."""
 
-LAST_BAND = 3
-"""Last group of span modes with a band of modal damping."""
-
-WIRES: tuple[str, ...] = (Kind.CONTACT_WIRE, Kind.MESSENGER_WIRE)
-"""Kinds of component that are fitted."""
+MODAL_GROUPS = 2
+"""Groups of span modes with a band of modal damping, as in Vo Van, Balmes and Lorang (2015), section 3."""
 
 
 @dataclass(frozen=True)
@@ -108,7 +104,7 @@ def fit_damping_model(basis: DampingBasis, measured: MeasuredModes) -> DampingFi
     InputError
         There are not more modes than coefficients.
     """
-    terms = [term for term in basis.terms if term[0] in WIRES]
+    terms = [term for term in basis.terms if term[0] in (*WIRES, JOINED_WIRES)]
     if measured.frequency.size <= len(terms):
         raise InputError(
             "modes",
@@ -181,15 +177,28 @@ def _confidence_intervals(
     return np.percentile(replicates, 2.5, axis=0), np.percentile(replicates, 97.5, axis=0)
 
 
-def fit_modal_bands(measured: MeasuredModes) -> tuple[ModalBand, ...]:
-    """Median measured damping ratios of the first groups, each in a band that ends half-way to the next group."""
-    present = [number for number in range(1, LAST_BAND + 2) if np.any(measured.group == number)]
+def fit_modal_bands(measured: MeasuredModes, groups: int = MODAL_GROUPS) -> tuple[ModalBand, ...]:
+    """Median measured damping ratios of the first groups, each in a band that ends half-way to the next group.
+
+    Parameters
+    ----------
+    measured : MeasuredModes
+        The measured modes.
+    groups : int
+        Number of groups with a band, from the first; a group without modes has none.
+
+    Returns
+    -------
+    tuple of ModalBand
+        Bands in ascending order.
+    """
+    present = [number for number in range(1, groups + 2) if np.any(measured.group == number)]
     edges = {
         n: (measured.frequency[measured.group == n].min(), measured.frequency[measured.group == n].max())
         for n in present
     }
     bands = []
-    for number in (n for n in present if n <= LAST_BAND):
+    for number in (n for n in present if n <= groups):
         low, high = edges[number]
         width = max(high - low, 0.05 * low)
         below = (edges[number - 1][1] + low) / 2 if number - 1 in edges else low - width / 2

@@ -1,6 +1,8 @@
 """Damping model of a line from its identified modes: the content of damping.json."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -14,11 +16,12 @@ from pantocheck.conformance.identification.damping.damping_format import (
     PairedMode,
 )
 from pantocheck.conformance.identification.damping.damping_model import (
+    MODAL_GROUPS,
     DampingFit,
     fit_damping_model,
     fit_modal_bands,
 )
-from pantocheck.conformance.identification.damping.damping_terms import build_damping_basis
+from pantocheck.conformance.identification.damping.damping_terms import DampingBasis, build_damping_basis
 from pantocheck.conformance.identification.damping.line_comparison import compare_line, warn_about_line
 from pantocheck.conformance.identification.damping.mode_matching import MatchedModes, match_modes, select_usable
 from pantocheck.conformance.identification.damping.observability import (
@@ -33,8 +36,34 @@ from pantocheck.model.catenary import ModalBand
 from pantocheck.model.modal.modal_damping import apply_modal_bands
 from pantocheck.model.modal.modes import component_energies, damping_ratios
 
+WireCoefficients = Literal["separate", "common"]
 
-def build_damping_results(modes: Sequence[Mode], line: Catenary, element: float, source: str) -> DampingResults:
+COEFFICIENTS_OF_WIRES: dict[WireCoefficients, Callable[[DampingBasis], DampingBasis]] = {
+    "separate": lambda basis: basis,
+    "common": DampingBasis.join_wires,
+}
+"""Basis of the fit: each wire with its own coefficients, or both with the same."""
+
+
+@dataclass(frozen=True)
+class FitOptions:
+    """Choices for the fit of a damping model.
+
+    Parameters
+    ----------
+    wires : {"separate", "common"}
+        Whether contact and messenger wire have their own coefficients, or the same.
+    modal_groups : int
+        Number of groups of span modes with a band of modal damping, from the first.
+    """
+
+    wires: WireCoefficients = "separate"
+    modal_groups: int = MODAL_GROUPS
+
+
+def build_damping_results(
+    modes: Sequence[Mode], line: Catenary, element: float, source: str, options: FitOptions = FitOptions()
+) -> DampingResults:
     """Fit a damping model to identified modes.
 
     Parameters
@@ -47,6 +76,8 @@ def build_damping_results(modes: Sequence[Mode], line: Catenary, element: float,
         Element length [m].
     source : str
         Name of the file of the modes, for messages.
+    options : FitOptions
+        Coefficients of the wires, and bands of modal damping.
 
     Returns
     -------
@@ -62,12 +93,13 @@ def build_damping_results(modes: Sequence[Mode], line: Catenary, element: float,
     comparison = compare_line(usable, line)
     matched = match_modes(usable, line, element, source)
     measured, shapes = matched.measured, matched.shapes
-    basis = build_damping_basis(shapes.frequency, component_energies(matched.mesh, shapes))
+    energies = component_energies(matched.mesh, shapes)
+    basis = COEFFICIENTS_OF_WIRES[options.wires](build_damping_basis(shapes.frequency, energies))
     paired_basis = basis.select_modes(np.array([pair.computed for pair in matched.pairs], dtype=np.int64))
     fit = fit_damping_model(paired_basis, measured)
     observability = tuple(row for row in compute_observability(paired_basis, measured, fit) if row.largest_share > 0)
     coefficients = judge_coefficients(fit.coefficients, observability, matched.matching)
-    bands = fit_modal_bands(measured)
+    bands = fit_modal_bands(measured, options.modal_groups)
     rayleigh = basis.ratios @ np.array([fit.values.get(term, 0.0) for term in basis.terms])
     return DampingResults(
         modes_file=source,

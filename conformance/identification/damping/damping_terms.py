@@ -43,6 +43,13 @@ TABLE_OF_KIND = {
 """Table of a kind of component in the damping of a line file."""
 
 
+WIRES: tuple[str, ...] = (Kind.CONTACT_WIRE, Kind.MESSENGER_WIRE)
+"""Kinds of component that are fitted."""
+
+JOINED_WIRES = "wires"
+"""Name of the wires with common coefficients."""
+
+
 @dataclass(frozen=True)
 class DampingBasis:
     """Damping ratios of the modes per unit of each coefficient.
@@ -61,6 +68,15 @@ class DampingBasis:
     def select_modes(self, modes: IntegerArray) -> "DampingBasis":
         """Basis of selected modes, by index."""
         return DampingBasis(self.terms, self.ratios[modes])
+
+    def join_wires(self) -> "DampingBasis":
+        """Basis in which the wires of `WIRES` share their coefficients, as terms of the kind `JOINED_WIRES`."""
+        others = [i for i, (kind, _) in enumerate(self.terms) if kind not in WIRES]
+        shared = [
+            self.ratios[:, [self.terms.index((wire, matrix)) for wire in WIRES]].sum(axis=1) for matrix in MATRICES
+        ]
+        terms = (*((JOINED_WIRES, matrix) for matrix in MATRICES), *(self.terms[i] for i in others))
+        return DampingBasis(terms, np.column_stack([*shared, self.ratios[:, others]]))
 
 
 def build_damping_basis(frequency: RealArray, energies: ComponentEnergies) -> DampingBasis:

@@ -6,7 +6,7 @@ from typing import Any
 import tomli_w
 
 from pantocheck.conformance.identification.damping.damping_format import DampingResults, MeasuredBand
-from pantocheck.conformance.identification.damping.damping_terms import MATRICES, TABLE_OF_KIND
+from pantocheck.conformance.identification.damping.damping_terms import JOINED_WIRES, MATRICES, TABLE_OF_KIND, WIRES
 from pantocheck.model import Kind
 
 MAX_NOTE = 4000
@@ -37,11 +37,13 @@ def write_damping_toml(results: DampingResults, modal: Sequence[MeasuredBand] = 
     }
     comments = [f"warning: {text}" for text in results.warnings]
     for c in results.coefficients:
-        table, key = TABLE_OF_KIND[Kind(c.kind)], MATRICES[c.matrix].key
-        if c.determined:
-            tables.setdefault(table, {})[key] = c.value
-        else:
-            comments.append(f"not determined, left out: {table}.{key} = {c.value:g}")
+        key = MATRICES[c.matrix].key
+        for kind in WIRES if c.kind == JOINED_WIRES else (c.kind,):
+            table = TABLE_OF_KIND[Kind(kind)]
+            if c.determined:
+                tables.setdefault(table, {})[key] = c.value
+            else:
+                comments.append(f"not determined, left out: {table}.{key} = {c.value:g}")
     if any(not c.determined for c in results.coefficients):
         comments.append("In a simulation, a coefficient that is left out counts as 0.")
     if results.warnings:

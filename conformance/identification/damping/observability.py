@@ -29,8 +29,12 @@ spans.
 
 
 def compute_observability(basis: DampingBasis, measured: MeasuredModes, fit: DampingFit) -> tuple[Observability, ...]:
-    """Compute the observability of each coefficient; parameters as in `fit_damping_model`, and its result `fit`."""
-    weighted = basis.ratios / fit_deviation(measured)[:, None]
+    """Compute the observability of each coefficient; parameters as in `fit_damping_model`, and its result `fit`.
+
+    If the model misfits the damping ratios by more than their standard deviations, the misfit takes their place: it
+    could otherwise pass for information on the coefficients.
+    """
+    weighted = basis.ratios / (_misfit(measured, fit) * fit_deviation(measured))[:, None]
     rows = []
     for i, (kind, matrix) in enumerate(basis.terms):
         plausible = MATRICES[matrix].plausible
@@ -90,6 +94,12 @@ def residual_without_term(basis: DampingBasis, measured: MeasuredModes, fit: Dam
     values = solve_weighted(basis.ratios[:, kept], target, weight)
     relative = (target - basis.ratios[:, kept] @ values) / target
     return float(np.sqrt(np.mean(relative[fit.used] ** 2)))
+
+
+def _misfit(measured: MeasuredModes, fit: DampingFit) -> float:
+    """Root mean square of (measured - fitted) / standard deviation over the modes in the fit, at least 1 [-]."""
+    residual = (measured.damping_ratio - fit.predicted) / fit_deviation(measured)
+    return max(1.0, float(np.sqrt(np.mean(residual[fit.used] ** 2))))
 
 
 def _project(columns: RealArray, vector: RealArray) -> RealArray:
