@@ -218,7 +218,7 @@ class CaseFile(SourcedTable):
             )
         if self.study is None:
             return
-        drops = self.study.kind in {"release-velocity", "steady-arm-damper"}
+        drops = self.study.kind in {"release-velocity", "dropper-oscillation", "steady-arm-damper"}
         if drops and self.mass_drop is None:
             yield validation_problem("mass_drop", "missing", f"A study of the kind {self.study.kind} needs mass drops.")
         if not drops and self.speed_km_h is None:

@@ -8,6 +8,7 @@ from pantocheck.conformance.cases.drop_test import DampingModels, Place
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.sourced_table import (
     InputTable,
+    NonNegative,
     Positive,
     PositiveList,
     SourcedTable,
@@ -39,7 +40,14 @@ class ReleaseVelocity(SourcedTable):
     """Study of a release: velocity of a sensor in several time windows, under several damping models."""
 
     kind: Literal["release-velocity"]
-    models: Annotated[DampingModels, Field(min_length=2)]
+    models: Annotated[
+        DampingModels,
+        Field(
+            min_length=3,
+            description="damping files by name: reference model, fitted Rayleigh damping, the same with modal damping, "
+            "and any further models, which are drawn",
+        ),
+    ]
     windows_s: Annotated[
         tuple[Interval, ...],
         Field(
@@ -72,6 +80,23 @@ class DropperDamping(SourcedTable):
             )
 
 
+class DropperOscillation(SourcedTable):
+    """Study of the dropper damping after a release: the drop runs once for each stiffness coefficient."""
+
+    kind: Literal["dropper-oscillation"]
+    coefficients_s: Annotated[
+        tuple[NonNegative, ...],
+        Field(strict=False, min_length=3, max_length=20, description="stiffness coefficients from 0, ascending [s]"),
+    ]
+
+    @cross_check
+    def _ascending_from_zero(self) -> Problems:
+        if list(self.coefficients_s) != sorted(set(self.coefficients_s)) or self.coefficients_s[0] != 0:
+            yield validation_problem(
+                "coefficients_s", "not ascending from 0", "List every value once, from 0 to the largest."
+            )
+
+
 class SteadyArmDamper(SourcedTable):
     """Study of dampers at the steady arms: damping is identified with and without them, by frequency band."""
 
@@ -91,6 +116,6 @@ class DampingSensitivity(SourcedTable):
 
 
 Study = Annotated[
-    DampingChange | DampingSensitivity | ReleaseVelocity | DropperDamping | SteadyArmDamper,
+    DampingChange | DampingSensitivity | ReleaseVelocity | DropperDamping | DropperOscillation | SteadyArmDamper,
     Field(discriminator="kind", description="kind of study"),
 ]

@@ -35,7 +35,7 @@ def drop_command(
 ) -> None:
     """Simulate the mass drops of a case and write their records.
 
-    Example: pantocheck drop vovan2015/mass-drop/updated --drop 1 --out drop.uff
+    Example: pantocheck drop vovan2015/mass-drop/stand-in --drop 1 --out drop.uff
 
     Then: pantocheck identify drop.uff --out modes
     """

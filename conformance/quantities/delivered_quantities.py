@@ -103,6 +103,17 @@ DELIVERED_QUANTITIES: tuple[Quantity, ...] = (
          "largest damping ratio of the modes identified with certainty"),
         ("damping_decrease_pct", "Decrease of damping over the first three groups", "%",
          "decrease of the median damping ratio between groups: the smaller of groups 1 to 2 and 2 to 3"),
+        ("largest_damping_decrease_pct", "Largest decrease of damping over the first three groups", "%",
+         "decrease of the median damping ratio between groups: the larger of groups 1 to 2 and 2 to 3"),
+        ("damping_variation_pct", "Variation of damping from the third group to 6 Hz", "%",
+         "largest deviation of the median damping ratio of a later group up to 6 Hz from that of group 3"),
+        ("reference_over_identified_damping", "Damping of the reference model over the identified one", "",
+         "damping ratio of the initial model at the frequency of a mode over its identified ratio; "
+         "median of each group of span modes"),
+        ("observable_wire_coefficients", "Observable coefficients of the wires", "",
+         "number of Rayleigh coefficients of contact and messenger wire that the identified modes determine"),
+        ("observable_other_coefficients", "Observable coefficients of other components", "",
+         "number of Rayleigh coefficients of droppers, steady arms and supports that the identified modes determine"),
         ("damping_rise_pct", "Rise of damping from the third group to 6 Hz", "%",
          "rise of the highest median damping ratio between group 4 and 6 Hz over the median of group 3"),
     ),
@@ -137,6 +148,16 @@ DELIVERED_QUANTITIES: tuple[Quantity, ...] = (
          "in the run with the smaller ratio"),
     ),
     *_define(
+        "study", "drops under several damping models",
+        ("modal_velocity_difference_pct", "Velocity with modal damping against Rayleigh damping", "%",
+         "RMS of the difference between the velocities with Rayleigh damping and with modal damping besides, in the "
+         "first window, over the RMS of the former"),
+        ("reference_residual_velocity_ratio", "Residual velocity of the reference model", "",
+         "RMS of the velocity in the last window under the reference model, over that with Rayleigh damping"),
+        ("medium_frequency_velocity_ratio", "Velocity in 5–20 Hz against the reference model", "",
+         "RMS of the velocity in 5-20 Hz in the first window with Rayleigh damping, over that of the reference model"),
+    ),
+    *_define(
         "study", "runs with several coefficients",
         ("dropper_transition_start_s", "Onset of the dropper transition", "s",
          "smallest stiffness coefficient that changes the largest compensation force of a dropper by 10 %"),
@@ -144,6 +165,18 @@ DELIVERED_QUANTITIES: tuple[Quantity, ...] = (
          "stiffness coefficient above which half of the largest compensation force of a dropper remains"),
         ("dropper_transition_end_s", "End of the dropper transition", "s",
          "stiffness coefficient above which 10 % of the largest compensation force of a dropper remains"),
+        ("dropper_oscillation_pct", "High-frequency oscillation of an undamped dropper", "%",
+         "RMS of the velocity of the dropper's extension above 50 Hz in the first 0.1 s after a release, over that of "
+         "the contact wire at the dropper"),
+        ("dropper_oscillation_decay_ratio", "Oscillation left by more dropper damping", "",
+         "share of that velocity after 0.8 s to 1.6 s, over the share with the next smaller stiffness coefficient; the "
+         "largest of all coefficients"),
+        ("dropper_velocity_change_pct", "Change of the velocity by dropper damping", "%",
+         "RMS of the change of the velocity of the contact wire at the dropper against no damping, over its RMS; one "
+         "value per stiffness coefficient"),
+        ("dropper_force_change_pct", "Change of the contact force by small dropper damping", "%",
+         "largest change of the RMS of the contact force in a band, of any pantograph, from the smallest stiffness "
+         "coefficient to that of the case"),
         ("dropper_locked_force_pct", "Force left when the dropper is locked", "%",
          "largest compensation force at the largest stiffness coefficient, over its value without damping"),
     ),

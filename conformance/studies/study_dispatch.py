@@ -5,6 +5,7 @@ from pantocheck.conformance.cases.study_tables import (
     DampingChange,
     DampingSensitivity,
     DropperDamping,
+    DropperOscillation,
     ReleaseVelocity,
     SteadyArmDamper,
 )
@@ -54,6 +55,10 @@ def run_study(case: Case, system: System) -> Outcome:
             from pantocheck.conformance.studies.vovan2015.dropper_damping import run_dropper_damping
 
             return run_dropper_damping(case, study)
+        case DropperOscillation() as study:
+            from pantocheck.conformance.studies.vovan2015.dropper_oscillation import run_dropper_oscillation
+
+            return run_dropper_oscillation(case, study)
         case SteadyArmDamper() as study:
             from pantocheck.conformance.studies.vovan2015.steady_arm_damper import run_steady_arm_damper
 

@@ -18,7 +18,10 @@ from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import DropperDamping
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.quantities.evaluation import LINE, Value
+from pantocheck.conformance.quantities.bands import BAND_QUANTITIES
+from pantocheck.conformance.quantities.evaluation import LINE, Value, ValuesByOwner
+from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.results.figure_data import Chart, Mark, Series
 from pantocheck.conformance.results.outcome import Delivered, StudyResult
 from pantocheck.conformance.results.traces import thin_series
@@ -77,10 +80,14 @@ def run_dropper_damping(case: Case, study: DropperDamping) -> Delivered:
     force = {
         law: np.array([_largest_force(mesh, passage, dropper, value, law) for value in coefficients]) for law in LAWS
     }
-    findings = {LINE: find_transition(coefficients, force[GRADED])}
-    runs = 1 + len(LAWS) * coefficients.size
+    record = record_passage(case, passage, history)
+    damping = dict(line.damping) | {Kind.DROPPER: Rayleigh(stiffness_coefficient=float(coefficients[0]))}
+    least_damped = simulate_passage(with_damping(mesh, damping), passage)
+    bands = [_band_values(case, each) for each in (record, record_passage(case, passage, least_damped))]
+    findings = {LINE: find_transition(coefficients, force[GRADED]) | compare_bands(*bands)}
+    runs = 2 + len(LAWS) * coefficients.size
     return Delivered(
-        record=record_passage(case, passage, history),
+        record=record,
         run=build_run_table(discretisation, runs * passage.duration, begin),
         study=StudyResult(
             findings=findings,
@@ -122,6 +129,32 @@ def find_transition(coefficient: RealArray, force: RealArray) -> dict[str, Value
         if crossing is not None:
             findings[f"dropper_transition_{name}_s"] = float(np.exp(crossing))
     return findings
+
+
+def compare_bands(chosen: ValuesByOwner, least: ValuesByOwner) -> dict[str, Value]:
+    """Largest change of the contact force in a band, of any pantograph, by small damping of the droppers.
+
+    Parameters
+    ----------
+    chosen, least : ValuesByOwner
+        Quantities with the damping of the case and with the smallest coefficient, by pantograph and name.
+
+    Returns
+    -------
+    dict of str to Value
+        Change [%] by name of quantity; empty without a band.
+    """
+    pairs = [
+        (values.get(band), least.get(owner, {}).get(band))
+        for owner, values in chosen.items()
+        for band in BAND_QUANTITIES
+    ]
+    changes = [abs(new / old - 1) for new, old in pairs if isinstance(new, float) and isinstance(old, float)]
+    return {"dropper_force_change_pct": 100 * max(changes)} if changes else {}
+
+
+def _band_values(case: Case, record: Record) -> ValuesByOwner:
+    return evaluate_record(record, case.file.filter.low_pass, case.line.geometry.supports).values
 
 
 def _find_crossing(x: RealArray, y: RealArray, level: float) -> float | None:

@@ -3,13 +3,17 @@
 The observability of the coefficients is drawn as in Vo Van, Balmes and Lorang (2015), Figure 6.
 """
 
+from collections.abc import Sequence
+
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.identification.damping.damping_format import DampingResults
+from pantocheck.conformance.identification.damping.damping_format import DampingResults, Observability
 from pantocheck.conformance.identification.damping.damping_results import build_damping_results
-from pantocheck.conformance.identification.damping.damping_terms import MATRICES
+from pantocheck.conformance.identification.damping.damping_terms import MATRICES, WIRES
 from pantocheck.conformance.identification.identify import Identification
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.quantities.evaluation import LINE, Value
 from pantocheck.conformance.results.figure_data import Chart, Mark, Series, TextTable
+from pantocheck.conformance.results.outcome import StudyResult
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.model import Catenary, Kind
 
@@ -17,8 +21,8 @@ SMALLEST_DRAWN_RATIO = 1e-3
 """Smaller ratios, and zero, are drawn at this value on the logarithmic scale [-]."""
 
 
-def build_fit_report(case: Case, identification: Identification) -> tuple[tuple[TextTable, ...], tuple[Chart, ...]]:
-    """Build the table of simulated and fitted coefficients and the chart of their observability.
+def build_fit_report(case: Case, identification: Identification) -> StudyResult:
+    """Fit a damping model with coefficients of each wire, and report coefficients and their observability.
 
     Parameters
     ----------
@@ -29,15 +33,29 @@ def build_fit_report(case: Case, identification: Identification) -> tuple[tuple[
 
     Returns
     -------
-    tuple of (tuple of TextTable, tuple of Chart)
-        Tables and charts; without enough modes, a table with the reason and no chart.
+    StudyResult
+        Numbers of observable coefficients by name of quantity, table and chart; without enough modes, a table with the
+        reason.
     """
     line, element = build_catenary(case.line), case.file.discretisation.element_m
     try:
         results = build_damping_results(identification.modes, line, element, f"the modes of {case.id}")
     except InputError as error:
-        return (TextTable(caption="Fitted damping: none", columns=["Reason"], rows=[[str(error)]]),), ()
-    return (_coefficient_table(results, line),), (_draw_observability(results),)
+        return StudyResult(tables=(TextTable(caption="Fitted damping: none", columns=["Reason"], rows=[[str(error)]]),))
+    return StudyResult(
+        findings={LINE: count_observable(results.observability)},
+        charts=(_draw_observability(results),),
+        tables=(_coefficient_table(results, line),),
+    )
+
+
+def count_observable(rows: Sequence[Observability]) -> dict[str, Value]:
+    """Numbers of observable coefficients of the wires and of the other components, by name of quantity."""
+    observable = [row.kind in WIRES for row in rows if row.observable]
+    return {
+        "observable_wire_coefficients": float(sum(observable)),
+        "observable_other_coefficients": float(len(observable) - sum(observable)),
+    }
 
 
 def _coefficient_table(results: DampingResults, line: Catenary) -> TextTable:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.identification.mode import Mode
 from pantocheck.conformance.quantities.evaluation import Value
 
@@ -40,8 +41,33 @@ def compute_group_findings(modes: Sequence[Mode]) -> dict[str, Value]:
     if certain:
         findings["largest_damping_ratio"] = max(mode.damping_ratio for mode in certain)
     if len(damping) >= 3:
-        findings["damping_decrease_pct"] = 100 * min(1 - damping[1] / damping[0], 1 - damping[2] / damping[1])
+        steps = [100 * (1 - damping[1] / damping[0]), 100 * (1 - damping[2] / damping[1])]
+        findings["damping_decrease_pct"], findings["largest_damping_decrease_pct"] = min(steps), max(steps)
         later = [z for f, z in zip(frequency[3:], damping[3:], strict=True) if f <= HIGHEST_HZ]
         if later:
             findings["damping_rise_pct"] = 100 * (max(later) / damping[2] - 1)
+            findings["damping_variation_pct"] = 100 * max(abs(z / damping[2] - 1) for z in later)
     return findings
+
+
+def compare_reference(modes: Sequence[Mode], frequency: RealArray, ratio: RealArray) -> tuple[float, ...]:
+    """Damping ratio of a reference model over the identified one, median of each group of span modes.
+
+    Parameters
+    ----------
+    modes : sequence of Mode
+        Identified modes; only vertical modes with a certain damping ratio count.
+    frequency, ratio : (n,) ndarray
+        Frequencies [Hz], ascending, and damping ratios [-] of the reference model.
+
+    Returns
+    -------
+    tuple of float
+        Ratios from group 1 to the last group before one without modes [-].
+    """
+    certain = [mode for mode in modes if mode.certain and not mode.lateral]
+    medians: list[float] = []
+    while members := [mode for mode in certain if mode.group == len(medians) + 1]:
+        reference = np.interp([mode.frequency_Hz for mode in members], frequency, ratio)
+        medians.append(float(np.median(reference / [mode.damping_ratio for mode in members])))
+    return tuple(medians)

@@ -1,7 +1,11 @@
-"""Mass drops of Vo Van, Balmes and Lorang (2015): simulated, identified, and compared with their damping models."""
+"""Mass drops of Vo Van, Balmes and Lorang (2015): simulated, identified, and compared with their damping models.
+
+The first of the compared models of a case is the reference model of the paper.
+"""
 
 import time
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.results.figure_data import Chart, Mark, Series
@@ -10,7 +14,7 @@ from pantocheck.conformance.results.traces import thin_series
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.simulation.drop_simulation import require_mass_drop
 from pantocheck.conformance.studies.vovan2015.fit_comparison import build_fit_report
-from pantocheck.conformance.studies.vovan2015.group_findings import compute_group_findings
+from pantocheck.conformance.studies.vovan2015.group_findings import compare_reference, compute_group_findings
 from pantocheck.conformance.studies.vovan2015.line_damping import (
     IdentifiedDrops,
     build_drop_run_table,
@@ -39,20 +43,29 @@ def run_mass_drop_study(case: Case) -> Delivered:
     """
     begin = time.perf_counter()
     identified = identify_drops(case)
+    modes = identified.identification.modes
+    frequency, ratios = _compute_ratios(case)
+    findings = compute_group_findings(modes)
+    if case.dampings:
+        findings["reference_over_identified_damping"] = compare_reference(modes, frequency, ratios[next(iter(ratios))])
     bound = [
         Mark(label=f"printed: all below {100 * limit.upper:g} %", axis="y", low=100 * limit.upper)
         for limit in case.limits
         if limit.quantity == "largest_damping_ratio" and limit.upper is not None
     ][:1]
-    fit_tables, fit_charts = build_fit_report(case, identified.identification)
+    fit = build_fit_report(case, identified.identification)
     return Delivered(
         run=build_drop_run_table(case, len(identified.drops), begin),
         notes=_describe_drops(case, identified),
         warnings=identified.identification.warnings,
         study=StudyResult(
-            findings={LINE: compute_group_findings(identified.identification.modes)},
-            charts=(_draw_frequencies(case, identified, bound), _draw_groups(identified, bound), *fit_charts),
-            tables=(build_provenance_table(case), *fit_tables),
+            findings={LINE: findings | fit.findings.get(LINE, {})},
+            charts=(
+                _draw_frequencies(case, identified, (frequency, ratios), bound),
+                _draw_groups(identified, bound),
+                *fit.charts,
+            ),
+            tables=(build_provenance_table(case), *fit.tables),
         ),
     )
 
@@ -67,20 +80,25 @@ def _describe_drops(case: Case, identified: IdentifiedDrops) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _draw_frequencies(case: Case, identified: IdentifiedDrops, bound: list[Mark]) -> Chart:
-    """Damping ratio against frequency, identified and computed from each damping model (Figure 7 of the paper)."""
+ComputedRatios = tuple[RealArray, dict[str, RealArray]]
+"""Frequencies of the undamped modes [Hz], and their damping ratios by name of the damping model [-]."""
+
+
+def _compute_ratios(case: Case) -> ComputedRatios:
+    """Damping ratios of the computed modes under each compared model, or else under the damping of the case."""
     line = build_catenary(case.line)
     mesh = discretise(line, case.file.discretisation.element_m)
     shapes = compute_modes_below(mesh, require_mass_drop(case).highest_Hz)
     models = build_lines(case) or {"damping of the case": line}
-    computed = [
-        Series(
-            label=name,
-            style="line",
-            x=thin_series(shapes.frequency),
-            y=thin_series(100 * computed_damping_ratios(mesh, shapes, model)),
-        )
-        for name, model in models.items()
+    return shapes.frequency, {name: computed_damping_ratios(mesh, shapes, model) for name, model in models.items()}
+
+
+def _draw_frequencies(case: Case, identified: IdentifiedDrops, computed: ComputedRatios, bound: list[Mark]) -> Chart:
+    """Damping ratio against frequency, identified and computed from each damping model (Figure 7 of the paper)."""
+    frequency, ratios = computed
+    curves = [
+        Series(label=name, style="line", x=thin_series(frequency), y=thin_series(100 * ratio))
+        for name, ratio in ratios.items()
     ]
     groups = [
         Mark(label=f"printed: group {limit.item}", axis="x", low=limit.lower, high=limit.upper)
@@ -93,7 +111,7 @@ def _draw_frequencies(case: Case, identified: IdentifiedDrops, bound: list[Mark]
         alternative="Damping ratio over frequency; the medians of the groups are in the table of quantities.",
         x_label="frequency [Hz]",
         y_label="damping ratio [%]",
-        series=[draw_damping_ratios("identified", identified.certain_modes), *computed],
+        series=[draw_damping_ratios("identified", identified.certain_modes), *curves],
         marks=[*bound, *groups],
     )
 

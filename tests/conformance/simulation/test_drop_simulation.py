@@ -53,9 +53,9 @@ def drop_case(tmp_path: Path) -> DropCase:
     def write(changes: dict[str, Any]) -> Path:
         folder = library_folder() / "vovan2015"
         shutil.copy(folder / "line.toml", tmp_path / "line.toml")
-        shutil.copy(folder / "mass-drop" / "updated.toml", tmp_path / "drop.toml")
+        shutil.copy(folder / "mass-drop" / "stand-in.toml", tmp_path / "drop.toml")
         edit_toml(tmp_path / "line.toml", {"geometry.spans": 2})
-        return edit_toml(tmp_path / "drop.toml", {"id": "mass-drop/updated", **SHORT_DROP, **changes})
+        return edit_toml(tmp_path / "drop.toml", {"id": "mass-drop/stand-in", **SHORT_DROP, **changes})
 
     return write
 
@@ -143,9 +143,12 @@ def test_single_drop_of_a_case_keeps_the_name_of_the_file(drop_case: DropCase, t
     ("arguments", "message"),
     [
         (("en50318-2002/250", "--out", "x.uff"), "expected one case with a [mass_drop] table, found none"),
-        (("vovan2015/mass-drop/*", "--out", "x.uff"), "found vovan2015/mass-drop/initial, vovan2015/mass-drop/printed"),
-        (("vovan2015/mass-drop/updated", "--out", "x.mat"), "format '.mat' cannot be written"),
-        (("vovan2015/mass-drop/updated", "--drop", "4", "--out", "x.uff"), "there is no drop 4"),
+        (
+            ("vovan2015/mass-drop/*", "--out", "x.uff"),
+            "found vovan2015/mass-drop/printed, vovan2015/mass-drop/stand-in",
+        ),
+        (("vovan2015/mass-drop/stand-in", "--out", "x.mat"), "format '.mat' cannot be written"),
+        (("vovan2015/mass-drop/stand-in", "--drop", "4", "--out", "x.uff"), "there is no drop 4"),
     ],
 )
 def test_command_reports_wrong_input(
@@ -189,7 +192,7 @@ def test_damping_table_and_damping_file_are_the_same(drop_case: DropCase) -> Non
 def test_studies_run_on_request_only() -> None:
     """They take minutes, and one is expected to fail: a run without a case must not meet them."""
     assert not any(case.id.startswith("vovan2015") for case in prepare_plan(Plan()).cases)
-    assert len(select_cases(["vovan2015/*"])) == 8
+    assert len(select_cases(["vovan2015/*"])) == 7
 
 
 def test_component_without_damping_in_the_model_keeps_that_of_the_line(drop_case: DropCase) -> None:

@@ -11,9 +11,10 @@ from pantocheck.conformance.results.outcome import Outcome, Skipped
 from pantocheck.conformance.studies.study_dispatch import ONLY_BUILTIN, run_study
 
 STUDIES = {
-    "vovan2015/mass-drop/updated": "mass_drop_study",
+    "vovan2015/mass-drop/stand-in": "mass_drop_study",
     "vovan2015/release-velocity": "release_velocity",
     "vovan2015/dropper-damping": "dropper_damping",
+    "vovan2015/dropper-oscillation": "dropper_oscillation",
     "vovan2015/steady-arm-damper": "steady_arm_damper",
 }
 """Studies that need the reference simulator: module by case."""
@@ -49,7 +50,7 @@ def test_other_systems_skip_studies_of_the_reference_simulator(name: str) -> Non
 @pytest.mark.parametrize(
     ("name", "kind"),
     [
-        ("vovan2015/mass-drop/updated", "command"),
+        ("vovan2015/mass-drop/stand-in", "command"),
         ("en50318-2002/250", "command"),
         ("en50318-2002/250", "builtin"),
     ],

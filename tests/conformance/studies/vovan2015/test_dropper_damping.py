@@ -11,7 +11,7 @@ from helpers.lines import simple_line
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.quantities.evaluation import LINE
-from pantocheck.conformance.studies.vovan2015.dropper_damping import find_transition, run_dropper_damping
+from pantocheck.conformance.studies.vovan2015.dropper_damping import compare_bands, find_transition, run_dropper_damping
 from pantocheck.model import Kind, Passage, Rayleigh, chain, discretise, simulate_passage
 from pantocheck.model.discretised_line import DiscretisedLine, keep_viscous_part, with_damping
 
@@ -40,9 +40,18 @@ def test_dropper_that_is_never_slack_has_no_transition() -> None:
         assert find_transition(COEFFICIENTS, np.zeros(COEFFICIENTS.size)) == {}
 
 
+def test_largest_change_of_a_band_counts_for_any_pantograph() -> None:
+    """By hand: 2 % of the rear in 5-20 Hz, 1 % of the front; other quantities and missing bands do not count."""
+    chosen = {1: {"rms_0_5_N": 10.1, "mean_force_N": 150.0}, 2: {"rms_5_20_N": 9.8, "rms_20_50_N": 5.0}, 0: {}}
+    least = {1: {"rms_0_5_N": 10.0, "mean_force_N": 100.0}, 2: {"rms_5_20_N": 10.0}}
+    assert_allclose(compare_bands(chosen, least)["dropper_force_change_pct"], 2.0)
+    assert compare_bands(chosen, {}) == {}
+
+
 def grade_force(force: RealArray) -> dict[str, str]:
     (case,) = select_cases(["vovan2015/dropper-damping"])
     rows = grade_findings(case, {LINE: find_transition(COEFFICIENTS, force)})
+    rows.pop(("dropper_force_change_pct", None))
     return {quantity.removeprefix("dropper_"): row.verdict for (quantity, _), row in rows.items()}
 
 
@@ -64,21 +73,21 @@ def test_dropper_that_never_locks_is_detected() -> None:
 def test_only_compensation_of_the_elastic_force_locks_a_dropper() -> None:
     (case,) = select_cases(["vovan2015/dropper-damping"])
     coarse = case.file.discretisation.model_copy(update={"element_m": 1.5, "time_step_s": 0.002})
-    study = case.file.study.model_copy(update={"coefficients_s": (1e-6, 3e-3, 1e-1), "x_m": 283.5})
+    study = case.file.study.model_copy(update={"coefficients_s": (1e-8, 3e-3, 1e-1), "x_m": 283.5})
     file = case.file.model_copy(
         update={"discretisation": coarse, "study": study, "evaluated_spans": (4, 5), "run_out_m": 0.0}
     )
     outcome = run_dropper_damping(replace(case, file=file), study)
     (chart,) = outcome.study.charts
     nothing, elastic = (series.y for series in chart.series)
-    # Without damping the laws are the same; the tolerance covers the effect of a coefficient of 1e-6 s.
-    assert_allclose(nothing[0], elastic[0], rtol=0.01)
+    # Without damping the laws are the same. A dropper slackens within a time step: 4 % at 2 ms, 2 % at 1 ms.
+    assert_allclose(nothing[0], elastic[0], rtol=0.05)
     assert nothing[-1] > nothing[0]
     assert elastic[-1] < 0.1 * elastic[0]
     assert outcome.study.findings[LINE]["dropper_locked_force_pct"] < 10
     assert outcome.record is not None
-    # The run of the record, and one of every coefficient under each law.
-    assert outcome.run.simulated_s == pytest.approx((1 + 2 * 3) * outcome.record.time[-1], rel=0.01)
+    # The run of the record, one with the smallest coefficient, and one of every coefficient under each law.
+    assert outcome.run.simulated_s == pytest.approx((2 + 2 * 3) * outcome.record.time[-1], rel=0.01)
 
 
 def test_motion_of_a_dropper_far_behind_the_train_is_known_until_the_end() -> None:

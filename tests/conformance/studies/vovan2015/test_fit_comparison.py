@@ -37,9 +37,20 @@ RESULTS = DampingResults.model_construct(coefficients=(), observability=OBSERVED
 @pytest.fixture
 def chart(monkeypatch: pytest.MonkeyPatch) -> Chart:
     monkeypatch.setattr(fit_comparison, "build_damping_results", lambda *_: RESULTS)
-    (case,) = select_cases(["vovan2015/mass-drop/updated"])
-    ((chart,),) = fit_comparison.build_fit_report(case, SimpleNamespace(modes=()))[1:]
+    (case,) = select_cases(["vovan2015/mass-drop/stand-in"])
+    (chart,) = fit_comparison.build_fit_report(case, SimpleNamespace(modes=())).charts
     return chart
+
+
+def test_observable_coefficients_are_counted_for_the_wires_and_for_the_rest() -> None:
+    rows = [row.model_copy(update={"observable": True}) for row in OBSERVED]
+    kinds = ("contact_wire", "messenger_wire", "dropper")
+    counted = [row.model_copy(update={"kind": kind}) for row, kind in zip(rows, kinds, strict=True)]
+    assert fit_comparison.count_observable(counted) == {
+        "observable_wire_coefficients": 2.0,
+        "observable_other_coefficients": 1.0,
+    }
+    assert set(fit_comparison.count_observable([]).values()) == {0.0}
 
 
 def test_well_determined_coefficient_with_a_small_share_is_not_observable(chart: Chart) -> None:

@@ -1,38 +1,62 @@
-"""Findings on the modes of the line: the updated damping models meet them, wrong models do not."""
+"""Findings on the modes of the line: the stand-in meets them, other damping models do not."""
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 
+import numpy as np
 import pytest
 
 from helpers.computed_modes import computed_modes, grade_findings
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.identification.mode import Mode
 from pantocheck.conformance.quantities.evaluation import LINE
+from pantocheck.conformance.results.criterion_format import Criterion
 from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.studies.vovan2015.group_findings import compute_group_findings
+from pantocheck.conformance.studies.vovan2015.group_findings import compare_reference, compute_group_findings
 from pantocheck.model import Catenary, Kind, Rayleigh
 
 LineChange = Callable[[Catenary], Catenary]
-CRITERIA = {
-    ("modes_in_group", 1),
-    ("mode_frequency_Hz", 1),
-    ("mode_frequency_Hz", 2),
+FREQUENCIES = {("modes_in_group", 1), ("mode_frequency_Hz", 1), ("mode_frequency_Hz", 2)}
+CRITERIA = FREQUENCIES | {
+    ("damping_ratio", 1),
+    ("damping_ratio", 3),
     ("largest_damping_ratio", None),
     ("damping_decrease_pct", None),
-    ("damping_rise_pct", None),
+    ("largest_damping_decrease_pct", None),
+    ("damping_variation_pct", None),
+    ("reference_over_identified_damping", 1),
+    ("reference_over_identified_damping", 6),
 }
+HIGHEST = 6.6
+"""Between the seventh and the eighth group [Hz]."""
 
 
-def failed_criteria(
-    model: str, change: LineChange = lambda line: line, highest: float = 6.0
-) -> set[tuple[str, int | None]]:
-    (case,) = select_cases([f"vovan2015/mass-drop/{model}"])
-    modes = computed_modes(change(build_catenary(case.line)), 6, highest)
-    rows = grade_findings(case, {LINE: compute_group_findings(modes)})
+@cache
+def find_reference() -> tuple[RealArray, RealArray]:
+    """Frequencies [Hz] and damping ratios of the reference model."""
+    (case,) = select_cases(["vovan2015/mass-drop/stand-in"])
+    model = build_catenary(case.with_damping("initial", case.dampings["initial"]).line)
+    modes = computed_modes(model, 6, HIGHEST)
+    return np.array([mode.frequency_Hz for mode in modes]), np.array([mode.damping_ratio for mode in modes])
+
+
+def grade_line(line: Catenary, highest: float = HIGHEST) -> dict[tuple[str, int | None], Criterion]:
+    """Criteria of the stand-in for the modes of a line, as an exact identification would find them."""
+    (case,) = select_cases(["vovan2015/mass-drop/stand-in"])
+    modes = computed_modes(line, 6, highest)
+    values = compute_group_findings(modes)
+    values["reference_over_identified_damping"] = compare_reference(modes, *find_reference())
+    return grade_findings(case, {LINE: values})
+
+
+def failed_criteria(change: LineChange = lambda line: line, highest: float = HIGHEST) -> set[tuple[str, int | None]]:
+    (case,) = select_cases(["vovan2015/mass-drop/stand-in"])
+    rows = grade_line(change(build_catenary(case.line)), highest)
     assert set(rows) == CRITERIA
     assert all(row.margin is not None or row.verdict == "skip" for row in rows.values())
-    return {key for key, row in rows.items() if row.verdict == "fail"}
+    return {key for key, row in rows.items() if row.finding.outcome == "not_reproduced"}
 
 
 @pytest.mark.parametrize(
@@ -80,13 +104,43 @@ def build_mode(frequency: float, damping: float, group: int) -> Mode:
     )
 
 
-@pytest.mark.parametrize("model", ["printed", "updated", "updated-modal"])
-def test_fitted_models_meet_every_finding(model: str) -> None:
-    assert failed_criteria(model) == set()
+def test_group_findings_of_a_strong_and_a_weak_step() -> None:
+    """Steps of 20 % and 40 %; later groups within 25 % of the third, above and below."""
+    damping = (1.0, 0.8, 0.48, 0.6, 0.36)
+    findings = compute_group_findings([build_mode(float(n), 0.01 * z, n) for n, z in enumerate(damping, 1)])
+    assert findings["damping_decrease_pct"] == pytest.approx(20.0)
+    assert findings["largest_damping_decrease_pct"] == pytest.approx(40.0)
+    assert findings["damping_variation_pct"] == pytest.approx(25.0)
 
 
-def test_damping_of_the_initial_model_rises_instead_of_falling() -> None:
-    assert failed_criteria("initial") == {("damping_decrease_pct", None), ("damping_rise_pct", None)}
+def test_reference_is_compared_at_the_frequency_of_each_mode() -> None:
+    """A reference of 1 % per Hz: 1 % over 2 % in group 1; in group 2, 1.9, 2.0 and 2.1 % over 1 %; none in group 4."""
+    modes = [build_mode(1.0, 0.02, 1), *(build_mode(f, 0.01, 2) for f in (1.9, 2.0, 2.1)), build_mode(4.0, 0.01, 4)]
+    modes += [modes[0].model_copy(update={"lateral": True, "damping_ratio": 1.0})]
+    assert compare_reference(modes, np.array([0.0, 10.0]), np.array([0.0, 0.1])) == pytest.approx((0.5, 2.0))
+
+
+def test_stand_in_meets_every_imposed_finding_and_only_those_that_are_imposed_count_as_such() -> None:
+    (case,) = select_cases(["vovan2015/mass-drop/stand-in"])
+    rows = grade_line(build_catenary(case.line))
+    assert {row.finding.outcome for row in rows.values()} == {"imposed", "reproduced"}
+    assert {key for key, row in rows.items() if row.finding.outcome == "reproduced"} == {("mode_frequency_Hz", 2)}
+
+
+def test_example_coefficients_of_figure_6_contradict_the_paper_as_a_measured_line() -> None:
+    """They have 0.71, 0.39 and 0.29 % in the first groups: the paper calls them arbitrary.
+
+    Four findings fail: below 0.5 %, slight decrease, no variation after it, and a reference that is slightly too small.
+    """
+    (printed,) = select_cases(["vovan2015/mass-drop/printed"])
+    rows = grade_line(build_catenary(printed.line))
+    failed = {key for key, row in rows.items() if row.finding.outcome == "not_reproduced"}
+    assert failed == {
+        ("damping_ratio", 1),
+        ("largest_damping_decrease_pct", None),
+        ("damping_variation_pct", None),
+        ("reference_over_identified_damping", 1),
+    }
 
 
 def with_tension(factor: float) -> LineChange:
@@ -98,46 +152,47 @@ def with_tension(factor: float) -> LineChange:
 
 def with_rayleigh(mass: float, stiffness: float) -> LineChange:
     damping = dict.fromkeys((Kind.CONTACT_WIRE, Kind.MESSENGER_WIRE), Rayleigh(mass, stiffness))
-    return lambda line: replace(line, damping=damping)
+    return lambda line: replace(line, damping=damping, modal_damping=())
 
 
 @pytest.mark.parametrize(
     ("change", "expected"),
     [
-        (with_tension(1.3), {("mode_frequency_Hz", 1)}),  # 0.87 Hz becomes 1.0 Hz
-        (with_rayleigh(0.15, 1e-4), {("largest_damping_ratio", None)}),  # 1.5 % at 0.8 Hz
+        (with_rayleigh(0.15, 1e-4), {("largest_damping_ratio", None), ("damping_ratio", 1)}),  # 1.5 % at 0.8 Hz
         (
-            with_rayleigh(0.001, 1e-4),
-            {("damping_decrease_pct", None), ("damping_rise_pct", None)},
-        ),  # stiffness damping alone
-        (with_rayleigh(0.05, 3e-4), {("damping_rise_pct", None)}),
+            with_rayleigh(0.001, 1e-4),  # stiffness damping alone
+            {("damping_decrease_pct", None), ("damping_variation_pct", None), ("reference_over_identified_damping", 1)},
+        ),
+        (
+            with_rayleigh(1e-3, 1e-6),  # 0.004 % at 2.6 Hz
+            {("damping_ratio", 3), ("reference_over_identified_damping", 1)},
+        ),
+        (with_rayleigh(0.05, 3e-4), {("reference_over_identified_damping", 6)}),
     ],
 )
-def test_wrong_model_fails_the_criterion_of_its_fault(
+def test_wrong_damping_fails_the_findings_of_its_fault(
     change: LineChange, expected: set[tuple[str, int | None]]
 ) -> None:
-    failed = failed_criteria("updated", change)
+    failed = failed_criteria(change)
     assert expected <= failed
-    # Each fault is small enough that other criteria still pass.
-    assert failed - expected <= {("damping_decrease_pct", None)}
+    assert not failed & FREQUENCIES
 
 
-def test_wrong_frequency_of_the_second_group_is_detected() -> None:
-    """A tension four times too high raises 1.75 Hz to 3.5 Hz."""
-    assert {("mode_frequency_Hz", 1), ("mode_frequency_Hz", 2)} <= failed_criteria(
-        "updated", with_tension(4.0), highest=12.0
-    )
+def test_wrong_frequencies_are_detected() -> None:
+    """A tension 1.3 times too high raises 0.87 Hz to 1.0 Hz; one four times too high 1.75 Hz to 3.5 Hz."""
+    assert ("mode_frequency_Hz", 1) in failed_criteria(with_tension(1.3))
+    assert {("mode_frequency_Hz", 1), ("mode_frequency_Hz", 2)} <= failed_criteria(with_tension(4.0), highest=13.0)
 
 
 def test_missing_mode_of_the_first_group_is_detected() -> None:
-    (case,) = select_cases(["vovan2015/mass-drop/updated"])
-    modes = computed_modes(build_catenary(case.line), 6, 6.0)[1:]
+    (case,) = select_cases(["vovan2015/mass-drop/stand-in"])
+    modes = computed_modes(build_catenary(case.line), 6, HIGHEST)[1:]
     rows = grade_findings(case, {LINE: compute_group_findings(modes)})
     assert rows["modes_in_group", 1].verdict == "fail"
 
 
 def test_damping_against_group_is_skipped_without_enough_groups() -> None:
-    (case,) = select_cases(["vovan2015/mass-drop/updated"])
-    rows = grade_findings(case, {LINE: compute_group_findings(computed_modes(build_catenary(case.line), 6, 2.0))})
-    assert rows["damping_decrease_pct", None].verdict == "skip"
-    assert rows["damping_rise_pct", None].verdict == "skip"
+    (case,) = select_cases(["vovan2015/mass-drop/stand-in"])
+    rows = grade_line(build_catenary(case.line), 2.0)
+    for quantity in ("damping_decrease_pct", "largest_damping_decrease_pct", "damping_variation_pct"):
+        assert rows[quantity, None].verdict == "skip"

@@ -1,0 +1,51 @@
+"""Page on the damping study: its table holds every finding of the library, with the outcomes of its numbers."""
+
+from pathlib import Path
+
+import pytest
+
+from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.grading.verdicts import judge
+from pantocheck.conformance.quantities.limit_text import format_bounds
+from pantocheck.conformance.results.finding_format import judge_finding
+
+PAGE = (Path(__file__).parents[2] / "docs" / "damping-study.md").read_text(encoding="utf-8")
+Row = dict[str, str]
+
+
+def read_rows() -> list[Row]:
+    table = PAGE.split("<!-- findings", 1)[1].split("<!-- end", 1)[0]
+    lines = [line.strip("| ").split(" | ") for line in table.splitlines() if line.startswith("|")]
+    return [dict(zip(lines[0], line, strict=True)) for line in lines[2:]]
+
+
+def list_limits() -> list[Limit]:
+    return [limit for case in select_cases(["vovan2015/*"]) for limit in case.limits if limit.finding is not None]
+
+
+def describe(limit: Limit) -> tuple[str, str, str, str, str]:
+    finding = limit.finding
+    bounds = format_bounds(limit.lower, limit.upper)
+    return finding.section, finding.sentence, finding.printed, bounds, finding.role.replace("_", " ")
+
+
+def test_table_holds_every_finding_of_the_library_once() -> None:
+    rows = [tuple(row[name] for name in ("section", "finding", "printed", "bounds", "role")) for row in read_rows()]
+    assert sorted(rows) == sorted(map(describe, list_limits()))
+    assert len({row[1] for row in rows}) == len(rows)
+
+
+@pytest.mark.parametrize("row", read_rows(), ids=lambda row: row["finding"])
+def test_outcome_follows_from_the_printed_value(row: Row) -> None:
+    """A value is rounded to three digits: no finding of the study is so close to its bound."""
+    (limit,) = (limit for limit in list_limits() if limit.finding.sentence == row["finding"])
+    value = float(row["computed"].split()[0])
+    outcome = judge_finding(limit.finding.role, judge(value, limit.lower, limit.upper))
+    assert row["outcome"] == outcome.replace("_", " ")
+
+
+def test_counts_are_those_of_the_table() -> None:
+    outcomes = [row["outcome"] for row in read_rows()]
+    numbers = ", ".join(f"{outcomes.count(name)} {name}" for name in ("imposed", "reproduced", "not reproduced"))
+    assert f"Findings: {numbers}." in PAGE
