@@ -5,7 +5,15 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from pantocheck.conformance.reports.figures.figure_style import FULL, GREY, INK, SHADES, add_legend, render_svg
+from pantocheck.conformance.reports.figures.figure_style import (
+    FULL,
+    GREY,
+    INK,
+    SHADES,
+    add_legend,
+    label_decades,
+    render_svg,
+)
 
 
 @render_svg
@@ -24,6 +32,7 @@ def draw_observability(rows: list[dict[str, Any]], thresholds: dict[str, float])
     right.barh(places, [row["plausible_over_std"] for row in rows], color=fills, edgecolor=INK, linewidth=0.7)
     right.axvline(thresholds["plausible_over_std"], color=INK, linestyle="--", linewidth=0.9)
     right.set_xscale("symlog", linthresh=0.1)
+    label_decades(right.xaxis)
     right.set_xlim(left=0)
     right.set_xlabel("plausible value / standard deviation [-]")
     return figure

@@ -51,7 +51,7 @@ def _draw_points(axes: Axes, supports: RealArray, points: list[dict[str, Any]], 
         axes.plot(x, [height - 0.1 * (marker == "v")], marker, color=INK, markersize=6 if marker == "v" else 4)
         side = "bottom" if offset > 0 else "top"
         ground = {"facecolor": "white", "edgecolor": "none", "pad": 0.4}
-        axes.text(x[0], height + offset, point["label"], ha="center", va=side, size=7, bbox=ground, parse_math=False)
+        axes.text(x[0], height + offset, point["label"], ha="center", va=side, size=7, bbox=ground)
 
 
 def _messenger_height(x: RealArray, supports: RealArray) -> RealArray:

@@ -9,8 +9,10 @@ from typing import Any, ParamSpec, TypeVar
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.reports.formats.reproducibility import read_source_date
@@ -87,13 +89,21 @@ def add_legend(axes: Axes, columns: int = 5) -> None:
 
 
 def use_decades(axes: Axes) -> None:
-    """A logarithmic vertical axis with one tick per decade.
-
-    Its labels are plain letters, and it has no ticks between decades: both take most of the time of a figure.
-    """
+    """A logarithmic vertical axis with one tick per decade: ticks between decades take most of the time of a figure."""
     axes.set_yscale("log")
-    axes.yaxis.set_major_formatter(lambda value, _: "10" + f"{round(np.log10(value)):d}".translate(SUPERSCRIPTS))
+    label_decades(axes.yaxis)
     axes.minorticks_off()
+
+
+def label_decades(axis: Axis) -> None:
+    """Label the decades of a logarithmic axis with plain letters: the style reads no text as a formula."""
+    axis.set_major_formatter(lambda value, _: format_decade(value))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def format_decade(value: float) -> str:
+    """A power of ten as text, such as `10⁻³`; 0 for zero."""
+    return "0" if value == 0 else "10" + f"{round(np.log10(value)):d}".translate(SUPERSCRIPTS)
 
 
 def add_box(axes: Axes, values: RealArray, place: float) -> None:

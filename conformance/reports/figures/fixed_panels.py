@@ -2,13 +2,8 @@
 
 from dataclasses import dataclass
 
-import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.axis import Axis
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
-
-_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 @dataclass(frozen=True)
@@ -76,16 +71,3 @@ def add_panel(width: float, height: float) -> tuple[Figure, Axes]:
     """Add one panel of a height to a new figure of a width [in]."""
     figure, panels = add_panels(PanelGrid(width, height))
     return figure, panels[0][0]
-
-
-def use_powers_of_ten(axis: Axis) -> None:
-    """Give a logarithmic axis ticks at powers of ten as plain text; mathematical text takes ten times as long."""
-    axis.set_major_locator(LogLocator(numticks=6))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: format_power_of_ten(value)))
-    axis.set_minor_locator(NullLocator())
-
-
-def format_power_of_ten(value: float) -> str:
-    """A power of ten as text: `10⁻³`, and 0.1, 1 and 10 as they are."""
-    exponent = round(np.log10(value))
-    return f"{value:g}" if abs(exponent) <= 1 else f"10{str(exponent).translate(_SUPERSCRIPTS)}"

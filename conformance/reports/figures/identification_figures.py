@@ -1,8 +1,9 @@
-"""Figures of an identification: repeats, spectra, frequency responses and damping ratios."""
+"""Figures of an identification: spectra, frequency responses and damping ratios."""
 
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from pantocheck.conformance.reports.figures.figure_style import (
@@ -15,15 +16,14 @@ from pantocheck.conformance.reports.figures.figure_style import (
     render_svg,
     use_decades,
 )
+from pantocheck.conformance.reports.figures.fixed_panels import PanelGrid, add_panel, add_panels
 
 
 @render_svg
 def draw_spectra(data: dict[str, Any], unit: str) -> Figure:
     """Spectrum of every sensor with the identified fit, its residual and the frequencies of the modes."""
-    n = len(data["channels"])
-    figure = Figure(figsize=(FULL, 0.6 + 1.6 * n))
-    panels = np.atleast_1d(figure.subplots(n, 1, sharex=True))
-    for axes, channel, measured, fitted, residual in zip(
+    figure, panels = add_panels(PanelGrid(FULL, 1.25, rows=len(data["channels"]), top=0.35))
+    for (axes,), channel, measured, fitted, residual in zip(
         panels, data["channels"], data["measured"], data["fitted"], data["residual"], strict=True
     ):
         axes.plot(data["frequency_Hz"], measured, color=SHADES[3], linewidth=2.4, label="measured")
@@ -33,39 +33,48 @@ def draw_spectra(data: dict[str, Any], unit: str) -> Figure:
         ticks, top = np.ones(len(data["poles_Hz"])), axes.get_xaxis_transform()
         axes.plot(data["poles_Hz"], ticks, "|", color=INK, markersize=6, transform=top, clip_on=False)
         axes.set_ylabel(f"{channel} [{unit} s]")
-    panels[-1].set_xlabel("frequency [Hz]; ticks: identified modes")
-    add_legend(panels[0])
+        axes.tick_params(labelbottom=axes is panels[-1][0])
+    panels[-1][0].set_xlabel("frequency [Hz]; ticks: identified modes")
+    add_legend(panels[0][0])
     return figure
 
 
 @render_svg
 def draw_responses(data: dict[str, Any]) -> Figure:
     """Accelerance of every sensor: magnitude and phase, measured and of the identified modes."""
-    n = len(data["channels"])
-    figure = Figure(figsize=(FULL, 0.6 + 2.2 * n))
-    panels = np.atleast_2d(figure.subplots(2 * n, 1, sharex=True, height_ratios=(2, 1) * n)).reshape(n, 2)
-    for (upper, lower), channel, measured, identified in zip(
+    grid = PanelGrid(FULL, 1.85, rows=len(data["channels"]), left=0.8, top=0.25, between_rows=0.12)
+    figure, panels = add_panels(grid)
+    for (lower,), channel, measured, identified in zip(
         panels, data["channels"], data["measured"], data["identified"], strict=True
     ):
+        upper = _split_panel(figure, lower)
         upper.plot(data["frequency_Hz"], measured["abs"], color=SHADES[3], linewidth=2.4, label="measured")
         upper.plot(data["frequency_Hz"], identified["abs"], color=INK, linewidth=0.8, label="identified")
         use_decades(upper)
         upper.set_ylabel(f"{channel}\n[m/s²/N]")
+        upper.tick_params(labelbottom=False)
         lower.plot(data["frequency_Hz"], np.degrees(measured["phase_rad"]), ".", color=SHADES[3], markersize=2.5)
         lower.plot(data["frequency_Hz"], np.degrees(identified["phase_rad"]), color=INK, linewidth=0.6)
         lower.set_ylabel("phase [°]")
         lower.set_yticks([-180, 0, 180])
-    panels[-1][1].set_xlabel("frequency [Hz]")
-    add_legend(panels[0][0])
+        lower.tick_params(labelbottom=lower is panels[-1][0])
+    panels[-1][0].set_xlabel("frequency [Hz]")
+    add_legend(figure.axes[grid.rows])
     return figure
+
+
+def _split_panel(figure: Figure, axes: Axes) -> Axes:
+    """Leave the lower third of a panel to its axes, and add new axes above it."""
+    left, bottom, width, height = axes.get_position().bounds
+    axes.set_position((left, bottom, width, 0.3 * height))
+    return figure.add_axes((left, bottom + 0.37 * height, width, 0.63 * height))
 
 
 @render_svg
 def draw_boxes(modes: list[dict[str, Any]]) -> Figure:
     """Damping ratios per group of span modes: quartiles, median, every mode, outliers as crosses."""
     groups = sorted({mode["group"] for mode in modes if mode["group"] is not None})
-    figure = Figure(figsize=(FULL, 2.8))
-    axes = figure.subplots()
+    figure, axes = add_panel(FULL, 2.2)
     for number in groups:
         members = [mode for mode in modes if mode["group"] == number and mode["certain"] and not mode["lateral"]]
         if members:
@@ -84,8 +93,7 @@ def draw_boxes(modes: list[dict[str, Any]]) -> Figure:
 @render_svg
 def draw_damping(modes: list[dict[str, Any]]) -> Figure:
     """Damping ratio over frequency with 95 % intervals; open markers: uncertain modes."""
-    figure = Figure(figsize=(FULL, 2.8))
-    axes = figure.subplots()
+    figure, axes = add_panel(FULL, 2.2)
     kinds = (
         ("certain", "o", INK, [mode for mode in modes if mode["certain"] and not mode["lateral"]]),
         ("uncertain", "o", "white", [mode for mode in modes if not mode["certain"] and not mode["lateral"]]),

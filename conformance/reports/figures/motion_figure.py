@@ -28,7 +28,5 @@ def draw_motion(runs: list[dict[str, Any]]) -> Figure:
         row[0].set_ylabel(label)
     for axes in panels[-1]:
         axes.set_xlabel("time after the release [s]")
-    legend = panels[0][0].legend(loc="lower left", bbox_to_anchor=(0, 1.02), ncols=5, borderaxespad=0.2)
-    for text in legend.get_texts():
-        text.set_parse_math(False)
+    panels[0][0].legend(loc="lower left", bbox_to_anchor=(0, 1.02), ncols=5, borderaxespad=0.2)
     return figure

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from pantocheck.conformance.reports.figures.figure_style import FULL, INK, SHADES, render_svg
-from pantocheck.conformance.reports.figures.fixed_panels import PanelGrid, add_panels, use_powers_of_ten
+from pantocheck.conformance.reports.figures.figure_style import FULL, INK, SHADES, render_svg, use_decades
+from pantocheck.conformance.reports.figures.fixed_panels import PanelGrid, add_panels
 
 
 @render_svg
@@ -27,14 +27,13 @@ def draw_response_zoom(data: dict[str, Any], modes_Hz: list[float], zoom: tuple[
     ):
         axes.plot(frequency[shown], np.array(measured["abs"])[shown], color=SHADES[3], linewidth=2.4, label="measured")
         axes.plot(frequency[shown], np.array(identified["abs"])[shown], color=INK, linewidth=0.8, label="identified")
-        axes.set_yscale("log")
-        use_powers_of_ten(axes.yaxis)
+        use_decades(axes)
         axes.plot(
             ticks, np.ones(len(ticks)), "|", color=INK, markersize=6, transform=axes.get_xaxis_transform(),
             clip_on=False,
         )  # fmt: skip
         axes.set_xlim(low, high)
-        axes.set_ylabel(f"{channel} [m/s²/N]", parse_math=False)
+        axes.set_ylabel(f"{channel} [m/s²/N]")
     for axes in flat[: -len(panels[-1])]:
         axes.tick_params(labelbottom=False)
     for axes in panels[-1]:

@@ -17,6 +17,7 @@ from pantocheck.conformance.reports.figures.figure_style import (
     SHADES,
     add_box,
     add_legend,
+    label_decades,
     render_svg,
 )
 
@@ -44,6 +45,9 @@ def draw_chart(data: dict[str, Any], y_range: tuple[float, float] | None = None)
     figure = Figure(figsize=(FULL, 2.9) if data["wide"] else (HALF, 2.4))
     axes = figure.subplots()
     axes.set(xscale=data["x_scale"], yscale=data["y_scale"], xlabel=data["x_label"], ylabel=data["y_label"])
+    for axis, scale in ((axes.xaxis, data["x_scale"]), (axes.yaxis, data["y_scale"])):
+        if scale == "log":
+            label_decades(axis)
     bars = [series for series in data["series"] if series["style"] == "bars"]
     others = [series for series in data["series"] if series["style"] != "bars"]
     for number, series in enumerate(bars):

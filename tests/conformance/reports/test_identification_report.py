@@ -14,8 +14,9 @@ from pantocheck.conformance.reports.document import Block, Document, Paragraph, 
 from pantocheck.conformance.reports.document import Figure as PageFigure
 from pantocheck.conformance.reports.document import Figures as PageFigures
 from pantocheck.conformance.reports.figures.drop_layout_figure import draw_drop_layout
-from pantocheck.conformance.reports.figures.fixed_panels import format_power_of_ten
+from pantocheck.conformance.reports.figures.figure_style import format_decade
 from pantocheck.conformance.reports.figures.half_power_figure import draw_half_power
+from pantocheck.conformance.reports.figures.identification_figures import draw_responses, draw_spectra
 from pantocheck.conformance.reports.figures.motion_figure import draw_motion
 from pantocheck.conformance.reports.figures.order_figure import draw_order_search
 from pantocheck.conformance.reports.figures.response_zoom import draw_response_zoom
@@ -238,15 +239,17 @@ def test_layout_is_left_out_if_the_spans_are_unknown(line: dict[str, Any]) -> No
 
 
 def test_names_in_figures_are_not_read_as_mathematics(line: dict[str, Any]) -> None:
-    """A channel named $S$ keeps its name; a lone formula such as $_$ would be an error."""
+    """Names of channels and records may hold dollar signs; as a formula, $_$ would be an error."""
     sensors = [{"label": "$_$", "wire": "CW", "position_m": 30.0}]
     assert draw_drop_layout([60.0], sensors, []).startswith("<svg")
     runs = [run | {"name": "$_$"} for run in line["overlays"][0]["runs"]]
     assert draw_motion(runs).startswith("<svg")
-    data = line["frequency_responses"][0] | {"channels": ["$_$", "$^$"]}
-    assert draw_response_zoom(data, [0.9], (0.8, 2.0)).startswith("<svg")
+    names = {"channels": ["$_$", "$^$"]}
+    assert draw_response_zoom(line["frequency_responses"][0] | names, [0.9], (0.8, 2.0)).startswith("<svg")
+    assert draw_responses(line["frequency_responses"][0] | names).startswith("<svg")
+    assert draw_spectra(line["spectra"][0] | names, "m/s²").startswith("<svg")
 
 
-@pytest.mark.parametrize(("value", "text"), [(1e-3, "10⁻³"), (0.1, "0.1"), (1.0, "1"), (10.0, "10"), (1e12, "10¹²")])
+@pytest.mark.parametrize(("value", "text"), [(1e-3, "10⁻³"), (1.0, "10⁰"), (1e12, "10¹²"), (0.0, "0")])
 def test_powers_of_ten_are_plain_text(value: float, text: str) -> None:
-    assert format_power_of_ten(value) == text
+    assert format_decade(value) == text
