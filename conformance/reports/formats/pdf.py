@@ -75,4 +75,6 @@ def _glyphs() -> frozenset[int]:
 
 def _replace_missing_glyphs(text: str) -> str:
     """A text with every character that has no glyph replaced by U+FFFD."""
+    if text.isascii():  # most texts, and all figures
+        return text
     return "".join(c if c.isascii() or ord(c) in _glyphs() else "\N{REPLACEMENT CHARACTER}" for c in text)
