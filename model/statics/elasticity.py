@@ -9,7 +9,8 @@ from pantocheck.model.fem.contact_wires import touched_rows, touched_wires
 from pantocheck.model.fem.mesh import find_element
 from pantocheck.model.fem.residual_flexibility import residual_flexibility
 from pantocheck.model.irregularity_spline import NO_IRREGULARITY, irregularity_height
-from pantocheck.model.statics.static_solver import point_product, static_solver
+from pantocheck.model.kept_results import keep_with_line
+from pantocheck.model.statics.static_solver import PointResponse, point_product, static_solver
 
 
 def static_uplift(line: DiscretisedLine, position: Array, force: float) -> Array:
@@ -30,13 +31,16 @@ def static_uplift(line: DiscretisedLine, position: Array, force: float) -> Array
         Uplift at the force, mean over these contact wires [m].
     """
     statics = static_solver(line)
-    uplift = np.empty(len(position))
-    for i, x in enumerate(position):
-        rows = touched_rows(line, float(x))
-        shape = np.mean([point_load(line, row, float(x)) for row in rows], axis=0)
-        residual = force / len(rows) * _mean_residual(line, rows, float(x))
-        uplift[i] = statics.deflection_along(shape, force) + residual
-    return uplift
+    points = [_point_response(line, float(x)) for x in position]
+    return np.array([statics.deflection_at(point, force) + force * residual for point, residual in points])
+
+
+@keep_with_line
+def _point_response(line: DiscretisedLine, position: float) -> tuple[PointResponse, float]:
+    """Response to a unit force that the touched contact wires share, and their residual flexibility [m/N]."""
+    rows = touched_rows(line, position)
+    shape = np.mean([point_load(line, row, position) for row in rows], axis=0)
+    return static_solver(line).point_response(shape), _mean_residual(line, rows, position) / len(rows)
 
 
 def rest_height(line: DiscretisedLine, position: Array) -> Array:

@@ -1,6 +1,7 @@
 """Static deflection under loads, with slack droppers."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
@@ -36,6 +37,21 @@ class Deflection:
     def slack(self) -> NDArray[np.bool_]:
         """Whether each connector carries no force, (connectors,)."""
         return np.equal(self.tension, 0.0)
+
+
+class PointResponse(NamedTuple):
+    """Response of a line with taut droppers to a unit force.
+
+    Parameters
+    ----------
+    flexibility : float
+        Deflection at the force [m/N].
+    elongation : (connectors,) ndarray
+        Elongation of each connector [m/N].
+    """
+
+    flexibility: float
+    elongation: Array
 
 
 class StaticSolver:
@@ -83,13 +99,24 @@ class StaticSolver:
         full[self._order] = taut
         return Deflection(full.reshape(self._shape), tension)
 
-    def deflection_along(self, direction: Array, force: float) -> float:
-        """Compute the deflection in a direction under a force in this direction.
+    def point_response(self, direction: Array) -> PointResponse:
+        """Compute the response to a unit force with taut droppers.
 
         Parameters
         ----------
         direction : (unknowns,) ndarray
-            Nodal forces of a unit force, in global order; zero but for a few unknowns.
+            Nodal forces of the unit force, in global order; zero but for a few unknowns.
+        """
+        unit = self._stiffness.solve(direction)
+        return PointResponse(point_product(direction, unit), self._direction.T @ unit)
+
+    def deflection_at(self, point: PointResponse, force: float) -> float:
+        """Compute the deflection at a point, in the direction of a force there; droppers may slacken.
+
+        Parameters
+        ----------
+        point : PointResponse
+            Response to a unit force.
         force : float
             Size of the force [N].
 
@@ -103,11 +130,9 @@ class StaticSolver:
         NoEquilibrium
             The set of slack droppers does not settle.
         """
-        unit = self._stiffness.solve(direction)
-        elongation = self._direction.T @ unit
-        slack, release, _ = self._release_slack(force * elongation)
+        slack, release, _ = self._release_slack(force * point.elongation)
         # A unit force elongates a dropper as much as a unit elongating force of the dropper moves the unit force.
-        return float(force * point_product(direction, unit) + elongation[slack] @ release)
+        return float(force * point.flexibility + point.elongation[slack] @ release)
 
     def _release_slack(self, elongation: Array) -> tuple[Indices, Array, Array]:
         """Indices of slack droppers, the forces that release them, and all tensions, from elongations of taut ones."""

@@ -94,4 +94,5 @@ def test_deflection_along_a_load_is_its_product_with_the_displacements(force: fl
     """With taut droppers and with slack ones, by the reciprocity of the releasing forces; to rounding."""
     direction = point_load(LINE, 0, 90.0)
     displacement = STATICS.deflection(force * direction).displacement.ravel()[bandwidth_order(LINE)]
-    assert STATICS.deflection_along(direction, force) == pytest.approx(direction @ displacement, rel=1e-12)
+    point = STATICS.point_response(direction)
+    assert STATICS.deflection_at(point, force) == pytest.approx(direction @ displacement, rel=1e-12)
