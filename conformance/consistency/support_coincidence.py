@@ -12,7 +12,6 @@ head may touch the other one.
 """
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
@@ -123,13 +122,13 @@ def _find_hold(case: Case, signals: RecordSignals, support: float, uplift: RealA
     distance = record.position - support
     behind = (distance >= 0) & (distance <= HELD_SPANS * case.line.geometry.shortest_span)
     moving = np.any(behind, axis=0, keepdims=True)[0]
-    edges = [0, *(np.flatnonzero(np.diff(uplift)) + 1), uplift.size]
-    for first, last in pairwise(edges):
-        held = np.count_nonzero(moving[first:last]) / record.rate
-        if held >= LONGEST_HOLD_S:
-            text = f"the uplift at {support:g} m stays at {1e3 * uplift[first]:.3g} mm for {held:.2g} s"
-            return Finding("doubt", f"{text} while a pantograph moves away from it")
-    return None
+    starts = np.append(0, np.flatnonzero(np.diff(uplift)) + 1)
+    held = np.add.reduceat(moving.astype(np.int64), starts) / record.rate
+    holds = np.flatnonzero(held >= LONGEST_HOLD_S)
+    if holds.size == 0:
+        return None
+    text = f"the uplift at {support:g} m stays at {1e3 * uplift[starts[holds[0]]]:.3g} mm for {held[holds[0]]:.2g} s"
+    return Finding("doubt", f"{text} while a pantograph moves away from it")
 
 
 def _compare_supports(number: int, passages: _Passages) -> Finding | None:
