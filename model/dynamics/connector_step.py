@@ -36,7 +36,7 @@ class NodeArrays(NamedTuple):
     column : (J, 2, n) ndarray
         Columns of the inverse around the nodes: deflection and slope [1/kg, 1/(kg m)].
     column_start : (J,) int ndarray
-        Station of the first value of each column, a multiple of the size of a vector.
+        Station of the first value of each column; it can lie before the line.
     first_end : (J + 1,) int ndarray
         First end of a connector at each node, and L.
     connector : (L,) int ndarray
@@ -97,8 +97,8 @@ def build_connector_arrays(connectors: Connectors, factor: Factor, layout: Layou
     end_coefficient = np.zeros(shape)
     end_node[number, end], end_index[number, end], end_coefficient[number, end] = node, place[node], coefficient
     node_row, node_station = place // layout.width, place % layout.width
-    column_start = (node_station - half_width) // LANES * LANES
-    column = align(np.zeros((place.size, 2, 2 * half_width + LANES)))
+    column_start = node_station - half_width
+    column = align(np.zeros((place.size, 2, 2 * half_width)))
     inverse_columns(factor, node_row, node_station, column_start, column)
     order = np.argsort(node, kind="stable")
     nodes = NodeArrays(

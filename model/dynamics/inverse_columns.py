@@ -15,38 +15,41 @@ NEGLIGIBLE_SHARE = 1e-12
 """A column is cut where it has decayed below this share of its peak: a hundredth of the tolerance of the forces."""
 
 
-@njit(cache=True)
-def _column_tail(factor: Factor, row: int, station: int, slope: int, half_width: int) -> float:
-    """Size of a column of the inverse at a cut on either side, relative to its peak.
-
-    The column is that of a unit force (slope 0) or a unit moment (slope 1) at a station.
-    """
-    first, last = max(0, station - half_width), min(factor.link.shape[1], station + half_width) - 1
-    column = np.zeros((2, last + 1 - first))
-    column[slope, station - first] = 1.0
-    solve_stations(factor, row, first, last, column[0], column[1], -first)
-    size = np.abs(column[0]) + np.abs(column[1])
-    tail = 0.0
-    if first == station - half_width:
-        tail = size[0]
-    if last == station + half_width - 1:
-        tail = max(tail, size[-1])
-    peak = size.max()
-    return tail / peak if peak > 0 else 0.0
-
-
 def column_half_width(factor: Factor, loads: list[tuple[int, int]]) -> int:
     """Number of stations to keep on either side of a load: the rest of its column is negligible for every load.
 
     A load is a row and a station.
     """
+    rows, stations = np.array(loads, dtype=np.int64).reshape(-1, 2).T.copy()
     width = 8
-    while width < factor.link.shape[1]:
-        tails = (_column_tail(factor, row, s, slope, width) for row, s in loads for slope in (0, 1))
-        if all(tail < NEGLIGIBLE_SHARE for tail in tails):
-            break
+    while width < factor.link.shape[1] and _largest_tail(factor, rows, stations, width) >= NEGLIGIBLE_SHARE:
         width += 8  # whole vectors
     return width
+
+
+@njit(cache=True)
+def _largest_tail(factor: Factor, rows: Indices, stations: Indices, half_width: int) -> float:
+    """Largest size of a column of the inverse at a cut on either side of its load, relative to its peak.
+
+    The columns are those of a unit force and of a unit moment at every load.
+    """
+    column = np.zeros((2, 2 * half_width))
+    largest = 0.0
+    for k in range(rows.size):
+        first, last = max(0, stations[k] - half_width), min(factor.link.shape[1], stations[k] + half_width) - 1
+        shift = half_width - stations[k]
+        for slope in range(2):
+            column[:] = 0.0
+            column[slope, half_width] = 1.0
+            solve_stations(factor, rows[k], first, last, column[0], column[1], shift)
+            peak = 0.0
+            for i in range(2 * half_width):
+                peak = max(peak, abs(column[0, i]) + abs(column[1, i]))
+            # Zero beyond the ends of the line.
+            tail = max(abs(column[0, 0]) + abs(column[1, 0]), abs(column[0, -1]) + abs(column[1, -1]))
+            if peak > 0.0:
+                largest = max(largest, tail / peak)
+    return largest
 
 
 @njit(cache=True)

@@ -49,9 +49,12 @@ class WireArrays(NamedTuple):
     ----------
     extents : Extents
         Merged extents of the wires.
-    elements : (B, 6, S') ndarray
+    elements : (U, 6, S') ndarray
         Entries k11, k12, (k22 + k24) / 2, (k22 - k24) / 2 of the stiffness of the element after each station [N/m, N,
-        N m, N m], its mass times its mass-proportional damping, over 420 [kg/s], and its length [m].
+        N m, N m], its mass times its mass-proportional damping, over 420 [kg/s], and its length [m]. Equal rows are
+        stored once: U rows differ.
+    element_row : (B,) int ndarray
+        Row of the elements of each row of wires.
     stiffness_coefficient : (B,) ndarray
         Stiffness-proportional damping of the wires [s].
     lumped_run : (R + 1,) int ndarray
@@ -64,6 +67,7 @@ class WireArrays(NamedTuple):
 
     extents: Extents
     elements: Array
+    element_row: Indices
     stiffness_coefficient: Array
     lumped_run: Indices
     lumped_station: Indices
@@ -81,11 +85,14 @@ def build_wire_arrays(beams: Beams, extents: Extents, layout: Layout) -> WireArr
     length = np.broadcast_to(beams.length, k11.shape)
     values = np.zeros((rows, ENTRIES, layout.width))
     values[:, :, :elements] = np.stack([k11, k12, (k22 + k24) / 2, (k22 - k24) / 2, damped_mass, length], axis=1)
+    # Both fields of a wire have the same elements, which then take half of the memory.
+    different, element_row = np.unique(values, axis=0, return_inverse=True)
     lumped = np.nonzero((beams.lumped_stiffness != 0) | (beams.lumped_damping != 0))
     row, station = lumped
     return WireArrays(
         extents=extents,
-        elements=align(values),
+        elements=align(different),
+        element_row=element_row.ravel(),
         stiffness_coefficient=beams.stiffness_coefficient,
         lumped_run=find_runs(station),
         lumped_station=np.ascontiguousarray(station),
@@ -104,15 +111,26 @@ def predict_wires(dt: float, wires: WireArrays, motion: Motion, window: Window) 
     for n in range(wires.extents.row.size):
         row, active = wires.extents.row[n], clip_extent(wires.extents, n, window)
         if active.first <= active.last:
-            _predict_wire(dt, wires.stiffness_coefficient[row], wires.elements, motion.w, motion.r, row, active)
+            _predict_wire(
+                dt,
+                wires.stiffness_coefficient[row],
+                wires.elements,
+                wires.element_row[row],
+                motion.w,
+                motion.r,
+                row,
+                active,
+            )
 
 
 @kernel
-def _predict_wire(dt: float, coefficient: float, elements: Array, w: Array, r: Array, row: int, active: Window) -> None:
+def _predict_wire(
+    dt: float, coefficient: float, elements: Array, element_row: int, w: Array, r: Array, row: int, active: Window
+) -> None:
     """Predict the motion of one wire, and store its forces."""
     width = w.shape[2]
     plane = w.shape[1] * width
-    at, e = row * width, row * ENTRIES * width
+    at, e = row * width, element_row * ENTRIES * width
     delta, square, beta = splat(dt), splat(dt * dt), splat(coefficient)
     shear_before, drag_before, tilt_before, bend_before = splat(0.0), splat(0.0), splat(0.0), splat(0.0)
     start = max(active.first - LANES, 0)
