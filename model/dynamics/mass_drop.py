@@ -38,6 +38,8 @@ class MassDropSetup:
         Time step [s].
     sensors : tuple of (str, float)
         Wire and position of each sensor [-, m].
+    axes : tuple of str
+        Axes that each sensor records: "z" vertical, "y" lateral, which needs a line with a lateral field.
     """
 
     mass: float
@@ -48,18 +50,19 @@ class MassDropSetup:
     duration: float
     time_step: float
     sensors: tuple[tuple[str, float], ...]
+    axes: tuple[str, ...] = ("z",)
 
 
 @dataclass(frozen=True)
 class FreeDecay:
-    """Result of a mass drop; T samples, U sensors.
+    """Result of a mass drop; T samples, U sensors times axes, sensor by sensor.
 
     Parameters
     ----------
     time : (T,) ndarray
         Time after the release, negative before [s].
     motion : (U, T, 3) ndarray
-        Vertical displacement, velocity, acceleration [m, m/s, m/s2].
+        Displacement, velocity, acceleration along an axis [m, m/s, m/s2].
     last_slack : float or None
         Last time after the release at which a dropper was slack; None if never [s].
     slack_at_start : int
@@ -110,7 +113,7 @@ def simulate_mass_drop(
     train = build_empty_train(len(catenary.contact_wires))
     before, after = (round(duration / test.time_step) for duration in (test.hanging, test.duration))
     time: Array = test.time_step * np.arange(1 - before, after + 1).astype(np.float64)
-    recording = allocate_recording(line, test.sensors, time.size, pantographs=0)
+    recording = allocate_recording(line, test.sensors, time.size, 0, test.axes)
     simulate_steps(kernel, motion, train, weight * _hanging_share(time, test.release_duration), recording, progress)
     slack = time[(recording.slack > 0) & (time > 0)]
     return FreeDecay(

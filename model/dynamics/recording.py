@@ -128,14 +128,22 @@ def _advance(
 
 
 def allocate_recording(
-    line: DiscretisedLine, watched: tuple[tuple[str, float], ...], steps: int, pantographs: int
+    line: DiscretisedLine,
+    watched: tuple[tuple[str, float], ...],
+    steps: int,
+    pantographs: int,
+    axes: tuple[str, ...] = ("z",),
 ) -> Recording:
-    """Allocate a recording of a number of steps; the watched stations as in `Passage`."""
+    """Allocate a recording of a number of steps.
+
+    The watched stations are those of `Passage`; each records the given axes ("z", "y"), station by station.
+    """
+    stations = [line.mesh.station(position) for _, position in watched]
     return Recording(
-        row=np.array([line.mesh.row_of[wire, "z"] for wire, _ in watched], dtype=np.int64),
-        station=np.array([line.mesh.station(position) for _, position in watched], dtype=np.int64),
+        row=np.array([line.mesh.row_of[wire, axis] for wire, _ in watched for axis in axes], dtype=np.int64),
+        station=np.repeat(np.array(stations, dtype=np.int64), len(axes)),
         contact=np.zeros((steps, pantographs)),
         height=np.zeros((steps, pantographs)),
-        motion=np.zeros((steps, len(watched), 3)),
+        motion=np.zeros((steps, len(watched) * len(axes), 3)),
         slack=np.zeros(steps, dtype=np.int64),
     )
