@@ -19,6 +19,7 @@ COMMANDS = {
     "check": "Check input files and report all their problems at once.",
     "simulate": "Simulate a case and write its record.",
     "drop": "Simulate the mass drops of a case and write their records.",
+    "drop-campaign": "Simulate a campaign of mass drops: every combination of masses, places and tensions.",
     "identify": "Identify frequencies, damping ratios and mode shapes from mass-drop records.",
     "fit-damping": "Fit a damping model of a line to identified modes.",
     "compare-drop": "Compare a recorded mass drop with its simulation under one or more damping models.",

@@ -39,8 +39,7 @@ def drop_command(
 
     Then: pantocheck identify drop.uff --out modes
     """
-    if (write := WRITERS.get(out.suffix.lower())) is None:
-        raise InputError(str(out), f"format '{out.suffix}' cannot be written", f"Write one of {', '.join(WRITERS)}.")
+    write = select_drop_writer(out)
     drop_case = choose_case(case, lambda each: each.file.mass_drop is not None, "with a [mass_drop] table")
     drops = len(require_mass_drop(drop_case).drop)
     if number is not None and number > drops:
@@ -50,7 +49,7 @@ def drop_command(
     with Progress(console=output, transient=True, disable=not output.is_terminal) as bar:
         for n in range(1, drops + 1) if number is None else [number]:
             task = bar.add_task(f"drop {n} of {drops}", total=1.0)
-            simulation = simulate_drop(drop_case, n, partial(_advance, bar, task))
+            simulation = simulate_drop(drop_case, n, partial(advance_bar, bar, task))
             several = number is None and drops > 1
             path = out.with_name(f"{out.stem}-{n}{out.suffix}") if several else out
             record = simulation.record
@@ -61,5 +60,19 @@ def drop_command(
             output.print(escape_text(text), soft_wrap=True)
 
 
-def _advance(bar: Progress, task: TaskID, share: float) -> None:
+def select_drop_writer(out: Path) -> Callable[[DropRecord, Path], None]:
+    """Writer of the format of a file, by its suffix.
+
+    Raises
+    ------
+    InputError
+        Drop records are not written in this format.
+    """
+    if (write := WRITERS.get(out.suffix.lower())) is None:
+        raise InputError(str(out), f"format '{out.suffix}' cannot be written", f"Write one of {', '.join(WRITERS)}.")
+    return write
+
+
+def advance_bar(bar: Progress, task: TaskID, share: float) -> None:
+    """Show the completed share of a drop, 0 to 1."""
     bar.update(task, completed=share)

@@ -10,6 +10,7 @@ from scipy.signal import firwin, kaiserord, resample_poly
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.drop_test import MassDrop
+from pantocheck.conformance.input_files.measured_table import Axis
 from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.model import Catenary, Kind
@@ -39,7 +40,11 @@ class SimulatedDrop:
 
 
 def simulate_drop(
-    case: Case, number: int, progress: Callable[[float], None] | None = None, line: Catenary | None = None
+    case: Case,
+    number: int,
+    progress: Callable[[float], None] | None = None,
+    line: Catenary | None = None,
+    axes: tuple[Axis, ...] = ("z",),
 ) -> SimulatedDrop:
     """Simulate a drop of a case.
 
@@ -53,6 +58,8 @@ def simulate_drop(
         Function that receives the completed share of the simulation, 0 to 1.
     line : Catenary, optional
         Catenary; default: that of the case.
+    axes : tuple of {"z", "y"}
+        Axes of each sensor: vertical, and lateral on a line with stagger.
 
     Returns
     -------
@@ -78,6 +85,7 @@ def simulate_drop(
             duration=mass_drop.record_s,
             time_step=discretisation.time_step_s,
             sensors=tuple((_first_wire(catenary, sensor.wire, sensor.x_m), sensor.x_m) for sensor in mass_drop.sensor),
+            axes=axes,
         ),
         progress,
     )
@@ -88,7 +96,7 @@ def simulate_drop(
         seed = hashlib.sha256(f"{drop.model_dump_json()} {number}".encode()).digest()
         noise = np.random.default_rng(int.from_bytes(seed[:8], "little"))
         signals = signals + mass_drop.noise_rms * noise.standard_normal(signals.shape)
-    return SimulatedDrop(_build_record(case, number, signals), decay)
+    return SimulatedDrop(_build_record(case, number, signals, axes), decay)
 
 
 def require_mass_drop(case: Case) -> MassDrop:
@@ -134,7 +142,7 @@ def _first_wire(catenary: Catenary, kind: str, x: float) -> str:
     return next(wire.name for wire in catenary.wires if wire.kind is Kind(kind) and wire.start <= x <= wire.end)
 
 
-def _build_record(case: Case, number: int, signals: RealArray) -> DropRecord:
+def _build_record(case: Case, number: int, signals: RealArray, axes: tuple[Axis, ...]) -> DropRecord:
     line, mass_drop = case.line, require_mass_drop(case)
     drop = mass_drop.drop[number - 1]
     return DropRecord(
@@ -143,8 +151,9 @@ def _build_record(case: Case, number: int, signals: RealArray) -> DropRecord:
         rate=mass_drop.rate_Hz,
         signals=signals,
         channels=tuple(
-            DropChannel(f"S{i}z", i, "z", SHORT_NAME[sensor.wire], sensor.x_m)
+            DropChannel(f"S{i}{axis}", i, axis, SHORT_NAME[sensor.wire], sensor.x_m)
             for i, sensor in enumerate(mass_drop.sensor, 1)
+            for axis in axes
         ),
         quantity=mass_drop.quantity,
         drop=DropDescription(drop.mass_kg, SHORT_NAME[drop.wire], drop.x_m, mass_drop.hanging_s),

@@ -1,0 +1,107 @@
+"""`pantocheck drop-campaign`: simulated mass drops of several masses, places and tensions."""
+
+from functools import partial
+from pathlib import Path
+from typing import Annotated, get_args
+
+import typer
+from rich.progress import Progress
+
+from pantocheck.conformance.cases.drop_test import WireName
+from pantocheck.conformance.command_line.console import console, escape_text
+from pantocheck.conformance.command_line.drop_command import advance_bar, select_drop_writer
+from pantocheck.conformance.command_line.options import choose_case
+from pantocheck.conformance.input_files.atomic_writing import check_writable
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.measured_table import Axis
+from pantocheck.conformance.simulation.drop_campaign import (
+    WIRE_NAMES,
+    DropCampaign,
+    SensorChain,
+    list_drops,
+    list_tension_changes,
+    require_axes,
+    simulate_records,
+)
+from pantocheck.conformance.simulation.drop_simulation import require_mass_drop
+
+TENSION_HELP = "Tension of {} [N]; repeat the option for several. Default: that of the case."
+
+
+def drop_campaign_command(
+    case: Annotated[str, typer.Argument(help="Id or path of one case with a mass drop.")],
+    out: Annotated[
+        Path, typer.Option(help="Records to write: NAME.csv, .uff or .h5 gives NAME-01.csv, NAME-02.csv, ...")
+    ],
+    mass: Annotated[
+        list[float] | None,
+        typer.Option(help="Mass [kg]; repeat the option for several. Default: those of the case.", min=0.1, max=200),
+    ] = None,
+    place: Annotated[
+        list[str] | None,
+        typer.Option(help="Wire and position of the mass, e.g. CW:212.25 or MW:81; repeat the option for several."),
+    ] = None,
+    contact_tension: Annotated[list[float] | None, typer.Option(help=TENSION_HELP.format("one contact wire"))] = None,
+    messenger_tension: Annotated[
+        list[float] | None, typer.Option(help=TENSION_HELP.format("the messenger wire"))
+    ] = None,
+    repeats: Annotated[int, typer.Option(help="Records of each drop, with different noise.", min=1, max=100)] = 1,
+    axes: Annotated[str, typer.Option(help="Axes of each sensor: z, or z,y on a line with stagger.")] = "z",
+    noise: Annotated[
+        float | None,
+        typer.Option(help="RMS of the noise of a channel [SI unit]. Default: that of the case.", min=0, max=10),
+    ] = None,
+    seed: Annotated[int, typer.Option(help="Seed of the noise.", min=0)] = 1,
+) -> None:
+    """Simulate a campaign of mass drops: every combination of masses, places and tensions.
+
+    Example: pantocheck drop-campaign vovan2015/mass-drop/stand-in --mass 20 --mass 40 --out drops/drop.csv
+
+    Then: pantocheck identify drops/drop-*.csv --out modes --each
+    """
+    write = select_drop_writer(out)
+    campaign = DropCampaign(
+        masses=tuple(mass or ()),
+        places=tuple(map(_parse_place, place or ())),
+        contact_tensions=tuple(contact_tension or ()),
+        messenger_tensions=tuple(messenger_tension or ()),
+        repeats=repeats,
+    )
+    cases = [
+        choose_case(case, lambda each: each.file.mass_drop is not None, "with a [mass_drop] table", changes)
+        for changes in list_tension_changes(campaign)
+    ]
+    rms = require_mass_drop(cases[0]).noise_rms if noise is None else noise
+    sensors = SensorChain(_parse_axes(axes), rms, seed)
+    require_axes(cases[0], sensors.axes)
+    drops = [(each, drop) for each in cases for drop in list_drops(each, campaign)]
+    width = len(str(len(drops) * repeats))
+    check_writable(out.parent)
+    output = console()
+    with Progress(console=output, transient=True, disable=not output.is_terminal) as bar:
+        for n, (drop_case, drop) in enumerate(drops):
+            task = bar.add_task(f"drop {n + 1} of {len(drops)}", total=1.0)
+            numbers = range(n * repeats, (n + 1) * repeats)
+            records = simulate_records(drop_case, drop, sensors, numbers, partial(advance_bar, bar, task))
+            for number, (record, _) in zip(numbers, records, strict=True):
+                path = out.with_name(f"{out.stem}-{number + 1:0{width}d}{out.suffix}")
+                write(record, path)
+                output.print(escape_text(f"{path}: {record.name}"), soft_wrap=True)
+
+
+def _parse_place(text: str) -> tuple[WireName, float]:
+    wire, _, position = text.partition(":")
+    try:
+        return WIRE_NAMES[wire.strip().upper()], float(position)
+    except (KeyError, ValueError):
+        raise InputError(
+            f"option --place {text[:60]!r}", "is no wire and position", "Write CW:212.25 or MW:81 ."
+        ) from None
+
+
+def _parse_axes(text: str) -> tuple[Axis, ...]:
+    chosen = [part.strip() for part in text.split(",")]
+    axes = tuple(axis for axis in get_args(Axis) if axis in chosen)
+    if len(axes) != len(chosen):
+        raise InputError(f"option --axes {text[:60]!r}", "is no list of axes", "Write z, or z,y .")
+    return axes
