@@ -12,7 +12,7 @@ FEWEST = 4
 REPLICATES = 1000
 """Number of redrawn populations for the interval of a median."""
 
-SEED = 1
+REDRAW_SEED = 1
 """Seed of the redrawn populations, so that equal records give equal files."""
 
 
@@ -39,7 +39,7 @@ def median_interval(values: list[RealArray], deviations: list[RealArray]) -> tup
     .. [1] A. C. Davison, D. V. Hinkley, Bootstrap Methods and their Application, Cambridge University Press, 1997,
        section 3.8.
     """
-    random = np.random.default_rng(SEED)
+    random = np.random.default_rng(REDRAW_SEED)
     tests = len(values)
     medians = []
     for _ in range(REPLICATES):
