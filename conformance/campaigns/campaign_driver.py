@@ -63,7 +63,7 @@ class _Session:
     def may_start(self) -> bool:
         """Whether a further run may be started; else `ending` has the reason."""
         share, budget = self.execution.max_failed_share, self.execution.time_budget_s
-        if share is not None and self.finished >= FEWEST_JUDGED and self.failed > share * self.finished:
+        if self.finished >= FEWEST_JUDGED and self.failed > share * self.finished:
             self.ending = "failure share"
         elif budget is not None and time.monotonic() - self.started >= budget:
             self.ending = "time budget"

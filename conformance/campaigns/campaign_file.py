@@ -154,8 +154,8 @@ class Execution(InputTable):
         Field(max_length=100, description='options of the jobs as in dask-jobqueue, e.g. walltime = "02:00:00"'),
     ] = Field(default_factory=dict)
     max_failed_share: Annotated[
-        float | None, Field(ge=0, le=1, description="share of failed runs above which the campaign stops early")
-    ] = None
+        float, Field(ge=0, le=1, description="share of failed runs above which the campaign stops early; 1: never")
+    ] = 0.9
     time_budget_s: Annotated[
         float | None, Field(gt=0, description="time after which no further run is started [s]")
     ] = None
@@ -201,6 +201,17 @@ class CampaignFile(InputTable):
     ] = False
     limits: Annotated[
         str | None, Field(description="file of limits, relative to the campaign; a changed library case has no limits")
+    ] = None
+    profile: Annotated[
+        str | None,
+        Field(
+            max_length=500,
+            description="profile whose rules are limits at the speed of each run: a name, or a file relative to the "
+            "campaign",
+        ),
+    ] = None
+    uplift_space_mm: Annotated[
+        float | None, Field(gt=0, le=2000, description="space for the uplift at the supports, for a profile [mm]")
     ] = None
     trust: Annotated[Trust, Field(description="lowest trust of the limits that count")] = "secondary"
     execution: Execution = Execution()

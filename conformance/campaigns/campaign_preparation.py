@@ -12,10 +12,12 @@ from pantocheck.conformance.campaigns.campaign_file import CampaignFile
 from pantocheck.conformance.campaigns.campaign_run import RunExecution, name_column, vary_inputs
 from pantocheck.conformance.campaigns.design_axes import build_axis, sample_inputs
 from pantocheck.conformance.campaigns.design_conditions import parse_condition
+from pantocheck.conformance.campaigns.profile_limits import ProfileLimits
 from pantocheck.conformance.cases.case import Case, json_digest
 from pantocheck.conformance.cases.input_changes import parse_changes
 from pantocheck.conformance.cases.library import find_case_files, load_case, overlay_limits, read_limits
 from pantocheck.conformance.cases.library_folder import library_folder
+from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.grading.case_identity import limits_digest
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.suggestions import suggest_names
@@ -86,16 +88,18 @@ def prepare_campaign(file: CampaignFile, folder: Path) -> PreparedCampaign:
     changes = parse_changes(file.set)
     cases = _read_cases(place_cases(file.cases, folder))
     limits = () if file.limits is None else read_limits(folder / file.limits)
+    profile = _read_profile(file, folder)
     design = _build_design(file, folder, tuple(cases))
     files = {case_id: str(path) for case_id, (path, _) in cases.items()}
-    execute = RunExecution(files, changes, limits, file.trust, file.refined, file.execution.timeout_s)
+    execute = RunExecution(files, changes, limits, profile, file.trust, file.refined, file.execution.timeout_s)
     _check_systems(design.systems, file.execution.timeout_s)
     first_cases = _check_first_designs(design, execute)
     limited = overlay_limits([case for _, case in cases.values()], limits)
     identity = {
-        "campaign": file.model_dump(mode="json", exclude={"execution", "title", "cases", "limits"}),
+        "campaign": file.model_dump(mode="json", exclude={"execution", "title", "cases", "limits", "profile"}),
         "cases": {case.id: [case.digest, limits_digest(case.limits)] for case in limited},
         "designs": json_digest([_describe_axis(design) for design in design.axes]),
+        "profile": None if profile is None else profile.profile.model_dump(mode="json"),
         "suite": suite_digest(),
     }
     return PreparedCampaign(file, design, execute, identity, _list_limits(first_cases))
@@ -108,6 +112,14 @@ def _list_limits(cases: Sequence[Case]) -> dict[str, tuple[float | None, float |
         column = name_column(str(limit.owner), limit.quantity, limit.item)
         bounds.setdefault(column, set()).add((limit.lower, limit.upper))
     return {column: pairs.pop() for column, pairs in bounds.items() if len(pairs) == 1}
+
+
+def _read_profile(file: CampaignFile, folder: Path) -> ProfileLimits | None:
+    """Profile of a campaign; a file is relative to the campaign."""
+    if file.profile is None:
+        return None
+    name = str(folder / file.profile) if file.profile.endswith(".toml") else file.profile
+    return ProfileLimits(load_profile(name), file.uplift_space_mm)
 
 
 def _read_cases(patterns: Sequence[str]) -> dict[str, tuple[Path, Case]]:

@@ -1,18 +1,19 @@
 """One run of a campaign, from its inputs to its row in the store. A failure is a row with its reason."""
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
 from pantocheck.conformance.campaigns.campaign_design import PlannedRun
 from pantocheck.conformance.campaigns.design_axes import Inputs
+from pantocheck.conformance.campaigns.profile_limits import ProfileLimits
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.input_changes import InputChange, build_change
 from pantocheck.conformance.cases.library import load_case, overlay_limits
 from pantocheck.conformance.cases.limits import LimitOverride
-from pantocheck.conformance.grading.verdicts import Verdict
+from pantocheck.conformance.grading.verdicts import Verdict, worst_verdict
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.results.results_format import CaseResult
@@ -70,6 +71,8 @@ class RunExecution:
         Changes of all runs.
     limits : tuple of LimitOverride
         Limits of the user.
+    profile : ProfileLimits or None
+        Rules that are limits of every run; limits of the user replace them.
     trust : Trust
         Lowest trust of the limits that count.
     refined : bool
@@ -81,6 +84,7 @@ class RunExecution:
     case_files: dict[str, str]
     changes: tuple[InputChange, ...]
     limits: tuple[LimitOverride, ...]
+    profile: ProfileLimits | None
     trust: Trust
     refined: bool
     timeout_s: float
@@ -93,7 +97,8 @@ class RunExecution:
             result = run_case(case, _choose_system(run.system, self.refined, self.timeout_s), self.trust)
         except InputError as error:
             return build_failed_row(run, str(error), time.perf_counter() - start)
-        return _build_row(run, result, time.perf_counter() - start)
+        missing = () if self.profile is None else self.profile.resolve(case)[1]
+        return _build_row(run, result, missing, time.perf_counter() - start)
 
     def read_case(self, run: PlannedRun) -> Case:
         """Case of a run, with its inputs and the limits of the user.
@@ -104,7 +109,8 @@ class RunExecution:
             A file cannot be read, or the inputs are invalid.
         """
         case = load_case(Path(self.case_files[run.case_id]), (*self.changes, *vary_inputs(run.inputs)))
-        (limited,) = overlay_limits([case], self.limits)
+        rules = () if self.profile is None else self.profile.resolve(case)[0]
+        (limited,) = overlay_limits([case.with_limits(rules)], self.limits)
         return limited
 
 
@@ -134,13 +140,16 @@ def _choose_system(text: str, refined: bool, timeout_s: float) -> System:
     return choose_system(text, timeout_s)
 
 
-def _build_row(run: PlannedRun, result: CaseResult, wall_s: float) -> RunRow:
+def _build_row(run: PlannedRun, result: CaseResult, missing: Sequence[str], wall_s: float) -> RunRow:
+    """Row of a graded run; a rule without a bound is a skipped criterion, so that the run cannot pass."""
+    skipped: list[Verdict] = ["skip"] if missing else []
     verdicts: dict[str, Verdict | None] = {
-        "verdict": result.verdict,
-        "criteria_verdict": result.criteria_verdict,
+        "verdict": worst_verdict([result.verdict, *skipped]),
+        "criteria_verdict": worst_verdict([result.criteria_verdict or result.verdict, *skipped]),
         "verification_verdict": None if result.verification is None else result.verification.verdict,
     }
-    return RunRow(run, verdicts, result.reason, dict(_name_quantities(result.quantities)), wall_s)
+    reason = result.reason or ("; ".join(missing) or None)
+    return RunRow(run, verdicts, reason, dict(_name_quantities(result.quantities)), wall_s)
 
 
 def _name_quantities(quantities: Mapping[str, Mapping[str, Number]]) -> Iterator[tuple[str, float]]:

@@ -49,6 +49,9 @@ def campaign_command(
         typer.Option(help="System: builtin, record:DIR or command:PROGRAM; repeat to compare.", show_default="builtin"),
     ] = None,
     limits: Annotated[Path | None, typer.Option(help="TOML file of your limits.")] = None,
+    profile: Annotated[
+        str | None, typer.Option(help="Profile whose rules are limits at the speed of each run, e.g. acceptance-ac.")
+    ] = None,
     trust: TrustOption = None,
     workers: Annotated[
         int | None, typer.Option(help="Number of processes, or of jobs.", show_default="number of processors")
@@ -84,6 +87,7 @@ def campaign_command(
         "set": changed,
         "systems": system,
         "limits": None if limits is None else str(limits.resolve()),
+        "profile": profile,
         "trust": trust,
     }
     execution = {

@@ -153,8 +153,8 @@ def drop_constant(values: Sequence[EvaluatedValue], columns: CampaignColumns) ->
     return [value for value in values if value.limit is not None or spreads.get(value.column, 0.0) > 0]
 
 
-def read_columns(store: CampaignStore, values: Sequence[EvaluatedValue]) -> CampaignColumns:
-    """Read the runs that have a result."""
+def read_columns(store: CampaignStore, values: Sequence[EvaluatedValue], keys: Sequence[str]) -> CampaignColumns:
+    """Read the values and the varied inputs of the runs that have a result."""
     names = [value.column for value in values]
     rows = [
         (
@@ -167,7 +167,6 @@ def read_columns(store: CampaignStore, values: Sequence[EvaluatedValue]) -> Camp
         for row in store.rows()
         if row.quantities
     ]
-    keys = dict.fromkeys(key for *_, inputs, _ in rows for key in inputs)
     numbers = np.array([numbers for *_, numbers in rows]).reshape(len(rows), len(values))
     return CampaignColumns(
         tuple(case for _, case, *_ in rows),

@@ -35,7 +35,7 @@ def evaluate_campaign(prepared: PreparedCampaign, store: CampaignStore, ending: 
     grid = [key for axis in design.axes if not isinstance(axis, SampleAxis) for key in axis.keys]
     sampled = [key for axis in design.axes if isinstance(axis, SampleAxis) for key in axis.keys]
     values = choose_values(store, prepared.limits)
-    columns = read_columns(store, values)
+    columns = read_columns(store, values, design.keys)
     charted = drop_constant(values, columns)
     saltelli = [axis for axis in design.axes if isinstance(axis, SampleAxis) and axis.sampling.method == "saltelli"]
     independent = select_independent(columns, saltelli[0]) if saltelli else columns

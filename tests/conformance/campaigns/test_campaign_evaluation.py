@@ -1,11 +1,20 @@
 """Evaluation of a campaign: charts, maps and statistics of known columns, and their report."""
 
 import itertools
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from helpers.cheap_campaign import ThisProcess
+from pantocheck.conformance.campaigns.campaign_design import PlannedRun
+from pantocheck.conformance.campaigns.campaign_driver import drive_campaign
+from pantocheck.conformance.campaigns.campaign_file import CampaignFile, Execution
+from pantocheck.conformance.campaigns.campaign_preparation import prepare_campaign
+from pantocheck.conformance.campaigns.campaign_run import RunRow, build_failed_row
+from pantocheck.conformance.campaigns.campaign_store import open_store
 from pantocheck.conformance.campaigns.evaluation.campaign_columns import CampaignColumns, EvaluatedValue, drop_constant
+from pantocheck.conformance.campaigns.evaluation.campaign_evaluation import evaluate_campaign
 from pantocheck.conformance.campaigns.evaluation.input_charts import build_input_charts, build_maps
 from pantocheck.conformance.campaigns.evaluation.sample_evaluation import build_sample_charts, build_statistics
 from pantocheck.conformance.reports.campaign.campaign_page import build_campaign_report
@@ -107,3 +116,20 @@ def test_report_has_facts_statistics_maps_and_charts(columns: CampaignColumns) -
     assert "1 run: SimulationError: diverged" in text
     assert "pass: 6, fail: 3, error: 1" in text
     assert text.count("<figure") == 3
+
+
+def test_campaign_without_any_result_is_evaluated(tmp_path: Path) -> None:
+    """Its report has the reasons and no figure."""
+    content = {"cases": ["en50318-2002/250"], "vary": [{"key": "speed_km_h", "values": [200, 210, 220]}]}
+    prepared = prepare_campaign(CampaignFile.model_validate(content), Path())
+
+    def fail(run: PlannedRun) -> RunRow:
+        return build_failed_row(run, "no power", 0.0)
+
+    with open_store(tmp_path, {}) as store:
+        drive_campaign(prepared.design, fail, store, ThisProcess(), Execution(), lambda _: None)
+        results = evaluate_campaign(prepared, store, "complete")
+    assert (results.total, results.finished, results.failed) == (3, 3, 3)
+    assert results.reasons == {"no power": 3}
+    assert (results.charts, results.maps, results.statistics) == ([], [], [])
+    assert "3 runs: no power" in render_html(build_campaign_report(results.model_dump(mode="json")))
