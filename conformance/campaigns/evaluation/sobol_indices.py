@@ -7,10 +7,10 @@ import numpy as np
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.campaigns.evaluation.sample_statistics import CONFIDENCE
 
-REPETITIONS = 500
+BOOTSTRAP_SAMPLES = 500
 """Number of bootstrap samples of an interval: its ends then vary by less than a tenth of its width."""
 
-SEED = 1
+BOOTSTRAP_SEED = 1
 """Seed of the bootstrap, so that the same runs give the same intervals."""
 
 
@@ -45,8 +45,10 @@ def estimate_sobol_indices(base: RealArray, other: RealArray, exchanged: RealArr
     VarianceShares
         First order by Saltelli et al. (2010), total by Jansen (1999), intervals by the bootstrap.
     """
-    generator, n = np.random.default_rng(SEED), base.size
-    samples = np.array([_estimate(base[i], other[i], exchanged[i]) for i in generator.integers(0, n, (REPETITIONS, n))])
+    generator, n = np.random.default_rng(BOOTSTRAP_SEED), base.size
+    samples = np.array(
+        [_estimate(base[i], other[i], exchanged[i]) for i in generator.integers(0, n, (BOOTSTRAP_SAMPLES, n))]
+    )
     ends = np.quantile(samples, [(1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2], axis=0)
     both = np.concatenate([_estimate(base, other, exchanged)[None], ends])
     return VarianceShares(both[:, 0], both[:, 1])
