@@ -32,9 +32,12 @@ def list_fit_blocks(line: dict[str, Any]) -> Iterator[doc.Block]:
 
 
 def _skip_repeats(line: dict[str, Any]) -> list[dict[str, Any]]:
-    """Spectra of one record of each drop: those of its repeats look alike."""
-    repeats = {pair["second"] for result in line["repeatability"] for pair in result["comparisons"]}
-    return [data for data in line["spectra"] if data["record"] not in repeats]
+    """Spectra of the first record of each drop: those of its repeats look alike."""
+    first: dict[str, dict[str, Any]] = {}
+    for record, spectra in zip(line["records"], line["spectra"], strict=True):
+        drop = [record[key] for key in ("mass_kg", "drop_wire", "drop_position_m", "sensors")]
+        first.setdefault(repr(drop), spectra)
+    return list(first.values())
 
 
 def _order_figure(search: dict[str, Any]) -> doc.Figure:

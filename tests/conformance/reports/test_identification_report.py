@@ -90,14 +90,20 @@ def test_results_without_counts_have_no_such_figure(line: dict[str, Any]) -> Non
     assert not any("half-power" in text for text in list_sentences(document))
 
 
-def test_spectra_of_repeats_are_not_drawn(line: dict[str, Any], document: Document) -> None:
-    """Both records are in the JSON file; the page shows the first one of the drop."""
+def test_spectra_of_repeats_are_not_drawn(line: dict[str, Any]) -> None:
+    """Both records are in the JSON file; the page shows the first one of each drop, also if they have one name."""
+
+    def list_captions(records: list[dict[str, Any]]) -> list[str]:
+        figures = list_figures(build_identification_document([line | {"records": records}]))
+        return [figure.caption for figure in figures if "spectrum of the free decay" in figure.caption]
+
+    first, second = line["records"]
     assert [data["record"] for data in line["spectra"]] == ["run 1", "run 2"]
-    captions = [figure.caption for figure in list_figures(document) if "spectrum of the free decay" in figure.caption]
-    assert captions == ["run 1: spectrum of the free decay, the identified modes and the residual."]
-    alone = line | {"repeatability": []}
-    captions = [figure.caption for figure in list_figures(build_identification_document([alone]))]
-    assert sum("spectrum of the free decay" in caption for caption in captions) == 2
+    shown = "run 1: spectrum of the free decay, the identified modes and the residual."
+    assert list_captions([first, second]) == list_captions([first, second | {"name": "run 1"}]) == [shown]
+    assert len(list_captions([first, second | {"mass_kg": 40.0}])) == 2
+    moved = [sensor | {"position_m": 90.0} for sensor in second["sensors"]]
+    assert len(list_captions([first, second | {"sensors": moved}])) == 2
 
 
 def test_shapes_have_a_row_per_mode_with_the_real_parts(line: dict[str, Any]) -> None:
