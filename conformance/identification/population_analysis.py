@@ -80,7 +80,7 @@ def _list_values(group: GroupOverTests, t: int) -> list[PooledValue]:
 def _list_warnings(records: tuple[PooledRecord, ...], unusable: tuple[OmittedRecord, ...]) -> tuple[str, ...]:
     warnings = [
         f"{record.record}: {record.outliers_above} of its {len(record.values)} damping ratios are outliers above the "
-        f"other tests and {record.outliers_below} below; check its sensors, the release and the weather"
+        f"other tests and {record.outliers_below} below; check its sensors, release and weather, or leave it out"
         for record in records
         if record.suspicious
     ]
