@@ -43,11 +43,12 @@ class ReleaseVelocity(SourcedTable):
     models: Annotated[
         DampingModels,
         Field(
-            min_length=3,
+            min_length=4,
             description="damping files by name: reference model, fitted Rayleigh damping, the same with modal damping, "
             "and any further models, which are drawn",
         ),
     ]
+    test: Annotated[str, Field(max_length=100, description="name of the model whose drop takes the place of a record")]
     windows_s: Annotated[
         tuple[Interval, ...],
         Field(

@@ -110,6 +110,11 @@ DELIVERED_QUANTITIES: tuple[Quantity, ...] = (
         ("reference_over_identified_damping", "Damping of the reference model over the identified one", "",
          "damping ratio of the initial model at the frequency of a mode over its identified ratio; "
          "median of each group of span modes"),
+        ("damping_dispersion_correlation", "Dispersion of damping over tests against frequency", "",
+         "rank correlation of the interquartile range of the damping ratios of all tests, each identified on its own, "
+         "with the group of span modes: -1, if it always decreases"),
+        ("outliers_above_pct", "Outliers of damping over tests that overestimate", "%",
+         "share of the outliers of the damping ratios of all tests that lie above the box of their group"),
         ("observable_wire_coefficients", "Observable coefficients of the wires", "",
          "number of Rayleigh coefficients of contact and messenger wire that the identified modes determine"),
         ("observable_other_coefficients", "Observable coefficients of other components", "",
@@ -153,7 +158,7 @@ DELIVERED_QUANTITIES: tuple[Quantity, ...] = (
          "RMS of the difference between the velocities with Rayleigh damping and with modal damping besides, in the "
          "first window, over the RMS of the former"),
         ("reference_residual_velocity_ratio", "Residual velocity of the reference model", "",
-         "RMS of the velocity in the last window under the reference model, over that with Rayleigh damping"),
+         "RMS of the velocity in the last window under the reference model, over that of the record"),
         ("medium_frequency_velocity_ratio", "Velocity in 5–20 Hz against the reference model", "",
          "RMS of the velocity in 5-20 Hz in the first window with Rayleigh damping, over that of the reference model"),
     ),

@@ -6,6 +6,7 @@ import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.identification.mode import Mode
+from pantocheck.conformance.identification.population_format import PopulationFile
 from pantocheck.conformance.quantities.evaluation import Value
 
 HIGHEST_HZ = 6.0
@@ -47,6 +48,28 @@ def compute_group_findings(modes: Sequence[Mode]) -> dict[str, Value]:
         if later:
             findings["damping_rise_pct"] = 100 * (max(later) / damping[2] - 1)
             findings["damping_variation_pct"] = 100 * max(abs(z / damping[2] - 1) for z in later)
+    return findings
+
+
+def compute_population_findings(population: PopulationFile) -> dict[str, Value]:
+    """Quantities by which Vo Van, Balmes and Lorang (2015) describe all tests, each identified on its own.
+
+    Parameters
+    ----------
+    population : PopulationFile
+        Population of tests.
+
+    Returns
+    -------
+    dict of str to Value
+        Values by name of quantity, without those that need more tests or an outlier.
+    """
+    variability = population.variability
+    findings: dict[str, Value] = {}
+    if variability.rank_correlation is not None:
+        findings["damping_dispersion_correlation"] = variability.rank_correlation
+    if variability.outliers_above_share is not None:
+        findings["outliers_above_pct"] = 100 * variability.outliers_above_share
     return findings
 
 

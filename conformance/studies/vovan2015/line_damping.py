@@ -12,6 +12,7 @@ from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.identification.identify import Identification, identify_modes
 from pantocheck.conformance.identification.mode import Mode
+from pantocheck.conformance.identification.population import Population, PopulationTest
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.figure_data import Series
 from pantocheck.conformance.results.traces import thin_series
@@ -42,7 +43,12 @@ class IdentifiedDrops:
     @property
     def certain_modes(self) -> list[Mode]:
         """Vertical modes with a certain damping ratio."""
-        return [mode for mode in self.identification.modes if mode.certain and not mode.lateral]
+        return select_certain(self.identification)
+
+
+def select_certain(identification: Identification) -> list[Mode]:
+    """Vertical modes of an identification with a certain damping ratio."""
+    return [mode for mode in identification.modes if mode.certain and not mode.lateral]
 
 
 def identify_drops(case: Case, line: Catenary | None = None) -> IdentifiedDrops:
@@ -51,6 +57,15 @@ def identify_drops(case: Case, line: Catenary | None = None) -> IdentifiedDrops:
     drops = tuple(simulate_drop(case, number, line=line) for number in range(1, len(mass_drop.drop) + 1))
     (identification,) = identify_modes(tuple(drop.record for drop in drops), mass_drop.highest_Hz)
     return IdentifiedDrops(drops, identification)
+
+
+def identify_tests(identified: IdentifiedDrops, highest: float) -> Population:
+    """Identify the record of every drop on its own, up to a frequency [Hz], as a population of tests."""
+    tests = []
+    for drop in identified.drops:
+        (single,) = identify_modes((drop.record,), highest)
+        tests.append(PopulationTest(drop.record, single, identified.identification))
+    return Population(tuple(tests), (identified.identification,), ())
 
 
 def build_drop_run_table(case: Case, drops: int, begin: float) -> RunTable:

@@ -4,9 +4,12 @@ The first of the compared models of a case is the reference model of the paper.
 """
 
 import time
+from collections.abc import Sequence
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.identification.mode import Mode
+from pantocheck.conformance.identification.population_analysis import analyse_population
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.results.figure_data import Chart, Mark, Series
 from pantocheck.conformance.results.outcome import Delivered, StudyResult
@@ -14,7 +17,11 @@ from pantocheck.conformance.results.traces import thin_series
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.simulation.drop_simulation import require_mass_drop
 from pantocheck.conformance.studies.vovan2015.fit_comparison import build_fit_report
-from pantocheck.conformance.studies.vovan2015.group_findings import compare_reference, compute_group_findings
+from pantocheck.conformance.studies.vovan2015.group_findings import (
+    compare_reference,
+    compute_group_findings,
+    compute_population_findings,
+)
 from pantocheck.conformance.studies.vovan2015.line_damping import (
     IdentifiedDrops,
     build_drop_run_table,
@@ -22,6 +29,8 @@ from pantocheck.conformance.studies.vovan2015.line_damping import (
     computed_damping_ratios,
     draw_damping_ratios,
     identify_drops,
+    identify_tests,
+    select_certain,
 )
 from pantocheck.conformance.studies.vovan2015.paper_tables import build_provenance_table
 from pantocheck.model import discretise
@@ -46,8 +55,12 @@ def run_mass_drop_study(case: Case) -> Delivered:
     modes = identified.identification.modes
     frequency, ratios = _compute_ratios(case)
     findings = compute_group_findings(modes)
+    tests = [identified.identification]
     if case.dampings:
         findings["reference_over_identified_damping"] = compare_reference(modes, frequency, ratios[next(iter(ratios))])
+        population = identify_tests(identified, require_mass_drop(case).highest_Hz)
+        findings |= compute_population_findings(analyse_population(population))
+        tests = [test.single for test in population.tests]
     bound = [
         Mark(label=f"printed: all below {100 * limit.upper:g} %", axis="y", low=100 * limit.upper)
         for limit in case.limits
@@ -62,7 +75,7 @@ def run_mass_drop_study(case: Case) -> Delivered:
             findings={LINE: findings | fit.findings.get(LINE, {})},
             charts=(
                 _draw_frequencies(case, identified, (frequency, ratios), bound),
-                _draw_groups(identified, bound),
+                _draw_groups([mode for test in tests for mode in select_certain(test)], bound),
                 *fit.charts,
             ),
             tables=(build_provenance_table(case), *fit.tables),
@@ -116,9 +129,9 @@ def _draw_frequencies(case: Case, identified: IdentifiedDrops, computed: Compute
     )
 
 
-def _draw_groups(identified: IdentifiedDrops, bound: list[Mark]) -> Chart:
-    """Damping ratios by group of modes (Figure 5 of the paper)."""
-    grouped = [mode for mode in identified.certain_modes if mode.group is not None]
+def _draw_groups(modes: Sequence[Mode], bound: list[Mark]) -> Chart:
+    """Damping ratios of all tests by group of modes (Figure 5 of the paper)."""
+    grouped = [mode for mode in modes if mode.group is not None]
     ratios = draw_damping_ratios("identified", grouped).y
     return Chart(
         caption="Identified damping ratios by group of span modes: quartiles and median.",

@@ -281,6 +281,10 @@ def test_droppers_follow_each_other(x_m: list[float], key: str | None) -> None:
     assert find_table_fault(DropperTable, table) == key
 
 
+MODELS = {name: f"{name}.toml" for name in "abcd"}
+"""Damping models of a study of releases."""
+
+
 @pytest.fixture
 def drop_case(tmp_path: Path) -> Path:
     """Copy of a case of mass drops: a line of 378 m, a time step of 2 ms, records of 100 Hz."""
@@ -415,14 +419,20 @@ def test_case_with_another_damping_is_a_plain_run(case_250: Case) -> None:
     ],
 )
 def test_windows_of_a_release_are_in_order(study: dict[str, Any], valid: bool) -> None:
-    table = {"kind": "release-velocity", "models": {name: f"{name}.toml" for name in "abc"}, **OWN} | study
+    table = {
+        "kind": "release-velocity",
+        "models": {name: f"{name}.toml" for name in "abcd"},
+        "test": "d",
+        **OWN,
+    } | study
     assert find_table_fault(ReleaseVelocity, table) == (None if valid else f"windows_s[{len(study['windows_s'])}]")
 
 
 def test_release_is_studied_at_the_first_sensor_by_default() -> None:
     table = {
         "kind": "release-velocity",
-        "models": {name: f"{name}.toml" for name in "abc"},
+        "models": {name: f"{name}.toml" for name in "abcd"},
+        "test": "d",
         "windows_s": [[0.0, 1.0]],
         **OWN,
     }
@@ -445,7 +455,11 @@ def test_coefficients_of_a_study_ascend(coefficients: list[float], valid: bool) 
 @pytest.mark.parametrize("kind", ["release-velocity", "steady-arm-damper"])
 def test_study_of_drops_needs_drops(kind: str, edited_case: EditedCase) -> None:
     tables = {
-        "release-velocity": {"models": {name: f"{name}.toml" for name in "abc"}, "windows_s": [[0.0, 1.0]]},
+        "release-velocity": {
+            "models": {name: f"{name}.toml" for name in "abcd"},
+            "test": "d",
+            "windows_s": [[0.0, 1.0]],
+        },
         "steady-arm-damper": {"damper_N_s_m": 100.0, "bands_Hz": [[0.0, 1.0]]},
     }
     assert find_fault(edited_case("250.toml", {"study": {"kind": kind, **tables[kind], **OWN}})) == "mass_drop"

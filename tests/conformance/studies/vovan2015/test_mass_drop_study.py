@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.damping_file import ModalDamping
 from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.identification.population import Population
 from pantocheck.conformance.results.figure_data import Chart
 from pantocheck.conformance.results.outcome import StudyResult
 from pantocheck.conformance.studies.vovan2015 import mass_drop_study
@@ -40,6 +41,7 @@ def draw_frequencies(case: Case, monkeypatch: pytest.MonkeyPatch) -> Chart:
     identification = SimpleNamespace(modes=(), warnings=())
     identified = SimpleNamespace(drops=drops, identification=identification, certain_modes=[])
     monkeypatch.setattr(mass_drop_study, "identify_drops", lambda _: identified)
+    monkeypatch.setattr(mass_drop_study, "identify_tests", lambda *_: Population((), (), ()))
     monkeypatch.setattr(mass_drop_study, "build_fit_report", lambda *_: StudyResult())
     outcome = mass_drop_study.run_mass_drop_study(case)
     assert outcome.study is not None
