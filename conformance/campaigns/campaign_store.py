@@ -3,7 +3,7 @@
 import json
 import sqlite3
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -104,6 +104,26 @@ class CampaignStore:
                 f"holds the runs of another campaign (changed: {', '.join(changed)})",
                 "Name another folder with --out, or restore the campaign.",
             )
+
+
+@contextmanager
+def read_store(folder: Path) -> Iterator[CampaignStore]:
+    """Open the store of another campaign for reading.
+
+    Raises
+    ------
+    InputError
+        The folder holds no campaign, or its store is damaged.
+    """
+    where = f"folder '{folder}'"
+    path = folder / STORE_NAME
+    if not path.is_file():
+        raise InputError(where, f"has no {STORE_NAME}", "Name the folder of a campaign.")
+    try:
+        with closing(sqlite3.connect(f"{path.resolve().as_uri()}?mode=ro", uri=True)) as connection:
+            yield CampaignStore(connection)
+    except sqlite3.Error as error:
+        raise InputError(f"{where}, {STORE_NAME}", f"cannot be read ({error})", "Run the campaign again.") from None
 
 
 @contextmanager

@@ -12,8 +12,9 @@ from pantocheck.conformance.campaigns.campaign_preparation import (
     find_campaign_file,
     prepare_campaign,
 )
-from pantocheck.conformance.campaigns.campaign_store import CampaignStore, open_store
+from pantocheck.conformance.campaigns.campaign_store import CampaignStore, open_store, read_store
 from pantocheck.conformance.campaigns.campaign_table import write_campaign_table, write_parquet
+from pantocheck.conformance.campaigns.evaluation.campaign_comparison import RunPair, pair_runs
 from pantocheck.conformance.campaigns.evaluation.campaign_evaluation import evaluate_campaign
 from pantocheck.conformance.campaigns.executor_choice import choose_executor
 from pantocheck.conformance.campaigns.short_form import parse_variation
@@ -68,6 +69,10 @@ def campaign_command(
     time_budget: Annotated[
         float | None, typer.Option(metavar="SECONDS", help="Start no further run after this time.")
     ] = None,
+    compare: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Compare with the runs of another campaign that have equal inputs."),
+    ] = None,
     retry_failed: Annotated[bool, typer.Option("--retry-failed", help="Repeat the failed runs.")] = False,
 ) -> None:
     """Run cases with varied inputs, and write a table of all runs.
@@ -98,6 +103,9 @@ def campaign_command(
         "time_budget_s": time_budget,
     }
     prepared = _prepare(campaign, design, {key: value for key, value in execution.items() if value is not None})
+    if compare is not None:
+        with read_store(compare):
+            pass  # a wrong folder is refused before the first run
     output, interrupted = console(), 0
     with open_store(out, prepared.identity) as store:
         if retry_failed:
@@ -106,7 +114,8 @@ def campaign_command(
             ending = _drive(prepared, store)
         except KeyboardInterrupt as interruption:
             ending, interrupted = "interrupted", interruption_exit_code(interruption)
-        results = evaluate_campaign(prepared, store, ending)
+        pairs = () if compare is None else _pair_runs(store, compare)
+        results = evaluate_campaign(prepared, store, ending, pairs)
         files = _write_results(results, store, out)
     counts = f"{results.finished} of {results.total} runs finished, {results.failed} failed"
     output.print(escape_text(STOPPED[ending] + counts))
@@ -140,6 +149,11 @@ def _drive(prepared: PreparedCampaign, store: CampaignStore) -> CampaignEnding:
         typer.echo(f"Runs in {executor.description}.", err=True)
         with report_campaign() as report:
             return drive_campaign(prepared.design, prepared.execute, store, executor, execution, report)
+
+
+def _pair_runs(store: CampaignStore, folder: Path) -> list[RunPair]:
+    with read_store(folder) as other:
+        return pair_runs(store, other)
 
 
 def _write_results(results: CampaignResults, store: CampaignStore, folder: Path) -> list[Path]:

@@ -67,6 +67,17 @@ class SobolIndices(ResultsPart):
     shares: list[InputShare]
 
 
+class ValueComparison(ResultsPart):
+    """Differences of a value between runs of two campaigns with equal inputs, this campaign minus the other."""
+
+    label: str
+    runs: Annotated[int, Field(description="number of pairs of runs")]
+    mean: FiniteNumber
+    rms: FiniteNumber
+    largest: FiniteNumber
+    place: Annotated[str, Field(description="case and inputs of the largest difference")]
+
+
 class CampaignResults(ResultsPart):
     """Evaluation of a campaign."""
 
@@ -86,3 +97,6 @@ class CampaignResults(ResultsPart):
     maps: list[ValueMap]
     statistics: list[ValueStatistics]
     indices: list[SobolIndices] = []
+    comparison: Annotated[
+        list[ValueComparison], Field(description="comparison with another campaign, if requested")
+    ] = []

@@ -1,6 +1,6 @@
 """Evaluation of a campaign: from the rows of its store to campaign.json."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from pantocheck.conformance.campaigns.campaign_preparation import PreparedCampaign
 from pantocheck.conformance.campaigns.campaign_store import CampaignStore
@@ -11,6 +11,7 @@ from pantocheck.conformance.campaigns.evaluation.campaign_columns import (
     drop_constant,
     read_columns,
 )
+from pantocheck.conformance.campaigns.evaluation.campaign_comparison import RunPair, compare_values
 from pantocheck.conformance.campaigns.evaluation.input_charts import build_input_charts, build_maps
 from pantocheck.conformance.campaigns.evaluation.saltelli_evaluation import build_indices, select_independent
 from pantocheck.conformance.campaigns.evaluation.sample_evaluation import build_sample_charts, build_statistics
@@ -19,7 +20,9 @@ from pantocheck.conformance.results.campaign_format import CampaignEnding, Campa
 from pantocheck.conformance.results.results_building import build_suite
 
 
-def evaluate_campaign(prepared: PreparedCampaign, store: CampaignStore, ending: CampaignEnding) -> CampaignResults:
+def evaluate_campaign(
+    prepared: PreparedCampaign, store: CampaignStore, ending: CampaignEnding, pairs: Sequence[RunPair] = ()
+) -> CampaignResults:
     """Evaluate the finished runs of a campaign.
 
     Parameters
@@ -30,6 +33,8 @@ def evaluate_campaign(prepared: PreparedCampaign, store: CampaignStore, ending: 
         Its finished runs.
     ending : str
         Reason of its end.
+    pairs : sequence of RunPair
+        Runs beside those of another campaign.
     """
     design = prepared.design
     grid = [key for axis in design.axes if not isinstance(axis, SampleAxis) for key in axis.keys]
@@ -59,6 +64,7 @@ def evaluate_campaign(prepared: PreparedCampaign, store: CampaignStore, ending: 
         ],
         maps=list(build_maps(columns, charted, grid)),
         indices=[item for axis in saltelli for item in build_indices(columns, charted, grid, axis)],
+        comparison=list(compare_values(pairs, values)),
         statistics=list(build_statistics(independent, values, grid)),
     )
 

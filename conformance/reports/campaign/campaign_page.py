@@ -39,6 +39,10 @@ def build_campaign_report(results: dict[str, Any]) -> doc.Document:
     ]
     if results["statistics"]:
         blocks.append(doc.Section("Random inputs", (_build_statistics_table(results["statistics"]),)))
+    if results["comparison"]:
+        blocks.append(
+            doc.Section("Comparison with another campaign", (_build_comparison_table(results["comparison"]),))
+        )
     if results["indices"]:
         blocks.append(doc.Section("Sobol indices", (_build_indices_table(results["indices"]), doc.SmallPrint(INDICES))))
     if maps or charts:
@@ -65,6 +69,18 @@ def _list_reasons(reasons: dict[str, int]) -> list[doc.Block]:
         return []
     items = tuple(f"{count} run{'s' if count > 1 else ''}: {reason}" for reason, count in reasons.items())
     return [doc.Section("Runs without a result", (doc.BulletList(items),))]
+
+
+def _build_comparison_table(comparison: list[dict[str, Any]]) -> doc.Table:
+    cells: dict[str, Callable[[Any], str]] = {
+        "Value": lambda row: row["label"],
+        "Runs": lambda row: str(row["runs"]),
+        "Mean": lambda row: format_value(row["mean"], 3),
+        "RMS": lambda row: format_value(row["rms"], 3),
+        "Largest": lambda row: format_value(row["largest"], 3),
+        "Place of the largest": lambda row: row["place"],
+    }
+    return doc.make_grid("Differences of runs with equal inputs: this campaign minus the other", comparison, cells)
 
 
 def _build_indices_table(indices: list[dict[str, Any]]) -> doc.Table:

@@ -1,22 +1,25 @@
 """Evaluation of a campaign: charts, maps and statistics of known columns, and their report."""
 
 import itertools
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from helpers.cheap_campaign import ThisProcess
+from helpers.cheap_campaign import ThisProcess, compute_row, speed_design
 from pantocheck.conformance.campaigns.campaign_design import PlannedRun
 from pantocheck.conformance.campaigns.campaign_driver import drive_campaign
 from pantocheck.conformance.campaigns.campaign_file import CampaignFile, Execution
 from pantocheck.conformance.campaigns.campaign_preparation import prepare_campaign
 from pantocheck.conformance.campaigns.campaign_run import RunRow, build_failed_row
-from pantocheck.conformance.campaigns.campaign_store import open_store
+from pantocheck.conformance.campaigns.campaign_store import open_store, read_store
 from pantocheck.conformance.campaigns.evaluation.campaign_columns import CampaignColumns, EvaluatedValue, drop_constant
+from pantocheck.conformance.campaigns.evaluation.campaign_comparison import compare_values, pair_runs
 from pantocheck.conformance.campaigns.evaluation.campaign_evaluation import evaluate_campaign
 from pantocheck.conformance.campaigns.evaluation.input_charts import build_input_charts, build_maps
 from pantocheck.conformance.campaigns.evaluation.sample_evaluation import build_sample_charts, build_statistics
+from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.reports.campaign.campaign_page import build_campaign_report
 from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.results.campaign_format import CampaignResults
@@ -133,3 +136,36 @@ def test_campaign_without_any_result_is_evaluated(tmp_path: Path) -> None:
     assert results.reasons == {"no power": 3}
     assert (results.charts, results.maps, results.statistics) == ([], [], [])
     assert "3 runs: no power" in render_html(build_campaign_report(results.model_dump(mode="json")))
+
+
+def shift_force(row: RunRow, shift: float, system: str) -> RunRow:
+    """The same run on another system, with another mean force."""
+    quantities = {name: value + shift for name, value in row.quantities.items()}
+    return replace(row, run=replace(row.run, system=system), quantities=quantities)
+
+
+@pytest.mark.parametrize("system", ["builtin", "command:other"])
+def test_comparison_has_the_differences_of_equal_inputs(tmp_path: Path, system: str) -> None:
+    """The other campaign lacks run 1; its forces are 2 N smaller, in run 3 by 5 N."""
+    mean_force = EvaluatedValue("1.mean_force_N")
+    with open_store(tmp_path / "a", {}) as store, open_store(tmp_path / "b", {}) as other:
+        for run in speed_design(4).list_runs():
+            row = compute_row(run)
+            store.add(row)
+            if run.number > 1:
+                other.add(shift_force(row, -5.0 if run.number == 3 else -2.0, system))
+        with read_store(tmp_path / "b") as opened:
+            (comparison,) = compare_values(pair_runs(store, opened), [mean_force])
+    assert (comparison.runs, comparison.place) == (3, "cheap, speed_km_h = 200.2")
+    assert comparison.mean == pytest.approx(3)
+    assert comparison.rms == pytest.approx((33 / 3) ** 0.5)
+    assert comparison.largest == pytest.approx(5)
+
+
+def test_comparison_without_common_inputs_is_refused(tmp_path: Path) -> None:
+    with open_store(tmp_path / "a", {}) as store, open_store(tmp_path / "b", {}) as other:
+        store.add(compute_row(next(speed_design(1).list_runs())))
+        with pytest.raises(InputError, match="no run has the inputs"):
+            pair_runs(store, other)
+    with pytest.raises(InputError, match=r"has no campaign\.sqlite"), read_store(tmp_path):
+        pass
