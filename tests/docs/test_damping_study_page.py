@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.grading.verdicts import judge
 from pantocheck.conformance.quantities.limit_text import format_bounds
@@ -43,6 +44,16 @@ def test_outcome_follows_from_the_printed_value(row: Row) -> None:
     value = float(row["computed"].split()[0])
     outcome = judge_finding(limit.finding.role, judge(value, limit.lower, limit.upper))
     assert row["outcome"] == outcome.replace("_", " ")
+
+
+def test_commands_of_the_page_are_those_of_the_damping_files() -> None:
+    """tests/conformance/studies/vovan2015/test_damping_files.py fits with these options."""
+    (fit,) = (line for line in PAGE.splitlines() if line.startswith("pantocheck fit-damping"))
+    assert "modes/modes.json --line vovan2015/mass-drop/stand-in --element 0.75 --wires common --out fit" in fit
+    names = {path.stem for path in (library_folder() / "vovan2015" / "damping").glob("*.toml")}
+    written = {name for name in names if f"reference_cases/vovan2015/damping/{name}.toml\n" in PAGE}
+    assert written == {"stand-in", "updated", "updated-modal"}
+    assert names - written == {"benchmark", "initial", "printed"}  # transcribed from their sources
 
 
 def test_counts_are_those_of_the_table() -> None:

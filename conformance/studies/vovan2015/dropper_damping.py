@@ -27,7 +27,7 @@ from pantocheck.conformance.results.outcome import Delivered, StudyResult
 from pantocheck.conformance.results.traces import thin_series
 from pantocheck.conformance.simulation.case_run import build_passage, build_run_table, record_passage
 from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.studies.vovan2015.paper_tables import build_findings_table, build_provenance_table
+from pantocheck.conformance.studies.vovan2015.paper_tables import build_provenance_table
 from pantocheck.model import Catenary, DiscretisedLine, Kind, Passage, Rayleigh, discretise, simulate_passage
 from pantocheck.model.discretised_line import keep_viscous_part, with_damping
 
@@ -92,7 +92,7 @@ def run_dropper_damping(case: Case, study: DropperDamping) -> Delivered:
         study=StudyResult(
             findings=findings,
             charts=(_draw_forces(case, study, force),),
-            tables=(build_findings_table(case.limits, findings, {}), build_provenance_table(case)),
+            tables=(build_provenance_table(case),),
         ),
         notes=(
             "The paper does not print its compensation law. The graded law compensates only the elastic force: a "

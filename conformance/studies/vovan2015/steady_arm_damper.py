@@ -20,7 +20,7 @@ from pantocheck.conformance.studies.vovan2015.line_damping import (
     draw_damping_ratios,
     identify_drops,
 )
-from pantocheck.conformance.studies.vovan2015.paper_tables import build_findings_table, build_provenance_table
+from pantocheck.conformance.studies.vovan2015.paper_tables import build_provenance_table
 
 FrequencyBands = tuple[tuple[float, float], ...]
 
@@ -58,7 +58,6 @@ def run_steady_arm_damper(case: Case, study: SteadyArmDamper) -> Delivered:
             findings=findings,
             charts=(_draw_damping(modes, study.bands_Hz[-1][0]),),
             tables=(
-                build_findings_table(case.limits, findings, {}),
                 _band_table(study.bands_Hz, without, damped),
                 build_provenance_table(case),
             ),
