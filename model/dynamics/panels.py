@@ -351,6 +351,6 @@ def _substitute(
     L, D = factor.link, factor.inverse
     wr = load(D, i + LANES)
     return (
-        load(D, i) * w + wr * r - (load(L, at) * x + load(L, at + 2 * LANES) * y),
-        wr * w + load(D, i + 2 * LANES) * r - (load(L, at + LANES) * x + load(L, at + 3 * LANES) * y),
+        load(D, i) * w + wr * r - load(L, at) * x - load(L, at + 2 * LANES) * y,
+        wr * w + load(D, i + 2 * LANES) * r - load(L, at + LANES) * x - load(L, at + 3 * LANES) * y,
     )
