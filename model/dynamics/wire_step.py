@@ -86,13 +86,15 @@ def build_wire_arrays(beams: Beams, extents: Extents, layout: Layout) -> WireArr
     values = np.zeros((rows, ENTRIES, layout.width))
     values[:, :, :elements] = np.stack([k11, k12, (k22 + k24) / 2, (k22 - k24) / 2, damped_mass, length], axis=1)
     # Both fields of a wire have the same elements, which then take half of the memory.
-    different, element_row = np.unique(values, axis=0, return_inverse=True)
+    number: dict[bytes, int] = {}
+    element_row = np.array([number.setdefault(row.tobytes(), len(number)) for row in values], dtype=np.int64)
+    different = values[np.unique(element_row, return_index=True)[1]]
     lumped = np.nonzero((beams.lumped_stiffness != 0) | (beams.lumped_damping != 0))
     row, station = lumped
     return WireArrays(
         extents=extents,
         elements=align(different),
-        element_row=element_row.ravel(),
+        element_row=element_row,
         stiffness_coefficient=beams.stiffness_coefficient,
         lumped_run=find_runs(station),
         lumped_station=np.ascontiguousarray(station),

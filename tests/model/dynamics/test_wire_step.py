@@ -1,9 +1,11 @@
 """Wires in a time step: the splitting into symmetric and antisymmetric parts equals the element matrices."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from helpers.lines import DAMPED, Array, bare_wire
+from helpers.lines import DAMPED, Array, bare_wire, simple_line
 from pantocheck.model.discretised_line import discretise, with_damping
 from pantocheck.model.dynamics import wire_step
 from pantocheck.model.dynamics.active_window import Window
@@ -11,7 +13,7 @@ from pantocheck.model.dynamics.extents import find_extents, merge_extents
 from pantocheck.model.dynamics.motion import Layout, build_motion
 from pantocheck.model.dynamics.vectors import round_up
 from pantocheck.model.fem import beam
-from pantocheck.model.fem.beams import wire_mass, wire_stiffness
+from pantocheck.model.fem.beams import element_stiffness, wire_mass, wire_stiffness
 
 
 def split_mass(h: float) -> Array:
@@ -70,3 +72,27 @@ def test_window_is_held_by_its_neighbours(first: int, last: int) -> None:
     np.testing.assert_array_equal(
         np.delete(inside.w, np.r_[first : last + 1], 2), np.delete(before, np.r_[first : last + 1], 2)
     )
+
+
+def test_equal_rows_of_elements_are_stored_once() -> None:
+    """Two fields of a contact wire and of a messenger wire: two rows; the entries of every row are its own."""
+    line = simple_line(damping=DAMPED)
+    contact, messenger = line.wires
+    stagger = ((0.0, 0.2), (60.0, -0.2), (120.0, 0.2))
+    line = replace(line, wires=(replace(contact, stagger=stagger), replace(messenger, stagger=stagger)))
+    beams = discretise(line, 2.0).beams
+    elements = beams.length.size
+    layout = Layout(elements + 1, round_up(elements + 1) + 16)
+    wires = wire_step.build_wire_arrays(beams, merge_extents(find_extents(beams), 8), layout)
+    assert wires.elements.shape[0] == 2
+    assert wires.element_row.size == 4
+    for row, number in enumerate(wires.element_row):
+        k11, k12, alike, apart, damped_mass, length = wires.elements[number, :, :elements]
+        matrices = element_stiffness(beams, row)
+        np.testing.assert_array_equal(k11, matrices[:, 0, 0])
+        np.testing.assert_array_equal(k12, matrices[:, 0, 1])
+        np.testing.assert_allclose(alike + apart, matrices[:, 1, 1], rtol=1e-14)
+        np.testing.assert_allclose(alike - apart, matrices[:, 1, 3], rtol=1e-14)
+        mass = beams.mass_coefficient[row] * beams.mass_per_length[row] * beams.length / 420
+        np.testing.assert_allclose(damped_mass, mass, rtol=1e-14)
+        np.testing.assert_array_equal(length, beams.length)
