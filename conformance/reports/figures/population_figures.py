@@ -13,7 +13,7 @@ TEST_MARKERS = "os^vDP*X<>"
 
 @render_svg
 def draw_test_ratios(records: list[dict[str, Any]]) -> Figure:
-    """Damping ratio of every certain mode of every test over frequency; one marker per test."""
+    """Damping ratio of every certain mode of every test over frequency; one marker per test, with its number."""
     figure = Figure(figsize=(FULL, 3.2))
     axes = figure.subplots()
     for t, record in enumerate(records):
@@ -24,12 +24,12 @@ def draw_test_ratios(records: list[dict[str, Any]]) -> Figure:
             TEST_MARKERS[t % len(TEST_MARKERS)],
             color=shade,
             markerfacecolor="white",
-            label=record["record"],
+            label=str(t + 1),
         )
     axes.set_ylim(bottom=0)
     axes.margins(x=0.02)
     axes.set(xlabel="frequency [Hz]", ylabel="damping ratio [%]")
-    add_legend(axes, columns=4)
+    add_legend(axes, columns=12)
     return figure
 
 

@@ -59,7 +59,7 @@ def _draw_figures(groups: list[dict[str, Any]], records: list[dict[str, Any]]) -
     ratios = doc.Figure(
         draw_test_ratios(records),
         "Damping ratios of all tests over frequency; the numbers are in population.json.",
-        "Damping ratio of every certain mode of every test.",
+        "Damping ratio of every certain mode of every test, with the number of the test in the table of tests.",
     )
     return doc.Figures((boxes, ratios))
 
@@ -124,8 +124,10 @@ def _describe_variability(variability: dict[str, Any]) -> str:
 
 
 def _record_table(records: list[dict[str, Any]]) -> doc.Table:
-    cells = {
-        "Test": lambda record: record["record"],
+    numbers = {id(record): str(t) for t, record in enumerate(records, 1)}
+    cells: dict[str, Callable[[Any], str]] = {
+        "No.": lambda record: numbers[id(record)],
+        "Test": lambda record: str(record["record"]),
         "Mass": lambda record: f"{format_value(record['mass_kg'], 3)} kg",
         "Place": lambda record: f"{record['drop_wire'] or '?'} at {format_value(record['drop_position_m'])} m",
         "Certain modes": lambda record: f"{record['certain']} of {record['modes']}",
