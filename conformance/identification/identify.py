@@ -98,12 +98,23 @@ def identify_modes(
     InputError
         A record cannot be used.
     """
+    return tuple(_identify_line(line_records, highest, poles, progress) for line_records in group_by_line(records))
+
+
+def group_by_line(records: tuple[DropRecord, ...]) -> list[list[DropRecord]]:
+    """Records of each line, in the order of the records.
+
+    Raises
+    ------
+    InputError
+        There is no record.
+    """
     if not records:
         raise InputError("records", "missing", "Name at least one record.")
     lines: dict[object, list[DropRecord]] = {}
     for record in records:
         lines.setdefault(_line_key(record), []).append(record)
-    return tuple(_identify_line(line_records, highest, poles, progress) for line_records in lines.values())
+    return list(lines.values())
 
 
 def _line_key(record: DropRecord) -> object:
@@ -115,21 +126,36 @@ def _line_key(record: DropRecord) -> object:
 def _identify_line(
     records: list[DropRecord], highest: float, start: ComplexArray | None, progress: Callable[[str], None]
 ) -> Identification:
-    band = _choose_band(records, highest)
+    band = choose_band(records, highest)
     decays = []
     for record in records:
         progress(f"{record.name}: release and linear decay")
         decays.append(prepare_decay(record, band))
+    return identify_decays(decays, band, start, progress)
+
+
+def identify_decays(
+    decays: list[PreparedDecay], band: FrequencyBand, start: ComplexArray | None, progress: Callable[[str], None]
+) -> Identification:
+    """Identify the modes of a line from decays in one band; start poles and progress as in `identify_modes`."""
+    name, spans = decays[0].record.name, decays[0].record.line.spans
     samples, places = share_blocks(decays)
     data = [build_block(channels, dt, band.low, band.fitted) for channels, dt in samples]
-    progress(f"{records[0].name}: poles")
+    progress(f"{name}: poles")
     selection, search = _search_poles(decays, samples, data, band) if start is None else _use_poles(start, data)
-    progress(f"{records[0].name}: uncertainty")
+    progress(f"{name}: uncertainty")
     fit = fit_line(decays, places, data, selection.poles, selection.noise, band)
-    return Identification(fit, build_modes(fit, len(records[0].line.spans) or None), _list_warnings(fit), search)
+    return Identification(fit, build_modes(fit, len(spans) or None), _list_warnings(fit), search)
 
 
-def _choose_band(records: list[DropRecord], highest: float) -> FrequencyBand:
+def choose_band(records: list[DropRecord], highest: float) -> FrequencyBand:
+    """Band up to a frequency [Hz], or up to a lower one if the slowest record requires it.
+
+    Raises
+    ------
+    InputError
+        The sampling rate of a record is too low for any mode.
+    """
     slowest = min(records, key=lambda record: record.rate)
     band = FrequencyBand.up_to(highest, slowest.rate)
     if band.high < min(2 * band.low, highest):

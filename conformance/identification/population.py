@@ -2,12 +2,20 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import chain
 
 from pantocheck.conformance.array_types import ComplexArray
-from pantocheck.conformance.identification.identify import Identification, identify_modes
+from pantocheck.conformance.identification.decay_preparation import PreparedDecay, prepare_decay
+from pantocheck.conformance.identification.identify import (
+    Identification,
+    choose_band,
+    group_by_line,
+    identify_decays,
+)
 from pantocheck.conformance.identification.mode import Mode
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
+from pantocheck.model.one_thread import use_one_thread
 
 
 @dataclass(frozen=True)
@@ -15,7 +23,7 @@ class UnusableRecord:
     """Record that cannot be identified on its own, and the reason."""
 
     record: DropRecord
-    reason: str
+    error: InputError
 
 
 @dataclass(frozen=True)
@@ -36,6 +44,7 @@ class Population:
     unusable: tuple[UnusableRecord, ...]
 
 
+@use_one_thread
 def identify_population(
     records: tuple[DropRecord, ...],
     highest: float = 10.0,
@@ -54,28 +63,41 @@ def identify_population(
     Returns
     -------
     Population
-        At least one test.
+        At least one test; the tests of a line follow each other.
 
     Raises
     ------
     InputError
-        No record can be identified; the error is that of the first one.
+        No record can be identified; the error is that of the first one. Or the sampling rate of one record is too
+        low for any mode, so that its line has no band.
     """
-    singles: list[tuple[DropRecord, Identification]] = []
-    unusable: list[UnusableRecord] = []
-    errors: list[InputError] = []
+    lines = [_identify_line(line_records, highest, poles, progress) for line_records in group_by_line(records)]
+    population = Population(*(tuple(chain.from_iterable(parts)) for parts in zip(*lines, strict=True)))
+    if not population.tests:
+        raise population.unusable[0].error
+    return population
+
+
+def _identify_line(
+    records: list[DropRecord], highest: float, poles: ComplexArray | None, progress: Callable[[str], None]
+) -> tuple[list[PopulationTest], list[Identification], list[UnusableRecord]]:
+    """Tests, joint identification and unusable records of one line; every record is prepared once."""
+    band = choose_band(records, highest)
+    usable: list[tuple[PreparedDecay, Identification]] = []
+    unusable = []
     for record in records:
+        progress(f"{record.name} on its own")
         try:
-            singles.append((record, identify_modes((record,), highest, poles, progress)[0]))
+            decay = prepare_decay(record, band)
+            usable.append((decay, identify_decays([decay], band, poles, progress)))
         except InputError as error:
-            errors.append(error)
-            unusable.append(UnusableRecord(record, str(error)))
-    if not singles and errors:
-        raise errors[0]
-    joint = identify_modes(tuple(record for record, _ in singles), highest, poles, progress)
-    line_of = {id(fit.decay.record): line for line in joint for fit in line.fit.records}
-    tests = tuple(PopulationTest(record, single, line_of[id(record)]) for record, single in singles)
-    return Population(tests, joint, tuple(unusable))
+            unusable.append(UnusableRecord(record, error))
+    if not usable:
+        return [], [], unusable
+    (_, joint), *others = usable
+    if others:
+        joint = identify_decays([decay for decay, _ in usable], band, poles, progress)
+    return [PopulationTest(decay.record, single, joint) for decay, single in usable], [joint], unusable
 
 
 def find_joint_mode(mode: Mode, joint: tuple[Mode, ...]) -> Mode | None:

@@ -26,7 +26,7 @@ def analyse_population(population: Population) -> PopulationFile:
     variability = measure_variability(
         [group.values for group in groups], [side for group in groups for side in group.outliers]
     )
-    unusable = tuple(OmittedRecord(record=each.record.name, reason=each.reason) for each in population.unusable)
+    unusable = tuple(OmittedRecord(record=each.record.name, reason=str(each.error)) for each in population.unusable)
     return PopulationFile(
         records=records,
         unusable=unusable,
