@@ -102,6 +102,7 @@ class Overlay(RoundedModel):
 class SpectrogramPart(RoundedModel):
     """Levels of the amplitude of one channel over time and frequency."""
 
+    window_s: Annotated[float, Field(description="length of a window [s]")]
     time_s: Annotated[Curve, Field(description="middle of each window after the release [s]")]
     frequency_Hz: Curve
     level_dB: Annotated[
@@ -115,8 +116,8 @@ class Spectrogram(RoundedModel):
 
     record: str
     channel: str
-    whole: Annotated[SpectrogramPart, Field(description="whole record, in windows of 4 s")]
-    start: Annotated[SpectrogramPart, Field(description="around the release, in windows of 1 s")]
+    whole: Annotated[SpectrogramPart, Field(description="whole record")]
+    start: Annotated[SpectrogramPart, Field(description="around the release")]
 
 
 class BandOrders(RoundedModel):

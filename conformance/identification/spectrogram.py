@@ -51,6 +51,7 @@ def _transform(signal: RealArray, rate: float, window: float, step: float, first
     levels = 20 * np.log10(np.maximum(amplitude / largest, 10 ** (LOWEST_LEVEL / 20)))
     samples = np.arange(frames.shape[0], dtype=np.float64) * max(round(step * rate), 1)
     return SpectrogramPart(
+        window_s=window,
         time_s=round_curve(first + (samples + length / 2) / rate),
         frequency_Hz=round_curve(frequency[shown]),
         level_dB=tuple(tuple(int(level) for level in row) for row in np.rint(levels)),

@@ -35,7 +35,8 @@ def _spectrogram_figure(data: dict[str, Any], record: dict[str, Any]) -> doc.Fig
         draw_spectrogram(data, marks, (-record["release_s"], last)),
         f"Amplitude of {data['channel']} over time and frequency: whole record, and first seconds. The linear decay "
         f"lasts from {format_value(start, 3)} s to {format_value(end)} s after the release.",
-        f"{data['record']}: spectrogram of {data['channel']}, left in windows of 4 s, right in windows of 1 s. "
+        f"{data['record']}: spectrogram of {data['channel']}, left in windows of {data['whole']['window_s']:g} s, "
+        f"right in windows of {data['start']['window_s']:g} s. "
         f"Droppers may be slack from the release to the start of the linear decay, for {format_value(start, 3)} s.",
     )
 
