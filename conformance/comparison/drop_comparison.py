@@ -28,7 +28,7 @@ from pantocheck.conformance.input_files.bounded_file import file_digest
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.clipping import find_clipping
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
-from pantocheck.conformance.quantities.filters import is_observable
+from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE, is_observable
 from pantocheck.conformance.results.results_format import Suite
 from pantocheck.conformance.results.suite_identity import find_suite_commit, suite_digest
 from pantocheck.conformance.simulation.catenary_model import build_catenary
@@ -89,7 +89,9 @@ class DropTask:
     def settings(self) -> DropSimulation:
         """Settings of the simulations."""
         last = max(end for _, end in self.windows)
-        return DropSimulation(self.element, self.time_step, self.release_duration, last)
+        # Sensors without a limit must not move the release: leaving one out could improve the verdict.
+        graded = self.limits.sensors if self.limits is not None else ()
+        return DropSimulation(self.element, self.time_step, self.release_duration, last, graded)
 
     def build_models(self) -> dict[str, Catenary]:
         """Line with the damping of each model."""
@@ -127,14 +129,7 @@ def compare_drop(record: DropRecord, task: DropTask) -> DropComparison:
     drop = locate_drop(record, next(iter(catenaries.values())))
     _check_sensor_numbers(drop, task)
     motion = simulate_models(drop, catenaries, task.settings)
-    windows = tuple(window for window in task.windows if window[1] <= motion.end + 1e-9)
-    if not windows:
-        raise InputError(
-            f"record '{record.source}'",
-            f"can be compared until {motion.end:.1f} s after the release",
-            f"The first window ends at {min(end for _, end in task.windows):g} s: record longer, or give --window.",
-        )
-    bands = tuple(band for band in MOTION_BANDS if is_observable(band.high, motion.rate))
+    windows, bands = _find_windows(motion, record, task), _find_bands(motion, record)
     places = _list_places(drop)
     names = tuple(place.name for place in places)
     statistics = compute_statistics(motion, names, windows, bands)
@@ -166,6 +161,31 @@ def compare_drop(record: DropRecord, task: DropTask) -> DropComparison:
         criteria=criteria,
         warnings=(*record.warnings, *motion.release.warnings, *warn_about_line(drop.line), *_warn(task, motion)),
     ).rounded()
+
+
+def _find_windows(motion: DropMotion, record: DropRecord, task: DropTask) -> tuple[TimeWindow, ...]:
+    """Windows that the record contains."""
+    windows = tuple(window for window in task.windows if window[1] <= motion.end + 1e-9)
+    if not windows:
+        raise InputError(
+            f"record '{record.source}'",
+            f"can be compared until {motion.end:.1f} s after the release",
+            f"The first window ends at {min(end for _, end in task.windows):g} s: record longer, or give --window.",
+        )
+    return windows
+
+
+def _find_bands(motion: DropMotion, record: DropRecord) -> tuple[MotionBand, ...]:
+    """Bands that the sampling rate supports."""
+    bands = tuple(band for band in MOTION_BANDS if is_observable(band.high, motion.rate))
+    if not bands:
+        least = min(band.high for band in MOTION_BANDS) / HIGHEST_SHARE_OF_RATE
+        raise InputError(
+            f"record '{record.source}'",
+            f"has {record.rate:g} samples per second",
+            f"The lowest band needs {least:g}: export the record with its full rate.",
+        )
+    return bands
 
 
 def _check_sensor_numbers(drop: RecordedDrop, task: DropTask) -> None:

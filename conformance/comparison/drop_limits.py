@@ -79,6 +79,11 @@ class DropLimits(InputTable):
     ]
     limit: Annotated[tuple[DropLimit, ...], Field(strict=False, min_length=1, max_length=1000)]
 
+    @property
+    def sensors(self) -> tuple[int, ...]:
+        """Numbers of all sensors with a limit."""
+        return tuple(dict.fromkeys(sensor for limit in self.limit for sensor in limit.sensors))
+
     def find_unknown_window(self, windows: tuple[TimeWindow, ...]) -> tuple[int, TimeWindow] | None:
         """Number (from 1) and window of the first limit whose window is not compared; None if there is none."""
         return next(

@@ -9,7 +9,7 @@ import numpy as np
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.comparison.motion_bands import GRAPHIC_BAND, TAPER_S, MotionBand, filter_motion, noise_rms
 from pantocheck.conformance.comparison.recorded_drop import RecordedDrop
-from pantocheck.conformance.comparison.release_alignment import ALIGNED_S, SEARCH_S, align_release
+from pantocheck.conformance.comparison.release_alignment import ALIGNED_S, SEARCH_S, align_release, find_arrival
 from pantocheck.conformance.identification.release import MIN_REST, Release, find_release
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.simulation.drop_simulation import ORDER, decimate
@@ -40,12 +40,15 @@ class DropSimulation:
         Time in which the weight decreases linearly to zero [s].
     last : float
         End of the last compared window after the release [s].
+    aligned : tuple of int
+        Numbers of the sensors that find the release; empty: all sensors.
     """
 
     element: float
     time_step: float
     release_duration: float
     last: float
+    aligned: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -143,9 +146,11 @@ def simulate_models(drop: RecordedDrop, models: Mapping[str, Catenary], settings
     record = drop.record
     every = max(1, int(record.rate / WORKING_RATE_HZ))
     signals = record.signals[:, list(drop.columns)]
-    release = find_release(signals, record.rate, record.drop.trigger_nominal, record.name)
-    rest_end = round(release.rest_end * record.rate)
-    offset = np.median(signals[: max(rest_end, 1)], axis=0) if rest_end else np.zeros(signals.shape[1])
+    aligned = [c for c, channel in enumerate(drop.channels) if channel.sensor in settings.aligned]
+    aligned = aligned or list(range(signals.shape[1]))
+    release = find_release(signals[:, aligned], record.rate, record.drop.trigger_nominal, record.name)
+    rest_end = int(release.rest_end * record.rate)
+    offset = np.median(signals[:rest_end] if rest_end else signals, axis=0)
     rate, samples = record.rate / every, decimate(signals - offset, every)
     available = samples.shape[0] / rate - release.time
     if available < ALIGNED_S + SEARCH_S:
@@ -154,25 +159,28 @@ def simulate_models(drop: RecordedDrop, models: Mapping[str, Catenary], settings
             f"ends {available:.2f} s after the first motion",
             f"At least {ALIGNED_S + SEARCH_S:g} s are needed to find the release.",
         )
-    lead = min(round(LEAD_S * rate), max(int((release.time - SEARCH_S) * rate) - 1, 0))
+    lead = round(LEAD_S * rate)
     duration = min(settings.last + MARGIN_S + TAPER_S, available)
     simulated, slack = {}, {}
     for name, catenary in models.items():
         simulated[name], slack[name] = _simulate(drop, catenary, settings, (rate, lead, duration))
-    first = next(iter(simulated.values()))[:, :-1]
-    low_passed = (filter_motion(part, rate, 0, GRAPHIC_BAND) for part in (samples, first))
-    time, correlation = align_release(next(low_passed), next(low_passed)[lead:], rate, release.time)
+    first = next(iter(simulated.values()))[:, aligned]
+    record_part, model_part = (filter_motion(part, rate, 0, GRAPHIC_BAND) for part in (samples[:, aligned], first))
+    # Without rest, the planned release stands in place of the first motion.
+    estimate = release.time - (find_arrival(model_part[lead:], rate) if rest_end else 0.0)
+    time, correlation = align_release(record_part, model_part[lead:], rate, estimate)
     begin = int(time * rate)
-    length = min(first.shape[0], samples.shape[0] - begin + lead)
+    missing = max(lead - begin, 0)
+    length = min(first.shape[0] - missing, samples.shape[0] - begin + lead - missing)
     rest = samples[: int(release.rest_end * rate)] if release.rest_end >= MIN_REST else samples[:0]
     return DropMotion(
         rate=rate,
-        lead=lead,
+        lead=lead - missing,
         quantity=record.quantity,
-        record=samples[begin - lead : begin - lead + length],
+        record=samples[begin - lead + missing : begin - lead + missing + length],
         advance=time - begin / rate,
         rest=rest,
-        models={name: motion[:length] for name, motion in simulated.items()},
+        models={name: motion[missing : missing + length] for name, motion in simulated.items()},
         last_slack=slack,
         release=release,
         release_time=time,

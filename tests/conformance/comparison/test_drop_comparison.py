@@ -13,6 +13,7 @@ from pantocheck.conformance.comparison.drop_comparison_format import DropCompari
 from pantocheck.conformance.comparison.drop_limits import DropLimits
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.drop_record import DropDescription, DropLine, DropRecord
+from pantocheck.conformance.simulation.drop_simulation import decimate
 
 ALL = (0.3, 20.0)
 EARLY, LATE = WINDOWS
@@ -136,6 +137,31 @@ def test_no_removal_of_a_sensor_makes_a_failing_record_pass() -> None:
     assert comparison.criteria[0].reason == "the record has no vertical channel of sensor 1"
 
 
+def test_sensor_without_a_limit_does_not_move_the_release() -> None:
+    """The clock of sensor 2 is 20 ms late: if it took part, its removal would raise the correlation of sensor 1."""
+    record = record_drop()
+    late = replace(record, signals=np.column_stack([record.signals[:, 0], np.roll(record.signals[:, 1], 4)]))
+    table = limit(EARLY, quantity="correlation", sensors=[1], lower=0.99, upper=None)
+    with_it, without_it = (grade(each, table) for each in (late, keep_channels(late, (0,))))
+    assert with_it.criteria == without_it.criteria
+    assert with_it.drop.release_s == pytest.approx(RELEASE, abs=2e-5)
+
+
+@pytest.mark.parametrize("rest", [0.0, 0.4, 1.7])
+def test_release_near_the_start_of_the_record_is_found(rest: float) -> None:
+    """A record that begins at the release, or less than a second before it; the wave needs 0.1 s to a sensor.
+
+    Without rest, the offset of a sensor follows from the decay, with an error of less than a percent of it.
+    """
+    begin = round((RELEASE - rest) * RATE)
+    record = replace(record_drop(), signals=record_drop().signals[begin:].copy())
+    record = replace(record, drop=replace(record.drop, trigger_nominal=rest))
+    comparison = compare_drop(record, build_task(0.1))
+    assert comparison.drop.release_s == pytest.approx(RELEASE - begin / RATE, abs=1e-4)
+    (own,) = find(comparison, "S1_z", "velocity", LATE)
+    assert own.rms_ratio == pytest.approx(1.0, abs=5e-3)
+
+
 def test_record_that_ends_early_leaves_its_window_open() -> None:
     """The fade of one second at the end must lie behind the window."""
     record = replace(record_drop(), signals=record_drop().signals[: round((RELEASE + 9.9) * RATE)].copy())
@@ -190,6 +216,16 @@ def test_band_above_the_sampling_rate_leaves_its_limit_open() -> None:
     record = replace(record_drop(), signals=record_drop().signals[::2].copy(), rate=RATE / 2)
     comparison = grade(record, limit(band_Hz=(20.0, 50.0)))
     assert comparison.criteria[0].reason == "the sampling rate of the record does not support the band of 20 to 50 Hz"
+
+
+def test_slow_record_is_aligned_too_and_a_very_slow_one_is_refused() -> None:
+    """The filter of a record of 25 samples per second rings for 0.5 s before the release; 10 support 4 Hz only."""
+    slow, slower = (replace(record_drop(), signals=decimate(record_drop().signals, k), rate=RATE / k) for k in (8, 20))
+    comparison = compare_drop(slow, build_task(0.1))
+    assert comparison.bands_Hz == ((0.3, 5.0),)
+    assert comparison.drop.release_s == pytest.approx(RELEASE, abs=1e-4)
+    with pytest.raises(InputError, match=r"has 10 samples per second.*\n.*lowest band needs 12\.5"):
+        compare_drop(slower, build_task(0.1))
 
 
 @pytest.mark.parametrize(
