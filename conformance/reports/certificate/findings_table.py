@@ -13,17 +13,18 @@ FINDING_MEANING = (
 
 
 def build_findings_section(results: dict[str, Any]) -> tuple[doc.Section, ...]:
-    """Section with every finding of a run, its role and its outcome; empty without findings."""
+    """Section with every finding of a run, its bounds and its outcome; empty without findings."""
     rows = tuple(_build_row(case, row) for case, row in list_findings(results))
     if not rows:
         return ()
     columns = (
-        doc.Column("Section"),
-        doc.Column("Finding", share=3),
-        doc.Column("Printed"),
+        doc.Column("Section", share=0.8),
+        doc.Column("Finding", share=4),
+        doc.Column("Printed", share=1),
         doc.Column("Computed", number=True),
         doc.Column("Bounds", number=True),
-        *map(doc.Column, ("Trust", "Role", "Outcome")),
+        doc.Column("Trust"),
+        doc.Column("Outcome", share=1),
     )
     counts = doc.Paragraph(" ".join(count_sentences(results)))
     table = doc.Table(columns, rows, layout="cards")
@@ -55,6 +56,11 @@ def _build_row(case: dict[str, Any], row: dict[str, Any]) -> tuple[doc.RichText,
         texts.value,
         texts.limits,
         doc.TrustMark(texts.trust),
-        finding["role"].replace("_", " "),
-        finding["outcome"].replace("_", " "),
+        _describe_outcome(finding),
     )
+
+
+def _describe_outcome(finding: dict[str, Any]) -> str:
+    """Outcome of a finding, and its role if the outcome does not state it."""
+    outcome = str(finding["outcome"]).replace("_", " ")
+    return f"imposed, {outcome}" if finding["role"] == "imposed" != outcome else outcome

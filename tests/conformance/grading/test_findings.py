@@ -93,6 +93,11 @@ def test_pages_list_every_finding_with_the_reason_of_a_contradiction(results: di
         assert f"Sentence on {name}." in pages[0]
 
 
+def test_contradicted_imposed_finding_keeps_its_role_on_the_page(results: dict[str, Any]) -> None:
+    results["cases"][0]["criteria"][0]["finding"]["outcome"] = "not_reproduced"
+    assert "imposed, not reproduced" in render_html(build_certificate(results))
+
+
 @pytest.mark.parametrize(
     ("change", "found"),
     [
