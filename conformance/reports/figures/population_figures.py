@@ -29,7 +29,7 @@ def draw_test_ratios(records: list[dict[str, Any]]) -> Figure:
     axes.set_ylim(bottom=0)
     axes.margins(x=0.02)
     axes.set(xlabel="frequency [Hz]", ylabel="damping ratio [%]")
-    add_legend(axes, columns=12)
+    add_legend(axes, columns=8)
     return figure
 
 
