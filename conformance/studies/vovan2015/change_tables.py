@@ -54,7 +54,8 @@ def build_changes_table(changes: ForceChanges, printed: ValuesByOwner) -> TextTa
             rows.append([QUANTITIES[name].label, "both" if owner == LINE else str(owner), *cells])
     sections = len(changes.shifted)
     return TextTable(
-        caption=f"Changes by the damping [%], and their range over {sections} positions of the analysis section.",
+        caption="Changes by the damping [%], comparison of the two pantographs, and their range over "
+        f"{sections} positions of the analysis section.",
         columns=["Quantity", "Pantograph", "Printed", "Computed", "Smallest", "Largest"],
         rows=rows,
     )
