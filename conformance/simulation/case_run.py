@@ -72,8 +72,9 @@ def run_passage(
         No uplift force gives the mean contact force that the case requires.
     """
     start = uplift_forces or estimate_uplift_forces(case, line)
-    # The computing time must not include the compilation of the kernels.
-    simulate_passage(line, replace(build_passage(case, line, discretisation, start), duration=0.0))
+    # The computing time must not include the compilation of the kernels: one time step compiles all of them.
+    first_step = replace(build_passage(case, line, discretisation, start), duration=discretisation.time_step_s)
+    simulate_passage(line, first_step)
     return tune_uplift(
         lambda forces: _run_once(case, line, discretisation, forces),
         lambda passage_run: _mean_forces(case, passage_run.record),

@@ -5,10 +5,12 @@ from dataclasses import replace
 import pytest
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.simulation.case_run import build_passage
+from pantocheck.conformance.cases.case_file import Discretisation
+from pantocheck.conformance.simulation import case_run
+from pantocheck.conformance.simulation.case_run import build_passage, run_passage
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.simulation.static_quantities import sample_span
-from pantocheck.model import discretise
+from pantocheck.model import DiscretisedLine, History, Passage, discretise, simulate_passage
 from pantocheck.model.statics.elasticity import static_uplift
 
 
@@ -32,3 +34,18 @@ def test_working_height_is_the_mean_static_height_in_the_first_evaluated_span(tw
         assert abs(first - second) > 1e-3
         assert pantograph.static_force == force
         assert (pantograph.force[0] - force) / 50.0 == pytest.approx(first + force / 50e3)
+
+
+def test_computing_time_begins_after_a_first_step(two_pantograph_case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A passage without a step would leave the compilation of the time step to the run that is timed."""
+    steps = []
+
+    def simulate(line: DiscretisedLine, passage: Passage) -> History:
+        steps.append(round(passage.duration / passage.time_step))
+        return simulate_passage(line, passage)
+
+    monkeypatch.setattr(case_run, "simulate_passage", simulate)
+    line, discretisation = discretise(build_catenary(two_pantograph_case.line), 5.0), Discretisation(time_step_s=0.004)
+    run_passage(two_pantograph_case, line, discretisation)
+    duration = (two_pantograph_case.end - two_pantograph_case.start) / two_pantograph_case.speed
+    assert steps == [1, round(duration / discretisation.time_step_s)]
