@@ -29,7 +29,7 @@ from pantocheck.model.irregularity import Irregularity
 
 UPLIFT_FORCE = 160.0
 """Constant uplift force of every pantograph [N]."""
-DROPS = ("vovan2015/mass-drop/initial", "vovan2015/mass-drop/updated-modal")
+DROPS = ("vovan2015/mass-drop/printed", "vovan2015/mass-drop/stand-in")
 TOLERANCE = 1e-8
 """Largest difference as a share of the largest value: sweeps leave 1e-9 N of a few hundred newtons in every step."""
 MOTION = ("displacement", "velocity", "acceleration")
