@@ -1,7 +1,9 @@
 """Command `campaign`: a real campaign on a coarse mesh, its table, exit codes and messages."""
 
 import csv
+import signal
 from pathlib import Path
+from typing import NoReturn
 
 import pytest
 from typer.testing import CliRunner, Result
@@ -12,6 +14,7 @@ from pantocheck.conformance.campaigns.campaign_file import Execution
 from pantocheck.conformance.campaigns.campaign_preparation import read_campaign
 from pantocheck.conformance.campaigns.campaign_store import open_store
 from pantocheck.conformance.campaigns.campaign_table import write_campaign_table
+from pantocheck.conformance.command_line import campaign_command
 from pantocheck.conformance.command_line.app import app
 
 COARSE = ("--set", "discretisation.element_m=3", "--set", "discretisation.time_step_s=0.005")
@@ -71,6 +74,21 @@ def test_campaign_in_processes_equals_that_in_one_process(campaign: Path, tmp_pa
     result = call("campaign", campaign, "--out", out)
     assert result.exit_code == 2
     assert "holds the runs of another campaign (changed: campaign, designs)" in result.output
+
+
+def test_interrupted_campaign_writes_its_finished_runs(
+    campaign: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """SIGTERM arrives as KeyboardInterrupt with its number."""
+
+    def interrupt(*_: object) -> NoReturn:
+        raise KeyboardInterrupt(signal.SIGTERM)
+
+    monkeypatch.setattr(campaign_command, "drive_campaign", interrupt)
+    result = call("campaign", campaign, "--out", tmp_path / "out")
+    assert result.exit_code == 143
+    assert "Interrupted: the same command resumes the campaign. 0 of 3 runs finished, 0 failed" in result.output
+    assert (tmp_path / "out" / "campaign.csv").is_file()
 
 
 @pytest.mark.parametrize(
