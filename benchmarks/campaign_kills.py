@@ -24,6 +24,9 @@ CAMPAIGN = (
 LONGEST_WAIT_S = 4.0
 """Longest time between the first stored run of a driver and its kill [s]."""
 
+RUNS_BETWEEN_KILLS = 4
+"""Runs that are stored between two kills of a worker."""
+
 
 def main(kills: int, seed: int) -> None:
     """Compare a campaign with kills of driver and workers with an undisturbed one."""
@@ -39,7 +42,8 @@ def main(kills: int, seed: int) -> None:
             print(f"kill {number + 1} of the driver after {before} runs, {count_stored(killed)} are stored")
         with start(killed) as driver:
             for number in range(kills):
-                wait_for_further_run(killed, driver)
+                for _ in range(RUNS_BETWEEN_KILLS):  # a run that is killed too often fails
+                    wait_for_further_run(killed, driver)
                 time.sleep(chance.uniform(0, LONGEST_WAIT_S / 4))
                 with suppress(OSError, IndexError):
                     os.kill(chance.choice(list_workers(driver.pid)), signal.SIGKILL)

@@ -9,7 +9,7 @@ from pantocheck.conformance.campaigns.campaign_run import RunRow
 Execute = Callable[[PlannedRun], RunRow]
 """Function that executes one run; it can be sent to other processes."""
 
-MOST_ATTEMPTS = 3
+MOST_ATTEMPTS = 5
 """Largest number of times that a run is started whose process ends unexpectedly, by itself or from outside."""
 
 PROCESS_ENDED = "the process of this run ended unexpectedly at every attempt"
