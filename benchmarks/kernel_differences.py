@@ -148,9 +148,10 @@ def compare(old: str, new: str) -> bool:
     """Print the largest difference of every quantity; true if none exceeds the tolerance."""
     agreed = True
     with np.load(old) as before, np.load(new) as after:
-        agreed &= sorted(before.files) == sorted(after.files)
+        alone = sorted(set(before.files) ^ set(after.files))
+        agreed &= not alone
         print("| simulation | quantity | largest value | largest difference | share |\n| :-- | :-- | --: | --: | --: |")
-        for key in before.files:
+        for key in (key for key in before.files if key not in alone):
             first, second = before[key], after[key]
             largest = float(np.nanmax(np.abs(first)))
             difference = float(np.nanmax(np.abs(first - second)))
@@ -158,6 +159,8 @@ def compare(old: str, new: str) -> bool:
             agreed &= share <= TOLERANCE and bool((np.isnan(first) == np.isnan(second)).all())
             name, quantity = key.split(": ")
             print(f"| {name} | {quantity} | {largest:.4g} | {difference:.1e} | {share:.1e} |")
+    for key in alone:
+        print(f"in one file only: {key}")
     return agreed
 
 
