@@ -28,3 +28,12 @@ def inline_kernel(function: Function) -> Function:
     """
     compiled: Function = _njit(cache=True, _nrt=False, forceinline=True)(function)
     return compiled
+
+
+def merged_kernel(function: Function) -> Function:
+    """Compile a function of a time step as statements of its only caller.
+
+    It is not compiled by itself then, which saves time in the first run after an installation.
+    """
+    compiled: Function = _njit(cache=True, _nrt=False, inline="always")(function)
+    return compiled

@@ -27,7 +27,7 @@ from pantocheck.model.dynamics.contact_step import (
 from pantocheck.model.dynamics.distributed_step import accelerate_distributed, load_distributed, predict_distributed
 from pantocheck.model.dynamics.extents import active_run
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, Workspace
-from pantocheck.model.dynamics.kernel_compilation import inline_kernel
+from pantocheck.model.dynamics.kernel_compilation import merged_kernel
 from pantocheck.model.dynamics.motion import Motion, hold_left_stations
 from pantocheck.model.dynamics.panels import solve_wires
 from pantocheck.model.dynamics.scalar_forces import sweep_forces
@@ -36,7 +36,7 @@ from pantocheck.model.dynamics.train import Train
 from pantocheck.model.dynamics.wire_step import add_lumped_forces, predict_wires
 
 
-@inline_kernel
+@merged_kernel
 def step(kernel: KernelArrays, motion: Motion, train: Train, work: Workspace) -> int:
     """Advance line and pantographs by one time step, in place.
 
@@ -77,7 +77,7 @@ def step(kernel: KernelArrays, motion: Motion, train: Train, work: Workspace) ->
     return 0 if math.isnan(accelerated) else sweeps
 
 
-@inline_kernel
+@merged_kernel
 def settle_forces(kernel: KernelArrays, motion: Motion, train: Train, work: Workspace, window: Window) -> int:
     """Sweep over contact forces and scalar forces until none of them changes.
 
