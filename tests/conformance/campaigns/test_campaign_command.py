@@ -87,7 +87,8 @@ def test_interrupted_campaign_writes_its_finished_runs(
     monkeypatch.setattr(campaign_command, "drive_campaign", interrupt)
     result = call("campaign", campaign, "--out", tmp_path / "out")
     assert result.exit_code == 143
-    assert "Interrupted: the same command resumes the campaign. 0 of 3 runs finished, 0 failed" in result.output
+    output = " ".join(result.output.split())
+    assert "Interrupted: the same command resumes the campaign. 0 of 3 runs finished, 0 failed" in output
     assert (tmp_path / "out" / "campaign.csv").is_file()
 
 
