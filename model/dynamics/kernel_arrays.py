@@ -15,7 +15,7 @@ from pantocheck.model.dynamics.connector_step import (
     connector_ends,
     node_compliance,
 )
-from pantocheck.model.dynamics.contact_step import (
+from pantocheck.model.dynamics.contact_arrays import (
     ContactArrays,
     ContactWorkspace,
     allocate_contact_workspace,

@@ -7,7 +7,7 @@ import numpy as np
 from pantocheck.model.arrays import Array
 from pantocheck.model.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.active_window import build_window_arrays, find_unknown
-from pantocheck.model.dynamics.contact_step import ContactArrays
+from pantocheck.model.dynamics.contact_arrays import ContactArrays
 from pantocheck.model.dynamics.irregularity_step import height_of_irregularity
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, build_kernel_arrays
 from pantocheck.model.dynamics.motion import Motion, motion_at_rest

@@ -1,0 +1,146 @@
+"""Arrays of the contact of pantographs and contact wires in a time step (`contact_step`)."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from pantocheck.model.arrays import Array, Indices
+from pantocheck.model.discretised_line import DiscretisedLine
+from pantocheck.model.dynamics.block_tridiagonal import Factor
+from pantocheck.model.dynamics.connector_step import ConnectorArrays
+from pantocheck.model.dynamics.distributed_step import DistributedArrays
+from pantocheck.model.dynamics.irregularity_step import IrregularityArrays, build_irregularity_arrays
+from pantocheck.model.dynamics.train import Train
+from pantocheck.model.dynamics.vectors import LANES, align
+from pantocheck.model.fem.contact_wires import ContactWires, locate_contact_wires
+
+
+class ContactArrays(NamedTuple):
+    """Contact wires of a line in a time step; W contact wires, S stations.
+
+    Parameters
+    ----------
+    time_step : float
+        Time step [s].
+    position : (S,) ndarray
+        Positions of the stations [m].
+    wires : ContactWires
+        Rows and extents of the contact wires.
+    rest : (B, S, 2) ndarray
+        Height and slope of the rows in the initial state [m, -].
+    flexibility : (B, S-1, 7) ndarray
+        Residual flexibility of the elements, see `element_flexibility` [m/N].
+    irregularity : IrregularityArrays
+        Additional heights of the contact wires.
+    factor : Factor
+        Block factors of the effective matrix.
+    half_width : int
+        Number of stations that a force influences on either side of an element (`column_half_width`).
+    """
+
+    time_step: float
+    position: Array
+    wires: ContactWires
+    rest: Array
+    flexibility: Array
+    irregularity: IrregularityArrays
+    factor: Factor
+    half_width: int
+
+
+class ContactWorkspace(NamedTuple):
+    """Predictors of the contacts of one step; P pantographs, W contact wires, N scalar forces near a contact at most.
+
+    Parameters
+    ----------
+    element : (P,) int ndarray
+        Element above each pantograph.
+    above : (P, W) int ndarray
+        Contact wires above each pantograph, in the order of the line.
+    number_above : (P,) int ndarray
+        Their number.
+    shape : (P, W, 4) ndarray
+        Hermite functions at the contacts.
+    stiffness : (P, W) ndarray
+        Penalty and residual flexibility in series [N/m].
+    overlap : (P, W) ndarray
+        Predicted overlap of head and wire [m].
+    head_compliance : (P,) ndarray
+        Acceleration of each head per contact force [1/kg].
+    response : (P, W, 2, n) ndarray
+        Accelerations of deflection and slope around each contact per contact force [1/kg, 1/(kg m)].
+    start : (P,) int ndarray
+        Station of their first values, a multiple of the size of a vector; it can lie before the line.
+    wire_compliance : (P, P, W) ndarray
+        Acceleration of each wire at one contact per force at another [1/kg].
+    wire_acceleration : (P, W) ndarray
+        Acceleration of each wire at its contacts under the forces of the last step [m/s2].
+    first_guess : (P, W) ndarray
+        Contact forces of the last step [N].
+    near : (P, W, N) int ndarray
+        Scalar forces that a contact influences.
+    influence : (P, W, N) ndarray
+        Acceleration of their elongations per contact force [1/kg].
+    number_near : (P, W) int ndarray
+        Their number.
+    """
+
+    element: Indices
+    above: Indices
+    number_above: Indices
+    shape: Array
+    stiffness: Array
+    overlap: Array
+    head_compliance: Array
+    response: Array
+    start: Indices
+    wire_compliance: Array
+    wire_acceleration: Array
+    first_guess: Array
+    near: Indices
+    influence: Array
+    number_near: Indices
+
+
+def build_contact_arrays(line: DiscretisedLine, factor: Factor, time_step: float, half_width: int) -> ContactArrays:
+    """Build the arrays of the contact wires for a time step [s]; `half_width` as in `column_half_width`."""
+    return ContactArrays(
+        time_step=time_step,
+        position=line.mesh.position,
+        wires=locate_contact_wires(line),
+        rest=np.ascontiguousarray(line.state.deflection),
+        flexibility=line.beams.flexibility,
+        irregularity=build_irregularity_arrays(line.catenary.contact_wires),
+        factor=factor,
+        half_width=half_width,
+    )
+
+
+def allocate_contact_workspace(
+    contact: ContactArrays, connectors: ConnectorArrays, distributed: DistributedArrays, train: Train
+) -> ContactWorkspace:
+    """Allocate the scratch arrays for the simulation of a train."""
+    pantographs, wires = train.contact.shape
+    stiffness, overlap, wire_acceleration, first_guess = (np.zeros((pantographs, wires)) for _ in range(4))
+    width = 2 * contact.half_width + 2 * LANES
+    nodes = connectors.nodes
+    place = nodes.row * (contact.position.size + width) + nodes.station
+    ends_before = nodes.first_end[np.searchsorted(place, place + width)]
+    near = int((ends_before - nodes.first_end[:-1]).max(initial=0)) + distributed.force.size
+    return ContactWorkspace(
+        element=np.zeros(pantographs, dtype=np.int64),
+        above=np.zeros((pantographs, wires), dtype=np.int64),
+        number_above=np.zeros(pantographs, dtype=np.int64),
+        shape=np.zeros((pantographs, wires, 4)),
+        stiffness=stiffness,
+        overlap=overlap,
+        head_compliance=np.zeros(pantographs),
+        response=align(np.zeros((pantographs, wires, 2, width))),
+        start=np.zeros(pantographs, dtype=np.int64),
+        wire_compliance=np.zeros((pantographs, pantographs, wires)),
+        wire_acceleration=wire_acceleration,
+        first_guess=first_guess,
+        near=np.zeros((pantographs, wires, near), dtype=np.int64),
+        influence=np.zeros((pantographs, wires, near)),
+        number_near=np.zeros((pantographs, wires), dtype=np.int64),
+    )
