@@ -7,6 +7,7 @@ import jsonschema
 import numpy as np
 import pytest
 
+from helpers.short_cases import shorten_case
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.force_rules import list_mean_force_rules
 from pantocheck.conformance.cases.geometry import ListedSpans
@@ -31,25 +32,7 @@ def force_law_case() -> Case:
 
 
 def short_case(speed_km_h: float, pantographs: int = 1) -> Case:
-    """Force-law case on ten well damped spans with elements of 2 m; the last spans keep reflections away."""
-    case = force_law_case()
-    damping = case.line.damping
-    wires = {
-        key: getattr(damping, key).model_copy(update={"mass_coefficient_1_s": PER_UNIT_MASS})
-        for key in ("contact_wire", "messenger_wire")
-    }
-    line = {"damping": damping.model_copy(update=wires), "geometry": case.line.geometry.shorten(10)}
-    coarse = case.file.discretisation.model_copy(update={"element_m": 2.0, "time_step_s": 0.004})
-    file = {
-        "speed_km_h": speed_km_h, "evaluated_spans": (5, 8), "compared_spans": None, "discretisation": coarse,
-        "pantograph": case.file.pantograph * pantographs, "spacing_m": (60.0,) * (pantographs - 1) or None,
-    }  # fmt: skip
-    return replace(
-        case,
-        file=case.file.model_copy(update=file),
-        line=case.line.model_copy(update=line),
-        pantographs=case.pantographs * pantographs,
-    )
+    return shorten_case(force_law_case(), speed_km_h, PER_UNIT_MASS, pantographs)
 
 
 def raise_wire(case: Case, slope: float) -> Case:

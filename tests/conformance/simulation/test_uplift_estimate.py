@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from helpers.short_cases import shorten_case
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.records.record_signals import RecordSignals
@@ -18,26 +19,11 @@ PER_UNIT_MASS = 0.3
 
 
 def short_case(name: str, speed_km_h: float, stated: float | None = None) -> Case:
-    """Two pantographs 60 m apart on ten well damped spans of a line of the library, on elements of 2 m."""
+    """Two pantographs on ten spans of a line of the library."""
     *_, case = select_cases([f"en50318-2018/{name}"])
-    damping = case.line.damping
-    wires = {
-        key: getattr(damping, key).model_copy(update={"mass_coefficient_1_s": PER_UNIT_MASS})
-        for key in ("contact_wire", "messenger_wire")
-    }
-    line = {"damping": damping.model_copy(update=wires), "geometry": case.line.geometry.shorten(10)}
-    coarse = case.file.discretisation.model_copy(update={"element_m": 2.0, "time_step_s": 0.004})
-    file = {
-        "speed_km_h": speed_km_h, "evaluated_spans": (5, 8), "compared_spans": None, "discretisation": coarse,
-        "pantograph": (case.file.pantograph[0].model_copy(update={"uplift_force_N": stated}),) * 2,
-        "spacing_m": (60.0,),
-    }  # fmt: skip
-    return replace(
-        case,
-        file=case.file.model_copy(update=file),
-        line=case.line.model_copy(update=line),
-        pantographs=case.pantographs[:1] * 2,
-    )
+    case = shorten_case(case, speed_km_h, PER_UNIT_MASS, 2)
+    pantographs = tuple(p.model_copy(update={"uplift_force_N": stated}) for p in case.file.pantograph)
+    return replace(case, file=case.file.model_copy(update={"pantograph": pantographs}))
 
 
 def discretised(case: Case) -> DiscretisedLine:
