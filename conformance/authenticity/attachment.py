@@ -8,7 +8,7 @@ from pypdf import PdfReader
 
 from pantocheck.conformance.input_files.bounded_file import read_bytes
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.reports.formats.reproducibility import NAME
+from pantocheck.conformance.reports.formats.embedded_results import NAME
 from pantocheck.conformance.reports.page_text import clean_text
 from pantocheck.conformance.results.results_reading import parse_results
 

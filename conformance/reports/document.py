@@ -198,7 +198,7 @@ class Document:
     header: PlainHeader | VerdictHeader
     blocks: tuple[Block, ...]
     results: dict[str, Any] | None = None
-    """Results to be embedded in the PDF, which then bears the date of their run; None: no attachment and no date."""
+    """Results to be embedded in the HTML and in the PDF, which then bears the date of their run; None: neither."""
 
 
 def to_plain(value: Any) -> Any:

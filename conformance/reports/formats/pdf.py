@@ -12,12 +12,8 @@ import typst
 from matplotlib.ft2font import FT2Font
 
 from pantocheck.conformance.reports.document import Document, to_plain
-from pantocheck.conformance.reports.formats.reproducibility import (
-    NAME,
-    encode_attachment,
-    read_source_date,
-    strip_times,
-)
+from pantocheck.conformance.reports.formats.embedded_results import NAME, encode_attachment
+from pantocheck.conformance.reports.formats.reproducibility import read_source_date
 from pantocheck.conformance.reports.page_text import change_texts
 from pantocheck.conformance.reports.words import TEMPLATES, read_words
 
@@ -52,7 +48,7 @@ def render_pdf(document: Document) -> bytes:
         seconds = _find_date(document.results)
         data["attachment"] = NAME
         data["date"] = f"{datetime.fromtimestamp(seconds, UTC):%Y-%m-%d %H:%M:%S} UTC" if seconds else ""
-        files[NAME] = encode_attachment(strip_times(document.results))
+        files[NAME] = encode_attachment(document.results)
         options = {"pdf_standards": "a-3a", "timestamp": seconds}
     files["main.typ"] = files.pop("page.typ")
     files["page.json"] = json.dumps(change_texts(data, _replace_missing_glyphs)).encode("ascii")

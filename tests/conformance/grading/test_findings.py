@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 
+from helpers.shown_page import shown_certificate
 from pantocheck.conformance.authenticity.recomputation import find_discrepancies
 from pantocheck.conformance.cases.finding import PublishedFinding, Role
 from pantocheck.conformance.cases.library import select_cases
@@ -12,10 +13,8 @@ from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.grading.case_identity import describe_limit_change, limits_digest
 from pantocheck.conformance.quantities.evaluation import LINE
-from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
 from pantocheck.conformance.reports.certificate.summary_page import build_summary
 from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline
-from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.reports.formats.markdown import render_markdown
 from pantocheck.conformance.results.outcome import Delivered, StudyResult
 from pantocheck.conformance.results.results_building import build_results
@@ -85,7 +84,7 @@ def test_findings_are_counted_by_outcome(results: dict[str, Any]) -> None:
 
 def test_pages_list_every_finding_with_the_reason_of_a_contradiction(results: dict[str, Any]) -> None:
     """The sensitivity explains a contradicted finding only."""
-    pages = (render_html(build_certificate(results)), render_markdown(build_summary(results)))
+    pages = (shown_certificate(results), render_markdown(build_summary(results)))
     for page in pages:
         assert page.count("it depends on the speed") == 1
         assert page.count("not reproduced") >= 2  # in the headline and in the table
@@ -95,7 +94,7 @@ def test_pages_list_every_finding_with_the_reason_of_a_contradiction(results: di
 
 def test_contradicted_imposed_finding_keeps_its_role_on_the_page(results: dict[str, Any]) -> None:
     results["cases"][0]["criteria"][0]["finding"]["outcome"] = "not_reproduced"
-    assert "imposed, not reproduced" in render_html(build_certificate(results))
+    assert "imposed, not reproduced" in shown_certificate(results)
 
 
 @pytest.mark.parametrize(

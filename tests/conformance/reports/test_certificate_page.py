@@ -3,6 +3,7 @@
 import json
 from typing import Any
 
+from helpers.shown_page import shown_certificate
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.reports.certificate.case_facts import list_case_facts
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
@@ -20,7 +21,6 @@ from pantocheck.conformance.reports.document import (
     TrustMark,
     VerdictMark,
 )
-from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.reports.page_text import format_value
 from pantocheck.conformance.results.results_format import Results
 
@@ -79,7 +79,7 @@ def test_certificate_states_a_close_criterion_once_per_place(passing: dict[str, 
     """Once in the row of the criterion and once among the reasons."""
     remark = "lies 0.1 N from a limit, less than its uncertainty of 0.2 N"
     passing["cases"][0]["criteria"][0] |= {"value": 119.91, "margin": 0.018, "close": [remark]}
-    text = render_html(build_certificate(passing))
+    text = shown_certificate(passing)
     assert text.count(remark) == 1
     assert text[: text.index('id="cases"')].count("119.9 N") == 2  # close, and the smallest margin
 

@@ -1,5 +1,6 @@
 """HTML writer: self-contained, escaped, accessible, the same every time."""
 
+import json
 import re
 from html.parser import HTMLParser
 from itertools import pairwise
@@ -8,6 +9,7 @@ from typing import Any
 import pytest
 
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
+from pantocheck.conformance.reports.document import Document, PlainHeader
 from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.reports.words import TEMPLATES
 
@@ -49,7 +51,9 @@ def test_html_is_deterministic(results: dict[str, Any], page_text: str) -> None:
 def test_html_fetches_and_runs_nothing(name: str, request: pytest.FixtureRequest) -> None:
     text = request.getfixturevalue(name)
     outline = Outline(text)
-    assert {tag for tag, _ in outline.tags} & {"script", "link", "iframe", "object", "embed", "base", "form"} == set()
+    assert {tag for tag, _ in outline.tags} & {"link", "iframe", "object", "embed", "base", "form"} == set()
+    scripts = [attrs for tag, attrs in outline.tags if tag == "script"]
+    assert scripts == [{"type": "application/json", "id": "pantocheck-results"}]  # data, which no browser executes
     assert all(address.startswith("data:image/svg+xml;base64,") for address in outline.values("src"))
     assert all(address.startswith("#") for address in outline.values("href"))
     assert not [attribute for _, attrs in outline.tags for attribute in attrs if attribute.startswith("on")]
@@ -57,6 +61,22 @@ def test_html_fetches_and_runs_nothing(name: str, request: pytest.FixtureRequest
     assert "url(" not in style
     assert "@import" not in style
     assert "default-src 'none'" in text
+
+
+@pytest.mark.parametrize("name", ["results", "hostile"])
+def test_html_embeds_its_complete_results(name: str, request: pytest.FixtureRequest) -> None:
+    """The data block has every key in the order of the results; hostile text cannot end it."""
+    results = request.getfixturevalue(name)
+    page = render_html(build_certificate(results))
+    [block] = re.findall('<script type="application/json" id="pantocheck-results">(.*?)</script>', page)
+    assert not set("<>&") & set(block)
+    assert block.isascii()
+    assert json.dumps(json.loads(block)) == json.dumps(results)
+
+
+def test_html_without_results_has_no_data_block() -> None:
+    page = render_html(Document("Title", PlainHeader("Heading", "Headline"), ()))
+    assert "<script" not in page
 
 
 @pytest.mark.parametrize("name", ["page_text", "hostile_text"])
@@ -85,7 +105,7 @@ def test_html_begins_with_the_verdict(page_text: str) -> None:
 
 
 def test_html_escapes_hostile_text(hostile_text: str) -> None:
-    assert "<script" not in hostile_text
+    assert hostile_text.count("<script") == 1  # the data block
     assert "&lt;script&gt;alert(1)&lt;/script&gt;" in hostile_text
     assert "{{ 7*7 }} {% raw %}" in hostile_text
     assert not set(hostile_text) & set("\x00\x1b\u202e\ufffe\ue000")

@@ -7,6 +7,7 @@ from xml.etree import ElementTree
 import pytest
 from pypdf import PdfReader
 
+from helpers.shown_page import shown_certificate
 from pantocheck.conformance.command_line.results_output import print_results
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
 from pantocheck.conformance.reports.certificate.scope_page import (
@@ -19,7 +20,6 @@ from pantocheck.conformance.reports.certificate.scope_page import (
 from pantocheck.conformance.reports.certificate.summary_page import build_summary
 from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline
 from pantocheck.conformance.reports.document import Section, Table, VerdictMark, WarningBox
-from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.reports.formats.junit import render_junit
 from pantocheck.conformance.reports.formats.markdown import render_markdown
 from pantocheck.conformance.reports.formats.pdf import render_pdf
@@ -49,7 +49,7 @@ def test_modified_copy_is_named_in_every_format(copied: dict[str, Any], capsys: 
     assert suites[0].attrib["name"] == suites[0].findall("testcase")[0].attrib["classname"] == COPY
     print_results(Results.model_validate(copied), [])
     for text in (
-        render_html(build_certificate(copied)),
+        shown_certificate(copied),
         render_markdown(build_summary(copied)),
         capsys.readouterr().out,
     ):
@@ -70,7 +70,7 @@ def test_weakened_limit_is_named_in_every_format(results: dict[str, Any], capsys
     print_results(Results.model_validate(changed), [])
     weakened = "The limits file weakens limits or changes their trust in 1 case."
     assert build_headline(changed).endswith(weakened)
-    texts = [render_html(build_certificate(changed)), capsys.readouterr().out, render_junit(changed).decode()]
+    texts = [shown_certificate(changed), capsys.readouterr().out, render_junit(changed).decode()]
     texts.append(render_markdown(build_summary(changed)).replace("\\_", "_"))
     assert all(CHANGE in " ".join(text.split()) for text in texts)
 
@@ -149,12 +149,12 @@ def test_scope_is_on_page_1_of_the_pdf(results: dict[str, Any]) -> None:
 
 def test_results_of_an_older_version_have_no_scope(results: dict[str, Any]) -> None:
     assert results["scope"] == []
-    assert "Limits of validity" not in render_html(build_certificate(results))
+    assert "Limits of validity" not in shown_certificate(results)
 
 
 def test_certificate_states_all_digests(results: dict[str, Any]) -> None:
     changed = describe(results, limits_digest="sha256:" + "a" * 64, stated_limits_digest="sha256:" + "b" * 64)
     changed["suite"]["digest"] = "sha256:" + "c" * 64
-    page = render_html(build_certificate(changed))
+    page = shown_certificate(changed)
     assert all(f"sha256:{letter * 64}" in page for letter in "abc")
     assert changed["cases"][0]["input_digest"] in page

@@ -6,6 +6,7 @@ from xml.etree import ElementTree
 
 import pytest
 
+from helpers.shown_page import shown_certificate
 from pantocheck.conformance.authenticity.recomputation import find_discrepancies
 from pantocheck.conformance.grading.case_verdict import Participation
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
@@ -14,7 +15,6 @@ from pantocheck.conformance.reports.certificate.summary_page import build_summar
 from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline, list_reasons
 from pantocheck.conformance.reports.document import Code
 from pantocheck.conformance.reports.formats.badge import summarise_verdict
-from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.reports.formats.junit import render_junit
 from pantocheck.conformance.reports.formats.markdown import render_markdown
 from pantocheck.conformance.results.results_format import Results, VerdictName
@@ -100,7 +100,7 @@ def test_page_has_both_verdicts_and_the_confirmation(failing: Results, build: An
 
 
 def test_certificate_lists_what_is_not_confirmed(failing: Results) -> None:
-    text = render_html(build_certificate(decide(failing, *BOTH)))
+    text = shown_certificate(decide(failing, *BOTH))
     assert "min_force_N of pantograph 1: the formulations differ" in text
     assert "Without a confirmed value" in text
 

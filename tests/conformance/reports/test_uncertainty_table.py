@@ -2,11 +2,11 @@
 
 from typing import Any
 
+from helpers.shown_page import shown_certificate
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
 from pantocheck.conformance.reports.certificate.quantity_tables import build_quantity_table
 from pantocheck.conformance.reports.certificate.uncertainty_table import uncertainty_blocks
 from pantocheck.conformance.reports.document import BulletList, Code, Section, Table
-from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.reports.page_text import format_value
 
 
@@ -72,4 +72,4 @@ def test_certificate_shows_the_components_only_where_there_are_results(results: 
     }
     named = [heading for heading, parts in found.items() if "Uncertainty by component" in parts]
     assert len(named) == 2
-    assert "is not known. A quantity with several values" in render_html(build_certificate(results))
+    assert "is not known. A quantity with several values" in shown_certificate(results)

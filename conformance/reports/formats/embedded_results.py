@@ -1,0 +1,39 @@
+"""Results inside a certificate, from which it can be made again: one home for their selection and encoding.
+
+The PDF has an attachment, the HTML page a data block. Both keep the order of the results, which is that of the rows of
+the pages. The PDF omits the times of the run, so that two runs of the same input give the same bytes. The HTML page
+prints these times, so its data block keeps them.
+"""
+
+import json
+from typing import Any
+
+NAME = "results.json"
+"""Name of the attachment."""
+
+BLOCK_ID = "pantocheck-results"
+"""Identity of the data block, a script element of the type `application/json`, which no browser executes."""
+
+ESCAPES = str.maketrans({character: f"\\u{ord(character):04x}" for character in "<>&"})
+"""Escapes of JSON for the characters that could end the data block or begin a comment in it."""
+
+
+def strip_times(results: dict[str, Any]) -> dict[str, Any]:
+    """Results whose times are null, so that two runs of the same input give the same certificate."""
+    return results | {
+        "started": None,
+        "cases": [
+            case | {"run": case["run"] | {"wall_s": None}} if "wall_s" in (case.get("run") or {}) else case
+            for case in results["cases"]
+        ],
+    }
+
+
+def encode_attachment(results: dict[str, Any]) -> bytes:
+    """Attachment of the PDF: results without times as JSON text in ASCII; equal results give equal bytes."""
+    return (json.dumps(strip_times(results), indent=1, allow_nan=False) + "\n").encode("ascii")
+
+
+def encode_data_block(results: dict[str, Any]) -> str:
+    """Content of the data block of the HTML page: results as JSON text in ASCII without `<`, `>` and `&`."""
+    return json.dumps(results, separators=(",", ":"), allow_nan=False).translate(ESCAPES)

@@ -1,0 +1,12 @@
+"""A page as its reader sees it: without the embedded results, which repeat every text and number."""
+
+from dataclasses import replace
+from typing import Any
+
+from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
+from pantocheck.conformance.reports.formats.html import render_html
+
+
+def shown_certificate(results: dict[str, Any]) -> str:
+    """HTML of a certificate without its data block."""
+    return render_html(replace(build_certificate(results), results=None))
