@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.bands import EXTENDED_BAND, band_part, band_rms
-from pantocheck.conformance.quantities.filters import LowPass, needs_filter
+from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE, LowPass, needs_filter
 from pantocheck.conformance.quantities.unavailable import (
     BandNotObservable,
     ChannelMissing,
@@ -137,6 +137,11 @@ class PantographSignals:
     def filter_applied_Hz(self) -> float | None:
         """Cut-off of the low-pass filter applied before delivery [Hz]; None: unfiltered."""
         return self.force.filter_applied_Hz
+
+    @property
+    def highest_frequency(self) -> float:
+        """Frequency up to which the force is known [Hz], at most 50 Hz."""
+        return min(EXTENDED_CUTOFF_HZ, HIGHEST_SHARE_OF_RATE * self.force.rate, self.filter_applied_Hz or np.inf)
 
     @cached_property
     def inside(self) -> slice:

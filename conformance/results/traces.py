@@ -7,9 +7,7 @@ from numpy.typing import NDArray
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.bands import amplitude_spectrum
-from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE
 from pantocheck.conformance.quantities.signals import (
-    EXTENDED_CUTOFF_HZ,
     ForceSignals,
     PantographSignals,
     supports_inside,
@@ -45,7 +43,12 @@ def build_pantograph_traces(
         except QuantityUnavailable:
             continue
         within = _select_supports(supports, pantograph.section)
-        traces[str(number)] = _build_traces(pantograph, position, within, _spectrum(pantograph))
+        traces[str(number)] = _build_traces(
+            pantograph,
+            position,
+            within,
+            amplitude_spectrum(pantograph.delivered, pantograph.force.rate, pantograph.highest_frequency),
+        )
     return traces
 
 
@@ -96,13 +99,6 @@ def _build_traces(
         spectrum=Spectrum(frequency_Hz=thin_series(frequency), amplitude_N=thin_series(amplitude)),
         histogram=None if graded is None else _build_histogram(graded),
     )
-
-
-def _spectrum(signals: PantographSignals) -> tuple[RealArray, RealArray]:
-    """Frequencies [Hz] and amplitudes [N] up to 50 Hz, or up to the highest frequency that is known."""
-    rate = signals.force.rate
-    highest = min(EXTENDED_CUTOFF_HZ, HIGHEST_SHARE_OF_RATE * rate, signals.filter_applied_Hz or np.inf)
-    return amplitude_spectrum(signals.delivered, rate, highest)
 
 
 def _select_samples(force: RealArray) -> NDArray[np.intp]:
