@@ -22,6 +22,7 @@ from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.cases.profile_file import Profile
 from pantocheck.conformance.comparison.drop_comparison_format import DropComparison
 from pantocheck.conformance.comparison.drop_limits import DropLimits
+from pantocheck.conformance.comparison.run_comparison_format import RunComparison
 from pantocheck.conformance.comparison.static_comparison_format import StaticComparison
 from pantocheck.conformance.comparison.static_sidecar import StaticSidecar
 from pantocheck.conformance.identification.damping.damping_format import DampingResults
@@ -62,6 +63,7 @@ WRITTEN_FORMATS: dict[str, type[BaseModel]] = {
     "identification": IdentificationFile,
     "population": PopulationFile,
     "damping-fit": DampingResults,
+    "comparison": RunComparison,
     "static-comparison": StaticComparison,
     "campaign-results": CampaignResults,
     "drop-comparison": DropComparison,

@@ -22,6 +22,7 @@ COMMANDS = {
     "drop-campaign": "Simulate a campaign of mass drops: every combination of masses, places and tensions.",
     "identify": "Identify frequencies, damping ratios and mode shapes from mass-drop records.",
     "fit-damping": "Fit a damping model of a line to identified modes.",
+    "compare": "Compare records, results or systems with the first of them.",
     "compare-drop": "Compare a recorded mass drop with its simulation under one or more damping models.",
     "import-line": "Write a line file from tables of its supports and droppers.",
     "export-line": "Write the supports and droppers of a line as tables for a spreadsheet.",

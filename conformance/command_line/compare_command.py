@@ -1,0 +1,155 @@
+"""`pantocheck compare`: records, results and systems side by side."""
+
+import csv
+import io
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.input_changes import parse_changes
+from pantocheck.conformance.command_line.console import build_table, console, escape_text
+from pantocheck.conformance.command_line.options import SetOption, choose_case
+from pantocheck.conformance.comparison.compared_run import (
+    RESULTS_FILE,
+    ComparedRun,
+    read_record_run,
+    read_results_runs,
+    simulate_run,
+)
+from pantocheck.conformance.comparison.run_comparison import compare_runs
+from pantocheck.conformance.comparison.run_comparison_format import RunComparison
+from pantocheck.conformance.identification.rounded_model import write_model
+from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.reports.comparison.run_comparison_page import build_run_comparison, format_compared
+from pantocheck.conformance.reports.formats.report_writers import write_report
+from pantocheck.conformance.reports.words import name_pantograph
+from pantocheck.conformance.systems.system_choice import choose_system
+
+SYSTEMS = ("builtin", "record:", "command:")
+
+
+def compare_command(
+    subjects: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="A B ...",
+            help="Records, results.json files or their folders, or systems: builtin, record:DIR, command:PROGRAM.",
+        ),
+    ],
+    case: Annotated[str | None, typer.Option(help="Compared case; required for systems.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for comparison.json, .html, .pdf and .csv.", show_default="none")
+    ] = None,
+    changed: SetOption = None,
+) -> None:
+    """Compare records, results or systems with the first of them.
+
+    Quantities stand side by side with their differences. Of records and systems, the forces are compared at the same
+    positions: by band, by frequency (coherence), in each span and over the place in the span. Nothing is judged: the
+    exit code is 0.
+
+    Examples:
+
+    pantocheck compare simulated.csv measured.csv --out comparison
+
+    pantocheck compare builtin "command:python my_code.py" --case en50318-2002/250 --out comparison
+
+    pantocheck compare report-1.0/results.json report-1.1/results.json
+    """
+    if len(subjects) < 2:
+        raise InputError("compare", "one subject", "Give two or more records, results or systems.")
+    simulated = _choose_simulated_case(subjects, case, changed)
+    if out is not None:
+        check_writable(out)
+    output = console()
+    runs = []
+    for subject in subjects:
+        with output.status(escape_text(subject)):
+            runs.append(_load_subject(subject, simulated))
+    comparison = compare_runs(runs, simulated.id if simulated is not None else case)
+    files = [] if out is None else _write_comparison(comparison, out)
+    _print_comparison(comparison)
+    for path in files:
+        output.print(escape_text(str(path)), soft_wrap=True)
+
+
+def _choose_simulated_case(subjects: list[str], case: str | None, changed: list[str] | None) -> Case | None:
+    """Case that the systems run; None without a system."""
+    if not any(subject.startswith(SYSTEMS) for subject in subjects):
+        return None
+    if case is None:
+        raise InputError("compare", "a system without a case", "Name the case that it runs with --case.")
+    return choose_case(case, lambda each: not each.is_static, "with a train", parse_changes(changed or ()))
+
+
+def _load_subject(text: str, case: Case | None) -> list[ComparedRun]:
+    """Runs of one subject."""
+    if case is not None and text.startswith(SYSTEMS):
+        return [simulate_run(case, choose_system(text))]
+    path = Path(text)
+    if path.is_dir() or path.suffix == Path(RESULTS_FILE).suffix:
+        return read_results_runs(path)
+    return [read_record_run(path)]
+
+
+def _write_comparison(comparison: RunComparison, folder: Path) -> list[Path]:
+    """Write all files of a comparison; return their paths."""
+    paths = [folder / f"comparison{suffix}" for suffix in (".json", ".html", ".pdf", ".csv")]
+    write_model(paths[0], comparison)
+    document = build_run_comparison(comparison.model_dump(mode="json", by_alias=True))
+    for path in paths[1:3]:
+        write_report(document, path)
+    write_atomically(paths[3], _list_values(comparison).encode())
+    return paths
+
+
+def _list_values(comparison: RunComparison) -> str:
+    """Table of all values as comma-separated values; one row per quantity and subject."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(("case", "pantograph", "quantity", "subject", "item", "value", "uncertainty"))
+    for case in comparison.cases:
+        for owner in case.owners:
+            for quantity in owner.quantities:
+                for subject, value, width in zip(
+                    comparison.subjects, quantity.values, quantity.uncertainty, strict=True
+                ):
+                    numbers = value if isinstance(value, tuple) else (value,)
+                    widths = width if isinstance(width, tuple) else (width,) * len(numbers)
+                    for item, (number, half_width) in enumerate(zip(numbers, widths, strict=True), 1):
+                        place = item if isinstance(value, tuple) else ""
+                        writer.writerow((case.id, owner.number, quantity.name, subject.name, place, number, half_width))
+    return text.getvalue()
+
+
+def _print_comparison(comparison: RunComparison) -> None:
+    """Print one table per case and pantograph; quantities with several numbers are left to the files."""
+    output = console()
+    names = [subject.name for subject in comparison.subjects]
+    for case in comparison.cases:
+        for note in case.notes:
+            output.print(escape_text(note))
+        for owner in case.owners:
+            rows = [row for row in owner.quantities if not any(isinstance(value, tuple) for value in row.values)]
+            if not rows:
+                continue
+            title = ", ".join(filter(None, (case.id, name_pantograph(owner.number))))
+            table = build_table("quantity", *names, title=title, unbroken=("quantity",), right=names)
+            for row in rows:
+                values = row.model_dump(mode="json")
+                table.add_row(
+                    escape_text(row.name), *(escape_text(format_compared(values, i)) for i in range(len(names)))
+                )
+            output.print(table)
+            for agreement in owner.agreements:
+                output.print(
+                    escape_text(
+                        f"{agreement.subject}: correlation {agreement.correlation:.3f}, RMS of the difference "
+                        f"{agreement.rms_difference_N:.3g} N up to {agreement.highest_Hz:g} Hz"
+                    )
+                )
+            output.print()
+    output.print("* beyond the joint 95 % uncertainty of both values")

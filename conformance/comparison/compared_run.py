@@ -1,0 +1,159 @@
+"""Compared runs: records, results and simulations, read into one form."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.profile_file import load_profile
+from pantocheck.conformance.grading.assessed_record import load_assessed_record
+from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.quantities.evaluation import Value, ValuesByOwner
+from pantocheck.conformance.quantities.signals import PantographSignals
+from pantocheck.conformance.records.sidecar_tables import LineTable
+from pantocheck.conformance.results.figure_data import Traces
+from pantocheck.conformance.results.outcome import Delivered
+from pantocheck.conformance.results.results_format import CaseResult, Results
+from pantocheck.conformance.results.results_part import Number
+from pantocheck.conformance.results.results_reading import read_results
+from pantocheck.conformance.systems.system import System
+
+RECORD_PROFILE = "line-test"
+"""Profile whose filter and speed tolerance hold for records that are compared."""
+
+RESULTS_FILE = "results.json"
+
+
+@dataclass(frozen=True)
+class ComparedRun:
+    """One run of a case or one record.
+
+    Parameters
+    ----------
+    kind : {'record', 'results', 'system'}
+        Origin: files of a record, results.json, or a run of a system.
+    name : str
+        Name of the record or of the system.
+    source : str
+        Kind and origin in words.
+    digest : str
+        SHA-256 of the files; empty for a simulation.
+    case : str
+        Id of the case; empty if a record states none.
+    speed_km_h : float or None
+        Speed of the train [km/h]; None if it is not known.
+    values, uncertainty : mapping of int to mapping of str to Value
+        Quantities and half-widths of their 95 % intervals, by pantograph (0: the line) and name.
+    signals : mapping of int to PantographSignals
+        Signals of the pantographs; empty for results.
+    traces : mapping of int to Traces
+        Thinned curves; empty unless the run was read from results.
+    supports : tuple of float
+        Positions of the supports [m]; empty if they are not known.
+    """
+
+    kind: Literal["record", "results", "system"]
+    name: str
+    source: str
+    digest: str
+    case: str
+    speed_km_h: float | None
+    values: ValuesByOwner
+    uncertainty: ValuesByOwner
+    signals: Mapping[int, PantographSignals] = field(default_factory=dict)
+    traces: Mapping[int, Traces] = field(default_factory=dict)
+    supports: tuple[float, ...] = ()
+
+
+def read_record_run(path: Path) -> ComparedRun:
+    """Read a record with its quantities.
+
+    Raises
+    ------
+    InputError
+        The record cannot be read or is invalid.
+    """
+    record = load_assessed_record(path, load_profile(RECORD_PROFILE), LineTable())
+    prepared, header = record.prepared, record.header
+    return ComparedRun(
+        kind="record",
+        name=record.name,
+        source=f"record of {record.system.name} {record.system.version}".strip(),
+        digest=record.record_digest,
+        case=header.case or "",
+        speed_km_h=header.speed_km_h,
+        values=record.values.values,
+        uncertainty=record.uncertainty.combined,
+        signals={} if prepared is None else prepared.pantographs,
+        supports=() if prepared is None else prepared.line.line_supports or (),
+    )
+
+
+def read_results_runs(path: Path) -> list[ComparedRun]:
+    """Read the cases of a results.json that have quantities; the path may be that of its folder.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or none of its cases has quantities.
+    """
+    path = path / RESULTS_FILE if path.is_dir() else path
+    results = read_results(path)
+    runs = [_read_case_run(case, results) for case in results.cases if any(case.quantities.values())]
+    if not runs:
+        raise InputError(f"results '{path.name}'", "no case has quantities", "Give the results of a run.")
+    return runs
+
+
+def simulate_run(case: Case, system: System) -> ComparedRun:
+    """Run a case on a system.
+
+    Raises
+    ------
+    InputError
+        The system does not run the case, fails, or delivers the data of another case.
+    """
+    outcome = system.run(case)
+    if not isinstance(outcome, Delivered):
+        raise InputError(f"system '{system.name}'", outcome.reason, "Choose another case or system.")
+    evaluation = CaseEvaluation(case, outcome)
+    if evaluation.mismatch is not None:
+        raise InputError(f"system '{system.name}'", evaluation.mismatch, "Choose another case or system.")
+    return ComparedRun(
+        kind="system",
+        name=system.name,
+        source=f"{system.kind} {system.name} {system.version}".strip(),
+        digest=outcome.digest or "",
+        case=case.id,
+        speed_km_h=3.6 * case.speed,
+        values=evaluation.evaluation.values,
+        uncertainty=evaluation.uncertainty.combined,
+        signals={} if evaluation.signals is None else evaluation.signals.pantographs,
+        supports=case.line.geometry.supports,
+    )
+
+
+def _read_case_run(case: CaseResult, results: Results) -> ComparedRun:
+    supports = {support for traces in case.traces.values() for support in traces.supports_m}
+    return ComparedRun(
+        kind="results",
+        name=f"{results.system.name} {results.system.version}".strip(),
+        source=f"results of {results.started or 'an unknown date'}",
+        digest=case.record.digest or "" if case.record is not None else "",
+        case=case.id,
+        speed_km_h=None,
+        values=_read_values(case.quantities),
+        uncertainty=_read_values(case.uncertainty),
+        traces={int(owner): traces for owner, traces in case.traces.items()},
+        supports=tuple(sorted(supports)),
+    )
+
+
+def _read_values(quantities: Mapping[str, Mapping[str, Number]]) -> dict[int, dict[str, Value]]:
+    """Values of results.json by the number of the pantograph."""
+    return {
+        int(owner): {name: tuple(value) if isinstance(value, list) else value for name, value in values.items()}
+        for owner, values in quantities.items()
+    }

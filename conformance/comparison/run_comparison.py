@@ -1,0 +1,158 @@
+"""Comparison of runs: quantities side by side, and forces at the same positions."""
+
+from collections.abc import Mapping, Sequence
+
+from pantocheck.conformance.comparison.compared_run import ComparedRun
+from pantocheck.conformance.comparison.force_charts import build_force_charts
+from pantocheck.conformance.comparison.force_difference import compare_bands, compare_spans, correlation
+from pantocheck.conformance.comparison.paired_forces import PairedForces, pair_forces
+from pantocheck.conformance.comparison.quantity_difference import compare_quantities
+from pantocheck.conformance.comparison.run_comparison_format import (
+    BandAgreement,
+    ComparedCase,
+    ComparedOwner,
+    ComparedSubject,
+    ForceAgreement,
+    RunComparison,
+    SpanAgreement,
+)
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.quantities.evaluation import LINE
+from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
+from pantocheck.conformance.records.record import SPEED_TOLERANCE
+from pantocheck.conformance.results.results_building import build_suite
+
+THINNED = "{name}: results hold thinned curves. Give the record for differences of the force."
+
+
+def compare_runs(subjects: Sequence[Sequence[ComparedRun]], case: str | None) -> RunComparison:
+    """Compare the runs of several subjects case by case.
+
+    Parameters
+    ----------
+    subjects : sequence of sequence of ComparedRun
+        Runs of each subject, at most one per case; the others are compared with the first subject.
+    case : str or None
+        Id of the only compared case; None: all cases that the subjects have in common.
+
+    Raises
+    ------
+    InputError
+        The subjects have no common case, or it is not clear to which case a record belongs.
+    """
+    names = _name_subjects([runs[0] for runs in subjects])
+    groups = {
+        key: {name: _select_run(runs, key) for name, runs in zip(names, subjects, strict=True)}
+        for key in _find_common_cases(subjects, case)
+    }
+    return RunComparison(
+        suite=build_suite(),
+        subjects=tuple(
+            ComparedSubject(name=name, source=runs[0].source, digest=runs[0].digest)
+            for name, runs in zip(names, subjects, strict=True)
+        ),
+        cases=tuple(_compare_case(key, runs) for key, runs in groups.items()),
+    )
+
+
+def _name_subjects(runs: Sequence[ComparedRun]) -> list[str]:
+    """Unique names: equal names are followed by their place in the list."""
+    names = [run.name for run in runs]
+    return [f"{name} ({i})" if names.count(name) > 1 else name for i, name in enumerate(names, 1)]
+
+
+def _find_common_cases(subjects: Sequence[Sequence[ComparedRun]], case: str | None) -> list[str]:
+    """Ids of the compared cases. A subject with one record belongs to any case, preferably to that which it states."""
+    several = [[run.case for run in runs] for runs in subjects if not _is_record(runs)]
+    stated = {runs[0].case for runs in subjects if _is_record(runs)} - {""}
+    if not several:
+        return [stated.pop() if len(stated) == 1 else ""]
+    common = [name for name in several[0] if all(name in names for names in several)]
+    if len(several) < len(subjects) and len(common) > 1:
+        common = [name for name in common if name in stated]
+    if case is not None:
+        common = [name for name in common if name == case]
+    if not common or (len(several) < len(subjects) and len(common) > 1):
+        found = "; ".join(", ".join(sorted(set(names))) for names in several)
+        raise InputError("compare", f"no common case: {found}", "Name a case of every subject with --case.")
+    return common
+
+
+def _is_record(runs: Sequence[ComparedRun]) -> bool:
+    return runs[0].kind == "record"
+
+
+def _select_run(runs: Sequence[ComparedRun], case: str) -> ComparedRun:
+    return runs[0] if _is_record(runs) else next(run for run in runs if run.case == case)
+
+
+def _compare_case(case: str, runs: Mapping[str, ComparedRun]) -> ComparedCase:
+    first = next(iter(runs.values()))
+    owners = sorted({owner for run in runs.values() for owner in run.values})
+    return ComparedCase(
+        id=case,
+        notes=tuple(
+            f"{name}: {run.speed_km_h:g} km/h, the first subject {first.speed_km_h:g} km/h. Forces are compared at the "
+            "same position."
+            for name, run in runs.items()
+            if run.speed_km_h and first.speed_km_h and abs(run.speed_km_h / first.speed_km_h - 1) > SPEED_TOLERANCE
+        ),
+        owners=tuple(_compare_owner(owner, runs) for owner in owners),
+    )
+
+
+def _compare_owner(owner: int, runs: Mapping[str, ComparedRun]) -> ComparedOwner:
+    quantities = compare_quantities(list(runs.values()), owner)
+    if owner == LINE:
+        return ComparedOwner(number=owner, quantities=quantities)
+    first, *others = runs
+    supports = next((run.supports for run in runs.values() if run.supports), ())
+    pairs: dict[str, PairedForces] = {}
+    reasons = [THINNED.format(name=name) for name, run in runs.items() if owner in run.traces]
+    for name in others if owner in runs[first].signals else ():
+        if owner not in runs[name].signals:
+            continue
+        try:
+            pairs[name] = pair_forces(runs[first].signals[owner], runs[name].signals[owner])
+        except QuantityUnavailable as reason:
+            reasons.append(f"{name}: {reason}")
+    return ComparedOwner(
+        number=owner,
+        quantities=quantities,
+        agreements=tuple(_describe_agreement(name, pair, supports) for name, pair in pairs.items()),
+        reasons=tuple(reasons),
+        charts=build_force_charts(runs, pairs, owner, supports),
+    )
+
+
+def _describe_agreement(name: str, pair: PairedForces, supports: Sequence[float]) -> ForceAgreement:
+    difference = pair.difference
+    return ForceAgreement(
+        subject=name,
+        section_m=(float(pair.position[0]), float(pair.position[-1])),
+        highest_Hz=pair.highest_Hz,
+        correlation=correlation(pair),
+        mean_difference_N=float(difference.mean()),
+        rms_difference_N=float((difference**2).mean() ** 0.5),
+        bands=tuple(
+            BandAgreement(
+                low_Hz=band.low,
+                high_Hz=band.high,
+                first_N=band.first,
+                other_N=band.second,
+                difference_N=band.difference,
+            )
+            for band in compare_bands(pair)
+        ),
+        spans=tuple(
+            SpanAgreement(
+                start_m=span.start,
+                end_m=span.end,
+                mean_difference_N=span.mean,
+                rms_difference_N=span.rms,
+                first_std_N=span.first_std,
+                other_std_N=span.second_std,
+            )
+            for span in compare_spans(pair, supports)
+        ),
+    )
