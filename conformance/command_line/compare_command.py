@@ -18,7 +18,7 @@ from pantocheck.conformance.comparison.compared_run import (
     read_results_runs,
     simulate_run,
 )
-from pantocheck.conformance.comparison.run_comparison import compare_runs
+from pantocheck.conformance.comparison.run_comparison import compare_subjects
 from pantocheck.conformance.comparison.run_comparison_format import RunComparison
 from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
@@ -69,7 +69,7 @@ def compare_command(
     for subject in subjects:
         with output.status(escape_text(subject)):
             runs.append(_load_subject(subject, simulated))
-    comparison = compare_runs(runs, simulated.id if simulated is not None else case)
+    comparison = compare_subjects(runs, simulated.id if simulated is not None else case)
     files = [] if out is None else _write_comparison(comparison, out)
     _print_comparison(comparison)
     for path in files:

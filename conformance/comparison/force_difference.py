@@ -83,7 +83,7 @@ class SpanProfile:
     rms: RealArray
 
 
-def compare_bands(forces: PairedForces) -> list[BandDifference]:
+def compare_force_bands(forces: PairedForces) -> list[BandDifference]:
     """RMS values of the bands that both forces contain; the bands of `band_rms`."""
     compared = []
     for low, high, _ in BANDS:

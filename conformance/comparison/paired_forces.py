@@ -14,7 +14,7 @@ INTERPOLATION_RATE_HZ = 1000.0
 """Smallest sampling rate of a force that is interpolated [Hz]: a cubic spline through twenty samples per period
 reproduces 50 Hz to 0.1 % (test)."""
 
-FEWEST_SAMPLES = 32
+FEWEST_PAIRED_SAMPLES = 32
 """Smallest number of samples of a record whose force is interpolated."""
 
 
@@ -70,7 +70,7 @@ def pair_forces(first: PantographSignals, second: PantographSignals) -> PairedFo
     inside = np.flatnonzero(
         (finer.position >= max(start, coarser.position[0])) & (finer.position < min(end, coarser.position[-1]))
     )
-    if inside.size < max(FEWEST_SAMPLES, SHORTEST_PERIODS / highest * finer.force.rate):
+    if inside.size < max(FEWEST_PAIRED_SAMPLES, SHORTEST_PERIODS / highest * finer.force.rate):
         raise SectionNotCovered("the analysis sections have no common stretch of sufficient length")
     position = finer.position[inside]
     position = finer.position[inside]

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 from pantocheck.conformance.comparison.compared_run import ComparedRun
 from pantocheck.conformance.comparison.force_charts import build_force_charts
-from pantocheck.conformance.comparison.force_difference import compare_bands, compare_spans, correlation
+from pantocheck.conformance.comparison.force_difference import compare_force_bands, compare_spans, correlation
 from pantocheck.conformance.comparison.paired_forces import PairedForces, pair_forces
 from pantocheck.conformance.comparison.quantity_difference import compare_quantities
 from pantocheck.conformance.comparison.run_comparison_format import (
@@ -25,7 +25,7 @@ from pantocheck.conformance.results.results_building import build_suite
 THINNED = "{name}: results hold thinned curves. Give the record for differences of the force."
 
 
-def compare_runs(subjects: Sequence[Sequence[ComparedRun]], case: str | None) -> RunComparison:
+def compare_subjects(subjects: Sequence[Sequence[ComparedRun]], case: str | None) -> RunComparison:
     """Compare the runs of several subjects case by case.
 
     Parameters
@@ -142,7 +142,7 @@ def _describe_agreement(name: str, pair: PairedForces, supports: Sequence[float]
                 other_N=band.second,
                 difference_N=band.difference,
             )
-            for band in compare_bands(pair)
+            for band in compare_force_bands(pair)
         ),
         spans=tuple(
             SpanAgreement(

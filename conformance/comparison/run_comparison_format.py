@@ -8,7 +8,7 @@ from pantocheck.conformance.identification.rounded_model import Rounded, Rounded
 from pantocheck.conformance.results.figure_data import Chart
 from pantocheck.conformance.results.results_format import Suite
 
-Values = Rounded | tuple[Rounded, ...]
+ComparedValue = Rounded | tuple[Rounded, ...]
 
 
 class ComparedSubject(RoundedModel):
@@ -20,12 +20,12 @@ class ComparedSubject(RoundedModel):
 
 
 class ComparedQuantity(RoundedModel):
-    """Values of one quantity; lists have one item per subject."""
+    """ComparedValue of one quantity; lists have one item per subject."""
 
     name: str
-    values: Annotated[tuple[Values | None, ...], Field(description="null: not known")]
+    values: Annotated[tuple[ComparedValue | None, ...], Field(description="null: not known")]
     uncertainty: Annotated[
-        tuple[Values | None, ...], Field(description="half-width of the 95 % interval; null: not known")
+        tuple[ComparedValue | None, ...], Field(description="half-width of the 95 % interval; null: not known")
     ]
     difference: Annotated[
         tuple[Rounded | None, ...],

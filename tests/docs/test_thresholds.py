@@ -13,7 +13,9 @@ from pantocheck.conformance.comparison import (
     drop_comparison,
     drop_motion,
     drop_statistics,
+    force_difference,
     motion_bands,
+    paired_forces,
     release_alignment,
     static_comparison,
     static_criteria,
@@ -59,7 +61,7 @@ MODULES: list[ModuleType] = [
     extended_band, record_mismatch, record_uncertainty, start_agreement, start_and_section, validity_warnings,
     verification_limits, bands, filters, limit_text, signals, record, block_bootstrap, force_checks, usable_sections,
     results_part, results_reading, traces, static_comparison, static_criteria, static_differences, static_record,
-    drop_comparison, drop_motion, drop_statistics, motion_bands, release_alignment,
+    drop_comparison, drop_motion, drop_statistics, force_difference, paired_forces, motion_bands, release_alignment,
 ]  # fmt: skip
 BY_FILE = {"/".join(module.__name__.split(".")[2:]) + ".py": module for module in MODULES}
 FOLDERS = ("quantities", "consistency", "grading", "records", "results", "authenticity", "comparison")

@@ -15,7 +15,7 @@ from helpers.wave_system import SIGMA, Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.comparison.compared_run import ComparedRun, simulate_run
-from pantocheck.conformance.comparison.run_comparison import compare_runs
+from pantocheck.conformance.comparison.run_comparison import compare_subjects
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.reports.comparison.run_comparison_page import format_compared
@@ -137,17 +137,17 @@ def test_joint_uncertainty_decides_on_the_mark() -> None:
     """Half-widths 3 and 4: the joint half-width is 5."""
     for difference, beyond in ((4.9, False), (5.1, True)):
         first, other = build_run("a", {"std_force_N": 30.0}, 3.0), build_run("a", {"std_force_N": 30 + difference}, 4.0)
-        (quantity,) = compare_runs([[first], [other]], None).cases[0].owners[0].quantities
+        (quantity,) = compare_subjects([[first], [other]], None).cases[0].owners[0].quantities
         assert quantity.beyond_uncertainty == (False, beyond)
 
 
 def test_a_record_belongs_to_the_case_that_it_states() -> None:
     results = [build_run(case, {"std_force_N": value}, 1.0) for case, value in (("a", 30.0), ("b", 40.0))]
     record = replace(build_run("b", {"std_force_N": 41.0}, 1.0), kind="record")
-    (case,) = compare_runs([results, [record]], None).cases
+    (case,) = compare_subjects([results, [record]], None).cases
     assert (case.id, case.owners[0].quantities[0].difference) == ("b", (0.0, 1.0))
     with pytest.raises(InputError, match="no common case"):
-        compare_runs([results, [replace(record, case="")]], None)
+        compare_subjects([results, [replace(record, case="")]], None)
 
 
 def test_a_simulation_has_the_signals_of_its_record(two_pantograph_case: Case) -> None:

@@ -8,7 +8,7 @@ import pytest
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.comparison.force_difference import (
     coherence,
-    compare_bands,
+    compare_force_bands,
     compare_spans,
     correlation,
     span_profile,
@@ -57,7 +57,7 @@ def test_bands_of_a_known_difference() -> None:
     def other(time: RealArray) -> RealArray:
         return 121 + tone(1.5, 26)(time) + tone(9, 8, np.pi / 2)(time) + tone(33, 5)(time)
 
-    low, middle, high = compare_bands(pair_forces(signals(base, 1000.0), signals(other, 1000.0)))
+    low, middle, high = compare_force_bands(pair_forces(signals(base, 1000.0), signals(other, 1000.0)))
     root = np.sqrt(2)
     assert (low.first, low.second, low.difference) == pytest.approx((20 / root, 26 / root, 6 / root), rel=2e-3)
     assert (middle.first, middle.second) == pytest.approx((8 / root, 8 / root), rel=5e-3)
@@ -69,7 +69,7 @@ def test_bands_of_a_known_difference() -> None:
 def test_a_force_filtered_at_20_hz_has_no_upper_band() -> None:
     forces = pair_forces(signals(base, 1000.0), signals(base, 1000.0, filtered=20.0))
     assert forces.highest_Hz == 20
-    assert [band.high for band in compare_bands(forces)] == [5, 20]
+    assert [band.high for band in compare_force_bands(forces)] == [5, 20]
 
 
 def test_coherence_is_one_for_a_common_part_and_low_for_independent_noise() -> None:
