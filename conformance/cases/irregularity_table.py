@@ -6,7 +6,7 @@ from typing import Annotated, Any
 from pydantic import Discriminator, Field, Tag
 
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.sourced_table import Positive, SourcedTable, validation_problem
+from pantocheck.conformance.input_files.sourced_table import Positive, SourcedTable, is_absent, validation_problem
 
 MOST_POINTS = 50_000
 """Largest number of measured points: a height every 6 cm over 3 km."""
@@ -20,7 +20,21 @@ MeasuredHeights = Annotated[
 SpectralValues = Annotated[tuple[Positive, ...], Field(strict=False, min_length=2, max_length=1000)]
 
 
-class MeasuredIrregularity(SourcedTable):
+class ScaledIrregularity(SourcedTable):
+    """Irregularity with a common factor of its heights, which a campaign can vary."""
+
+    height_factor: Annotated[
+        float | None,
+        Field(ge=0, le=100, description="factor of all heights; default: 1 [-]", exclude_if=is_absent),
+    ] = None
+
+    @property
+    def scale(self) -> float:
+        """Factor of all heights."""
+        return 1.0 if self.height_factor is None else self.height_factor
+
+
+class MeasuredIrregularity(ScaledIrregularity):
     """Heights of the contact wire that a pantograph feels in addition to those at rest, joined by a cubic spline."""
 
     x_m: Annotated[MeasuredPositions, Field(description="positions along the track, in increasing order [m]")]
@@ -33,7 +47,7 @@ class MeasuredIrregularity(SourcedTable):
         yield from _check_pairs("x_m", self.x_m, "height_m", self.height_m)
 
 
-class SpectralIrregularity(SourcedTable):
+class SpectralIrregularity(ScaledIrregularity):
     """One-sided power spectral density of the additional heights, realised over the line with random phases."""
 
     frequency_1_m: Annotated[SpectralValues, Field(description="spatial frequencies, in increasing order [1/m]")]

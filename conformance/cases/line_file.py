@@ -339,6 +339,15 @@ class LineFile(InputTable):
                     "Give one list per span, with one change per dropper.",
                 )
 
+    @cross_check
+    def _check_stagger_changes(self) -> Problems:
+        if self.variation is not None and self.variation.supports is not None and not self.layout.has_stagger:
+            yield validation_problem(
+                "variation.supports",
+                "varies the stagger of a line without a stagger",
+                "Give geometry.stagger_contact_wire_m, or leave out variation.supports.",
+            )
+
     def _schedule_key(self, number: int) -> str:
         """Key of the dropper schedule of a span."""
         if not isinstance(self.geometry, ListedSpans) or self.geometry.span_list[number - 1].droppers is None:

@@ -1,5 +1,6 @@
 """Irregularity of the contact wire of a line, realised from its line file."""
 
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -21,8 +22,10 @@ def build_irregularity(line: LineFile) -> Irregularity | None:
 def _realise(table: IrregularityTable, length: float) -> Irregularity:
     """Irregularity of a table over a line of a length [m]."""
     if isinstance(table, SpectralIrregularity):
-        return realise_irregularity(SpectralDensity(table.frequency_1_m, table.density_m3), length, table.seed)
-    return Irregularity(table.x_m, table.height_m)
+        realised = realise_irregularity(SpectralDensity(table.frequency_1_m, table.density_m3), length, table.seed)
+    else:
+        realised = Irregularity(table.x_m, table.height_m)
+    return replace(realised, height=tuple(table.scale * height for height in realised.height))
 
 
 def irregularity_at(line: LineFile, position: RealArray) -> RealArray:

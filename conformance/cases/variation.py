@@ -70,6 +70,15 @@ DropperVariation = Annotated[
 ]
 
 
+class SupportVariation(InputTable):
+    """Random changes of the stagger at the supports, uniformly distributed within a tolerance."""
+
+    stagger_tolerance_m: Annotated[
+        float, Field(gt=0, le=0.5, description="largest lateral change of the contact wire at a support [m]")
+    ]
+    seed: Annotated[int, Field(ge=0, le=2**31 - 1, description="seed of the changes")]
+
+
 class Variation(SourcedTable):
     """Variation of a line after it was built with its nominal data; its droppers keep their lengths."""
 
@@ -80,4 +89,8 @@ class Variation(SourcedTable):
     messenger_wire: WireVariation = WireVariation()
     droppers: Annotated[
         DropperVariation | None, Field(description="changes of the lengths of the droppers", exclude_if=is_absent)
+    ] = None
+    supports: Annotated[
+        SupportVariation | None,
+        Field(description="changes of the stagger of the contact wire", exclude_if=is_absent),
     ] = None

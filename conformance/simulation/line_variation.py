@@ -1,10 +1,10 @@
-"""Variation of a catenary after it was built: other tensions, and droppers of other lengths.
+"""Variation of a catenary after it was built: other tensions and staggers, and droppers of other lengths.
 
-The line is built with its nominal data. Then its tensions change. Its droppers keep their unloaded lengths or change
-them by a tolerance, and the contact wire hangs at other heights.
+The line is built with its nominal data. Then its tensions and staggers change. Its droppers keep their unloaded lengths
+or change them by a tolerance, and the contact wire hangs at other heights.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -37,7 +37,7 @@ def vary_catenary(catenary: Catenary, line: LineFile) -> Catenary:
     Returns
     -------
     Catenary
-        Catenary with varied tensions and heights; the same one without a variation.
+        Catenary with varied tensions, staggers and heights; the same one without a variation.
 
     Raises
     ------
@@ -49,7 +49,8 @@ def vary_catenary(catenary: Catenary, line: LineFile) -> Catenary:
         return catenary
     length = compute_unloaded_lengths(catenary, VARIATION_ELEMENT_M) + _length_changes(variation, catenary, line)
     excess = excess_lengths(catenary, VARIATION_ELEMENT_M)
-    wires = tuple(_vary_tension(wire, variation, excess[wire.name]) for wire in catenary.wires)
+    moved = _stagger_changes(variation, line)
+    wires = tuple(_move_wire(_vary_tension(wire, variation, excess[wire.name]), moved) for wire in catenary.wires)
     return hang_on_droppers(replace(catenary, wires=wires), length, VARIATION_ELEMENT_M)
 
 
@@ -64,6 +65,23 @@ def _vary_tension(wire: Wire, variation: Variation, excess_length: float) -> Wir
     return replace(wire, tension=tension * (1 + table.tension_change_share))
 
 
+def _stagger_changes(variation: Variation, line: LineFile) -> dict[float, float]:
+    """Change of the stagger of the contact wire at every support by its position [m, m]."""
+    table, supports = variation.supports, line.geometry.supports
+    changes = (
+        np.zeros(len(supports)) if table is None else _draw_changes(table.stagger_tolerance_m, table.seed, supports)
+    )
+    return dict(zip(supports, changes.tolist(), strict=True))
+
+
+def _move_wire(wire: Wire, changes: Mapping[float, float]) -> Wire:
+    """Contact wire with its stagger after the change at every support; its anchors and other wires are unchanged."""
+    if wire.kind is not Kind.CONTACT_WIRE or wire.stagger is None:
+        return wire
+    first, *inner, last = wire.stagger
+    return replace(wire, stagger=(first, *((x, y + changes[x]) for x, y in inner), last))
+
+
 def _length_changes(variation: Variation, catenary: Catenary, line: LineFile) -> RealArray:
     """Change of the length of every dropper [m]."""
     table = variation.droppers
@@ -71,8 +89,13 @@ def _length_changes(variation: Variation, catenary: Catenary, line: LineFile) ->
         return np.zeros(len(catenary.droppers))
     if isinstance(table, ListedLengthChanges):
         return np.array(_list_changes(table.length_change_m, line))
-    shares = np.random.PCG64(table.seed).random_raw(len(catenary.droppers)) / 2.0**64
-    return np.asarray(table.tolerance_m * (2 * shares - 1))
+    return _draw_changes(table.tolerance_m, table.seed, catenary.droppers)
+
+
+def _draw_changes(tolerance: float, seed: int, parts: Sequence[object]) -> RealArray:
+    """Change of every part, uniformly distributed within a tolerance, in the unit of the tolerance."""
+    shares = np.random.PCG64(seed).random_raw(len(parts)) / 2.0**64
+    return np.asarray(tolerance * (2 * shares - 1))
 
 
 def _list_changes(spans: Sequence[Sequence[float]], line: LineFile) -> list[float]:

@@ -55,6 +55,21 @@ def test_spectrum_is_realised_over_the_line() -> None:
     assert catenary.contact_wires[0].irregularity == expected
 
 
+@pytest.mark.parametrize(
+    "table",
+    [
+        {"x_m": [60.0, 90.0, 120.0], "height_m": [0.0, 0.004, 0.001]},
+        {"frequency_1_m": [0.02, 0.5], "density_m3": [1e-5, 1e-7], "seed": 5},
+    ],
+)
+def test_height_factor_multiplies_all_heights(table: dict[str, object]) -> None:
+    """The same heights, larger by the factor; without the key, files keep their content and digest."""
+    plain, larger = (changed_line({"contact_wire.irregularity": table | more}) for more in ({}, {"height_factor": 2.5}))
+    heights = [np.array(build_catenary(line).contact_wires[0].irregularity.height) for line in (plain, larger)]
+    np.testing.assert_array_equal(heights[1], 2.5 * heights[0])
+    assert "height_factor" not in plain.model_dump()["contact_wire"]["irregularity"]
+
+
 def test_point_mass_hangs_on_each_parallel_wire() -> None:
     """Twin contact wires carry one mass each; the messenger has none."""
     changes = {"contact_wire.number": 2, "contact_wire.spacing_m": 0.04, "point_mass": [INSULATOR]}

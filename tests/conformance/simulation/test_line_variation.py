@@ -136,3 +136,44 @@ def test_impossible_variations_are_refused(variation: dict[str, Any], message: s
     with pytest.raises(InputError) as error:
         read_model(tmp_path / "line.toml", LineFile, "line")
     assert message in str(error.value)
+
+
+STAGGERED = {"geometry.stagger_contact_wire_m": 0.2}
+
+
+def test_stagger_changes_at_every_support_and_the_droppers_keep_their_lengths() -> None:
+    """Changes within the tolerance, at the supports and not at the anchors, with a mean square of tolerance^2 / 3."""
+    table = {"supports": {"stagger_tolerance_m": 0.03, "seed": 2}}
+    nominal = build_catenary(changed_line(STAGGERED, 20))
+    catenary = build_catenary(changed_line(STAGGERED | {"variation": table}, 20))
+    before, after = (np.array(line.contact_wires[0].stagger) for line in (nominal, catenary))
+    change = (after - before)[:, 1]
+    assert np.array_equal(before[:, 0], after[:, 0])
+    assert change[0] == change[-1] == 0.0
+    assert np.abs(change).max() <= 0.03
+    assert np.mean(change[1:-1] ** 2) == pytest.approx(0.03**2 / 3, rel=0.6)  # 19 supports: 3 sigma
+    assert [wire.stagger for wire in catenary.wires[1:]] == [wire.stagger for wire in nominal.wires[1:]]
+    lengths = [compute_unloaded_lengths(line, VARIATION_ELEMENT_M) for line in (nominal, catenary)]
+    np.testing.assert_allclose(lengths[1], lengths[0], atol=2e-9)
+
+
+def test_stagger_changes_are_the_same_on_both_wires_of_an_overlap() -> None:
+    """The tolerance is that of the support, which holds the wires of both sections."""
+    nominal = section_line("en50318-2018/ac-simple", spans=(4, 4))
+    table = Variation.model_validate({"supports": {"stagger_tolerance_m": 0.03, "seed": 2}})
+    line = nominal.model_copy(update={"variation": table})
+    changes: dict[float, set[float]] = {}
+    for before, after in zip(build_catenary(nominal).contact_wires, build_catenary(line).contact_wires, strict=True):
+        plan = list(zip(before.stagger or (), after.stagger or (), strict=True))
+        for (x, y), (_, moved) in plan[1:-1]:
+            changes.setdefault(x, set()).add(round(moved - y, 9))
+        assert all(plan[end][0] == plan[end][1] for end in (0, -1))
+    assert all(len(values) == 1 for values in changes.values())
+    assert tuple(sorted(changes)) == nominal.geometry.supports
+
+
+def test_stagger_changes_of_a_line_without_stagger_are_refused() -> None:
+    """Its model has no lateral motion."""
+    table = {"supports": {"stagger_tolerance_m": 0.03, "seed": 2}}
+    with pytest.raises(ValueError, match="varies the stagger of a line without a stagger"):
+        changed_line({"variation": table})
