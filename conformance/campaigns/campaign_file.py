@@ -6,7 +6,7 @@ from pydantic import Discriminator, Field, Tag
 
 from pantocheck.conformance.campaigns.distributions import Distribution
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.sourced_table import InputTable, Positive, validation_problem
+from pantocheck.conformance.input_files.sourced_table import InputTable, Positive, SourcedTable, validation_problem
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.systems.system_choice import TIMEOUT_S
 
@@ -36,21 +36,21 @@ class ValueRange(InputTable):
             yield validation_problem("step", f"gives more than {MOST_RUNS} values", "Give a larger step.")
 
 
-class ValueVariation(InputTable):
+class ValueVariation(SourcedTable):
     """InputVariation of one key over listed values."""
 
     key: Key
     values: Annotated[Values, Field(description="values of the key, in the types of TOML")]
 
 
-class RangeVariation(InputTable):
+class RangeVariation(SourcedTable):
     """InputVariation of one key over equidistant values."""
 
     key: Key
     range: ValueRange
 
 
-class ColumnVariation(InputTable):
+class ColumnVariation(SourcedTable):
     """InputVariation of several keys together: the first values of all of them, then the second values."""
 
     columns: Annotated[
@@ -65,7 +65,7 @@ class ColumnVariation(InputTable):
             yield validation_problem("columns", f"lists of different length ({found})", "Give one value per run.")
 
 
-class TableVariation(InputTable):
+class TableVariation(SourcedTable):
     """InputVariation by a table of designs: one row per design, one column per key."""
 
     table: Annotated[
@@ -94,7 +94,7 @@ InputVariation = Annotated[
 """Values of one key, or of several keys that vary together."""
 
 
-class SampledInput(InputTable):
+class SampledInput(SourcedTable):
     """Random input with its distribution."""
 
     key: Key

@@ -13,18 +13,22 @@ from pantocheck.conformance.campaigns.campaign_run import RunExecution, name_col
 from pantocheck.conformance.campaigns.design_axes import build_axis, sample_inputs
 from pantocheck.conformance.campaigns.design_conditions import parse_condition
 from pantocheck.conformance.campaigns.profile_limits import ProfileLimits
-from pantocheck.conformance.cases.case import Case, json_digest
+from pantocheck.conformance.cases.case import Case, drop_keys, json_digest
 from pantocheck.conformance.cases.input_changes import parse_changes
 from pantocheck.conformance.cases.library import find_case_files, load_case, overlay_limits, read_limits
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.grading.case_identity import limits_digest
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.sourced_table import PROVENANCE
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.plan import place_cases, place_system
 from pantocheck.conformance.results.suite_identity import suite_digest
 from pantocheck.conformance.systems.system_choice import choose_system
+
+OUTSIDE_IDENTITY = {"execution", "title", "cases", "limits", "profile"}
+"""Keys of a campaign file on which its results do not depend, or whose content has its own digest."""
 
 
 @dataclass(frozen=True)
@@ -96,7 +100,7 @@ def prepare_campaign(file: CampaignFile, folder: Path) -> PreparedCampaign:
     first_cases = _check_first_designs(design, execute)
     limited = overlay_limits([case for _, case in cases.values()], limits)
     identity = {
-        "campaign": file.model_dump(mode="json", exclude={"execution", "title", "cases", "limits", "profile"}),
+        "campaign": drop_keys(file.model_dump(mode="json", exclude=OUTSIDE_IDENTITY), PROVENANCE),
         "cases": {case.id: [case.digest, limits_digest(case.limits)] for case in limited},
         "designs": json_digest([_describe_axis(design) for design in design.axes]),
         "profile": None if profile is None else profile.profile.model_dump(mode="json"),

@@ -18,7 +18,7 @@ from pantocheck.conformance.campaigns.campaign_file import (
     ValueRange,
     ValueVariation,
 )
-from pantocheck.conformance.campaigns.distributions import Discrete
+from pantocheck.conformance.campaigns.distributions import Discrete, Distribution, Seed
 from pantocheck.conformance.cases.input_changes import parse_value
 from pantocheck.conformance.input_files.spreadsheet import read_spreadsheet
 
@@ -111,9 +111,13 @@ class SampleAxis:
         """Values of a design."""
         row: Inputs = {}
         for sampled, values in zip(self.sampling.input, self.values, strict=True):
-            distribution, value = sampled.distribution, values[number]
-            row[sampled.key] = distribution.values[int(value)] if isinstance(distribution, Discrete) else float(value)
+            row[sampled.key] = _name_value(sampled.distribution, float(values[number]))
         return row
+
+    @property
+    def ordered_keys(self) -> tuple[str, ...]:
+        """Keys of the random inputs whose values have an order: all but seeds."""
+        return tuple(sampled.key for sampled in self.sampling.input if not isinstance(sampled.distribution, Seed))
 
 
 def build_axis(
@@ -144,13 +148,30 @@ def sample_inputs(sampling: InputSampling) -> SampleAxis:
         points = _exchange_inputs(_draw_points("sobol", 2 * dimension, sampling.runs, sampling.seed))
     else:
         points = _draw_points(sampling.method, dimension, sampling.runs, sampling.seed)
-    values = []
-    for column, sampled in zip(points.T, sampling.input, strict=True):
-        distribution = sampled.distribution
-        values.append(
-            distribution.choices(column) if isinstance(distribution, Discrete) else distribution.quantiles(column)
-        )
-    return SampleAxis(sampling, tuple(values))
+    columns = zip(points.T, sampling.input, strict=True)
+    return SampleAxis(sampling, tuple(_draw_values(sampled.distribution, column) for column, sampled in columns))
+
+
+def _draw_values(distribution: Distribution, probability: RealArray) -> RealArray:
+    """Values of a distribution, or places of the values of a discrete one, at some probabilities."""
+    match distribution:
+        case Discrete():
+            return distribution.choices(probability)
+        case Seed():
+            return distribution.seeds(probability)
+        case _:
+            return distribution.quantiles(probability)
+
+
+def _name_value(distribution: Distribution, drawn: float) -> Any:
+    """Value of an input from a drawn number."""
+    match distribution:
+        case Discrete(values=values):
+            return values[int(drawn)]
+        case Seed():
+            return int(drawn)
+        case _:
+            return drawn
 
 
 def _draw_points(method: str, dimension: int, runs: int, seed: int) -> RealArray:

@@ -90,7 +90,17 @@ class Discrete(InputTable):
         return np.minimum(np.searchsorted(ends, probability, side="right"), len(self.values) - 1)
 
 
-Distribution = Annotated[Uniform | Normal | TruncatedNormal | Discrete, Field(discriminator="kind")]
+class Seed(InputTable):
+    """Seed of random values of a line: numbers without an order, so that no line is fitted to their effect."""
+
+    kind: Literal["seed"]
+
+    def seeds(self, probability: RealArray) -> RealArray:
+        """Whole numbers from 0 to 2^31 - 1 at some probabilities."""
+        return np.floor(probability * 2.0**31)
+
+
+Distribution = Annotated[Uniform | Normal | TruncatedNormal | Discrete | Seed, Field(discriminator="kind")]
 """Distribution of a random input."""
 
 

@@ -88,6 +88,9 @@ class CampaignResults(ResultsPart):
     cases: list[str]
     systems: list[str]
     inputs: Annotated[dict[str, str], Field(description="varied inputs with their ranges as text")]
+    sources: Annotated[
+        dict[str, str], Field(description="source and trust of varied inputs, where they are stated")
+    ] = {}
     total: int
     finished: int
     failed: int

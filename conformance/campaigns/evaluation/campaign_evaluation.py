@@ -15,6 +15,8 @@ from pantocheck.conformance.campaigns.evaluation.campaign_comparison import RunP
 from pantocheck.conformance.campaigns.evaluation.input_charts import build_input_charts, build_maps
 from pantocheck.conformance.campaigns.evaluation.saltelli_evaluation import build_indices, select_independent
 from pantocheck.conformance.campaigns.evaluation.sample_evaluation import build_sample_charts, build_statistics
+from pantocheck.conformance.cases.library import source_text
+from pantocheck.conformance.input_files.sourced_table import NO_SOURCE, SourcedTable
 from pantocheck.conformance.quantities.limit_text import format_stated
 from pantocheck.conformance.results.campaign_format import CampaignEnding, CampaignResults
 from pantocheck.conformance.results.results_building import build_suite
@@ -38,7 +40,7 @@ def evaluate_campaign(
     """
     design = prepared.design
     grid = [key for axis in design.axes if not isinstance(axis, SampleAxis) for key in axis.keys]
-    sampled = [key for axis in design.axes if isinstance(axis, SampleAxis) for key in axis.keys]
+    sampled = [key for axis in design.axes if isinstance(axis, SampleAxis) for key in axis.ordered_keys]
     values = choose_values(store, prepared.limits)
     columns = read_columns(store, values, design.keys)
     charted = drop_constant(values, columns)
@@ -53,6 +55,7 @@ def evaluate_campaign(
         cases=list(design.case_ids),
         systems=list(design.systems),
         inputs=dict(_describe_inputs(prepared)),
+        sources=dict(_list_sources(prepared)),
         total=design.count_runs(),
         finished=finished,
         failed=failed,
@@ -77,10 +80,23 @@ def _describe_inputs(prepared: PreparedCampaign) -> Iterator[tuple[str, str]]:
         yield link.key, f"{format_stated(link.factor)} x {link.follows} + {format_stated(link.offset)}"
 
 
+def _list_sources(prepared: PreparedCampaign) -> Iterator[tuple[str, str]]:
+    """Varied inputs whose source is stated, with source and trust."""
+    file = prepared.file
+    tables: list[tuple[tuple[str, ...], SourcedTable]] = [
+        (axis.keys, table) for axis, table in zip(prepared.design.axes, file.vary, strict=False)
+    ]
+    tables += [((item.key,), item) for item in (file.sampling.input if file.sampling is not None else ())]
+    for keys, table in tables:
+        if table.source != NO_SOURCE:
+            yield ", ".join(keys), f"{source_text(table.source)} ({table.trust})"
+
+
 def _describe_axis(axis: DesignAxis, key: str) -> str:
     if isinstance(axis, SampleAxis):
         distribution = next(item.distribution for item in axis.sampling.input if item.key == key)
         facts = ", ".join(f"{name} {value}" for name, value in distribution if name != "kind" and value is not None)
-        return f"{distribution.kind}: {facts}; {len(axis)} designs, {axis.sampling.method}"
+        described = f"{distribution.kind}: {facts}" if facts else distribution.kind
+        return f"{described}; {len(axis)} designs, {axis.sampling.method}"
     first, last = axis.row(0)[key], axis.row(len(axis) - 1)[key]
     return f"{first} to {last}, {len(axis)} values" if len(axis) > 1 else str(first)

@@ -57,6 +57,7 @@ def _list_facts(results: dict[str, Any]) -> tuple[tuple[str, str], ...]:
         "Systems": ", ".join(results["systems"]),
         "Verdicts of the runs": verdicts,
         **results["inputs"],
+        **{f"Source of {keys}": text for keys, text in results["sources"].items()},
         "Suite": f"Pantocheck {results['suite']['version']}",
         "Digest of the suite": results["suite"]["digest"] or "not known",
     }

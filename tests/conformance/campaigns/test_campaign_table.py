@@ -1,4 +1,4 @@
-"""Tables of a campaign: CSV, Parquet and columns of Python; campaigns of the library; the call from Python."""
+"""Tables of a campaign: CSV, Parquet and columns of Python; the call from Python."""
 
 import importlib.util
 from pathlib import Path
@@ -10,14 +10,10 @@ from helpers.cheap_campaign import ThisProcess, compute_row, fail_even, speed_de
 from pantocheck.conformance.campaigns.campaign_design import PlannedRun
 from pantocheck.conformance.campaigns.campaign_driver import drive_campaign
 from pantocheck.conformance.campaigns.campaign_file import Execution
-from pantocheck.conformance.campaigns.campaign_preparation import find_campaign_file, read_campaign
 from pantocheck.conformance.campaigns.campaign_run import RunRow
 from pantocheck.conformance.campaigns.campaign_session import run_campaign
 from pantocheck.conformance.campaigns.campaign_store import open_store
 from pantocheck.conformance.campaigns.campaign_table import collect_columns, write_campaign_table, write_parquet
-from pantocheck.conformance.cases.library_folder import library_folder
-
-NAMES = sorted(path.stem for path in (library_folder() / "campaigns").glob("*.toml"))
 
 
 def test_columns_have_numbers_texts_and_gaps(tmp_path: Path) -> None:
@@ -55,19 +51,6 @@ def test_list_of_values_is_a_json_cell(tmp_path: Path) -> None:
         drive_campaign(speed_design(1), deliver, store, ThisProcess(), Execution(), lambda _: None)
         write_campaign_table(store, tmp_path / "campaign.csv")
     assert (tmp_path / "campaign.csv").read_text().splitlines()[1] == '1,1,cheap,builtin,"[85, 200]",pass,pass,,'
-
-
-@pytest.mark.parametrize(
-    ("name", "runs"),
-    [("ac-simple-damping", 12), ("ac-simple-spacing", 133), ("ac-simple-speed", 32), ("ac-simple-tolerances", 64)],
-)
-def test_campaign_of_the_library_is_valid(name: str, runs: int) -> None:
-    """Reading it also reads the cases of its first designs."""
-    path = find_campaign_file(f"campaigns/{name}")
-    assert path is not None
-    assert read_campaign(path).design.count_runs() == runs
-    assert name in NAMES
-    assert len(NAMES) == 4
 
 
 def test_campaign_from_python_gives_a_table(tmp_path: Path) -> None:
