@@ -29,8 +29,8 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.clipping import find_clipping
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
 from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE, is_observable
-from pantocheck.conformance.results.results_format import Suite
 from pantocheck.conformance.results.suite_identity import find_suite_commit, suite_digest
+from pantocheck.conformance.results.suite_part import Suite
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.model import Catenary
 

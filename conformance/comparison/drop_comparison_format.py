@@ -9,7 +9,7 @@ from pantocheck.conformance.comparison.drop_limits import ComparedMotion, DropQu
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.identification.damping.damping_format import LineComparison
 from pantocheck.conformance.identification.rounded_model import Rounded, RoundedModel
-from pantocheck.conformance.results.results_format import Suite
+from pantocheck.conformance.results.suite_part import Suite
 
 WindowPair = tuple[Rounded, Rounded]
 CurveValues = tuple[float, ...]

@@ -7,7 +7,7 @@ import scipy
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.filters import needs_filter
-from pantocheck.conformance.quantities.signals import SHORTEST_PERIODS, PantographSignals
+from pantocheck.conformance.quantities.signals import EXTENDED_CUTOFF_HZ, SHORTEST_PERIODS, PantographSignals
 from pantocheck.conformance.quantities.unavailable import SectionNotCovered
 
 INTERPOLATION_RATE_HZ = 1000.0
@@ -46,13 +46,17 @@ class PairedForces:
         return self.second - self.first
 
 
-def pair_forces(first: PantographSignals, second: PantographSignals) -> PairedForces:
+def pair_forces(
+    first: PantographSignals, second: PantographSignals, cutoff_Hz: float = EXTENDED_CUTOFF_HZ
+) -> PairedForces:
     """Interpolate the force with the lower sampling rate at the positions of the other.
 
     Parameters
     ----------
     first, second : PantographSignals
         Signals of the same pantograph in two runs.
+    cutoff_Hz : float
+        Highest cut-off of the filter of both forces [Hz].
 
     Returns
     -------
@@ -64,7 +68,7 @@ def pair_forces(first: PantographSignals, second: PantographSignals) -> PairedFo
     SectionNotCovered
         The analysis sections have no common stretch of sufficient length.
     """
-    highest = min(first.highest_frequency, second.highest_frequency)
+    highest = min(first.highest_frequency, second.highest_frequency, cutoff_Hz)
     finer, coarser = (first, second) if first.force.rate >= second.force.rate else (second, first)
     start, end = max(first.section[0], second.section[0]), min(first.section[1], second.section[1])
     inside = np.flatnonzero(
@@ -72,7 +76,6 @@ def pair_forces(first: PantographSignals, second: PantographSignals) -> PairedFo
     )
     if inside.size < max(FEWEST_PAIRED_SAMPLES, SHORTEST_PERIODS / highest * finer.force.rate):
         raise SectionNotCovered("the analysis sections have no common stretch of sufficient length")
-    position = finer.position[inside]
     position = finer.position[inside]
     sampled = np.interp(position, *_filter(finer, highest))
     interpolated = np.asarray(scipy.interpolate.CubicSpline(*_filter(coarser, highest))(position))

@@ -6,7 +6,7 @@ from pydantic import ConfigDict, Field
 
 from pantocheck.conformance.identification.rounded_model import Rounded, RoundedModel
 from pantocheck.conformance.results.figure_data import Chart
-from pantocheck.conformance.results.results_format import Suite
+from pantocheck.conformance.results.suite_part import Suite
 
 ComparedValue = Rounded | tuple[Rounded, ...]
 

@@ -7,7 +7,7 @@ from pydantic import ConfigDict, Field
 from pantocheck.conformance.comparison.static_record import StaticValue
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.identification.rounded_model import Rounded, RoundedModel
-from pantocheck.conformance.results.results_format import Suite
+from pantocheck.conformance.results.suite_part import Suite
 
 
 class SpanDifferences(RoundedModel):

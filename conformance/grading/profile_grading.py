@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pantocheck.conformance.cases.case import json_digest
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.profile_file import Profile
+from pantocheck.conformance.comparison.measured_run import compare_measured_run, list_run_supports
 from pantocheck.conformance.grading.assessed_record import AssessedRecord, find_equal_pantograph, join_digests
 from pantocheck.conformance.grading.case_identity import (
     compare_profile_with_library,
@@ -59,7 +60,20 @@ def assess_record(
     InputError
         A measured record is missing, not needed, or does not fit the record.
     """
-    _check_pair(subject, measured, profile)
+    check_pair(subject, measured, profile)
+    case = grade_record(subject, profile, trust, measured, limits)
+    system = SystemIdentity(name=subject.system.name, version=subject.system.version, kind="record")
+    return build_results([case], system, trust, utc_now(), participation)
+
+
+def grade_record(
+    subject: AssessedRecord,
+    profile: Profile,
+    trust: Trust,
+    measured: AssessedRecord | None = None,
+    limits: Sequence[Limit] = (),
+) -> CaseResult:
+    """Result of a record by the rules of a profile; parameters as in `assess_record`."""
     grading = RuleGrading(subject, measured, trust)
     criteria = grading.grade_profile(profile, limits)
     records = [record for record in (subject, measured) if record is not None]
@@ -76,7 +90,7 @@ def assess_record(
         case_digest=subject.header.case_digest,
         measured_digest=None if measured is None else measured.record_digest,
     )
-    case = CaseResult(
+    return CaseResult(
         id=f"{profile.name}/{re.sub(r'[^A-Za-z0-9._-]', '_', subject.name)}",
         title=f"{profile.title}: {subject.name}",
         verdict=judge_case((criterion.verdict for criterion in criteria), record),
@@ -104,12 +118,18 @@ def assess_record(
             subject.prepared.pantographs, getattr(subject.header, "support_position_m", None) or ()
         ),
         uplift=[],
+        comparison=None if measured is None else compare_measured_run(subject, measured, list_run_supports(subject)),
     )
-    system = SystemIdentity(name=subject.system.name, version=subject.system.version, kind="record")
-    return build_results([case], system, trust, utc_now(), participation)
 
 
-def _check_pair(subject: AssessedRecord, measured: AssessedRecord | None, profile: Profile) -> None:
+def check_pair(subject: AssessedRecord, measured: AssessedRecord | None, profile: Profile) -> None:
+    """Check that a measured record belongs to a record, and is not a copy of it; parameters as in `assess_record`.
+
+    Raises
+    ------
+    InputError
+        A measured record is missing, not needed, or does not fit the record.
+    """
     where = f"profile '{profile.name}'"
     if measured is None:
         if profile.compares:

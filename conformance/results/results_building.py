@@ -12,10 +12,11 @@ from pantocheck.conformance.grading.uncertainty import Uncertainty
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.evaluation import Value
 from pantocheck.conformance.results.finding_format import count_findings
-from pantocheck.conformance.results.results_format import CaseResult, Platform, Results, Suite, SystemIdentity
+from pantocheck.conformance.results.results_format import CaseResult, Platform, Results, SystemIdentity
 from pantocheck.conformance.results.results_part import Number
 from pantocheck.conformance.results.scope import build_scope
 from pantocheck.conformance.results.suite_identity import find_suite_commit, suite_digest
+from pantocheck.conformance.results.suite_part import Suite
 
 Content = TypeVar("Content")
 

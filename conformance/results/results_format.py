@@ -9,13 +9,16 @@ from typing import Annotated, Any, Literal, get_args
 from pydantic import Field
 
 from pantocheck.conformance.grading.verdicts import Verdict
+from pantocheck.conformance.input_files.sourced_table import is_absent
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.results.criterion_format import CaseVerification, ComponentName, Criterion
 from pantocheck.conformance.results.figure_data import Chart, TextTable, Traces, UpliftTrace
 from pantocheck.conformance.results.finding_format import FindingCounts
 from pantocheck.conformance.results.lift_force_facts import LawForces
+from pantocheck.conformance.results.measured_run_format import MeasuredRun
 from pantocheck.conformance.results.record_facts import RecordFacts
 from pantocheck.conformance.results.results_part import Number, Owner, ResultsPart
+from pantocheck.conformance.results.suite_part import Suite
 
 RESULTS_SCHEMA = "pantocheck.results/1"
 
@@ -23,16 +26,6 @@ STATEMENT = "self-declared conformance report, in the style of EN 50318"
 
 VerdictName = Literal["criteria", "verification"]
 """One of two verdicts: by the EN 50318 criteria, or by verification against the converged solution up to 50 Hz."""
-
-
-class Suite(ResultsPart):
-    """Suite that graded the system."""
-
-    version: str
-    commit: str | None
-    digest: Annotated[
-        str | None, Field(description="SHA-256 of the installed files of the suite; null: made by an older version")
-    ] = None
 
 
 class SystemIdentity(ResultsPart):
@@ -192,6 +185,10 @@ class CaseResult(ResultsPart):
     uplift: list[UpliftTrace]
     charts: list[Chart] = []
     tables: list[TextTable] = []
+    comparison: Annotated[
+        MeasuredRun | None,
+        Field(exclude_if=is_absent, description="measured run beside this one; missing: nothing is compared"),
+    ] = None
 
 
 class Results(ResultsPart):

@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.bands import amplitude_spectrum
 from pantocheck.conformance.quantities.signals import (
-    ForceSignals,
     PantographSignals,
     supports_inside,
 )
@@ -43,12 +42,7 @@ def build_pantograph_traces(
         except QuantityUnavailable:
             continue
         within = _select_supports(supports, pantograph.section)
-        traces[str(number)] = _build_traces(
-            pantograph,
-            position,
-            within,
-            amplitude_spectrum(pantograph.delivered, pantograph.force.rate, pantograph.highest_frequency),
-        )
+        traces[str(number)] = _build_traces(pantograph, position, within)
     return traces
 
 
@@ -80,14 +74,11 @@ def thin_series(series: RealArray) -> list[float]:
     return [float(f"{value:.6g}") for value in series[::step]]
 
 
-def _build_traces(
-    signals: ForceSignals, position: RealArray, supports: list[float], spectrum: tuple[RealArray, RealArray]
-) -> Traces:
+def _build_traces(signals: PantographSignals, position: RealArray, supports: list[float]) -> Traces:
     try:
         graded = signals.graded
     except QuantityUnavailable:
         graded = None
-    frequency, amplitude = _keep_peaks(*spectrum)
     drawn = _select_samples(signals.delivered)
     return Traces(
         position_m=thin_series(position[drawn]),
@@ -96,9 +87,16 @@ def _build_traces(
         mean_N=float(signals.delivered.mean()),
         std_N=None if graded is None else float(graded.std()),
         supports_m=supports,
-        spectrum=Spectrum(frequency_Hz=thin_series(frequency), amplitude_N=thin_series(amplitude)),
+        spectrum=build_spectrum(signals),
         histogram=None if graded is None else _build_histogram(graded),
     )
+
+
+def build_spectrum(signals: PantographSignals) -> Spectrum:
+    """Spectrum of the delivered force up to 50 Hz, or up to the highest frequency that is known; its peaks remain."""
+    lines = amplitude_spectrum(signals.delivered, signals.force.rate, signals.highest_frequency)
+    frequency, amplitude = _keep_peaks(*lines)
+    return Spectrum(frequency_Hz=thin_series(frequency), amplitude_N=thin_series(amplitude))
 
 
 def _select_samples(force: RealArray) -> NDArray[np.intp]:

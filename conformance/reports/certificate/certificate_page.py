@@ -10,6 +10,7 @@ from pantocheck.conformance.reports.certificate.case_facts import (
     name_system,
 )
 from pantocheck.conformance.reports.certificate.case_figures import draw_case_figures
+from pantocheck.conformance.reports.certificate.comparison_section import comparison_blocks
 from pantocheck.conformance.reports.certificate.criteria_table import criteria_blocks
 from pantocheck.conformance.reports.certificate.findings_table import build_findings_section
 from pantocheck.conformance.reports.certificate.quantity_tables import (
@@ -125,6 +126,7 @@ def _case_section(case: dict[str, Any], anchor: str) -> doc.Section:
     if case["criteria"]:
         blocks.append(doc.Section("Criteria", criteria_blocks(case, anchor)))
     blocks += verification_blocks(case, anchor)
+    blocks += comparison_blocks(case)
     blocks += [doc.Section(table["caption"], (_study_table(table),)) for table in case["tables"]]
     bands, quantities = build_band_table(case), build_quantity_table(case)
     if bands.rows:

@@ -1,0 +1,97 @@
+"""Section of a case on the measured run beside it: values, curves, spectra and spans."""
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Any
+
+from pantocheck.conformance.reports import document as doc
+from pantocheck.conformance.reports.figures.overlay_figure import (
+    draw_overlay,
+    draw_spans,
+    draw_spectra,
+    force_difference,
+)
+from pantocheck.conformance.reports.page_text import format_plain, format_value, replace_minus
+from pantocheck.conformance.reports.words import name_pantograph, quantity_label, quantity_unit
+
+
+def comparison_blocks(case: dict[str, Any]) -> tuple[doc.Block, ...]:
+    """Blocks on the measured run of a case; empty if nothing is compared."""
+    comparison = case.get("comparison")
+    if comparison is None:
+        return ()
+    text = f"Measured record {comparison['name']}. Curves show the track that both runs cover."
+    blocks: list[doc.Block] = [doc.Paragraph(text), _build_value_table(case, comparison)]
+    figures = tuple(
+        figure
+        for key, pantograph in comparison["pantographs"].items()
+        for figure in _draw_figures(key, pantograph, comparison)
+    )
+    if figures:
+        blocks.append(doc.Figures(figures))
+    blocks += [
+        _build_span_table(key, pantograph["spans"])
+        for key, pantograph in comparison["pantographs"].items()
+        if pantograph["spans"]
+    ]
+    return (doc.Section("Simulated and measured run", tuple(blocks)),)
+
+
+def _build_value_table(case: dict[str, Any], comparison: dict[str, Any]) -> doc.Table:
+    """Quantities that both runs have, with the uncertainties of both."""
+    columns = (
+        doc.Column("Quantity", share=1),
+        doc.Column("Owner"),
+        *(doc.Column(heading, number=True) for heading in ("Simulated", "±", "Measured", "±", "Difference")),
+        doc.Column("Unit"),
+    )
+    rows: list[tuple[doc.RichText, ...]] = []
+    for key, measured in comparison["quantities"].items():
+        simulated, widths = case["quantities"].get(key, {}), case["uncertainty"].get(key, {})
+        for name, value in measured.items():
+            other = simulated.get(name)
+            if isinstance(value, list) or isinstance(other, list | None):
+                continue
+            rows.append(
+                (
+                    quantity_label(name),
+                    name_pantograph(key),
+                    format_value(other),
+                    format_value(widths.get(name), 2),
+                    format_value(value),
+                    format_value(comparison["uncertainty"].get(key, {}).get(name), 2),
+                    replace_minus(f"{other - value:+.3g}"),
+                    quantity_unit(name),
+                )
+            )
+    return doc.Table(columns, tuple(rows), "Values of both runs, with the half-widths of their 95 % intervals")
+
+
+def _draw_figures(key: str, pantograph: dict[str, Any], comparison: dict[str, Any]) -> Iterator[doc.Figure]:
+    if not pantograph["position_m"]:
+        return
+    who, cutoff = f"Pantograph {key}", format_plain(comparison["cutoff_Hz"])
+    largest = format_value(max(map(abs, force_difference(pantograph))), 3)
+    caption = f"{who}: contact force up to {cutoff} Hz, simulated and measured; below, their difference."
+    yield doc.Figure(draw_overlay(pantograph), f"{caption} Largest difference {largest} N.", caption)
+    caption = f"{who}: amplitude spectra, simulated and measured; below, their difference."
+    yield doc.Figure(draw_spectra(pantograph), f"{caption} The table has the RMS of the bands.", caption, wide=False)
+    if pantograph["spans"]:
+        caption = f"{who}: mean and standard deviation of the force up to {cutoff} Hz, span by span."
+        yield doc.Figure(draw_spans(pantograph), f"{caption} The table has the values.", caption, wide=False)
+
+
+def _build_span_table(key: str, spans: list[dict[str, Any]]) -> doc.Table:
+    names = {"mean_N": "Mean", "std_N": "σ", "max_N": "Max.", "min_N": "Min."}
+    cells: dict[str, Callable[[Any], str]] = {
+        "From [m]": lambda span: format_plain(span["start_m"]),
+        "To [m]": lambda span: format_plain(span["end_m"]),
+    }
+    cells |= {f"{label} sim.": partial(_format_statistic, "simulated", name) for name, label in names.items()}
+    cells |= {f"{label} meas.": partial(_format_statistic, "measured", name) for name, label in names.items()}
+    caption = f"Pantograph {key}: statistics of the filtered force span by span [N], simulated and measured"
+    return doc.make_grid(caption, spans, cells)
+
+
+def _format_statistic(run: str, name: str, span: dict[str, Any]) -> str:
+    return format_value(span[run][name])

@@ -1,0 +1,17 @@
+"""Suite in the files that it writes."""
+
+from typing import Annotated
+
+from pydantic import Field
+
+from pantocheck.conformance.results.results_part import ResultsPart
+
+
+class Suite(ResultsPart):
+    """Suite that graded the system."""
+
+    version: str
+    commit: str | None
+    digest: Annotated[
+        str | None, Field(description="SHA-256 of the installed files of the suite; null: made by an older version")
+    ] = None
