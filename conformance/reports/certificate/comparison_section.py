@@ -7,8 +7,8 @@ from typing import Any
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.figures.overlay_figure import (
     draw_overlay,
+    draw_run_spectra,
     draw_spans,
-    draw_spectra,
     force_difference,
 )
 from pantocheck.conformance.reports.page_text import format_plain, format_value, replace_minus
@@ -75,7 +75,9 @@ def _draw_figures(key: str, pantograph: dict[str, Any], comparison: dict[str, An
     caption = f"{who}: contact force up to {cutoff} Hz, simulated and measured; below, their difference."
     yield doc.Figure(draw_overlay(pantograph), f"{caption} Largest difference {largest} N.", caption)
     caption = f"{who}: amplitude spectra, simulated and measured; below, their difference."
-    yield doc.Figure(draw_spectra(pantograph), f"{caption} The table has the RMS of the bands.", caption, wide=False)
+    yield doc.Figure(
+        draw_run_spectra(pantograph), f"{caption} The table has the RMS of the bands.", caption, wide=False
+    )
     if pantograph["spans"]:
         caption = f"{who}: mean and standard deviation of the force up to {cutoff} Hz, span by span."
         yield doc.Figure(draw_spans(pantograph), f"{caption} The table has the values.", caption, wide=False)

@@ -27,7 +27,7 @@ def draw_overlay(pantograph: dict[str, Any]) -> Figure:
     lower.plot(position, force_difference(pantograph), color=INK, linewidth=0.9)
     lower.axhline(0.0, color=GREY, linewidth=0.8)
     for axes in (upper, lower):
-        for support in list_supports(pantograph):
+        for support in list_span_limits(pantograph):
             axes.axvline(support, color=GREY, linewidth=0.6, linestyle=":")
     upper.set_ylabel("contact force [N]")
     lower.set(xlabel="position along the track [m]", ylabel="difference [N]", xlim=(position[0], position[-1]))
@@ -36,7 +36,7 @@ def draw_overlay(pantograph: dict[str, Any]) -> Figure:
 
 
 @render_svg
-def draw_spectra(pantograph: dict[str, Any]) -> Figure:
+def draw_run_spectra(pantograph: dict[str, Any]) -> Figure:
     """Amplitude spectra of the unfiltered forces in both runs; below, simulated minus measured amplitude."""
     figure = Figure(figsize=(HALF, 3.0))
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
@@ -81,7 +81,7 @@ def spectrum_difference(simulated: dict[str, Any], measured: dict[str, Any]) -> 
     return frequency[both].tolist(), (np.array(simulated["amplitude_N"])[both] - beside).tolist()
 
 
-def list_supports(pantograph: dict[str, Any]) -> list[float]:
+def list_span_limits(pantograph: dict[str, Any]) -> list[float]:
     """Positions of the supports between the compared spans [m]."""
     return sorted({span[key] for span in pantograph["spans"] for key in ("start_m", "end_m")})
 
