@@ -136,6 +136,17 @@ class Table:
 
 
 @dataclass(frozen=True)
+class Curves:
+    """Place in results.json of the curves of a figure, from which the script of a page draws them again."""
+
+    shown: Literal["force", "uplift"]
+    case: int
+    """Index of the case in `cases`."""
+    owner: str = "0"
+    """Key of the pantograph in `traces`; "0": the line."""
+
+
+@dataclass(frozen=True)
 class Figure:
     """A figure as SVG, its alternative text and its caption; two that are not wide stand side by side."""
 
@@ -143,6 +154,10 @@ class Figure:
     alternative: str
     caption: str
     wide: bool = True
+    anchor: str = ""
+    """Name of the figure as the target of a link; empty: none."""
+    curves: Curves | None = None
+    """None: the figure has no curves in the results of the document."""
 
 
 @dataclass(frozen=True)
@@ -160,6 +175,8 @@ class Section:
     blocks: "tuple[Block, ...]"
     anchor: str = ""
     new_page: bool = False
+    folded: bool = False
+    """Whether the blocks are hidden on a screen until the reader opens the section; on paper they always stand."""
 
 
 Block = Paragraph | SmallPrint | CodeBlock | BulletList | NumberedList | WarningBox | Facts | Table | Figures | Section

@@ -1,0 +1,58 @@
+"""A figure as a part of an HTML page: its text can be searched, and no style of it reaches the page.
+
+The policy of the page refuses style attributes, and the ids of all figures of a page share one name space. Text of a
+figure may come from a file of unknown origin; matplotlib escapes it, and only tags are changed here.
+"""
+
+import re
+from html import escape
+
+TAG = re.compile(r"<[^>]*>")
+"""A tag: matplotlib escapes `>` in texts and in attributes."""
+
+STYLE_ELEMENT = re.compile(r"<style\b[^>]*>[^<]*</style>")
+STYLE_ATTRIBUTE = re.compile(r'\bstyle="([^"]*)"')
+SIZE = re.compile(r'\s(?:width|height)="[^"]*"')
+IDENTITY = re.compile(r'\sid="([^"]*)"')
+REFERENCE = re.compile(r'(?<=href="#)[^"]+|(?<=url\(#)[^)"]+')
+
+DEFAULTS = {"stroke-linejoin": "round", "stroke-linecap": "butt"}
+"""Presentation attributes that matplotlib states in a style element."""
+
+
+def inline_figure(svg: str, alternative: str, prefix: str) -> str:
+    """Markup of a figure inside a page.
+
+    Parameters
+    ----------
+    svg : str
+        Figure of this project.
+    alternative : str
+        Alternative text.
+    prefix : str
+        Prefix of every id of the figure, not used by another figure of the page.
+
+    Returns
+    -------
+    str
+        An element `svg` with the role of an image, without style attributes; ids that nothing refers to are left out.
+    """
+    drawing = STYLE_ELEMENT.sub("", svg)
+    used = frozenset(REFERENCE.findall(drawing))
+    start, end = TAG.match(drawing).span()  # type: ignore[union-attr]  # a figure begins with its tag
+    attributes = {"role": "img", "aria-label": escape(alternative), **DEFAULTS}
+    root = SIZE.sub("", drawing[start + len("<svg") : end])
+    written = "".join(f' {name}="{value}"' for name, value in attributes.items())
+
+    def change_tag(match: re.Match[str]) -> str:
+        tag = STYLE_ATTRIBUTE.sub(_state_attributes, match[0])
+        tag = IDENTITY.sub(lambda found: f' id="{prefix}{found[1]}"' if found[1] in used else "", tag)
+        return REFERENCE.sub(lambda found: prefix + found[0], tag)
+
+    return f"<svg{written}{root}{TAG.sub(change_tag, drawing[end:])}"
+
+
+def _state_attributes(match: re.Match[str]) -> str:
+    """Presentation attributes instead of a style attribute."""
+    pairs = (declaration.split(":", 1) for declaration in match[1].split(";") if ":" in declaration)
+    return " ".join(f'{name.strip()}="{value.strip()}"' for name, value in pairs)
