@@ -13,6 +13,9 @@ from pantocheck.conformance.grading.extended_band import extended_band_warnings
 from pantocheck.conformance.grading.validity_warnings import validity_warnings
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.records.record_signals import RecordSignals
+from pantocheck.conformance.results.extreme_places import find_force_places, find_uplift_place
+from pantocheck.conformance.results.figure_data import ExtremePlace
 from pantocheck.conformance.results.lift_force_facts import list_law_forces
 from pantocheck.conformance.results.outcome import Delivered, Errored, Outcome, Skipped
 from pantocheck.conformance.results.results_building import describe_uncertainty, key_by_owner, select_finite
@@ -98,9 +101,14 @@ def grade_evaluation(evaluation: CaseEvaluation, lowest_trust: Trust) -> CaseRes
         **describe_uncertainty(values.uncertainty),
         traces={} if signals is None else build_pantograph_traces(signals.pantographs, supports),
         uplift=[] if signals is None else build_uplift_traces(signals),
+        places={} if signals is None else _find_places(signals),
         charts=list(delivered.study.charts),
         tables=list(delivered.study.tables),
     )
+
+
+def _find_places(signals: RecordSignals) -> dict[str, dict[str, ExtremePlace]]:
+    return find_force_places(signals.pantographs) | find_uplift_place(signals.line, signals.record.time)
 
 
 def build_ungraded(case: Case, verdict: Verdict, reason: str, delivered: Delivered | None = None) -> CaseResult:

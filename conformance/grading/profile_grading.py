@@ -18,6 +18,7 @@ from pantocheck.conformance.grading.extended_band import find_unvalidated
 from pantocheck.conformance.grading.rule_grading import RuleGrading
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.results.extreme_places import find_force_places
 from pantocheck.conformance.results.record_facts import RecordFacts
 from pantocheck.conformance.results.results_building import (
     build_results,
@@ -119,6 +120,7 @@ def grade_record(
         ),
         uplift=[],
         comparison=None if measured is None else compare_measured_run(subject, measured, list_run_supports(subject)),
+        places={} if subject.prepared is None else find_force_places(subject.prepared.pantographs),
     )
 
 

@@ -275,8 +275,14 @@ class LineSignals:
     @property
     def largest_uplift(self) -> float:
         """Largest uplift that counts at any of these supports [m]; errors as in `uplift`."""
+        return float(self.uplift[self.largest_uplift_index])
+
+    @property
+    def largest_uplift_index(self) -> tuple[int, int]:
+        """Support and sample of the largest uplift that counts, indices of `uplift`; errors as in `uplift`."""
         counted = counted_samples(self.supports, self.uplift, self.last_position)
-        return float(self.uplift[counted].max())
+        support, sample = np.unravel_index(np.argmax(np.where(counted, self.uplift, -np.inf)), counted.shape)
+        return int(support), int(sample)
 
     def check_supports(self) -> None:
         """Check that every support of the analysis section has an uplift.

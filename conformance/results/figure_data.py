@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from pantocheck.conformance.results.results_part import ResultsPart
+from pantocheck.conformance.results.results_part import FiniteNumber, ResultsPart
 
 
 class Spectrum(ResultsPart):
@@ -30,6 +30,14 @@ class Traces(ResultsPart):
     supports_m: list[float]
     spectrum: Spectrum
     histogram: Histogram | None
+
+
+class ExtremePlace(ResultsPart):
+    """Place of an extreme: contact point for a force, support for an uplift."""
+
+    position_m: FiniteNumber
+    time_s: FiniteNumber | None = None
+    """Time of the largest uplift; null for a force."""
 
 
 class UpliftTrace(ResultsPart):

@@ -12,7 +12,7 @@ from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.sourced_table import is_absent
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.results.criterion_format import CaseVerification, ComponentName, Criterion
-from pantocheck.conformance.results.figure_data import Chart, TextTable, Traces, UpliftTrace
+from pantocheck.conformance.results.figure_data import Chart, ExtremePlace, TextTable, Traces, UpliftTrace
 from pantocheck.conformance.results.finding_format import FindingCounts
 from pantocheck.conformance.results.lift_force_facts import LawForces
 from pantocheck.conformance.results.measured_run_format import MeasuredRun
@@ -173,6 +173,10 @@ class CaseResult(ResultsPart):
     uncertainty_basis: Annotated[
         dict[ComponentName, str],
         Field(default_factory=dict, description="how each component was determined, or why it is not known"),
+    ]
+    places: Annotated[
+        dict[Owner, dict[str, ExtremePlace]],
+        Field(default_factory=dict, description="place of each extreme, as in `quantities`"),
     ]
     model_uncertainty: Annotated[
         list[str],

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
 from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.reports.formats.pdf import render_pdf
+from pantocheck.conformance.results.figure_data import Chart
 from pantocheck.conformance.results.results_format import Results
 
 SOURCE = "Wang et al., An extended Habedank's equation-based EMTP model, IEEE Trans. Power Delivery, Table III"
@@ -140,6 +141,11 @@ def trace(position: Signal, raw: Signal, filtered: Signal) -> dict[str, Any]:
     }
 
 
+def places(position: Signal, raw: Signal, filtered: Signal) -> dict[str, Any]:
+    extremes = {"max_force_N": np.argmax(filtered), "min_force_N": np.argmin(filtered)}
+    return {name: {"position_m": float(position[sample])} for name, sample in extremes.items()}
+
+
 def uplift(support: float, peak: float) -> dict[str, Any]:
     time = np.linspace(3.0, 6.0, 600)
     passing = support / SPEED
@@ -196,6 +202,11 @@ def passing_case() -> dict[str, Any]:
         "run": run_facts(250),
         "traces": {"1": trace(*front), "2": trace(*rear)},
         "uplift": [uplift(240.0, 50.1), uplift(300.0, 51.3), uplift(360.0, 48.9)],
+        "places": {
+            "0": {"max_uplift_at_support_mm": {"position_m": 300.0, "time_s": 300 / SPEED}},
+            "1": places(*front),
+            "2": places(*rear),
+        },
     }
 
 
@@ -233,6 +244,7 @@ def failing_case() -> dict[str, Any]:
         "run": run_facts(300),
         "traces": {"1": trace(*signal)},
         "uplift": [],
+        "places": {"1": places(*signal)},
     }
 
 
@@ -290,6 +302,13 @@ def passing() -> dict[str, Any]:
     return results | {"verdict": "pass", "cases": results["cases"][:1]}
 
 
+def chart(label: str, caption: str) -> dict[str, Any]:
+    """Chart of a study whose texts come from a file."""
+    series = {"label": label, "style": "line", "x": [0.0, 1.0], "y": [1.0, 2.0]}
+    labels = {"caption": caption, "alternative": label, "x_label": label, "y_label": label}
+    return Chart.model_validate({**labels, "series": [series]}).model_dump(mode="json")
+
+
 HOSTILE = [
     "<script>alert(1)</script>",
     '#import "x.typ": * "]) #panic()',
@@ -314,6 +333,7 @@ def with_hostile_text() -> dict[str, Any]:
         for row in case["criteria"][-1:]:
             row["quantity"] = "a|b<i>"
         case["inputs"] = [{"group": text, "trust": "secondary", "source": text} for text in HOSTILE]
+        case["charts"] = [chart(*HOSTILE[:2])]
         for i, row in enumerate(case["criteria"]):
             row["source"] = HOSTILE[i % len(HOSTILE)]
             row["reason"] = HOSTILE[(i + 1) % len(HOSTILE)]

@@ -1,11 +1,12 @@
 """Figures of a case with their captions and alternative texts."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import groupby
 from typing import Any
 
 from pantocheck.conformance.quantities.bands import BANDS
-from pantocheck.conformance.reports.document import Figure
+from pantocheck.conformance.reports.document import Curves, Figure
 from pantocheck.conformance.reports.figures.force_figures import (
     draw_force,
     draw_histogram,
@@ -17,12 +18,24 @@ from pantocheck.conformance.reports.figures.uplift_figure import draw_uplift
 from pantocheck.conformance.reports.page_text import format_plain, format_value
 
 
-def draw_case_figures(case: dict[str, Any]) -> Iterator[Figure]:
-    """Charts of a study, then force, spectrum and histogram of each pantograph, then the uplift."""
+def draw_case_figures(case: dict[str, Any], number: int, anchor: str) -> Iterator[Figure]:
+    """Charts of a study, then force, spectrum and histogram of each pantograph, then the uplift.
+
+    Parameters
+    ----------
+    case : dict
+        Case of results.json.
+    number : int
+        Index of the case in the results.
+    anchor : str
+        Anchor of the section of the case.
+    """
     yield from _chart_figures(case["charts"])
     for key, trace in sorted(case["traces"].items(), key=lambda item: (len(item[0]), item[0])):
         if trace["position_m"]:
-            yield _force_figure(key, trace, [row for row in case["criteria"] if str(row["pantograph"]) == key])
+            rows = [row for row in case["criteria"] if str(row["pantograph"]) == key]
+            curves = Curves("force", number, key)
+            yield replace(_force_figure(key, trace, rows), anchor=name_figure(anchor, key), curves=curves)
         if trace["spectrum"]["frequency_Hz"]:
             yield _spectrum_figure(key, trace, case["quantities"].get(key, {}))
         if trace["histogram"]:
@@ -34,7 +47,13 @@ def draw_case_figures(case: dict[str, Any]) -> Iterator[Figure]:
             for support in supports
         )
         caption = f"Uplift at the supports. Largest: {peaks}."
-        yield Figure(draw_uplift(supports, case["criteria"]), caption, caption)
+        drawing = draw_uplift(supports, case["criteria"])
+        yield Figure(drawing, caption, caption, anchor=name_figure(anchor, "0"), curves=Curves("uplift", number))
+
+
+def name_figure(anchor: str, owner: str) -> str:
+    """Anchor of the figure with the force of a pantograph, or with the uplift for the line "0"."""
+    return f"{anchor}-uplift" if owner == "0" else f"{anchor}-force-{owner}"
 
 
 def _chart_figures(charts: list[dict[str, Any]]) -> Iterator[Figure]:

@@ -64,7 +64,7 @@ def build_certificate(results: dict[str, Any]) -> doc.Document:
             *build_findings_section(prepared),
             doc.Section("Reasons", reasons, anchor="reasons"),
             doc.Section("Cases", (_case_index(cases, anchors),), anchor="cases"),
-            *map(_case_section, cases, anchors),
+            *map(_case_section, range(len(cases)), cases, anchors),
             doc.Section(
                 "Reproducibility",
                 (list_suite_facts(prepared), doc.Section("Levels of trust", (levels,)), closing),
@@ -112,7 +112,7 @@ def _verification_mark(case: dict[str, Any]) -> doc.RichText:
     return "–" if verdict is None else doc.VerdictMark(verdict)
 
 
-def _case_section(case: dict[str, Any], anchor: str) -> doc.Section:
+def _case_section(number: int, case: dict[str, Any], anchor: str) -> doc.Section:
     blocks: list[doc.Block] = [
         doc.Paragraph((doc.VerdictMark(case["verdict"]), "\N{EN SPACE}", doc.Code(case["id"]))),
         doc.Paragraph(summarise_case(case)),
@@ -124,28 +124,28 @@ def _case_section(case: dict[str, Any], anchor: str) -> doc.Section:
     if warnings:
         blocks.append(doc.WarningBox(warnings))
     if case["criteria"]:
-        blocks.append(doc.Section("Criteria", criteria_blocks(case, anchor)))
+        blocks.append(doc.Section("Criteria", criteria_blocks(case, anchor, f"{anchor}-source")))
     blocks += verification_blocks(case, anchor)
     blocks += comparison_blocks(case)
     blocks += [doc.Section(table["caption"], (_study_table(table),)) for table in case["tables"]]
     bands, quantities = build_band_table(case), build_quantity_table(case)
     if bands.rows:
         blocks.append(doc.Section("Extended band, up to 50 Hz", (bands,)))
-    figures = tuple(draw_case_figures(case))
+    figures = tuple(draw_case_figures(case, number, anchor))
     if figures:
         blocks.append(doc.Section("Figures", (doc.Figures(figures),)))
     if quantities.rows:
-        blocks.append(doc.Section("All quantities", (quantities,)))
+        blocks.append(doc.Section("All quantities", (quantities,), folded=True))
     if case["uncertainty_basis"]:
-        blocks.append(doc.Section("Uncertainty by component", uncertainty_blocks(case)))
+        blocks.append(doc.Section("Uncertainty by component", uncertainty_blocks(case), folded=True))
     if definitions := list_definitions(case):
-        blocks.append(doc.Section("Definitions", (doc.BulletList(definitions),)))
+        blocks.append(doc.Section("Definitions", (doc.BulletList(definitions),), folded=True))
     for heading, sentences in (("Skipped", list_skipped(case)), ("Notes", tuple(case["notes"]))):
         if sentences:
-            blocks.append(doc.Section(heading, (doc.BulletList(sentences),)))
+            blocks.append(doc.Section(heading, (doc.BulletList(sentences),), folded=True))
     if case["inputs"]:
-        blocks.append(doc.Section("Inputs", (_input_table(case["inputs"]),)))
-    blocks.append(doc.Section("Run", (list_case_facts(case),)))
+        blocks.append(doc.Section("Inputs", (_input_table(case["inputs"]),), folded=True))
+    blocks.append(doc.Section("Run", (list_case_facts(case),), folded=True))
     return doc.Section(case["title"], tuple(blocks), anchor=anchor, new_page=True)
 
 

@@ -5,8 +5,9 @@ from typing import Any
 
 from pantocheck.conformance.quantities.limit_text import format_margin
 from pantocheck.conformance.reports import document as doc
+from pantocheck.conformance.reports.certificate.case_figures import name_figure
 from pantocheck.conformance.reports.figures.margin_bar import draw_margin_bar
-from pantocheck.conformance.reports.page_text import format_beside_limits, format_value, replace_minus
+from pantocheck.conformance.reports.page_text import format_beside_limits, format_plain, format_value, replace_minus
 from pantocheck.conformance.reports.words import name_owner, quantity_label, read_words
 
 MARGIN_KEY = (
@@ -53,8 +54,18 @@ def describe_criterion(criterion: dict[str, Any]) -> CriterionTexts:
     )
 
 
-def criteria_blocks(case: dict[str, Any], anchor: str) -> tuple[doc.Block, ...]:
-    """The table of criteria of a case, its key and the sources of the limits; the anchor is that of the case."""
+def criteria_blocks(case: dict[str, Any], anchor: str, source_anchor: str) -> tuple[doc.Block, ...]:
+    """The table of criteria of a case, its key and the sources of the limits.
+
+    Parameters
+    ----------
+    case : dict
+        Case of results.json.
+    anchor : str
+        Anchor of the section of the case.
+    source_anchor : str
+        Anchor of the sources, before their number.
+    """
     sources = list(dict.fromkeys(criterion["source"] for criterion in case["criteria"] if criterion["source"]))
     error = error_name(case)
     columns = (
@@ -65,19 +76,33 @@ def criteria_blocks(case: dict[str, Any], anchor: str) -> tuple[doc.Block, ...]:
         doc.Column("Limits", number=True),
         *map(doc.Column, ("Margin", "Verdict", "Trust", "Source")),
     )
-    rows = tuple(_row(criterion, sources, anchor) for criterion in case["criteria"])
+    rows = tuple(
+        _row(criterion, sources, source_anchor, _link_place(case, criterion, anchor)) for criterion in case["criteria"]
+    )
     table = doc.Table(columns, rows, layout="cards")
     key = doc.SmallPrint(f"{MARGIN_KEY}{error.lower()}.")
-    listed = (doc.NumberedList("Sources of the limits", tuple(sources), f"{anchor}-source"),) if sources else ()
+    listed = (doc.NumberedList("Sources of the limits", tuple(sources), source_anchor),) if sources else ()
     return (table, key, *listed)
 
 
-def _row(criterion: dict[str, Any], sources: list[str], anchor: str) -> tuple[doc.RichText, ...]:
+def _link_place(case: dict[str, Any], criterion: dict[str, Any], anchor: str) -> tuple[doc.Link, ...]:
+    """Link to the figure that shows the place of an extreme; empty for a quantity without a place."""
+    owner = str(criterion["pantograph"])
+    place = case["places"].get(owner, {}).get(criterion["quantity"])
+    drawn = any(support["time_s"] for support in case["uplift"]) if owner == "0" else owner in case["traces"]
+    if place is None or not drawn:
+        return ()
+    return (doc.Link(f"at {format_plain(round(place['position_m'], 1))} m", name_figure(anchor, owner)),)
+
+
+def _row(
+    criterion: dict[str, Any], sources: list[str], source_anchor: str, place: tuple[doc.Link, ...]
+) -> tuple[doc.RichText, ...]:
     texts = describe_criterion(criterion)
     number = sources.index(criterion["source"]) + 1 if criterion["source"] else None
     drawn = texts.limits != "none" and criterion["value"] is not None
     return (
-        (f"{texts.label} ", doc.Code(criterion["quantity"]), *map(doc.Remark, texts.remarks)),
+        (f"{texts.label} ", doc.Code(criterion["quantity"]), *place, *map(doc.Remark, texts.remarks)),
         texts.pantograph,
         texts.value,
         texts.error,
@@ -85,7 +110,7 @@ def _row(criterion: dict[str, Any], sources: list[str], anchor: str) -> tuple[do
         (_bar(criterion), f" {texts.margin}") if drawn else texts.margin,
         doc.VerdictMark(criterion["verdict"]),
         doc.TrustMark(texts.trust),
-        "–" if number is None else doc.Link(f"[{number}]", f"{anchor}-source-{number}"),
+        "–" if number is None else doc.Link(f"[{number}]", f"{source_anchor}-{number}"),
     )
 
 

@@ -98,7 +98,7 @@ def verification_blocks(case: dict[str, Any], anchor: str) -> tuple[doc.Block, .
         blocks.append(doc.Paragraph(str(verification["reason"])))
     if verification["criteria"]:
         rows = case | {"criteria": verification["criteria"]}
-        blocks += criteria_blocks(rows, f"{anchor}-verification")
+        blocks += criteria_blocks(rows, anchor, f"{anchor}-verification-source")
     if verification["omitted"]:
         blocks.append(doc.Section("Without a confirmed value", (doc.BulletList(tuple(verification["omitted"])),)))
     return (doc.Section(NAMES["verification"], tuple(blocks)),)

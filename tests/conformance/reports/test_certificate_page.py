@@ -53,7 +53,7 @@ def test_criterion_shows_all_its_values(passing: dict[str, Any]) -> None:
     texts = describe_criterion(row)
     assert (texts.value, texts.error, texts.limits) == ("118.2 N", "± 0.12", "110 to 120")
     assert (texts.margin, texts.pantograph) == ("+0.36", "1")
-    table, _, sources = criteria_blocks(case, "case-1")
+    table, _, sources = criteria_blocks(case, "case-1", "case-1-source")
     assert isinstance(table, Table)
     assert table.rows[1][-3:] == (VerdictMark("pass"), TrustMark("secondary"), Link("[2]", "case-1-source-2"))
     assert sources == NumberedList("Sources of the limits", ("another", row["source"]), "case-1-source")

@@ -78,7 +78,7 @@ def test_charts_side_by_side_have_one_scale(results: dict[str, Any]) -> None:
     narrow, other = data(wide=False), data(wide=False, y_label="z [mm]")
     higher = data(wide=False, series=[LINE.model_copy(update={"y": [9.0, 2.0, 1.0]})])
     case = results["cases"][0] | {"charts": [narrow, higher, other, data()], "traces": {}, "uplift": []}
-    figures = list(draw_case_figures(case))
+    figures = list(draw_case_figures(case, 0, "case-1"))
     assert [figure.wide for figure in figures] == [False, False, False, True]
     common = (0.0, 1.05 * 9.0)
     expected = [draw_chart(narrow, common), draw_chart(higher, common), draw_chart(other), draw_chart(data())]

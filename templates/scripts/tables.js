@@ -1,0 +1,101 @@
+// Sorting and filtering of tables. The rows of a page stay complete: on paper, filtered rows are shown again.
+
+/** Number of rows from which a table can be sorted and filtered; criteria can be from two rows. */
+const MANY_ROWS = 10;
+
+/** Verdicts from the worst to the best. */
+const VERDICTS = ["error", "fail", "skip", "info", "unverified", "pass"];
+
+/** An element with attributes and children; a text becomes a text node, never markup. */
+function element(name, attributes = {}, ...children) {
+  const made = document.createElement(name);
+  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+  made.append(...children);
+  return made;
+}
+
+/** Verdict shown in a part of a page; undefined without one. */
+function verdictOf(part) {
+  const mark = part.querySelector(".verdict");
+  return VERDICTS.find((verdict) => mark?.classList.contains(verdict));
+}
+
+/** Key by which a cell is sorted: rank of its verdict, its first number, or its text; null for a dash. */
+function sortKey(cell) {
+  const verdict = verdictOf(cell);
+  if (verdict) return VERDICTS.indexOf(verdict);
+  const text = cell.textContent.trim();
+  if (text === "" || text === "–") return null;
+  const number = parseFloat(text.replaceAll("−", "-").replace(/^[±≤≥=\s]+/, ""));
+  return Number.isNaN(number) ? text : number;
+}
+
+/** Order of two keys: numbers by size, before texts by the alphabet; without a key last, in either direction. */
+function compareKeys(first, second, direction) {
+  if (first === null || second === null) return (first === null) - (second === null);
+  const kinds = (typeof first === "string") - (typeof second === "string");
+  if (kinds) return kinds;
+  return direction * (typeof first === "string" ? first.localeCompare(second, "en") : first - second);
+}
+
+/** Sort the rows of a table by a column; the direction 0 restores the order of the report. */
+function sortRows(rows, column, direction) {
+  const keyed = rows.map((row) => [row, sortKey(row.cells[column])]);
+  if (direction) keyed.sort(([, first], [, second]) => compareKeys(first, second, direction));
+  rows[0].parentElement.append(...keyed.map(([row]) => row));
+}
+
+/** Make the headings of a table buttons that sort it: ascending, descending, order of the report. */
+function addSorting(table, rows) {
+  const headings = [...table.tHead.rows[0].cells];
+  const directions = { none: "ascending", ascending: "descending", descending: "none" };
+  const signs = { none: 0, ascending: 1, descending: -1 };
+  table.classList.add("sortable");
+  headings.forEach((heading, column) => {
+    const button = element("button", { type: "button", class: "sort" }, ...heading.childNodes);
+    heading.append(button);
+    heading.setAttribute("aria-sort", "none");
+    button.addEventListener("click", () => {
+      const direction = directions[heading.getAttribute("aria-sort")];
+      for (const other of headings) other.setAttribute("aria-sort", "none");
+      heading.setAttribute("aria-sort", direction);
+      sortRows(rows, column, signs[direction]);
+    });
+  });
+}
+
+/** Selection of a verdict; null for a table whose rows do not differ in it. */
+function verdictSelection(rows, label) {
+  const marks = new Map(rows.map((row) => [verdictOf(row), row.querySelector(".verdict")?.lastChild.textContent.trim()]));
+  marks.delete(undefined);
+  if (marks.size < 2) return null;
+  const options = [...marks].map(([verdict, word]) => element("option", { value: verdict }, word));
+  return element("select", { "aria-label": `Verdict, ${label}` }, element("option", { value: "" }, "all verdicts"), ...options);
+}
+
+/** Put fields above a table that leave only the rows with a text and a verdict. */
+function addFilter(table, rows) {
+  const label = table.getAttribute("aria-label");
+  const field = element("input", { type: "search", placeholder: "Filter rows", "aria-label": `Filter rows, ${label}` });
+  const selection = verdictSelection(rows, label);
+  const count = element("output", { role: "status" });
+  const filter = () => {
+    const words = field.value.toLowerCase().split(/\s+/);
+    const left = rows.filter((row) => {
+      const text = row.textContent.toLowerCase();
+      const fits = words.every((word) => text.includes(word)) && (!selection?.value || verdictOf(row) === selection.value);
+      row.classList.toggle("filtered", !fits);
+      return fits;
+    });
+    count.value = left.length < rows.length ? `${left.length} of ${rows.length} rows` : "";
+  };
+  for (const control of [field, selection]) control?.addEventListener("input", filter);
+  table.parentElement.before(element("div", { class: "tools" }, ...[field, selection, count].filter(Boolean)));
+}
+
+for (const table of document.querySelectorAll("table")) {
+  const rows = [...table.tBodies[0].rows];
+  if (rows.length < (table.classList.contains("cards") ? 2 : MANY_ROWS)) continue;
+  addSorting(table, rows);
+  addFilter(table, rows);
+}
