@@ -89,8 +89,12 @@ def _link_place(case: dict[str, Any], criterion: dict[str, Any], anchor: str) ->
     """Link to the figure that shows the place of an extreme; empty for a quantity without a place."""
     owner = str(criterion["pantograph"])
     place = case["places"].get(owner, {}).get(criterion["quantity"])
+    if place is None:
+        return ()
+    if place["time_s"] is not None:
+        owner = "0"
     drawn = any(support["time_s"] for support in case["uplift"]) if owner == "0" else owner in case["traces"]
-    if place is None or not drawn:
+    if not drawn:
         return ()
     return (doc.Link(f"at {format_plain(round(place['position_m'], 1))} m", name_figure(anchor, owner)),)
 
