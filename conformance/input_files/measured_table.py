@@ -27,6 +27,17 @@ TIME_NAMES = ("time", "time_s", "t", "t_s", "zeit", "temps")
 
 
 @dataclass(frozen=True)
+class EveryChannel:
+    """Request for every channel of a file, by the names in the file."""
+
+
+EVERY_CHANNEL = EveryChannel()
+
+ChannelNames = tuple[str, ...] | EveryChannel
+"""Names of the channels in a sidecar, in the order of its columns; empty for a file that describes itself."""
+
+
+@dataclass(frozen=True)
 class TableColumn:
     """Description of a column; None and empty text stand for facts that the file does not hold.
 
@@ -55,6 +66,11 @@ class TableColumn:
     wire: str = ""
     position: float | None = None
     direction: str | None = None
+
+    @property
+    def label(self) -> str:
+        """Name with the number of its row, if its data set has several: `force_N[2]`."""
+        return (self.name or "") if self.row == 1 else f"{self.name}[{self.row}]"
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,5 @@
 """Tables of text cells, as spreadsheets export them: CSV with commas, semicolons or tabs, in common encodings."""
 
-import codecs
 import csv
 import io
 from dataclasses import dataclass
@@ -9,6 +8,7 @@ from pathlib import Path
 
 from pantocheck.conformance.input_files.bounded_file import read_bytes
 from pantocheck.conformance.input_files.input_error import InputError, join_errors
+from pantocheck.conformance.input_files.text_encoding import find_encoding
 
 MAX_SPREADSHEET_BYTES = 10_000_000
 """Largest table that is read [bytes]: a line of 1000 spans with 30 droppers each takes 2 MB."""
@@ -84,7 +84,8 @@ def read_spreadsheet(path: Path) -> Spreadsheet:
         The file cannot be read, is no text, has no row or too many, or has rows of another width than its head line.
     """
     where = f"table '{path.name}'"
-    text = _decode(read_bytes(path, where, MAX_SPREADSHEET_BYTES), where)
+    content = read_bytes(path, where, MAX_SPREADSHEET_BYTES)
+    text = content.decode(find_encoding(io.BytesIO(content), where))
     lines = text.splitlines()
     start = next((i for i, line in enumerate(lines) if line.strip() and not _is_preface(line)), len(lines))
     if start == len(lines):
@@ -106,21 +107,6 @@ def read_spreadsheet(path: Path) -> Spreadsheet:
         raise InputError(where, "has a head line but no rows", "Export the table again.")
     _check_widths(where, head[0], body)
     return Spreadsheet(where, delimiter, head[0], tuple(body))
-
-
-def _decode(content: bytes, where: str) -> str:
-    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        encodings = ["utf-16"]
-    else:
-        encodings = ["utf-8-sig", "cp1252"]
-    for encoding in encodings:
-        try:
-            text = content.decode(encoding)
-        except UnicodeDecodeError:
-            continue
-        if "\0" not in text:
-            return text
-    raise InputError(where, "is not text", "Export the table as CSV (UTF-8), not as a workbook.")
 
 
 def _is_preface(line: str) -> bool:

@@ -7,11 +7,14 @@ from pathlib import Path
 
 from pantocheck.conformance.input_files.bounded_file import MAX_FILE_BYTES, open_file
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.measured_table import MeasuredTable
+from pantocheck.conformance.input_files.measured_table import ChannelNames, MeasuredTable
+from pantocheck.conformance.input_files.text_settings import TextSettings
 
-Reader = Callable[[Path, tuple[str, ...], int], list[MeasuredTable]]
-"""Reader of a format. Its arguments are the path, the names of the channels in the sidecar (empty without a sidecar)
-and the largest accepted number of values. It raises `InputError` for a file that cannot be used."""
+Reader = Callable[[Path, ChannelNames, int], list[MeasuredTable]]
+"""Reader of a format. Its arguments are the path, the names of the channels in the sidecar (empty for a file that
+describes itself, `EVERY_CHANNEL` for all channels by their names in the file) and the largest accepted number of
+values. The reader of text tables has the stated layout as fourth argument. It raises `InputError` for a file that
+cannot be used."""
 
 
 @dataclass(frozen=True)
@@ -32,15 +35,15 @@ class TableFormat:
     suffixes: tuple[str, ...]
     extra: str = ""
 
-    def read(self, path: Path, names: tuple[str, ...], largest: int) -> list[MeasuredTable]:
+    def read(self, path: Path, names: ChannelNames, largest: int, *layout: TextSettings) -> list[MeasuredTable]:
         """Read a file of this format; arguments and errors as in `Reader`.
 
         The library of the format is imported only here, because imports take time.
         """
         try:
             module = import_module(f"pantocheck.conformance.input_files.formats.{self.module}")
-            reader: Reader = getattr(module, f"read_{self.module}")
-            return reader(path, names, largest)
+            reader: Callable[..., list[MeasuredTable]] = getattr(module, f"read_{self.module}")
+            return reader(path, names, largest, *layout)
         except ModuleNotFoundError as error:
             raise InputError(
                 f"record '{path.name}'",
@@ -49,7 +52,7 @@ class TableFormat:
             ) from None
 
 
-CSV = TableFormat("csv_table", (".csv", ".txt"))
+CSV = TableFormat("csv_table", (".csv", ".txt", ".asc", ".dat"))
 HDF5 = TableFormat("hdf5_table", (".h5", ".hdf5"))
 
 TABLE_FORMATS = (
@@ -88,7 +91,11 @@ def find_table_format(path: Path, formats: tuple[TableFormat, ...]) -> TableForm
 
 
 def read_tables(
-    path: Path, names: tuple[str, ...], largest: int, formats: tuple[TableFormat, ...] = TABLE_FORMATS
+    path: Path,
+    names: ChannelNames,
+    largest: int,
+    formats: tuple[TableFormat, ...] = TABLE_FORMATS,
+    layout: TextSettings | None = None,
 ) -> list[MeasuredTable]:
     """Read all runs in a file.
 
@@ -96,12 +103,14 @@ def read_tables(
     ----------
     path : Path
         The file.
-    names : tuple of str
-        Names of the channels in its sidecar, in the order of the columns; empty without a sidecar.
+    names : tuple of str or EveryChannel
+        Names of the channels in its sidecar, in the order of the columns; empty for a file that describes itself.
     largest : int
         Largest accepted number of values.
     formats : tuple of TableFormat
         Accepted formats.
+    layout : TextSettings or None
+        Layout of a text table, as far as it is stated.
 
     Returns
     -------
@@ -118,4 +127,12 @@ def read_tables(
     with open_file(path, where, MAX_FILE_BYTES) as file:
         if not file.read(1):
             raise InputError(where, "is empty", "Export the record again.")
-    return table_format.read(path, names, largest)
+    if layout is None or not layout.is_stated:
+        return table_format.read(path, names, largest)
+    if table_format is not CSV:
+        raise InputError(
+            f"sidecar of {where}, key table",
+            f"states the layout of a text table, but {path.suffix} is no text table",
+            "Remove separator, decimal, header_lines and encoding.",
+        )
+    return table_format.read(path, names, largest, layout)

@@ -188,3 +188,16 @@ def convert_unit(text: str, where: str) -> tuple[MotionQuantity, float]:
             return quantity, factors[name]
     known = ", ".join(unit for factors in MOTION_UNITS.values() for unit in factors)
     raise InputError(where, f"has the unknown unit {text[:40]!r}", f"Known units are {known}.")
+
+
+def is_unit(text: str) -> bool:
+    """Whether a text is a unit of any quantity, in brackets or not; empty text and a dash mean no unit."""
+    name = text.strip().strip("[]()").strip()
+    return name in _UNIT_NAMES or SPELLINGS.get(name.lower()) is not None
+
+
+_UNIT_NAMES = {
+    *("", "-", "1", "%", "V", "mV", "kV", "A", "mA", "kA", "°", "deg", "rad", "°C", "K", "bar", "kPa", "min", "h"),
+    *(symbol for family in UNIT_FAMILIES for symbol in family.factors),
+}
+"""Units of a line of units, also of quantities that are not read."""

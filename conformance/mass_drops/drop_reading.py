@@ -31,6 +31,7 @@ def read_drop_records(path: Path) -> tuple[DropRecord, ...]:
         The file cannot be read, is damaged, or does not describe its channels.
     """
     sidecar = read_drop_sidecar(path)
-    tables = read_tables(path, sidecar.channel_names if sidecar else (), LARGEST_DROP)
+    names, layout = (sidecar.channel_names, sidecar.table) if sidecar else ((), None)
+    tables = read_tables(path, names, LARGEST_DROP, layout=layout)
     file = str(path.resolve())
     return tuple(replace(assemble_drop_record(table.separate_time(), sidecar), file=file) for table in tables)

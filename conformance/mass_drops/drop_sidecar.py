@@ -6,6 +6,7 @@ from typing import Annotated, Any
 from pydantic import BaseModel, ConfigDict, Field
 
 from pantocheck.conformance.input_files.measured_table import TableColumn
+from pantocheck.conformance.input_files.text_settings import TextSettings
 from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.input_files.units import MotionQuantity
 
@@ -80,6 +81,9 @@ class DropSidecar(_OpenTable):
     test: DropTestTable = DropTestTable()
     drop: DropTable = DropTable()
     record: DropRecordTable
+    table: Annotated[TextSettings, Field(description="layout of a text table, if it is not found from the file")] = (
+        TextSettings()
+    )
     channel: Annotated[
         tuple[DropChannelTable, ...], Field(strict=False, min_length=1, description="channels, one per column")
     ]

@@ -7,16 +7,13 @@ import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.input_files.input_error import InputError, join_errors
-from pantocheck.conformance.input_files.measured_table import TableColumn
+from pantocheck.conformance.input_files.measured_table import EVERY_CHANNEL, MeasuredTable, TableColumn
 from pantocheck.conformance.input_files.suggestions import suggest_names
-from pantocheck.conformance.input_files.table_formats import CSV, HDF5, read_tables
+from pantocheck.conformance.input_files.table_formats import read_tables
 from pantocheck.conformance.input_files.units import suggest_key
 from pantocheck.conformance.records.record import LARGEST_NUMBER, MAX_SAMPLES
 from pantocheck.conformance.records.record_channels import CHANNELS, RecordColumn, find_column
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
-
-RECORD_FORMATS = (CSV, HDF5)
-"""File formats of contact-force records."""
 
 ChannelRows = dict[str, dict[int, RealArray]]
 """Rows of each channel by number from 1."""
@@ -43,7 +40,7 @@ def read_channel_rows(path: Path, sidecar: RecordSidecar) -> ChannelRows:
         The table is damaged, has an unknown column, lacks a channel, or contradicts its sidecar. The error lists all
         such columns and channels.
     """
-    tables = read_tables(path, (), MAX_SAMPLES, RECORD_FORMATS)
+    tables = read_tables(path, EVERY_CHANNEL, MAX_SAMPLES, layout=sidecar.table)
     where = tables[0].where
     if len(tables) > 1:
         raise InputError(where, f"holds {len(tables)} runs", "Write one file per run.")
@@ -62,6 +59,8 @@ def read_channel_rows(path: Path, sidecar: RecordSidecar) -> ChannelRows:
             continue
         with np.errstate(invalid="ignore", over="ignore"):  # numbers too large are reported below
             channel[meaning.number] = meaning.factor * values
+    if "time" not in rows and (time := _find_own_time(tables[0])) is not None:
+        rows["time"] = {1: time}
     if not errors:  # a wrong column may be the missing one
         errors += _find_missing_channels(rows, sidecar, where)
     for name in rows:
@@ -69,6 +68,13 @@ def read_channel_rows(path: Path, sidecar: RecordSidecar) -> ChannelRows:
     if errors:
         raise join_errors(errors)
     return rows
+
+
+def _find_own_time(table: MeasuredTable) -> RealArray | None:
+    """Time beside the channels, or from the rate that the file states [s]; None without both."""
+    if table.time is not None:
+        return table.time
+    return None if table.rate is None else np.arange(table.values.shape[0]) / table.rate
 
 
 def _find_meaning(column: TableColumn, sidecar: RecordSidecar, where: str) -> RecordColumn:

@@ -6,6 +6,7 @@ from pydantic import Field
 
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.sourced_table import InputTable, NumberList, PositiveList, validation_problem
+from pantocheck.conformance.input_files.text_settings import TextSettings
 from pantocheck.conformance.records.sidecar_tables import (
     CaseDigest,
     CaseName,
@@ -38,6 +39,9 @@ class RecordSidecar(InputTable):
     ] = ()
     file: TableName
     sha256: TableDigest = None
+    table: Annotated[TextSettings, Field(description="layout of a text table, if it is not found from the file")] = (
+        TextSettings()
+    )
     speed_km_h: Speed
     pantographs: Annotated[int, Field(ge=1, le=20, description="number of pantographs")]
     evaluated_m: Annotated[

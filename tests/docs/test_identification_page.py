@@ -1,4 +1,4 @@
-"""Page about mass drops: its sidecar can be read, and its table lists all formats."""
+"""Page about mass drops: its sidecar can be read."""
 
 import re
 import tomllib
@@ -6,7 +6,6 @@ from pathlib import Path
 
 from jsonschema import validate
 
-from pantocheck.conformance.input_files.table_formats import TABLE_FORMATS
 from pantocheck.conformance.mass_drops.drop_sidecar import read_drop_sidecar
 from pantocheck.conformance.schemas import build_schema
 
@@ -20,10 +19,3 @@ def test_sidecar_of_the_page_is_read_and_follows_its_schema(tmp_path: Path) -> N
     assert (sidecar.drop.mass_kg, sidecar.record.trigger_nominal_s) == (40.0, 6.0)
     assert [channel.unit for channel in sidecar.channel] == ["m/s2"]
     validate(tomllib.loads(text), build_schema("mass-drop"))
-
-
-def test_page_lists_the_suffixes_and_extras_of_all_formats() -> None:
-    """The table has one row per format of `TABLE_FORMATS`."""
-    rows = [row.split("|") for row in PAGE.read_text(encoding="utf-8").splitlines() if re.match(r"\| .*\(`\.", row)]
-    listed = {(*re.findall(r"`(\.\w+)`", row[1]), *re.findall(r"extra `(\w+)`", row[2])) for row in rows}
-    assert listed == {(*row.suffixes, *filter(None, [row.extra])) for row in TABLE_FORMATS}

@@ -13,17 +13,26 @@ from numpy.typing import ArrayLike
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.input_files.bounded_file import MAX_FILE_BYTES, open_file
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.measured_table import MeasuredTable, TableColumn, refuse_damage
+from pantocheck.conformance.input_files.measured_table import (
+    ChannelNames,
+    EveryChannel,
+    MeasuredTable,
+    TableColumn,
+    refuse_damage,
+)
 
 MOST_ITEMS = 10_000
 """Largest number of data sets in a group, and of channels."""
+
+DEEPEST_GROUP = 4
+"""Largest number of nested groups in which channels are searched."""
 
 SELF_CONTAINED = "Store all data sets in this file itself, without links to other places."
 
 MOTION_QUANTITIES = ("acceleration", "velocity", "displacement")
 
 
-def read_hdf5_table(path: Path, names: tuple[str, ...], largest: int) -> list[MeasuredTable]:
+def read_hdf5_table(path: Path, names: ChannelNames, largest: int) -> list[MeasuredTable]:
     """Read all runs of an HDF5 file in the order of their numbers; arguments and errors as in `table_formats.Reader`.
 
     A file without groups `run_<k>` holds one run, with data sets of one or more rows in the root group.
@@ -32,7 +41,8 @@ def read_hdf5_table(path: Path, names: tuple[str, ...], largest: int) -> list[Me
         where = f"record '{path.name}'"
         runs = sorted((name for name in file if name.startswith("run_")), key=_run_number)
         if not runs:
-            return [_read_root(file, path.name)]
+            nested = isinstance(names, EveryChannel) and any(isinstance(item, h5py.Group) for item in file.values())
+            return [_read_groups(file, path.name, largest) if nested else _read_root(file, path.name)]
         columns = _read_columns(file, bool(names), where)
         return [_read_run(file, name, k if len(runs) > 1 else 0, columns, path.name) for k, name in enumerate(runs, 1)]
 
@@ -153,6 +163,37 @@ def _read_root(file: h5py.File, source: str) -> MeasuredTable:
             columns.append(TableColumn(str(name), row))
             rows.append(samples)
     return MeasuredTable(source, np.column_stack(rows), tuple(columns))
+
+
+def _read_groups(file: h5py.File, source: str, largest: int) -> MeasuredTable:
+    """Table of the longest data sets in all groups, one column per row of a data set."""
+    where = f"record '{source}'"
+    arrays = dict(_list_arrays(file, "", where, largest, DEEPEST_GROUP))
+    length = max((max(array.shape) for array in arrays.values()), default=0)
+    columns, rows = list[TableColumn](), list[RealArray]()
+    for name, array in arrays.items():
+        if length in array.shape:
+            values = np.atleast_2d(array if array.shape[-1] == length else array.T)
+            columns += [TableColumn(name, row) for row in range(1, len(values) + 1)]
+            rows += list(values)
+    if not rows:
+        raise InputError(where, "holds no data set of numbers", "Store one data set per channel.")
+    if length * len(rows) > largest:
+        raise InputError(where, f"holds {length * len(rows)} numbers", f"At most {largest} numbers are accepted.")
+    return MeasuredTable(source, np.column_stack(rows), tuple(columns))
+
+
+def _list_arrays(
+    group: h5py.Group, prefix: str, where: str, largest: int, levels: int
+) -> Iterator[tuple[str, RealArray]]:
+    """Numeric data sets of one or two dimensions by path inside the file; links and large groups are refused."""
+    if _check_items(group, f"{where}, group {group.name!r}", largest) > largest:
+        raise InputError(where, f"holds more than {largest} numbers", "Shorten the record, or leave channels out.")
+    for name, item in group.items():
+        if isinstance(item, h5py.Group) and levels > 1:
+            yield from _list_arrays(item, f"{prefix}{name}/", where, largest, levels - 1)
+        elif isinstance(item, h5py.Dataset) and item.dtype.kind in "fiu" and item.ndim in (1, 2) and item.size:
+            yield f"{prefix}{name}", read_numbers(item, where)
 
 
 def _read_columns(file: h5py.File, described: bool, where: str) -> tuple[TableColumn, ...] | None:

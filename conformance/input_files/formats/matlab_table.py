@@ -15,7 +15,14 @@ from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.input_files.bounded_file import MAX_FILE_BYTES, open_file
 from pantocheck.conformance.input_files.formats.hdf5_table import open_hdf5, read_numbers
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.measured_table import MeasuredTable, TableColumn, refuse_damage, stack_channels
+from pantocheck.conformance.input_files.measured_table import (
+    ChannelNames,
+    EveryChannel,
+    MeasuredTable,
+    TableColumn,
+    refuse_damage,
+    stack_channels,
+)
 
 MATLAB_TIME_NAMES = ("time", "time_s", "t")
 NUMERIC_CLASSES = {"double", "single", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64))}
@@ -24,14 +31,16 @@ COMPRESSED = 15  # type of an element of version 5
 RATE_NAMES = ("sampling_rate_hz", "fs", "rate")
 
 
-def read_matlab_table(path: Path, names: tuple[str, ...], largest: int) -> list[MeasuredTable]:
+def read_matlab_table(path: Path, names: ChannelNames, largest: int) -> list[MeasuredTable]:
     """Read the run of a MATLAB file; arguments and errors as in `table_formats.Reader`."""
     where = f"record '{path.name}'"
     arrays = _read_version_7_3(path, where, largest) if h5py.is_hdf5(path) else _read_version_5(path, where, largest)
     time = next((array.ravel() for array in _find_arrays(arrays, MATLAB_TIME_NAMES) if array.size > 1), None)
     rate = next((float(array.ravel()[0]) for array in _find_arrays(arrays, RATE_NAMES) if array.size), None)
     data = {name: array for name, array in arrays.items() if name.lower() not in MATLAB_TIME_NAMES + RATE_NAMES}
-    if names and all(name in data for name in names):
+    if isinstance(names, EveryChannel):
+        columns, values = _list_vectors(data, where, largest)
+    elif names and all(name in data for name in names):
         values = stack_channels([data[name].ravel() for name in names], where, largest)
         columns = tuple(TableColumn(name) for name in names)
     else:
@@ -45,6 +54,22 @@ def read_matlab_table(path: Path, names: tuple[str, ...], largest: int) -> list[
 def _find_arrays(arrays: dict[str, RealArray], names: tuple[str, ...]) -> list[RealArray]:
     """Arrays with these names, in the order of the names; letter case is ignored."""
     return [array for wanted in names for name, array in arrays.items() if name.lower() == wanted]
+
+
+def _list_vectors(data: dict[str, RealArray], where: str, largest: int) -> tuple[tuple[TableColumn, ...], RealArray]:
+    """Columns and samples of the variables with the most samples; a matrix has one channel per row or column."""
+    length = max((max(array.shape) for array in data.values() if array.ndim == 2 and array.size > 1), default=0)
+    columns, channels = list[TableColumn](), list[RealArray]()
+    for name, array in data.items():
+        if array.ndim != 2 or length not in array.shape:
+            continue
+        rows = array if array.shape[1] == length else array.T
+        columns += [TableColumn(name, row) for row in range(1, len(rows) + 1)]
+        channels += list(rows)
+    if not channels:
+        hint = "Store one vector per channel; save the fields of a structure with -struct."
+        raise InputError(where, "holds no vector of numbers", hint)
+    return tuple(columns), stack_channels(channels, where, largest)
 
 
 def _find_largest_matrix(data: dict[str, RealArray], where: str) -> RealArray:

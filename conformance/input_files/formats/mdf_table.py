@@ -7,6 +7,7 @@ import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -14,6 +15,8 @@ from pantocheck.conformance.input_files.bounded_file import MAX_FILE_BYTES, open
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.measured_table import (
     SAMPLED_TOGETHER,
+    ChannelNames,
+    EveryChannel,
     MeasuredTable,
     TableColumn,
     refuse_damage,
@@ -23,7 +26,7 @@ from pantocheck.conformance.input_files.measured_table import (
 SAME_TIME = 1e-6  # tolerance between the times of two channels [s]; a hundredth of an interval at 10 kHz
 
 
-def read_mdf_table(path: Path, names: tuple[str, ...], largest: int) -> list[MeasuredTable]:
+def read_mdf_table(path: Path, names: ChannelNames, largest: int) -> list[MeasuredTable]:
     """Read the run of an MDF file; arguments and errors as in `table_formats.Reader`."""
     from asammdf import MDF
     from asammdf.blocks.utils import MdfException
@@ -39,6 +42,7 @@ def read_mdf_table(path: Path, names: tuple[str, ...], largest: int) -> list[Mea
         _silence_library(),
         MDF(content) as file,
     ):
+        names = _list_channels(file, largest, where) if isinstance(names, EveryChannel) else names
         missing = [name for name in names if name not in file.channels_db]
         if missing:
             raise InputError(
@@ -47,6 +51,8 @@ def read_mdf_table(path: Path, names: tuple[str, ...], largest: int) -> list[Mea
                 f"The file holds the channels {', '.join(sorted(file.channels_db)[:12])}.",
             )
         places = [file.channels_db[name][0] for name in names]
+        if not places:
+            raise InputError(where, "holds no channel of numbers", "Export the record again.")
         stated = sum(file.groups[group].channel_group.cycles_nr for group, _ in places)
         if stated > largest:
             raise InputError(where, f"states {stated} samples", f"At most {largest} samples are accepted.")
@@ -57,6 +63,23 @@ def read_mdf_table(path: Path, names: tuple[str, ...], largest: int) -> list[Mea
         raise InputError(where, "has channels with different sampling times", SAMPLED_TOGETHER)
     columns = tuple(TableColumn(signal.name, unit=str(signal.unit) or None) for signal in signals)
     return [MeasuredTable(path.name, values, columns, time=time)]
+
+
+def _list_channels(file: Any, largest: int, where: str) -> tuple[str, ...]:
+    """Names of the channels of numbers in the group with the most samples, without its time channel."""
+    groups = [(int(group.channel_group.cycles_nr), number) for number, group in enumerate(file.groups)]
+    samples, number = max(groups, default=(0, 0))
+    if not samples:
+        raise InputError(where, "holds no samples", "Export the record again.")
+    channels = file.groups[number].channels
+    if samples * len(channels) > largest:
+        raise InputError(where, f"states {samples * len(channels)} samples", f"At most {largest} samples are accepted.")
+    masters = {file.masters_db.get(number)}
+    return tuple(
+        channel.name
+        for index, channel in enumerate(channels)
+        if index not in masters and np.asarray(file.get(group=number, index=index).samples).dtype.kind in "fiu"
+    )
 
 
 @contextmanager

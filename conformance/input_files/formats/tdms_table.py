@@ -8,6 +8,7 @@ from pantocheck.conformance.input_files.bounded_file import MAX_FILE_BYTES, open
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.measured_table import (
     SAMPLED_TOGETHER,
+    ChannelNames,
     MeasuredTable,
     TableColumn,
     refuse_damage,
@@ -15,7 +16,7 @@ from pantocheck.conformance.input_files.measured_table import (
 )
 
 
-def read_tdms_table(path: Path, names: tuple[str, ...], largest: int) -> list[MeasuredTable]:
+def read_tdms_table(path: Path, names: ChannelNames, largest: int) -> list[MeasuredTable]:
     """Read the run of a TDMS file, channels in the order of the file; arguments and errors as in `Reader`."""
     del names  # `mass_drops` compares the names of the columns with the sidecar
     from nptdms import TdmsFile

@@ -10,6 +10,8 @@ import pyuff
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.measured_table import (
     SAMPLED_TOGETHER,
+    ChannelNames,
+    EveryChannel,
     MeasuredTable,
     TableColumn,
     refuse_damage,
@@ -21,13 +23,15 @@ TIME_RESPONSE = 1  # function type of the format
 DIRECTIONS = {1: "+x", 2: "+y", 3: "+z", -1: "-x", -2: "-y", -3: "-z"}
 DATA_TYPES: dict[MotionQuantity, int] = {"acceleration": 12, "velocity": 11, "displacement": 8}
 """Specific data types of the format."""
+TITLE_FIELDS = ("id1", "id2", "id3", "id4", "id5", "rsp_ent_name")
+"""Fields that hold the name of a channel, by habit of the writing program."""
 CHANNEL_LINE = re.compile(r"(?P<name>\S+) (?P<wire>\S+) at (?P<position>[-+.\deE]+) m dir (?P<direction>[-+][xyz])")
 DROP_LINE = re.compile(
     r"(?P<mass>[.\deE+]+) kg on (?P<wire>\S+) at (?P<position>[-+.\deE]+) m(?:, trigger at (?P<trigger>[.\deE+]+) s)?"
 )
 
 
-def read_uff_table(path: Path, names: tuple[str, ...], largest: int) -> list[MeasuredTable]:
+def read_uff_table(path: Path, names: ChannelNames, largest: int) -> list[MeasuredTable]:
     """Read the run of a universal file; arguments and errors as in `table_formats.Reader`."""
     where = f"record '{path.name}'"
     # pyuff raises plain `Exception` for some damaged files, and leaves out keys for others.
@@ -35,7 +39,7 @@ def read_uff_table(path: Path, names: tuple[str, ...], largest: int) -> list[Mea
         return [_build_table(_read_sets(path, where), path.name, names, largest)]
 
 
-def _build_table(sets: list[dict[str, Any]], source: str, names: tuple[str, ...], largest: int) -> MeasuredTable:
+def _build_table(sets: list[dict[str, Any]], source: str, names: ChannelNames, largest: int) -> MeasuredTable:
     """Table of the time responses among data sets."""
     where, sets = f"record '{source}'", [data_set for data_set in sets if data_set.get("func_type") == TIME_RESPONSE]
     if not sets:
@@ -48,6 +52,12 @@ def _build_table(sets: list[dict[str, Any]], source: str, names: tuple[str, ...]
     (step,) = steps
     if not step > 0:
         raise InputError(where, f"states a sampling interval of {step:g} s", "The interval must be positive.")
+    if isinstance(names, EveryChannel):
+        titles = _find_titles(sets)
+        columns = tuple(
+            TableColumn(title, unit=_unit_label(data_set)) for title, data_set in zip(titles, sets, strict=True)
+        )
+        return MeasuredTable(source, values, columns, rate=1 / step)
     columns = tuple(
         _read_stated_facts(data_set) if names else _read_column(data_set, f"{where}, data set {number}")
         for number, data_set in enumerate(sets, 1)
@@ -74,6 +84,18 @@ def _read_stated_facts(data_set: dict[str, Any]) -> TableColumn:
     """Name and unit that a data set states itself, for comparison with the sidecar."""
     name = _match_channel(data_set)
     return TableColumn(name["name"] if name else None, unit=_unit_label(data_set))
+
+
+def _find_titles(sets: list[dict[str, Any]]) -> list[str]:
+    """Names of the channels: the field that differs in all data sets."""
+    matches = [_match_channel(data_set) for data_set in sets]
+    if all(matches):
+        return [match["name"] for match in matches if match]
+    for key in TITLE_FIELDS:
+        titles = [str(data_set.get(key, "")).strip() for data_set in sets]
+        if len(set(titles)) == len(titles) and not {"", "NONE"} & {title.upper() for title in titles}:
+            return titles
+    return [f"set {number}" for number in range(1, len(sets) + 1)]
 
 
 def _read_column(data_set: dict[str, Any], where: str) -> TableColumn:

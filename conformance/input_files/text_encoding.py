@@ -1,0 +1,59 @@
+"""Encoding of text files from spreadsheets and data loggers."""
+
+import codecs
+from collections.abc import Iterator
+from typing import BinaryIO
+
+from pantocheck.conformance.input_files.input_error import InputError
+
+_CHUNK = 2**20  # [bytes]
+
+
+def find_encoding(file: BinaryIO, where: str) -> str:
+    """Find the encoding of a text file: UTF-16 with a byte order mark, UTF-8, or else Windows-1252.
+
+    Western single-byte encodings differ in letters with accents only, never in digits. A wrong one makes the name of a
+    column unknown, but changes no number.
+
+    Parameters
+    ----------
+    file : BinaryIO
+        Open file; it is at its start afterwards.
+    where : str
+        Name of the file in messages.
+
+    Returns
+    -------
+    str
+        Name of the encoding for Python; a byte order mark is left out of the text.
+
+    Raises
+    ------
+    InputError
+        The file is not text in one of these encodings.
+    """
+    start = file.read(2)
+    file.seek(0)
+    marked = start in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+    candidates = ["utf-16"] if marked else ["utf-8-sig", "cp1252"]
+    found = next((name for name in candidates if _decodes(file, name)), None)
+    if found is None:
+        raise InputError(
+            where, "is not text", "Export a text file (UTF-8), or state the encoding in the sidecar: [table] encoding."
+        )
+    return found
+
+
+def _decodes(file: BinaryIO, encoding: str) -> bool:
+    """Whether the whole file is text in an encoding; characters of code 0 belong to binary files."""
+    decoder = codecs.getincrementaldecoder(encoding)()
+    try:
+        return not any("\0" in decoder.decode(chunk) for chunk in _read_chunks(file)) and not decoder.decode(b"", True)
+    except UnicodeError:
+        return False
+    finally:
+        file.seek(0)
+
+
+def _read_chunks(file: BinaryIO) -> Iterator[bytes]:
+    return iter(lambda: file.read(_CHUNK), b"")
