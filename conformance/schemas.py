@@ -22,6 +22,9 @@ from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.cases.profile_file import Profile
 from pantocheck.conformance.comparison.drop_comparison_format import DropComparison
 from pantocheck.conformance.comparison.drop_limits import DropLimits
+from pantocheck.conformance.comparison.response_comparison_format import ResponseComparison
+from pantocheck.conformance.comparison.response_limits import ResponseLimits
+from pantocheck.conformance.comparison.response_sidecar import ResponseSidecar
 from pantocheck.conformance.comparison.run_comparison_format import RunComparison
 from pantocheck.conformance.comparison.static_comparison_format import StaticComparison
 from pantocheck.conformance.comparison.static_sidecar import StaticSidecar
@@ -49,7 +52,9 @@ READ_FORMATS: dict[str, type[BaseModel]] = {
     "record": RecordSidecar,
     "mass-drop": MassDropSidecar,
     "static": StaticSidecar,
+    "response": ResponseSidecar,
     "drop-limits": DropLimits,
+    "response-limits": ResponseLimits,
     "summary": RecordSummary,
     "profile": Profile,
     "converged": ConvergedFile,
@@ -67,6 +72,7 @@ WRITTEN_FORMATS: dict[str, type[BaseModel]] = {
     "static-comparison": StaticComparison,
     "campaign-results": CampaignResults,
     "drop-comparison": DropComparison,
+    "response-comparison": ResponseComparison,
 }
 """JSON files that the suite writes."""
 

@@ -27,6 +27,7 @@ COMMANDS = {
     "import-line": "Write a line file from tables of its supports and droppers.",
     "export-line": "Write the supports and droppers of a line as tables for a spreadsheet.",
     "compare-statics": "Compare elasticities and contact wire heights measured along a line with its model.",
+    "compare-response": "Compare frequency responses measured at a pantograph head with its model.",
     "verify": "Check that the verdict of a certificate follows from its numbers.",
     "schema": "Print or write the JSON Schema of a file format, for editors and validators.",
     "self-test": "Test the suite with faulty systems: each fault must be detected.",

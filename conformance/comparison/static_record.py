@@ -14,6 +14,7 @@ from pantocheck.conformance.input_files.input_error import InputError, join_erro
 from pantocheck.conformance.input_files.measured_table import MeasuredTable
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.table_formats import CSV, HDF5, read_tables
+from pantocheck.conformance.input_files.table_rows import MOST_NAMED_ROWS, name_rows
 from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.input_files.units import convert_key, suggest_key
 from pantocheck.conformance.records.record_reading import locate_table, record_digest
@@ -30,9 +31,6 @@ USUAL_COLUMNS = ["position_m", "elasticity_mm_N", "contact_wire_height_m"]
 
 LARGEST_TABLE = 300_000
 """Largest number of values in a table: a position every 0.5 m along 40 km, with both values."""
-
-MOST_NAMED_ROWS = 8
-"""Largest number of rows that a message names."""
 
 
 @dataclass(frozen=True)
@@ -168,18 +166,18 @@ def _find_row_problems(where: str, position: RealArray, values: dict[StaticValue
     """Missing positions, infinite values, and elasticities that are not positive."""
     if (missing := np.flatnonzero(~np.isfinite(position))).size:
         yield InputError(
-            f"{where}, {_name_rows(missing + 1)}", "the position is missing", "Give the position of each row."
+            f"{where}, {name_rows(missing + 1)}", "the position is missing", "Give the position of each row."
         )
     for name, measured in values.items():
         if np.isnan(measured).all():
             yield InputError(f"{where}, {_in_words(name)}", "the column holds no value", "Remove the column.")
         if (infinite := np.flatnonzero(np.isinf(measured))).size:
             yield InputError(
-                f"{where}, {_name_rows(infinite + 1)}", f"the {_in_words(name)} is infinite", "Write nan for no value."
+                f"{where}, {name_rows(infinite + 1)}", f"the {_in_words(name)} is infinite", "Write nan for no value."
             )
     if (wrong := np.flatnonzero(values.get("elasticity", np.ones(1)) <= 0)).size:
         yield InputError(
-            f"{where}, {_name_rows(wrong + 1)}",
+            f"{where}, {name_rows(wrong + 1)}",
             "the elasticity is not positive",
             "A force lifts the wire: correct the value, or write nan for no value.",
         )
@@ -217,18 +215,11 @@ def _find_line_problems(path: Path, record: StaticRecord, geometry: Geometry) ->
     if outside.size:
         positions = ", ".join(f"{x:g} m" for x in record.position[outside][:MOST_NAMED_ROWS])
         yield InputError(
-            f"record '{record.source}', {_name_rows(record.row[outside])}",
+            f"record '{record.source}', {name_rows(record.row[outside])}",
             f"the position is not on the line: {positions} from its start",
             f"The line ends at {geometry.length:g} m. If the table counts otherwise, give line_start_m and "
             "positions in the sidecar.",
         )
-
-
-def _name_rows(rows: IntegerArray) -> str:
-    """Rows by number; the first ones of many."""
-    names = ", ".join(map(str, rows[:MOST_NAMED_ROWS]))
-    further = rows.size - MOST_NAMED_ROWS
-    return f"row{'s' if rows.size > 1 else ''} {names}" + (f" and {further} more" if further > 0 else "")
 
 
 def _in_words(name: str) -> str:

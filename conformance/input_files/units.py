@@ -67,6 +67,12 @@ UNIT_FAMILIES = (
     _ACCELERATION,
     UnitFamily("Times are given in seconds", {"s": 1.0, "ms": 1e-3}),
     UnitFamily("Frequencies are given in hertz", {"Hz": 1.0, "kHz": 1e3}),
+    UnitFamily("Mobilities are given in metres per second per newton", {"m/s/N": 1.0, "mm/s/N": 1e-3, "m/s/kN": 1e-3}),
+    UnitFamily(
+        "Accelerances are given in metres per second squared per newton",
+        {"m/s2/N": 1.0, "mm/s2/N": 1e-3, "g/N": STANDARD_GRAVITY},
+    ),
+    UnitFamily("Phases are given in degrees", {"deg": 1.0, "rad": math.degrees(1.0)}),
 )
 
 MOTION_UNITS: dict[MotionQuantity, dict[str, float]] = {

@@ -11,6 +11,8 @@ from pantocheck.conformance.cases.library import load_case
 from pantocheck.conformance.cases.limits import Limit, LimitsFile
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.pantograph_file import PantographFile
+from pantocheck.conformance.comparison.response_record import read_response
+from pantocheck.conformance.comparison.response_sidecar import RESPONSE_SCHEMA
 from pantocheck.conformance.comparison.static_record import read_static_table
 from pantocheck.conformance.comparison.static_sidecar import STATIC_SCHEMA
 from pantocheck.conformance.grading.validity_warnings import speed_warnings
@@ -163,11 +165,20 @@ def _check_static(path: Path) -> str:
     return f"static record: {record.position.size} positions with {' and '.join(record.values)} in {record.source}"
 
 
+def _check_response(path: Path) -> str:
+    record = read_response(path)
+    low, high = record.frequency[[0, -1]]
+    kind = record.sidecar.kind.replace("_", " ")
+    return f"response record: {kind} at {record.frequency.size} frequencies, {low:g} to {high:g} Hz, in {record.source}"
+
+
 def _check_table(path: Path) -> str:
     sidecar = path.with_suffix(".toml")
     schema = read_toml(sidecar, "sidecar").get("schema") if sidecar.is_file() else None
     if schema == STATIC_SCHEMA:
         return _check_static(sidecar)
+    if schema == RESPONSE_SCHEMA:
+        return _check_response(sidecar)
     if not sidecar.is_file() and path.suffix.lower() in CSV.suffixes and (table := read_line_table(path)) is not None:
         return check_line_table(table)
     return _check_record(sidecar) if schema in RECORD_SCHEMAS else _check_drops(path)
@@ -189,4 +200,5 @@ _CHECKS: dict[str, Callable[[Path], str]] = {
     "record": _check_record,
     "mass-drop": _check_drop_sidecar,
     "static": _check_static,
+    "response": _check_response,
 }

@@ -17,6 +17,10 @@ from pantocheck.conformance.comparison import (
     motion_bands,
     paired_forces,
     release_alignment,
+    response_columns,
+    response_comparison,
+    response_deviation,
+    response_record,
     static_comparison,
     static_criteria,
     static_differences,
@@ -62,6 +66,7 @@ MODULES: list[ModuleType] = [
     verification_limits, bands, filters, limit_text, signals, record, block_bootstrap, force_checks, usable_sections,
     results_part, results_reading, traces, static_comparison, static_criteria, static_differences, static_record,
     drop_comparison, drop_motion, drop_statistics, force_difference, paired_forces, motion_bands, release_alignment,
+    response_columns, response_comparison, response_deviation, response_record,
 ]  # fmt: skip
 BY_FILE = {"/".join(module.__name__.split(".")[2:]) + ".py": module for module in MODULES}
 FOLDERS = ("quantities", "consistency", "grading", "records", "results", "authenticity", "comparison")

@@ -1,0 +1,97 @@
+"""`pantocheck compare-response`: frequency responses measured at a pantograph head beside those of its model."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pantocheck.conformance.cases.pantograph_file import PantographFile
+from pantocheck.conformance.command_line.console import build_table, console, escape_text, format_number, style_verdict
+from pantocheck.conformance.command_line.results_output import EXIT_CODES
+from pantocheck.conformance.comparison.response_comparison import compare_responses
+from pantocheck.conformance.comparison.response_comparison_format import ResponseComparison
+from pantocheck.conformance.comparison.response_deviation import ResponseQuantity
+from pantocheck.conformance.comparison.response_limits import read_response_limits
+from pantocheck.conformance.comparison.response_record import read_response
+from pantocheck.conformance.identification.rounded_model import write_model
+from pantocheck.conformance.input_files.atomic_writing import check_writable
+from pantocheck.conformance.input_files.toml_file import read_model
+from pantocheck.conformance.reports.comparison.response_comparison_page import (
+    RESPONSE_HEADLINES,
+    build_response_comparison,
+    list_response_remarks,
+    name_response_criterion,
+)
+from pantocheck.conformance.reports.formats.report_writers import write_report
+
+PRINTED_DEVIATIONS: tuple[ResponseQuantity, ...] = (
+    "modulus_deviation_pct",
+    "phase_deviation_deg",
+    "complex_deviation_pct",
+)
+
+
+def compare_response_command(
+    responses: Annotated[
+        list[Path],
+        typer.Argument(help="Tables of measured responses, or their sidecars (docs/pantograph-response.md)."),
+    ],
+    pantograph: Annotated[Path, typer.Option(help="Pantograph file.")],
+    out: Annotated[Path, typer.Option(help="Folder for response_comparison.json, .html and .pdf.")],
+    limits: Annotated[Path | None, typer.Option(help="File of limits (docs/pantograph-response.md).")] = None,
+) -> None:
+    """Compare frequency responses measured at a pantograph head with its model.
+
+    A table holds frequency, modulus and phase of one measurement; give one per static force and height. Limits make
+    criteria; without them, the deviations are shown and not graded.
+
+    Example: pantocheck compare-response at-55N.csv at-70N.csv --pantograph my-pantograph.toml --out response
+    """
+    records = [read_response(path) for path in responses]
+    model = read_model(pantograph, PantographFile, "pantograph")
+    graded = None if limits is None else read_response_limits(limits)
+    check_writable(out)
+    output = console()
+    with output.status("comparing"):
+        comparison = compare_responses(records, model, graded)
+        files = _write(comparison, out)
+    output.print(style_verdict(comparison.verdict), escape_text(f" {RESPONSE_HEADLINES[comparison.verdict]}"))
+    _print_deviations(comparison)
+    for path in files:
+        output.print(escape_text(str(path)), soft_wrap=True)
+    raise typer.Exit(EXIT_CODES[comparison.verdict])
+
+
+def _write(comparison: ResponseComparison, folder: Path) -> list[Path]:
+    """Write all files of a comparison; return their paths."""
+    files = [folder / "response_comparison.json"]
+    write_model(files[0], comparison)
+    document = build_response_comparison(comparison.model_dump(mode="json", by_alias=True))
+    for suffix in (".html", ".pdf"):
+        files.append(folder / f"response_comparison{suffix}")
+        write_report(document, files[-1])
+    return files
+
+
+def _print_deviations(comparison: ResponseComparison) -> None:
+    """Print the RMS deviations of every band, the criteria and the warnings."""
+    output = console()
+    numbers = ("modulus %", "phase °", "complex %")
+    table = build_table("response", "band", *numbers, title="RMS deviation of the model", right=numbers)
+    for response in comparison.responses:
+        for band in response.bands:
+            if band.deviations:
+                values = (format_number(band.deviations[key], 3) for key in PRINTED_DEVIATIONS)
+                table.add_row(escape_text(response.name), f"{band.band_Hz[0]:g} to {band.band_Hz[1]:g} Hz", *values)
+    output.print(table)
+    if comparison.criteria:
+        criteria = build_table("criterion", "value", "limit", "verdict", right=("value", "limit"))
+        for item in comparison.criteria:
+            name, verdict = name_response_criterion(item.model_dump(mode="json")), style_verdict(item.verdict)
+            criteria.add_row(escape_text(name), format_number(item.value), format_number(item.upper), verdict)
+        output.print(criteria)
+    for item in comparison.criteria:
+        if item.reason:
+            output.print(escape_text(f"  {name_response_criterion(item.model_dump(mode='json'))}: {item.reason}"))
+    for remark in list_response_remarks(comparison.model_dump(mode="json")):
+        output.print(escape_text(f"warning: {remark}"))

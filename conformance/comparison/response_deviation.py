@@ -1,0 +1,155 @@
+"""Deviation of a modelled frequency response from a measured one, by frequency band.
+
+The deviation at a frequency is e = ln(D_model / D_measured), with the dynamic stiffness D. Its real part is the
+relative deviation of the modulus, its imaginary part that of the phase in radians; |e| joins both. The logarithm gives
+the same size for every kind of response, because the kinds differ by a power of i omega or are inverse to each other. A
+mean over a band weighs each frequency by its share of the logarithmic frequency axis, so that the spacing of the rows
+has no effect.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+
+from pantocheck.conformance.array_types import ComplexArray, RealArray
+from pantocheck.conformance.comparison.response_record import ResponseRecord, ResponseUncertainty
+from pantocheck.conformance.input_files.table_rows import name_rows
+
+ResponseBand = tuple[float, float]
+
+RESPONSE_BANDS: tuple[ResponseBand, ...] = ((0.5, 5.0), (5.0, 20.0), (20.0, 50.0))
+"""Frequency bands [Hz]: the frame on its springs, the head, and the bending of the head and its strips."""
+
+LARGEST_FREQUENCY_RATIO = 1.2
+"""Largest ratio of neighbouring frequencies in a complete band: the half-power width of a mode with a damping ratio of
+0.1, which would be missed with fewer rows."""
+
+ResponseQuantity = Literal[
+    "modulus_deviation_pct",
+    "phase_deviation_deg",
+    "complex_deviation_pct",
+    "largest_modulus_deviation_pct",
+    "largest_phase_deviation_deg",
+]
+"""RMS deviation over a band, or the largest one."""
+
+RESPONSE_QUANTITIES: tuple[ResponseQuantity, ...] = get_args(ResponseQuantity)
+
+
+@dataclass(frozen=True)
+class BandStatistics:
+    """Deviations in one band.
+
+    Parameters
+    ----------
+    rows : int
+        Number of measured values in the band.
+    values : mapping of ResponseQuantity to float
+        Deviations; empty without a measured value.
+    uncertainty : mapping of ResponseQuantity to float
+        Half-widths of their 95 % intervals by the measurement; empty if it states none.
+    largest_at : tuple of float or None
+        Frequencies of the largest deviation of modulus and phase [Hz].
+    beyond_uncertainty : float or None
+        Share of deviations larger than the uncertainty of the measurement [-]; 0.05 with noise alone.
+    missing : str or None
+        Data that a complete band needs and the record does not have.
+    """
+
+    rows: int
+    values: Mapping[ResponseQuantity, float]
+    uncertainty: Mapping[ResponseQuantity, float]
+    largest_at: tuple[float, float] | None
+    beyond_uncertainty: float | None
+    missing: str | None
+
+
+def response_deviation(model: ComplexArray, measured: ComplexArray) -> ComplexArray:
+    """Deviation ln(D_model / D_measured); NaN where the measured value is missing."""
+    deviation = np.full(measured.size, np.nan, dtype=np.complex128)
+    present = np.isfinite(measured)
+    deviation[present] = np.log(model[present] / measured[present])
+    return deviation
+
+
+def summarise_band(record: ResponseRecord, deviation: ComplexArray, band: ResponseBand) -> BandStatistics:
+    """Summarise the deviations in a band.
+
+    Parameters
+    ----------
+    record : ResponseRecord
+        Measured response.
+    deviation : (n,) ndarray
+        Deviation of each row, from `response_deviation`; NaN: no measured value.
+    band : ResponseBand
+        Edges of the band [Hz], both included.
+
+    Returns
+    -------
+    BandStatistics
+        Deviations, their uncertainty, and missing data.
+    """
+    inside = (record.frequency >= band[0]) & (record.frequency <= band[1])
+    present = inside & np.isfinite(deviation)
+    missing = _find_missing_data(record, band, inside, present)
+    if not present.any():
+        return BandStatistics(0, {}, {}, None, None, missing)
+    frequency, modulus, phase = record.frequency[present], deviation[present].real, deviation[present].imag
+    weights = band_weights(frequency, band)
+    errors = _select_rows(record.uncertainty, present)
+    return BandStatistics(
+        rows=int(present.sum()),
+        values=_deviation_norms(modulus, phase, weights),
+        # Both norms obey the triangle inequality: an error of the measurement changes them by its own norm at most.
+        uncertainty={} if errors is None else _deviation_norms(errors.modulus, errors.phase, weights),
+        largest_at=tuple(float(frequency[np.argmax(np.abs(part))]) for part in (modulus, phase)),  # type: ignore[arg-type]
+        beyond_uncertainty=None if errors is None else _share_beyond(modulus, phase, errors),
+        missing=missing,
+    )
+
+
+def band_weights(frequency: RealArray, band: ResponseBand) -> RealArray:
+    """Share of the logarithmic axis of a band that is nearest to each frequency, (n,) ndarray with the sum 1."""
+    log = np.log(frequency)
+    edges = np.concatenate(([np.log(band[0])], (log[1:] + log[:-1]) / 2, [np.log(band[1])]))
+    return np.asarray(np.diff(edges) / (edges[-1] - edges[0]))
+
+
+def _deviation_norms(modulus: RealArray, phase: RealArray, weights: RealArray) -> dict[ResponseQuantity, float]:
+    """RMS over the band and largest value of the deviations [%, degrees]."""
+    return {
+        "modulus_deviation_pct": 100 * float(np.sqrt(weights @ modulus**2)),
+        "phase_deviation_deg": float(np.degrees(np.sqrt(weights @ phase**2))),
+        "complex_deviation_pct": 100 * float(np.sqrt(weights @ (modulus**2 + phase**2))),
+        "largest_modulus_deviation_pct": 100 * float(np.abs(modulus).max()),
+        "largest_phase_deviation_deg": float(np.degrees(np.abs(phase).max())),
+    }
+
+
+def _select_rows(uncertainty: ResponseUncertainty | None, rows: np.ndarray) -> ResponseUncertainty | None:
+    return None if uncertainty is None else ResponseUncertainty(uncertainty.modulus[rows], uncertainty.phase[rows])
+
+
+def _share_beyond(modulus: RealArray, phase: RealArray, errors: ResponseUncertainty) -> float:
+    """Share of the deviations of modulus and phase that exceed their uncertainty."""
+    beyond = np.concatenate((np.abs(modulus) > errors.modulus, np.abs(phase) > errors.phase))
+    return float(beyond.mean())
+
+
+def _find_missing_data(
+    record: ResponseRecord, band: ResponseBand, inside: np.ndarray, present: np.ndarray
+) -> str | None:
+    """Data that a complete band needs and the record does not have; None if it is complete."""
+    if (lost := np.sort(record.row[inside & ~present])).size:
+        return f"no value in {name_rows(lost)}"
+    steps = np.concatenate(([band[0]], record.frequency[present], [band[1]]))
+    widest = int(np.argmax(steps[1:] / steps[:-1]))
+    low, high = steps[widest], steps[widest + 1]
+    if high / low > LARGEST_FREQUENCY_RATIO:
+        return (
+            f"no measured value between {low:.4g} and {high:.4g} Hz; neighbouring frequencies may differ by the factor "
+            f"{LARGEST_FREQUENCY_RATIO:g}"
+        )
+    return None

@@ -1,0 +1,101 @@
+"""Figure of a frequency response at a pantograph head: measurement, model, and their deviation by band."""
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, MultipleLocator, NullFormatter, StrMethodFormatter
+
+from pantocheck.conformance.reports.figures.figure_style import (
+    FULL,
+    GREY,
+    INK,
+    LIMIT_LINE,
+    SHADES,
+    add_legend,
+    label_decades,
+    render_svg,
+)
+
+FREQUENCY_TICKS = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200)
+
+
+@render_svg
+def draw_response(response: dict[str, Any], limits: list[dict[str, Any]]) -> Figure:
+    """Modulus and phase of measurement and model over the frequency; below, the deviation of the modulus and by band.
+
+    Parameters
+    ----------
+    response : dict
+        One entry of `responses` in response_comparison.json.
+    limits : list of dict
+        Its criteria of the complex deviation.
+    """
+    figure = Figure(figsize=(FULL, 4.6))
+    modulus, phase, deviation = figure.subplots(3, 1, sharex=True, height_ratios=(3, 2, 2))
+    measured, model = response["measured"], response["model"]
+    frequency = measured["frequency_Hz"]
+    for axes, key in ((modulus, "modulus"), (phase, "phase_deg")):
+        axes.plot(model["frequency_Hz"], model[key], color=SHADES[1], linewidth=1.1, label="model")
+        axes.errorbar(
+            frequency, measured[key], _error_bar(response, key), fmt="o", color=INK, markersize=2.2, elinewidth=0.6,
+            label="measured",
+        )  # fmt: skip
+    _draw_deviations(deviation, response, limits)
+    _label_moduli(modulus)
+    modulus.set_ylabel(f"{response['kind'].replace('_', ' ')} [{response['unit']}]")
+    phase.set_ylabel("phase [°]")
+    phase.yaxis.set_major_locator(MultipleLocator(90))
+    _label_frequencies(deviation, model["frequency_Hz"])
+    add_legend(modulus)
+    return figure
+
+
+def _error_bar(response: dict[str, Any], key: str) -> Any:
+    """Half-widths of the error bars; None where the record states no uncertainty."""
+    if not response["modulus_uncertainty_pct"]:
+        return None
+    if key == "phase_deg":
+        return response["phase_uncertainty_deg"]
+    return np.array(response["measured"]["modulus"]) * np.array(response["modulus_uncertainty_pct"]) / 100
+
+
+def _draw_deviations(axes: Axes, response: dict[str, Any], limits: list[dict[str, Any]]) -> None:
+    """Deviation of the modulus at each row, complex deviation of each band as a step, limits as dashed lines."""
+    rows = response["measured"]["frequency_Hz"], response["modulus_deviation_pct"]
+    axes.axhline(0.0, color=GREY, linewidth=0.6)
+    axes.plot(*rows, "o", color=GREY, markersize=1.8, label="modulus, each row")
+    label = "complex, RMS of band"
+    for band in response["bands"]:
+        if band["deviations"]:
+            value = band["deviations"]["complex_deviation_pct"]
+            axes.plot(band["band_Hz"], [value, value], color=INK, linewidth=1.6, label=label)
+            label = ""
+    label = "limit of complex"
+    for limit in limits:
+        axes.plot(limit["band_Hz"], [limit["upper"]] * 2, color=INK, linewidth=0.9, linestyle=LIMIT_LINE, label=label)
+        label = ""
+    axes.set(ylabel="deviation [%]", xlabel="frequency [Hz]")
+    add_legend(axes)
+
+
+def _label_moduli(axes: Axes) -> None:
+    """A logarithmic modulus axis: plain numbers over two decades or less, otherwise powers of ten."""
+    axes.set_yscale("log")
+    low, high = axes.get_ylim()
+    if high / low > 100:
+        label_decades(axes.yaxis)
+        return
+    axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.yaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    axes.yaxis.set_minor_formatter(NullFormatter())
+
+
+def _label_frequencies(axes: Axes, frequency: list[float]) -> None:
+    """A logarithmic frequency axis with plain numbers."""
+    axes.set_xscale("log")
+    axes.set_xlim(frequency[0], frequency[-1])
+    axes.set_xticks([tick for tick in FREQUENCY_TICKS if frequency[0] <= tick <= frequency[-1]])
+    axes.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())

@@ -1,0 +1,52 @@
+"""Page on measured responses: sidecar, limits and units follow the formats, the options are those of the command."""
+
+import re
+import tomllib
+from pathlib import Path
+
+from jsonschema import validate
+from typer.testing import CliRunner
+
+from pantocheck.conformance.command_line.app import app
+from pantocheck.conformance.comparison.response_columns import list_response_columns
+from pantocheck.conformance.comparison.response_kinds import RESPONSE_FORMS
+from pantocheck.conformance.comparison.response_limits import ResponseLimits
+from pantocheck.conformance.comparison.response_record import read_response
+from pantocheck.conformance.comparison.response_sidecar import ResponseSidecar
+from pantocheck.conformance.input_files.units import convert_key
+from pantocheck.conformance.schemas import build_schema
+
+TEXT = (Path(__file__).parents[2] / "docs" / "pantograph-response.md").read_text(encoding="utf-8")
+SIDECAR, COLUMNS, LIMITS = re.findall(r"```toml\n(.*?)```", TEXT, re.DOTALL)
+
+
+def test_sidecar_and_table_of_the_page_can_be_read(tmp_path: Path) -> None:
+    table = re.search(r"```\n(frequency_Hz;.*?)```", TEXT, re.DOTALL)
+    assert table is not None
+    (tmp_path / "at-70N.csv").write_text(table[1], encoding="utf-8")
+    (tmp_path / "at-70N.toml").write_text(SIDECAR.replace("rows = 120", "rows = 3"), encoding="utf-8")
+    assert read_response(tmp_path / "at-70N.csv").frequency.tolist() == [0.5, 0.6, 0.7]
+    tables = tomllib.loads(SIDECAR + COLUMNS)
+    validate(tables, build_schema("response"))
+    sidecar = ResponseSidecar.model_validate(tables)
+    assert set(sidecar.columns) <= set(list_response_columns(sidecar.kind))
+
+
+def test_limits_of_the_page_follow_their_format() -> None:
+    tables = tomllib.loads(LIMITS)
+    validate(tables, build_schema("response-limits"))
+    assert ResponseLimits.model_validate(tables).limit[0].heights_m == (0.6, 1.2)
+
+
+def test_units_of_the_page_are_those_of_each_kind() -> None:
+    rows = re.findall(r"^\| `(\w+)` \| [\w ]+ over \w+ \| (.*) \|$", TEXT, re.MULTILINE)
+    assert {kind for kind, _ in rows} == set(RESPONSE_FORMS)
+    for kind, units in rows:
+        for unit in re.findall(r"`_(\w+)`", units):
+            assert convert_key(f"modulus_{unit}", list_response_columns(kind)) is not None, (kind, unit)
+
+
+def test_options_of_the_page_are_those_of_the_command() -> None:
+    options = set(re.findall(r"(--[a-z-]+)", re.search(r"```sh\npantocheck compare-response(.*?)```", TEXT, re.S)[1]))
+    help_text = CliRunner().invoke(app, ["compare-response", "--help"], env={"COLUMNS": "200"}).output
+    assert options == set(re.findall(r"(--[a-z-]+)", help_text)) - {"--help"}
