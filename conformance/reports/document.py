@@ -32,6 +32,14 @@ class Link:
 
 
 @dataclass(frozen=True)
+class PageLink:
+    """A link to another page of the same site; the address is relative and made by this project."""
+
+    text: str
+    address: str
+
+
+@dataclass(frozen=True)
 class VerdictMark:
     """A verdict with its symbol."""
 
@@ -53,7 +61,7 @@ class Drawing:
     alternative: str
 
 
-Inline = str | Code | Remark | Link | VerdictMark | TrustMark | Drawing
+Inline = str | Code | Remark | Link | PageLink | VerdictMark | TrustMark | Drawing
 RichText = Inline | tuple[Inline, ...]
 
 

@@ -1,0 +1,86 @@
+"""`pantocheck site`: a static site of many results."""
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pantocheck.conformance.authenticity.recomputation import find_discrepancies
+from pantocheck.conformance.command_line.console import console, escape_text
+from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.reports.formats.report_writers import FILES, write_pages, write_report
+from pantocheck.conformance.reports.site.case_page import build_case_page
+from pantocheck.conformance.reports.site.published_results import PublishedResults, name_file, publish_results
+from pantocheck.conformance.reports.site.site_index import build_site_index
+from pantocheck.conformance.results.results_format import Results
+from pantocheck.conformance.results.results_reading import read_results
+
+MOST_RESULTS = 2000
+"""Largest number of results on a site."""
+
+
+def site_command(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that holds results.json files at any depth.")],
+    out: Annotated[Path, typer.Option(help="Folder for the site; open its index.html.")] = Path("site"),
+    title: Annotated[str, typer.Option(help="Title of the first page.")] = "Conformance results",
+) -> None:
+    """Write a static site from many results: systems against cases, and versions over time.
+
+    Every verdict leads to its certificate, which is made from results.json again. Results that contradict themselves
+    are shown with the verdict `error`.
+
+    Example: pantocheck site results --out site
+    """
+    paths = list(_find_results(folder, out))
+    if not paths:
+        raise InputError(f"folder '{folder}'", "no results.json in it", "Write results with pantocheck run --out DIR.")
+    check_writable(out)
+    output = console()
+    contents = []
+    for path in paths:
+        with output.status(escape_text(str(path))):
+            results = read_results(path).to_dict()
+            contents.append((results, tuple(find_discrepancies(results))))
+    published = publish_results(contents)
+    pages = _name_case_pages(published)
+    for run in published:
+        with output.status(escape_text(run.folder)):
+            _write_run(run, out)
+    for case, page in pages.items():
+        write_report(build_case_page(case, published), out / page)
+    write_report(build_site_index(title, published, pages), out / "index.html")
+    output.print(escape_text(f"{out / 'index.html'}: {len(published)} runs, {len(pages)} cases"), soft_wrap=True)
+    for run in published:
+        if run.discrepancies:
+            output.print(escape_text(f"{run.folder}: {run.discrepancies[0]}"), soft_wrap=True)
+
+
+def _find_results(folder: Path, out: Path) -> Iterator[Path]:
+    """Regular files named results.json below a folder, by name; links and the site itself are left out."""
+    if not folder.is_dir():
+        raise InputError(f"folder '{folder}'", "not a folder", "Give the folder that holds the results.")
+    site, count = out.resolve(), 0
+    for place, folders, names in os.walk(folder):
+        folders[:] = sorted(name for name in folders if Path(place, name).resolve() != site)
+        path = Path(place, FILES["json"])
+        if FILES["json"] in names and path.is_file() and not path.is_symlink():
+            count += 1
+            if count > MOST_RESULTS:
+                found = f"more than {MOST_RESULTS} results"
+                raise InputError(f"folder '{folder}'", found, "Give a folder with fewer results.")
+            yield path
+
+
+def _name_case_pages(published: list[PublishedResults]) -> dict[str, str]:
+    """Page of each case, by id; a number keeps names apart that differ in signs only."""
+    ids = sorted({case["id"] for run in published for case in run.results["cases"]})
+    return {case: f"cases/{number:04d}-{name_file(case)}.html" for number, case in enumerate(ids, 1)}
+
+
+def _write_run(run: PublishedResults, out: Path) -> None:
+    """Write the certificate and the results of a run."""
+    write_pages(run.results, out / run.folder, ("html",))
+    write_atomically(out / run.folder / FILES["json"], Results.model_validate(run.results).to_json())

@@ -1,0 +1,1 @@
+"""Static site of results: systems against cases, and versions over time."""

@@ -1,0 +1,100 @@
+"""First page of a site: systems against cases, and all runs."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from pantocheck.conformance.reports import document as doc
+from pantocheck.conformance.reports.page_text import clean_text
+from pantocheck.conformance.reports.site.published_results import PublishedResults
+
+SITE_STATEMENT = (
+    "Every verdict is self-declared, in the style of EN 50318. The site repeats results that were given to it; it does "
+    "not show who made them. A verdict belongs to the version of the suite and of the limits that its certificate "
+    "states."
+)
+CONTRADICTION = "contradicts itself: {count} discrepancies, first: {first}"
+
+
+def build_site_index(title: str, published: Sequence[PublishedResults], pages: Mapping[str, str]) -> doc.Document:
+    """First page of a site.
+
+    Parameters
+    ----------
+    title : str
+        Title of the site.
+    published : sequence of PublishedResults
+        Results from the oldest to the latest.
+    pages : mapping of str to str
+        Page of each case by its id.
+    """
+    systems = list(dict.fromkeys(run.system for run in published))
+    headline = f"{_count(len(systems), 'system')}, {_count(len(pages), 'case')}, {_count(len(published), 'run')}."
+    blocks: list[doc.Block] = [doc.Paragraph(SITE_STATEMENT)]
+    warnings = tuple(
+        f"{name_run(run)} {CONTRADICTION.format(count=len(run.discrepancies), first=clean_text(run.discrepancies[0]))}"
+        for run in published
+        if run.discrepancies
+    )
+    if warnings:
+        blocks.append(doc.WarningBox(warnings))
+    blocks.append(doc.Section("Systems and cases", (_build_matrix(systems, published, pages),)))
+    blocks.append(doc.Section("Runs", (_build_run_table(published),)))
+    return doc.Document(title, doc.PlainHeader(clean_text(title), headline), tuple(blocks))
+
+
+def name_run(run: PublishedResults) -> str:
+    """Name of a run in a sentence: system, version and date."""
+    return clean_text(" ".join(filter(None, (run.system, run.version, f"of {run.date[:10]}" if run.date else ""))))
+
+
+def find_latest_runs(
+    published: Sequence[PublishedResults],
+) -> dict[tuple[str, str], tuple[PublishedResults, dict[str, Any]]]:
+    """Latest run of each system and case, with its result."""
+    return {(run.system, case["id"]): (run, case) for run in published for case in run.results["cases"]}
+
+
+def _build_matrix(systems: Sequence[str], published: Sequence[PublishedResults], pages: Mapping[str, str]) -> doc.Table:
+    latest = find_latest_runs(published)
+    rows = tuple(
+        (doc.PageLink(clean_text(case), page), *(_describe_cell(latest.get((system, case))) for system in systems))
+        for case, page in pages.items()
+    )
+    columns = (doc.Column("Case"), *(doc.Column(clean_text(system), share=1) for system in systems))
+    return doc.Table(columns, rows, "Verdict of the latest run of each system; the version leads to its certificate")
+
+
+def _describe_cell(found: tuple[PublishedResults, dict[str, Any]] | None) -> doc.RichText:
+    if found is None:
+        return "–"
+    run, case = found
+    copy: tuple[doc.Inline, ...] = (doc.Remark("modified copy"),) if case["library"] == "modified" else ()
+    link = doc.PageLink(clean_text(run.version) or "certificate", f"{run.folder}/certificate.html")
+    return (doc.VerdictMark(run.verdict(case["verdict"])), " ", link, *copy)
+
+
+def _build_run_table(published: Sequence[PublishedResults]) -> doc.Table:
+    columns = (
+        *map(doc.Column, ("Date", "System", "Version", "Suite", "Verdict")),
+        doc.Column("Cases with the verdict pass", share=1),
+        doc.Column("Certificate"),
+    )
+    rows = tuple(_describe_run(run) for run in reversed(published))
+    return doc.Table(columns, rows, "All runs, the latest first")
+
+
+def _describe_run(run: PublishedResults) -> tuple[doc.RichText, ...]:
+    cases = run.results["cases"]
+    passed = sum(run.verdict(case["verdict"]) == "pass" for case in cases)
+    texts = (run.date.replace("T", " ").rstrip("Z") or "not stated", run.system, run.version)
+    return (
+        *map(clean_text, texts),
+        clean_text(run.results["suite"]["version"]),
+        doc.VerdictMark(run.verdict(run.results["verdict"])),
+        f"{passed} of {len(cases)}",
+        doc.PageLink("certificate", f"{run.folder}/certificate.html"),
+    )
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
