@@ -1,0 +1,32 @@
+"""Files for contributors and citations agree with the project."""
+
+import tomllib
+from pathlib import Path
+from typing import get_args
+
+import pytest
+import yaml
+
+from pantocheck.conformance.input_files.trust import Trust
+
+ROOT = Path(__file__).parents[2]
+FORMS = sorted(set((ROOT / ".github" / "ISSUE_TEMPLATE").glob("*.yml")) - {ROOT / ".github/ISSUE_TEMPLATE/config.yml"})
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+
+
+def test_citation_has_version_and_licence_of_the_project() -> None:
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    assert (citation["version"], citation["license"]) == (PROJECT["version"], PROJECT["license"])
+    assert {"cff-version", "message", "title", "authors"} <= citation.keys()
+
+
+@pytest.mark.parametrize("path", FORMS, ids=lambda p: p.name)
+def test_issue_template_asks_for_evidence(path: Path) -> None:
+    form = yaml.safe_load(path.read_text(encoding="utf-8"))
+    assert {"name", "description", "body"} <= form.keys()
+    assert any(part.get("validations", {}).get("required") for part in form["body"])
+
+
+def test_trust_levels_of_the_guide_are_those_of_the_suite() -> None:
+    guide = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    assert all(f"| `{level}` |" in guide for level in get_args(Trust))
