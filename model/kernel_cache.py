@@ -16,8 +16,7 @@ def provide_kernel_cache() -> None:
     Cached kernels are pickles, so another user must not write them: the folder has a random name and the mode 0700.
     Processes of a pool inherit it. Without a folder, numba refuses to compile.
     """
-    home = Path(os.environ.get("XDG_CACHE_HOME") or Path(os.path.expanduser("~")) / ".cache")
-    if VARIABLE in os.environ or any(_is_writable(folder) for folder in (Path(__file__).parent / "__pycache__", home)):
+    if find_kernel_cache() is not None:
         return
     folder = tempfile.mkdtemp(prefix="pantocheck-kernels-")
     atexit.register(_remove, folder, os.getpid())
@@ -29,6 +28,14 @@ def provide_kernel_cache() -> None:
         f"  written. Set {VARIABLE} to a folder of yours to keep them.",
         file=sys.stderr,
     )
+
+
+def find_kernel_cache() -> Path | None:
+    """Folder in which numba keeps the kernels: that of the user, the installation, or the home; None: none of them."""
+    if VARIABLE in os.environ:
+        return Path(os.environ[VARIABLE])
+    home = Path(os.environ.get("XDG_CACHE_HOME") or Path(os.path.expanduser("~")) / ".cache")
+    return next(filter(_is_writable, (Path(__file__).parent / "__pycache__", home)), None)
 
 
 def _is_writable(folder: Path) -> bool:

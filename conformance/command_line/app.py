@@ -30,6 +30,7 @@ COMMANDS = {
     "compare-response": "Compare frequency responses measured at a pantograph head with its model.",
     "verify": "Check that the verdict of a certificate follows from its numbers.",
     "site": "Write a static site from many results: systems against cases, and versions over time.",
+    "doctor": "Show versions, extras, caches and folders of this installation.",
     "schema": "Print or write the JSON Schema of a file format, for editors and validators.",
     "self-test": "Test the suite with faulty systems: each fault must be detected.",
 }
