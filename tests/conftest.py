@@ -17,4 +17,5 @@ pytest_plugins = [
     "helpers.converged_fixtures",
     "helpers.example_results",
     "helpers.record_fixtures",
+    "helpers.signer_fixtures",
 ]

@@ -28,6 +28,7 @@ COMMANDS = {
     "export-line": "Write the supports and droppers of a line as tables for a spreadsheet.",
     "compare-statics": "Compare elasticities and contact wire heights measured along a line with its model.",
     "compare-response": "Compare frequency responses measured at a pantograph head with its model.",
+    "sign": "Sign a certificate or results.",
     "verify": "Check that the verdict of a certificate follows from its numbers.",
     "site": "Write a static site from many results: systems against cases, and versions over time.",
     "doctor": "Show versions, extras, caches and folders of this installation.",

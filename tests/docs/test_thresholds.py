@@ -8,6 +8,13 @@ from types import ModuleType
 import pytest
 
 from pantocheck.conformance.authenticity import attachment, reported_numbers
+from pantocheck.conformance.authenticity.signatures import (
+    certificates,
+    cms_signing,
+    detached_file,
+    key_files,
+    timestamp_client,
+)
 from pantocheck.conformance.cases import start_and_section
 from pantocheck.conformance.comparison import (
     drop_comparison,
@@ -67,6 +74,7 @@ MODULES: list[ModuleType] = [
     results_part, results_reading, traces, static_comparison, static_criteria, static_differences, static_record,
     drop_comparison, drop_motion, drop_statistics, force_difference, paired_forces, motion_bands, release_alignment,
     response_columns, response_comparison, response_deviation, response_record,
+    certificates, cms_signing, detached_file, key_files, timestamp_client,
 ]  # fmt: skip
 BY_FILE = {"/".join(module.__name__.split(".")[2:]) + ".py": module for module in MODULES}
 FOLDERS = ("quantities", "consistency", "grading", "records", "results", "authenticity", "comparison")

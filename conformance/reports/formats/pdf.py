@@ -51,7 +51,7 @@ def render_pdf(document: Document) -> bytes:
         files[NAME] = encode_attachment(document.results)
         options = {"pdf_standards": "a-3a", "timestamp": seconds}
     files["main.typ"] = files.pop("page.typ")
-    files["page.json"] = json.dumps(change_texts(data, _replace_missing_glyphs)).encode("ascii")
+    files["page.json"] = json.dumps(change_texts(data, replace_missing_glyphs)).encode("ascii")
     return bytes(typst.compile(files, ignore_system_fonts=True, font_paths=[str(FONTS)], **options))
 
 
@@ -69,7 +69,7 @@ def _glyphs() -> frozenset[int]:
     return frozenset(FT2Font(str(FONTS / "DejaVuSans.ttf")).get_charmap())
 
 
-def _replace_missing_glyphs(text: str) -> str:
+def replace_missing_glyphs(text: str) -> str:
     """A text with every character that has no glyph replaced by U+FFFD."""
     if text.isascii():  # most texts, and all figures
         return text

@@ -1,0 +1,132 @@
+"""Signatures in PDF (PAdES, ETSI EN 319 142-1): an incremental update, so that earlier bytes stay as they are."""
+
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
+from datetime import UTC, datetime
+from io import BytesIO
+from typing import Any
+
+from pantocheck.conformance.authenticity.signatures.certificates import format_moment
+from pantocheck.conformance.authenticity.signatures.cms_signing import (
+    Signer,
+    build_role_attributes,
+    build_signer,
+    select_digest,
+)
+from pantocheck.conformance.authenticity.signatures.signature_box import BOXES, find_place
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.reports.formats.signature_box_page import render_signature_box
+from pantocheck.conformance.reports.page_text import clean_text
+
+
+def sign_pdf(content: bytes, signer: Signer, place: str | None, where: str) -> bytes:
+    """Add a signature to a PDF.
+
+    Parameters
+    ----------
+    content : bytes
+        The PDF.
+    signer : Signer
+        The signer.
+    place : str or None
+        Place of a visible signature on page 1, one of `BOXES`; None for an invisible one.
+    where : str
+        Name of the file in messages.
+
+    Returns
+    -------
+    bytes
+        The PDF, unchanged at its beginning, with the signature as an incremental update.
+
+    Raises
+    ------
+    InputError
+        The PDF is damaged or encrypted, the place is occupied, or the time-stamp server gave no time stamp.
+    """
+    from pyhanko.sign.fields import SigFieldSpec, SigSeedSubFilter, enumerate_sig_fields
+    from pyhanko.sign.signers import PdfSignatureMetadata, PdfSigner
+
+    with _convert_damage(where):
+        writer = _open_writer(content, where)
+        fields = {str(name): field for name, _, field in enumerate_sig_fields(writer.prev)}
+        name = _choose_field_name(signer.role, fields)
+        if place is not None and place in map(find_place, fields.values()):
+            raise InputError(where, f"a signature is already at {place}", f"Choose another place: {', '.join(BOXES)}.")
+        box = {} if place is None else {"box": BOXES[place]}
+        metadata = PdfSignatureMetadata(
+            field_name=name,
+            md_algorithm=select_digest(signer.key),
+            reason=signer.role,
+            subfilter=SigSeedSubFilter.PADES,
+            cades_signed_attr_spec=build_role_attributes(signer.role),
+        )
+        pdf_signer = PdfSigner(
+            metadata,
+            build_signer(signer.key),
+            timestamper=signer.timestamp_client,
+            stamp_style=None if place is None else _build_stamp(signer, BOXES[place]),
+            new_field_spec=SigFieldSpec(name, readable_field_name=f"Signature of the {signer.role}", **box),
+        )
+        return bytes(pdf_signer.sign_pdf(writer).getvalue())
+
+
+def _open_writer(content: bytes, where: str) -> Any:
+    """Writer of an incremental update that leaves the metadata as they are: XMP and PDF/A identification must agree."""
+    from pyhanko.pdf_utils.incremental_writer import IncrementalPdfFileWriter
+
+    class Writer(IncrementalPdfFileWriter):  # type: ignore[misc]  # the base class is known only when installed
+        """Writer of an incremental update."""
+
+        def _update_meta(self) -> None:
+            pass
+
+    writer = Writer(BytesIO(content))
+    if writer.prev.encrypted:
+        raise InputError(where, "an encrypted PDF", "Sign the PDF before it is encrypted; PDF/A has no encryption.")
+    return writer
+
+
+def _choose_field_name(role: str, taken: Collection[str]) -> str:
+    """Name of a new field: the role, without full stops, which would name a child; a number if the name is taken."""
+    name = role.replace(".", "-")
+    names = (name, *(f"{name} {number}" for number in range(2, len(taken) + 2)))
+    return next(text for text in names if text not in taken)
+
+
+def _build_stamp(signer: Signer, edges: tuple[int, int, int, int]) -> Any:
+    """Appearance of a visible signature: a page that brings its fonts, as PDF/A requires."""
+    from pyhanko.pdf_utils.content import PdfContent
+    from pyhanko.pdf_utils.layout import AxisAlignment, BoxConstraints, Margins, SimpleBoxLayoutRule
+    from pyhanko.pdf_utils.reader import PdfFileReader
+    from pyhanko.stamp import StaticStampStyle
+
+    lines = (
+        f"Signed by {signer.key.holder} as {signer.role}",
+        f"{format_moment(datetime.now(UTC))}. To check: pantocheck verify",
+    )
+    width, height = edges[2] - edges[0], edges[3] - edges[1]
+    page = PdfFileReader(BytesIO(render_signature_box(lines, width, height)))
+
+    class Box(PdfContent):  # type: ignore[misc]  # the base class is known only when installed
+        """Page of another document as a drawing."""
+
+        def render(self) -> bytes:
+            """Commands that draw the page."""
+            self.box = BoxConstraints(width=width, height=height)
+            self.resources.xobject["/SignatureBox"] = self.writer.import_page_as_xobject(page)
+            return b"/SignatureBox Do"
+
+    middle = SimpleBoxLayoutRule(AxisAlignment.ALIGN_MID, AxisAlignment.ALIGN_MID, Margins.uniform(0))
+    return StaticStampStyle(border_width=0, background=Box(), background_layout=middle, background_opacity=1.0)
+
+
+@contextmanager
+def _convert_damage(where: str) -> Iterator[None]:
+    """Convert failures on a damaged PDF, whose exceptions have no common base, into `InputError`."""
+    try:
+        yield
+    except (InputError, ModuleNotFoundError):
+        raise
+    except Exception as error:
+        reason = clean_text(str(error)) or type(error).__name__
+        raise InputError(where, f"cannot be signed ({reason})", "Sign a PDF that 'pantocheck run' wrote.") from None

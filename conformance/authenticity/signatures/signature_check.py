@@ -1,0 +1,68 @@
+"""Check of all signatures of a document: inside a PDF, or in a signature file beside any document."""
+
+from pathlib import Path
+from typing import Any
+
+from pantocheck.conformance.authenticity.attachment import MAX_DOCUMENT_BYTES
+from pantocheck.conformance.authenticity.signatures.certificates import read_certificates
+from pantocheck.conformance.authenticity.signatures.detached_file import (
+    MAX_SIGNATURE_BYTES,
+    find_signature_file,
+    parse_signatures,
+)
+from pantocheck.conformance.authenticity.signatures.signature_facts import SignatureFacts, SignatureReport
+from pantocheck.conformance.authenticity.signatures.signature_package import INSTALL, use_signature_package
+from pantocheck.conformance.input_files.bounded_file import read_bytes
+from pantocheck.conformance.input_files.input_error import InputError
+
+
+def check_signatures(path: Path, trust_roots: Path | None) -> SignatureReport:
+    """Check the signatures of a document.
+
+    Parameters
+    ----------
+    path : Path
+        PDF, or any other file with a signature file beside it (`results.json.p7s`).
+    trust_roots : Path or None
+        PEM file of trust roots.
+
+    Raises
+    ------
+    InputError
+        A file cannot be read or is damaged, or trust roots are given and the package for signatures is missing.
+    """
+    content = read_bytes(path, str(path), MAX_DOCUMENT_BYTES)
+    detached = find_signature_file(path)
+    given = trust_roots is not None
+    if not (is_signed_pdf(content) or detached.exists()):
+        return SignatureReport((), (), given)
+    try:
+        with use_signature_package():
+            roots = None if trust_roots is None else read_certificates(trust_roots, f"trust roots '{trust_roots.name}'")
+            return _check(content, detached, roots)
+    except InputError as error:
+        if error.hint != INSTALL or given:
+            raise
+        return SignatureReport((), (), given, f"signatures were not checked: they {error.found}. {INSTALL}")
+
+
+def _check(content: bytes, detached: Path, roots: list[Any] | None) -> SignatureReport:
+    from pantocheck.conformance.authenticity.signatures.cms_check import check_cms
+    from pantocheck.conformance.authenticity.signatures.pdf_signature_check import check_pdf
+
+    signatures: tuple[SignatureFacts, ...] = ()
+    changes: tuple[str, ...] = ()
+    if is_signed_pdf(content):
+        signatures, changes = check_pdf(content, roots)
+    if detached.exists():
+        where = f"signature '{detached.name}'"
+        parts = parse_signatures(read_bytes(detached, where, MAX_SIGNATURE_BYTES), where)
+        signatures += tuple(check_cms(content, part, roots, None) for part in parts)
+    return SignatureReport(signatures, changes, roots is not None)
+
+
+def is_signed_pdf(content: bytes) -> bool:
+    """Whether the content is a PDF with a signature."""
+    from pantocheck.conformance.authenticity.signatures.pdf_signature_check import SIGNATURE_KEY
+
+    return content.startswith(b"%PDF-") and SIGNATURE_KEY in content

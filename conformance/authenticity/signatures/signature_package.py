@@ -1,0 +1,30 @@
+"""Package for signatures: pyHanko, which the extra `sign` installs."""
+
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from pantocheck.conformance.input_files.input_error import InputError
+
+INSTALL = "Install it: pip install 'pantocheck[sign]'"
+
+
+@contextmanager
+def use_signature_package() -> Iterator[None]:
+    """Import and use pyHanko inside a block, without its log, which repeats failures with tracebacks.
+
+    Raises
+    ------
+    InputError
+        The package is not installed.
+    """
+    log = logging.getLogger("pyhanko")
+    level = log.level
+    log.setLevel(logging.CRITICAL + 1)
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        found = f"need the package {error.name}, which is not installed"
+        raise InputError("signatures", found, INSTALL) from None
+    finally:
+        log.setLevel(level)

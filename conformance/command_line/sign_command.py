@@ -1,0 +1,48 @@
+"""`pantocheck sign`: a signature for a certificate or for results."""
+
+from functools import partial
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pantocheck.conformance.authenticity.signatures.detached_file import Encoding
+from pantocheck.conformance.authenticity.signatures.signing import SigningOptions, sign_document
+from pantocheck.conformance.command_line.guard import strip_control_characters
+from pantocheck.conformance.command_line.passphrase import read_passphrase
+
+
+def sign_command(
+    document: Annotated[Path, typer.Argument(metavar="FILE", help="Document to sign: PDF, HTML or JSON.")],
+    key: Annotated[Path, typer.Option(help="Private key: PKCS#12 (.p12, .pfx) or PEM.")],
+    certificate: Annotated[
+        Path | None, typer.Option(help="Certificate of a PEM key and its authorities, if the key file lacks them.")
+    ] = None,
+    role: Annotated[str, typer.Option(help="Role of the signer, such as author or assessor.")] = "author",
+    passphrase_file: Annotated[
+        Path | None, typer.Option(help="File of the passphrase; else PANTOCHECK_PASSPHRASE, else typed.")
+    ] = None,
+    timestamp_url: Annotated[str | None, typer.Option(help="Address of a time-stamp server (RFC 3161).")] = None,
+    visible: Annotated[
+        str | None,
+        typer.Option(
+            metavar="PLACE", help="Box on page 1 of a PDF: top-left, top-centre or top-right.", show_default="invisible"
+        ),
+    ] = None,
+    encoding: Annotated[Encoding, typer.Option(help="Form of a signature file.")] = "der",
+    out: Annotated[
+        Path | None, typer.Option(help="File to write.", show_default="FILE-signed.pdf, or FILE.p7s for HTML and JSON")
+    ] = None,
+) -> None:
+    """Sign a certificate or results.
+
+    A PDF gets a PAdES signature as an incremental update: the unsigned document is kept, and the signed copy begins
+    with its bytes. HTML and JSON get a signature file beside them. A signed document gets one more signature.
+
+    The passphrase of the key is read from a file, from the environment or from the terminal, never from an argument.
+
+    Example: pantocheck sign report/certificate.pdf --key author.p12 --visible top-left
+    """
+    options = SigningOptions(role, timestamp_url, visible, encoding, out)
+    signed = sign_document(document, key, certificate, partial(read_passphrase, passphrase_file), options)
+    typer.echo(strip_control_characters(f"Signed by {signed.holder} as {signed.role}: {signed.path}"))
