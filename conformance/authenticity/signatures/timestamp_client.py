@@ -9,7 +9,7 @@ from urllib.parse import urlsplit
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.reports.page_text import clean_text
 
-TIMEOUT_S = 30.0
+LONGEST_WAIT_S = 30.0
 """Longest wait for an answer of the server [s]."""
 
 MAX_ANSWER_BYTES = 2**20
@@ -67,7 +67,7 @@ def _post(url: str, request: bytes, where: str) -> bytes:
     headers = {"Content-Type": "application/timestamp-query", "Accept": "application/timestamp-reply"}
     message = urllib.request.Request(url, request, headers)
     try:
-        with urllib.request.urlopen(message, timeout=TIMEOUT_S) as answer:
+        with urllib.request.urlopen(message, timeout=LONGEST_WAIT_S) as answer:
             return bytes(answer.read(MAX_ANSWER_BYTES))
     except (OSError, HTTPException, ValueError) as error:
         if isinstance(error, HTTPError):
