@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from pantocheck.conformance.command_line.console import build_table, console, escape_text
-from pantocheck.conformance.command_line.environment_facts import Requirement, list_environment, list_requirements
+from pantocheck.conformance.command_line.environment_facts import DeclaredPackage, list_environment, list_requirements
 
 
 def doctor_command(
@@ -39,7 +39,7 @@ def doctor_command(
     raise typer.Exit(1 if faulty else 0)
 
 
-def _print_report(facts: dict[str, str], requirements: tuple[Requirement, ...]) -> None:
+def _print_report(facts: dict[str, str], requirements: tuple[DeclaredPackage, ...]) -> None:
     output = console()
     table = build_table("fact", "value", unbroken=("fact",))
     for name, value in facts.items():
@@ -56,7 +56,7 @@ def _print_report(facts: dict[str, str], requirements: tuple[Requirement, ...]) 
         output.print(table)
 
 
-def _describe_extra(extra: str, members: list[Requirement]) -> str:
+def _describe_extra(extra: str, members: list[DeclaredPackage]) -> str:
     """State of an extra, with the line that installs it."""
     if all(member.state == "installed" for member in members):
         return "complete"

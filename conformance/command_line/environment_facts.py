@@ -19,7 +19,7 @@ BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 
 
 @dataclass(frozen=True)
-class Requirement:
+class DeclaredPackage:
     """A declared dependency.
 
     Parameters
@@ -52,11 +52,11 @@ class Requirement:
         return "installed" if _parse_version(self.installed) >= _parse_version(self.lowest) else "too old"
 
 
-def list_requirements() -> tuple[Requirement, ...]:
+def list_requirements() -> tuple[DeclaredPackage, ...]:
     """Declared dependencies of the installed suite, those of every installation first."""
     pattern = re.compile(r"""([\w.-]+)\s*>=\s*([\w.]+)[^;]*(?:;.*extra\s*==\s*['"]([\w-]+)['"])?""")
     found = (pattern.match(text) for text in requires("pantocheck") or ())
-    requirements = (Requirement(match[1], match[2], match[3] or "") for match in found if match is not None)
+    requirements = (DeclaredPackage(match[1], match[2], match[3] or "") for match in found if match is not None)
     return tuple(sorted(requirements, key=lambda requirement: requirement.extra))
 
 

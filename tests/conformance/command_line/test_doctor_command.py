@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 
 from pantocheck.conformance.command_line import environment_facts
 from pantocheck.conformance.command_line.app import app
-from pantocheck.conformance.command_line.environment_facts import Requirement, list_requirements
+from pantocheck.conformance.command_line.environment_facts import DeclaredPackage, list_requirements
 
 
 def provide_versions(monkeypatch: pytest.MonkeyPatch, **installed: str) -> None:
@@ -34,16 +34,16 @@ def provide_versions(monkeypatch: pytest.MonkeyPatch, **installed: str) -> None:
 )
 def test_versions_are_compared_as_numbers(monkeypatch: pytest.MonkeyPatch, installed: str, state: str) -> None:
     provide_versions(monkeypatch, example=installed)
-    assert Requirement("example", "2.9", "").state == state
+    assert DeclaredPackage("example", "2.9", "").state == state
 
 
 def test_requirements_are_those_of_the_distribution(monkeypatch: pytest.MonkeyPatch) -> None:
     declared = ["numpy>=2.0", 'nptdms>=1.9; extra == "tdms"', "dask-jobqueue>=0.9,<2; extra == 'cluster'"]
     monkeypatch.setattr(environment_facts, "requires", lambda name: declared)
     assert list_requirements() == (
-        Requirement("numpy", "2.0", ""),
-        Requirement("dask-jobqueue", "0.9", "cluster"),
-        Requirement("nptdms", "1.9", "tdms"),
+        DeclaredPackage("numpy", "2.0", ""),
+        DeclaredPackage("dask-jobqueue", "0.9", "cluster"),
+        DeclaredPackage("nptdms", "1.9", "tdms"),
     )
 
 
