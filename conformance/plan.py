@@ -23,6 +23,7 @@ from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.reports.formats.report_writers import check_formats
+from pantocheck.conformance.results.administration import Administration
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.studies.damping_sensitivity import add_damping_study
 from pantocheck.conformance.systems.command.program_arguments import split_arguments
@@ -73,6 +74,9 @@ class Plan(InputTable):
     damping_study: Annotated[
         bool, Field(description="run every case also with the benchmark, initial and updated damping models")
     ] = False
+    administration: Annotated[
+        Administration | None, Field(description="issuer, number and other administrative data of the report")
+    ] = None
 
 
 @dataclass(frozen=True)

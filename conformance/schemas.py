@@ -36,6 +36,7 @@ from pantocheck.conformance.mass_drops.drop_sidecar import DropSidecar as MassDr
 from pantocheck.conformance.plan import Plan
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.record_summary import RecordSummary
+from pantocheck.conformance.results.administration import Administration
 from pantocheck.conformance.results.campaign_format import CampaignResults
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.simulation.model_uncertainty import ModelUncertaintyFile
@@ -57,6 +58,7 @@ READ_FORMATS: dict[str, type[BaseModel]] = {
     "response-limits": ResponseLimits,
     "summary": RecordSummary,
     "profile": Profile,
+    "administration": Administration,
     "converged": ConvergedFile,
     "model-uncertainty": ModelUncertaintyFile,
 }

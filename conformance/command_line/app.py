@@ -15,7 +15,7 @@ COMMANDS = {
     "assess": "Assess a simulated or measured record by the rules of a profile.",
     "cases": "List the cases of the library with the number and the trust of their limits.",
     "show": "Show the inputs, the limits and the notes of a case with their trust and source.",
-    "new": "Write a commented, valid line, case or pantograph file to start from.",
+    "new": "Write a commented, valid line, case, pantograph or administration file.",
     "check": "Check input files and report all their problems at once.",
     "simulate": "Simulate a case and write its record.",
     "drop": "Simulate the mass drops of a case and write their records.",

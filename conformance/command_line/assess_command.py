@@ -12,12 +12,15 @@ from pantocheck.conformance.cases.limits import Limit, spread_limits
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.command_line.options import (
     AcceptUnverifiedOption,
+    AdministrationOption,
     BaselineOption,
     DriftOption,
     FormatsOption,
     OutOption,
+    ReportNumberOption,
     TrustOption,
     build_options,
+    state_administration,
 )
 from pantocheck.conformance.command_line.results_output import EXIT_CODES, print_results
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
@@ -57,6 +60,8 @@ def assess_command(
     accept_unverified: AcceptUnverifiedOption = None,
     baseline: BaselineOption = None,
     drift: DriftOption = None,
+    administration: AdministrationOption = None,
+    report_number: ReportNumberOption = None,
 ) -> None:
     """Assess a simulated or measured record by the rules of a profile.
 
@@ -66,7 +71,13 @@ def assess_command(
 
     pantocheck assess simulated.toml --profile line-test --measured train.toml
     """
-    options = build_options(out=out, formats=formats, trust=trust, drift_pct=drift)
+    options = build_options(
+        out=out,
+        formats=formats,
+        trust=trust,
+        drift_pct=drift,
+        administration=state_administration(administration, report_number),
+    )
     folder = Path(options.out)
     report_formats = check_formats(options.formats)
     rules = load_profile(profile)
@@ -80,6 +91,7 @@ def assess_command(
     check_writable(folder)
     participation = Participation(accepted_unverified=tuple(accept_unverified or ()))
     results = assess_record(assessed, rules, options.trust, reference, own_limits, participation)
+    results = results.model_copy(update={"administration": options.administration})
     if earlier is not None and baseline is not None:
         write_all(results, folder, ("json",))  # kept if the comparison fails
         results = compare_with_baseline(results, earlier, options.drift_pct, baseline.name)

@@ -31,7 +31,7 @@ def new_command(
         ),
     ] = None,
 ) -> None:
-    """Write a commented, valid line, case or pantograph file to start from.
+    """Write a commented, valid line, case, pantograph or administration file.
 
     Examples:
 

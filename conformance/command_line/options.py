@@ -15,6 +15,7 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_model, read_toml
 from pantocheck.conformance.input_files.validation_messages import build_input_error
 from pantocheck.conformance.plan import Plan, read_plan
+from pantocheck.conformance.results.administration import read_administration
 
 SetOption = Annotated[
     list[str] | None,
@@ -50,13 +51,34 @@ AcceptUnverifiedOption = Annotated[
     typer.Option(metavar="NAME", help="System whose unverified records may pass; repeat the option for several."),
 ]
 BaselineOption = Annotated[Path | None, typer.Option(help="Earlier results.json; a value that drifts from it fails.")]
+AdministrationOption = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", help="TOML file with issuer and number; `pantocheck new administration` writes one."),
+]
+ReportNumberOption = Annotated[
+    str | None, typer.Option(metavar="TEXT", help="Number of the report; it replaces that of --administration.")
+]
 DriftOption = Annotated[
     float | None, typer.Option(help="Allowed drift of a value from the baseline [%].", show_default="1")
 ]
 
 
+def state_administration(file: Path | None, report_number: str | None) -> dict[str, str]:
+    """Administrative data from a file, with the number of the report from the command line in place of its own.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read or is wrong.
+    """
+    stated = {} if file is None else read_administration(file).model_dump(exclude_none=True)
+    return stated if report_number is None else {**stated, "report_number": report_number}
+
+
 def build_options(plan: Path | None = None, formats: str | None = None, **options: object) -> Plan:
     """Combine the options of the command line with those of a plan.
+
+    Administrative data replace those of the plan key by key.
 
     Parameters
     ----------
@@ -75,9 +97,12 @@ def build_options(plan: Path | None = None, formats: str | None = None, **option
     if formats is not None:
         options["formats"] = tuple(name.strip() for name in formats.split(",") if name.strip())
     texts = {key: str(value) if isinstance(value, Path) else value for key, value in options.items()}
-    base = {} if plan is None else read_plan(plan).model_dump()
+    base = {} if plan is None else read_plan(plan).model_dump(exclude_none=True)
+    given = {key: value for key, value in texts.items() if value is not None}
+    if isinstance(stated := given.pop("administration", None), dict) and stated:
+        given["administration"] = base.get("administration", {}) | stated
     try:
-        return Plan.model_validate(base | {key: value for key, value in texts.items() if value is not None})
+        return Plan.model_validate(base | given)
     except ValidationError as error:
         raise build_input_error(error, Plan, "command line") from None
 

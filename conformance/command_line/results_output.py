@@ -13,8 +13,10 @@ from pantocheck.conformance.command_line.console import build_table, console, es
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.quantities.limit_text import format_graded, format_margin, name_value
 from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.reports.certificate.document_facts import list_administration
 from pantocheck.conformance.reports.certificate.scope_page import describe_changes
 from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline, describe_record
+from pantocheck.conformance.reports.page_text import clean_text
 from pantocheck.conformance.results.criterion_format import Criterion
 from pantocheck.conformance.results.results_format import CaseResult, Results, name_case
 from pantocheck.conformance.runner import Progress as ResultCallback
@@ -47,6 +49,9 @@ def print_results(results: Results, files: Sequence[Path]) -> None:
     system = f"{results.system.name} {results.system.version}".strip()
     output.print(style_verdict(results.verdict), escape_text(f" {build_headline(results.to_dict())} System: {system}"))
     output.print(escape_text(f"{results.statement}; limits count from trust '{results.trust}' up"))
+    if results.administration is not None:
+        stated = list_administration(results.model_dump(include={"administration"}))
+        output.print(escape_text("; ".join(f"{label}: {clean_text(text)}" for label, text in stated)))
     for case in results.cases:
         output.print()
         output.print(style_verdict(case.verdict), escape_text(f" {name_case(case.id, case.library)}  {case.title}"))

@@ -7,14 +7,17 @@ import typer
 
 from pantocheck.conformance.command_line.options import (
     AcceptUnverifiedOption,
+    AdministrationOption,
     BaselineOption,
     DriftOption,
     FormatsOption,
     OutOption,
+    ReportNumberOption,
     SetOption,
     TrustOption,
     VerdictsOption,
     build_options,
+    state_administration,
 )
 from pantocheck.conformance.command_line.results_output import EXIT_CODES, print_results, report_progress
 from pantocheck.conformance.plan import prepare_plan
@@ -45,6 +48,8 @@ def run_command(
     accept_unverified: AcceptUnverifiedOption = None,
     baseline: BaselineOption = None,
     drift: DriftOption = None,
+    administration: AdministrationOption = None,
+    report_number: ReportNumberOption = None,
     jobs: Annotated[int | None, typer.Option(help="Number of cases that run in parallel.", show_default="1")] = None,
     damping_study: Annotated[
         bool,
@@ -83,6 +88,7 @@ def run_command(
         accept_unverified=tuple(accept_unverified) if accept_unverified else None,
         baseline=baseline,
         drift_pct=drift,
+        administration=state_administration(administration, report_number),
         jobs=jobs,
         damping_study=damping_study or None,
         timeout_s=timeout,
@@ -97,6 +103,7 @@ def run_command(
     except RunInterrupted as interruption:
         results, interrupted = interruption.results, interruption.exit_code
         typer.echo("Interrupted: the results of the finished cases are written.", err=True)
+    results = results.model_copy(update={"administration": options.administration})
     if prepared.baseline is not None:
         write_all(results, prepared.out, ("json",))  # kept if the comparison fails
         results = prepared.compare(results)

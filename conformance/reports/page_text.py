@@ -1,18 +1,13 @@
 """Texts and numbers as a page shows them."""
 
-import re
-import unicodedata
 from collections.abc import Callable
 from typing import Any
 
+from pantocheck.conformance.input_files.shown_text import BIDIRECTIONAL, UNSHOWABLE, is_control
 from pantocheck.conformance.quantities.limit_text import ROUNDED_DIGITS, format_graded, format_rounded, format_stated
 
 LONGEST = 2000
 """Largest number of characters of a text."""
-# Noncharacters, private use and lone surrogates have no meaning for a reader; bidirectional controls can make one text
-# look like another ("gpj.exe" for "exe.jpg").
-UNSHOWABLE = re.compile("[\ud800-\udfff\ue000-\uf8ff\ufdd0-\ufdef\ufffe\uffff\U000f0000-\U0010ffff]")
-BIDIRECTIONAL = re.compile("[\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]")
 
 
 def clean_text(text: str) -> str:
@@ -21,7 +16,7 @@ def clean_text(text: str) -> str:
     Each format escapes the text; this function only removes characters that no format can hold.
     """
     text = UNSHOWABLE.sub("\N{REPLACEMENT CHARACTER}", BIDIRECTIONAL.sub("", text))
-    text = " ".join("".join(" " if unicodedata.category(c) == "Cc" else c for c in text).split())
+    text = " ".join("".join(" " if is_control(c) else c for c in text).split())
     return text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
 
 

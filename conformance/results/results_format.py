@@ -11,6 +11,7 @@ from pydantic import Field
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.sourced_table import is_absent
 from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.results.administration import Administration
 from pantocheck.conformance.results.criterion_format import CaseVerification, ComponentName, Criterion
 from pantocheck.conformance.results.figure_data import Chart, ExtremePlace, TextTable, Traces, UpliftTrace
 from pantocheck.conformance.results.finding_format import FindingCounts
@@ -219,6 +220,9 @@ class Results(ResultsPart):
     trust: Trust
     started: str | None
     platform: Platform
+    administration: Annotated[
+        Administration | None, Field(description="administrative data of the report; null: none were given")
+    ] = None
     scope: Annotated[
         list[ScopeStep], Field(description="every step of the procedure; empty: made by an older version")
     ] = []

@@ -322,6 +322,8 @@ def with_hostile_text() -> dict[str, Any]:
     """Example whose free texts contain markup, code and control characters."""
     results = example()
     results["system"] |= {"name": HOSTILE[0], "version": HOSTILE[1]}
+    keys = ("report_number", "issuer", "organisation", "contact", "assessor", "remarks")
+    results["administration"] = dict(zip(keys, HOSTILE, strict=False))
     for number, case in enumerate(results["cases"]):
         case["id"] += HOSTILE[number + 2]
         case["title"] = HOSTILE[number]

@@ -12,6 +12,7 @@ from pantocheck.conformance.reports.certificate.case_facts import (
 from pantocheck.conformance.reports.certificate.case_figures import draw_case_figures
 from pantocheck.conformance.reports.certificate.comparison_section import comparison_blocks
 from pantocheck.conformance.reports.certificate.criteria_table import criteria_blocks
+from pantocheck.conformance.reports.certificate.document_facts import build_document_section
 from pantocheck.conformance.reports.certificate.findings_table import build_findings_section
 from pantocheck.conformance.reports.certificate.quantity_tables import (
     build_band_table,
@@ -38,6 +39,7 @@ from pantocheck.conformance.reports.certificate.verdict_reasons import (
     list_reasons,
     summarise_case,
 )
+from pantocheck.conformance.reports.formats.embedded_results import digest_results
 from pantocheck.conformance.reports.words import read_words
 
 HEADING = "Conformance report"
@@ -59,6 +61,7 @@ def build_certificate(results: dict[str, Any]) -> doc.Document:
         header=header,
         blocks=(
             *((doc.WarningBox(warnings),) if warnings else ()),
+            build_document_section(prepared, digest_results(results)),
             *build_verdict_section(prepared),
             *build_scope_section(prepared, dict(zip((case["id"] for case in cases), anchors, strict=True))),
             *build_findings_section(prepared),

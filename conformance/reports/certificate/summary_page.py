@@ -5,6 +5,7 @@ from typing import Any
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.certificate.certificate_page import build_header
 from pantocheck.conformance.reports.certificate.criteria_table import describe_criterion, error_name
+from pantocheck.conformance.reports.certificate.document_facts import list_administration
 from pantocheck.conformance.reports.certificate.findings_table import build_findings_section
 from pantocheck.conformance.reports.certificate.scope_page import (
     build_scope_section,
@@ -22,7 +23,8 @@ def build_summary(results: dict[str, Any]) -> doc.Document:
     header = build_header(results)
     warnings = list_identity_warnings(results)
     scope = (*build_verdict_section(results), *build_scope_section(results, {}), *build_findings_section(results))
-    first = (*((doc.WarningBox(warnings),) if warnings else ()), *scope, *list_reasons(results))
+    stated = (doc.Facts(list_administration(results)),) if results["administration"] else ()
+    first = (*stated, *((doc.WarningBox(warnings),) if warnings else ()), *scope, *list_reasons(results))
     return doc.Document(header.heading, header, (*first, *map(_case_section, results["cases"])))
 
 

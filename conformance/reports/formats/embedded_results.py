@@ -5,6 +5,7 @@ the pages. The PDF omits the times of the run, so that two runs of the same inpu
 prints these times, so its data block keeps them.
 """
 
+import hashlib
 import json
 from typing import Any
 
@@ -32,6 +33,11 @@ def strip_times(results: dict[str, Any]) -> dict[str, Any]:
 def encode_attachment(results: dict[str, Any]) -> bytes:
     """Attachment of the PDF: results without times as JSON text in ASCII; equal results give equal bytes."""
     return (json.dumps(strip_times(results), indent=1, allow_nan=False) + "\n").encode("ascii")
+
+
+def digest_results(results: dict[str, Any]) -> str:
+    """SHA-256 of the attachment of the PDF; both formats of a certificate state it."""
+    return f"sha256:{hashlib.sha256(encode_attachment(results)).hexdigest()}"
 
 
 def encode_data_block(results: dict[str, Any]) -> str:

@@ -57,6 +57,7 @@ def _suite(case: dict[str, Any], results: dict[str, Any]) -> ElementTree.Element
         "limits_digest": case["limits_digest"],
         "limit_changes": "; ".join(case["limit_changes"]),
         "changes": "; ".join(case["changes"]),
+        **{f"administration_{key}": text for key, text in (results["administration"] or {}).items()},
         **{f"platform_{name}": text for name, text in results["platform"].items()},
     }.items():
         if value:

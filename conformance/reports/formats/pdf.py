@@ -2,7 +2,6 @@
 
 import json
 from dataclasses import replace
-from datetime import UTC, datetime
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -13,7 +12,7 @@ from matplotlib.ft2font import FT2Font
 
 from pantocheck.conformance.reports.document import Document, to_plain
 from pantocheck.conformance.reports.formats.embedded_results import NAME, encode_attachment
-from pantocheck.conformance.reports.formats.reproducibility import read_source_date
+from pantocheck.conformance.reports.formats.reproducibility import find_date
 from pantocheck.conformance.reports.page_text import change_texts
 from pantocheck.conformance.reports.words import TEMPLATES, read_words
 
@@ -37,7 +36,6 @@ def render_pdf(document: Document) -> bytes:
     data = {
         "document": to_plain(replace(document, results=None)),
         "attachment": None,
-        "date": "",
         "verdicts": words["verdict"],
         "trusts": words["trust"],
     }
@@ -45,23 +43,12 @@ def render_pdf(document: Document) -> bytes:
     files: Any = {name: (TEMPLATES / name).read_bytes() for name in ("page.typ", "elements.typ")}
     options: dict[str, Any] = {}
     if document.results is not None:
-        seconds = _find_date(document.results)
         data["attachment"] = NAME
-        data["date"] = f"{datetime.fromtimestamp(seconds, UTC):%Y-%m-%d %H:%M:%S} UTC" if seconds else ""
         files[NAME] = encode_attachment(document.results)
-        options = {"pdf_standards": "a-3a", "timestamp": seconds}
+        options = {"pdf_standards": "a-3a", "timestamp": find_date(document.results)}
     files["main.typ"] = files.pop("page.typ")
     files["page.json"] = json.dumps(change_texts(data, replace_missing_glyphs)).encode("ascii")
     return bytes(typst.compile(files, ignore_system_fonts=True, font_paths=[str(FONTS)], **options))
-
-
-def _find_date(results: dict[str, Any]) -> int:
-    """Date of a document [s since 1970]: `SOURCE_DATE_EPOCH`, else the start of the run, else 0."""
-    date = read_source_date()
-    if date is not None:
-        return date
-    started = results.get("started")
-    return int(datetime.fromisoformat(started).timestamp()) if started else 0
 
 
 @cache

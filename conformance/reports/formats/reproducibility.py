@@ -1,6 +1,8 @@
 """Date of a document from the environment, so that the same results give the same bytes."""
 
 import os
+from datetime import UTC, datetime
+from typing import Any
 
 from pantocheck.conformance.input_files.input_error import InputError
 
@@ -22,3 +24,18 @@ def read_source_date() -> int | None:
     if not (epoch.isascii() and epoch.isdigit() and int(epoch[:15]) <= LATEST):
         raise InputError("SOURCE_DATE_EPOCH", f"'{epoch}' is not a date", "Give whole seconds since 1970-01-01 UTC.")
     return int(epoch)
+
+
+def find_date(results: dict[str, Any]) -> int:
+    """Date of a document [s since 1970]: `SOURCE_DATE_EPOCH`, else the start of the run, else 0."""
+    date = read_source_date()
+    if date is not None:
+        return date
+    started = results.get("started")
+    return int(datetime.fromisoformat(started).timestamp()) if started else 0
+
+
+def format_date(results: dict[str, Any]) -> str:
+    """Date of a document in words; empty if it is not known."""
+    seconds = find_date(results)
+    return f"{datetime.fromtimestamp(seconds, UTC):%Y-%m-%d %H:%M:%S} UTC" if seconds else ""

@@ -20,10 +20,16 @@ from pantocheck.conformance.input_files.key_descriptions import list_bounds
 from pantocheck.conformance.input_files.table_models import find_field, key_adapter, list_models
 from pantocheck.conformance.own_files.file_check import check_input_file
 from pantocheck.conformance.own_files.new_files import NEW_KINDS, NewKind, read_template
+from pantocheck.conformance.results.administration import Administration
 from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
 
-MODELS: dict[NewKind, type[BaseModel]] = {"line": LineFile, "case": CaseFile, "pantograph": PantographFile}
+MODELS: dict[NewKind, type[BaseModel]] = {
+    "line": LineFile,
+    "case": CaseFile,
+    "pantograph": PantographFile,
+    "administration": Administration,
+}
 
 
 def new(*arguments: object) -> Result:
@@ -133,7 +139,7 @@ def test_comments_state_the_bounds_of_every_number(kind: NewKind) -> None:
     """The bounds stand on the line of the key, or on a comment line that names the key."""
     text = read_template(kind)
     numbers = list(list_numbers(MODELS[kind], tomllib.loads(text)))
-    assert len(numbers) >= {"line": 20, "case": 2, "pantograph": 3}[kind]
+    assert len(numbers) >= {"line": 20, "case": 2, "pantograph": 3, "administration": 0}[kind]
     missing = [
         (key, bounds)
         for key, bounds in numbers

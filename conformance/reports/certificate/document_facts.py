@@ -1,0 +1,47 @@
+"""Identity of a report on its page 1: administrative data, date, digest, verification and signature."""
+
+from typing import Any
+
+from pantocheck.conformance.reports.document import Facts, Section
+from pantocheck.conformance.reports.formats.reproducibility import format_date
+
+ADMINISTRATION = {
+    "report_number": "Report number",
+    "issuer": "Issuer",
+    "organisation": "Organisation",
+    "contact": "Contact",
+    "assessor": "Assessor",
+    "remarks": "Remarks",
+}
+"""Labels of the administrative data in the order of the page."""
+
+NO_ISSUER = "not stated"
+SIGNATURE = "added to the file after writing, if any; the command below shows its state"
+VERIFICATION = "pantocheck verify FILE, with the name of this file"
+
+
+def build_document_section(results: dict[str, Any], digest: str) -> Section:
+    """Section on the identity of a report.
+
+    Parameters
+    ----------
+    results : dict
+        Results from `prepare_results`.
+    digest : str
+        Digest of the results before their preparation; it covers the administrative data, and not the page.
+    """
+    pairs = (
+        *list_administration(results),
+        ("Date of this document", format_date(results)),
+        ("Digest of the results", digest),
+        ("Signature", SIGNATURE),
+        ("Verification", VERIFICATION),
+    )
+    return Section("Document", (Facts(tuple(pair for pair in pairs if pair[1])),), anchor="document")
+
+
+def list_administration(results: dict[str, Any]) -> tuple[tuple[str, str], ...]:
+    """Labels and texts of the administrative data; without an issuer, that it is not stated."""
+    stated = {key: text for key, text in (results["administration"] or {}).items() if text is not None}
+    known = {"issuer": NO_ISSUER, **stated}
+    return tuple((label, known[key]) for key, label in ADMINISTRATION.items() if key in known)

@@ -1,0 +1,103 @@
+"""Administrative data: checked texts, page 1, and no influence on verdicts and digests."""
+
+import hashlib
+import io
+from pathlib import Path
+from typing import Any
+
+import pytest
+from pypdf import PdfReader
+from typer.testing import CliRunner
+
+from pantocheck.conformance.command_line.app import app
+from pantocheck.conformance.command_line.options import build_options, state_administration
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
+from pantocheck.conformance.reports.document import Facts, Section
+from pantocheck.conformance.reports.formats.junit import render_junit
+from pantocheck.conformance.reports.formats.pdf import render_pdf
+from pantocheck.conformance.results.administration import read_administration
+from pantocheck.conformance.results.results_reading import read_results
+
+
+def document_facts(results: dict[str, Any]) -> dict[str, str]:
+    """Facts of the section on the document."""
+    sections = [block for block in build_certificate(results).blocks if isinstance(block, Section)]
+    [section] = [section for section in sections if section.anchor == "document"]
+    [facts] = section.blocks
+    assert isinstance(facts, Facts)
+    return dict(facts.pairs)
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        ("", "Give at least one of report_number, issuer"),
+        ('issuer = ""', "at least 1 character"),
+        (f'issuer = "{"x" * 201}"', "at most 200 characters"),
+        (f'remarks = "{"x" * 2001}"', "at most 2000 characters"),
+        (r'contact = "a\u202eb"', "key contact: found the character U\\+202E"),
+        (r'contact = "a\nb"', "key contact: found the character U\\+000A"),
+        (r'remarks = "a\u001b[31m"', "key remarks: found the character U\\+001B"),
+        ('isuer = "A"', "did you mean issuer"),
+    ],
+)
+def test_wrong_data_are_refused(content: str, message: str, tmp_path: Path) -> None:
+    path = tmp_path / "administration.toml"
+    path.write_text(content)
+    with pytest.raises(InputError, match=f"(?i){message}"):
+        read_administration(path)
+
+
+def test_options_replace_the_plan_key_by_key(tmp_path: Path) -> None:
+    plan, file = tmp_path / "plan.toml", tmp_path / "administration.toml"
+    plan.write_text('system = "builtin"\n[administration]\nissuer = "A"\nassessor = "C"\nreport_number = "1"')
+    file.write_text('issuer = "B"\nreport_number = "2"')
+    stated = build_options(plan, administration=state_administration(file, "3")).administration
+    assert stated is not None
+    assert (stated.issuer, stated.assessor, stated.report_number) == ("B", "C", "3")
+    assert build_options(None, administration=state_administration(None, None)).administration is None
+
+
+def test_run_stores_the_data_without_another_verdict_or_digest(tmp_path: Path) -> None:
+    """Results of a run with and without administrative data differ in these data and in times only."""
+    record = ["run", "en50318-2002/250", "--system", "record:en50318-2002/known-passing-code", "--formats", "json"]
+    named = ["--report-number", "R <7>"]
+    plain, stated = (tmp_path / "plain", tmp_path / "stated")
+    runner = CliRunner()
+    assert runner.invoke(app, [*record, "--out", str(plain)]).exit_code == 1
+    result = runner.invoke(app, [*record, *named, "--out", str(stated)])
+    assert "Report number: R <7>; Issuer: not stated" in result.stdout
+    one, other = (read_results(folder / "results.json").to_dict() for folder in (plain, stated))
+    assert other.pop("administration")["report_number"] == "R <7>"
+    assert one.pop("administration") is None
+    assert one | {"started": None} == other | {"started": None}
+
+
+def test_page_1_states_data_date_and_digest(results: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> None:
+    """The digest is that of the embedded attachment; with a fixed date, equal results give equal bytes."""
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    results["administration"] = {"issuer": "Erika", "report_number": None, "remarks": "one\ntwo"}
+    facts = document_facts(results)
+    assert {key: facts[key] for key in ("Issuer", "Remarks", "Date of this document")} == {
+        "Issuer": "Erika",
+        "Remarks": "one two",
+        "Date of this document": "2023-11-14 22:13:20 UTC",
+    }
+    content = render_pdf(build_certificate(results))
+    assert content == render_pdf(build_certificate(results | {"started": "2026-11-21T00:00:00Z"}))
+    reader = PdfReader(io.BytesIO(content))
+    [attachment] = reader.attachments["results.json"]
+    assert facts["Digest of the results"] == f"sha256:{hashlib.sha256(attachment).hexdigest()}"
+    text = reader.pages[0].extract_text()
+    assert "Erika" in text
+    assert "pantocheck verify" in text
+
+
+def test_issuer_is_named_as_missing_without_data(results: dict[str, Any]) -> None:
+    assert document_facts(results)["Issuer"] == "not stated"
+
+
+def test_junit_has_the_data_as_properties(hostile: dict[str, Any]) -> None:
+    text = render_junit(hostile).decode()
+    assert 'name="administration_report_number" value="&lt;script&gt;alert(1)&lt;/script&gt;"' in text
