@@ -53,6 +53,7 @@ class TableFormat:
 
 
 CSV = TableFormat("csv_table", (".csv", ".txt", ".asc", ".dat"))
+MDF = TableFormat("mdf_table", (".mf4", ".mdf"), extra="mdf")
 HDF5 = TableFormat("hdf5_table", (".h5", ".hdf5"))
 
 TABLE_FORMATS = (
@@ -61,7 +62,7 @@ TABLE_FORMATS = (
     TableFormat("matlab_table", (".mat",)),
     HDF5,
     TableFormat("tdms_table", (".tdms",), extra="tdms"),
-    TableFormat("mdf_table", (".mf4", ".mdf"), extra="mdf"),
+    MDF,
 )
 
 

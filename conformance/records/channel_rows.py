@@ -7,19 +7,24 @@ import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.input_files.input_error import InputError, join_errors
-from pantocheck.conformance.input_files.measured_table import EVERY_CHANNEL, MeasuredTable, TableColumn
+from pantocheck.conformance.input_files.measured_table import (
+    EVERY_CHANNEL,
+    ChannelNames,
+    MeasuredTable,
+    TableColumn,
+)
 from pantocheck.conformance.input_files.suggestions import suggest_names
-from pantocheck.conformance.input_files.table_formats import read_tables
-from pantocheck.conformance.input_files.units import suggest_key
+from pantocheck.conformance.input_files.table_formats import MDF, read_tables
+from pantocheck.conformance.input_files.units import find_key_units, suggest_key
+from pantocheck.conformance.records.logger.column_values import add_time_column, find_factor
+from pantocheck.conformance.records.logger.mapped_rows import read_mapped_rows
+from pantocheck.conformance.records.logger.placed_rows import list_position_columns, list_used_channels, place_rows
 from pantocheck.conformance.records.record import LARGEST_NUMBER, MAX_SAMPLES
-from pantocheck.conformance.records.record_channels import CHANNELS, RecordColumn, find_column
+from pantocheck.conformance.records.record_channels import CHANNELS, ChannelRows, RecordColumn, find_column
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 
-ChannelRows = dict[str, dict[int, RealArray]]
-"""Rows of each channel by number from 1."""
 
-
-def read_channel_rows(path: Path, sidecar: RecordSidecar) -> ChannelRows:
+def read_channel_rows(path: Path, sidecar: RecordSidecar) -> tuple[ChannelRows, tuple[str, ...]]:
     """Read the table of a record.
 
     Parameters
@@ -31,8 +36,10 @@ def read_channel_rows(path: Path, sidecar: RecordSidecar) -> ChannelRows:
 
     Returns
     -------
-    dict of str to dict of int to ndarray
+    rows : dict of str to dict of int to ndarray
         Rows of each channel by number from 1.
+    ignored : tuple of str
+        Names of the columns that the sidecar does not use.
 
     Raises
     ------
@@ -40,13 +47,42 @@ def read_channel_rows(path: Path, sidecar: RecordSidecar) -> ChannelRows:
         The table is damaged, has an unknown column, lacks a channel, or contradicts its sidecar. The error lists all
         such columns and channels.
     """
-    tables = read_tables(path, EVERY_CHANNEL, MAX_SAMPLES, layout=sidecar.table)
-    where = tables[0].where
+    where, sidecar_where = f"record '{path.name}'", f"sidecar '{path.with_suffix('.toml').name}'"
+    # Groups of an MDF file have their own times: the named channels decide which group is read.
+    named = sidecar.columns is not None and path.suffix.lower() in MDF.suffixes
+    names: ChannelNames = list_used_channels(sidecar) if named else EVERY_CHANNEL
+    tables = read_tables(path, names, MAX_SAMPLES, layout=sidecar.table)
     if len(tables) > 1:
         raise InputError(where, f"holds {len(tables)} runs", "Write one file per run.")
-    rows: ChannelRows = {}
-    errors: list[InputError] = []
-    for column, values in zip(tables[0].columns, tables[0].values.T, strict=True):
+    table = tables[0]
+    if sidecar.columns is None:
+        rows, errors = _read_own_rows(table, sidecar)
+    else:
+        rows, errors = read_mapped_rows(add_time_column(table), sidecar.columns, sidecar_where), []
+    if "time" not in rows and (time := _find_own_time(table)) is not None:
+        rows["time"] = {1: time}
+    if not errors:  # a wrong column may be the missing one
+        place_rows(rows, table, sidecar, sidecar_where)
+        errors += _find_missing_channels(rows, sidecar, where)
+    for name in rows:
+        errors += _find_impossible_values(name, rows[name], where)
+    if errors:
+        raise join_errors(errors)
+    return rows, () if sidecar.columns is None else _list_ignored(table, sidecar)
+
+
+def _list_ignored(table: MeasuredTable, sidecar: RecordSidecar) -> tuple[str, ...]:
+    used = list_used_channels(sidecar)
+    return tuple(column.label for column in table.columns if column.label and column.label not in used)
+
+
+def _read_own_rows(table: MeasuredTable, sidecar: RecordSidecar) -> tuple[ChannelRows, list[InputError]]:
+    """Rows of a file that uses the names of the channels, and an error for each wrong column."""
+    where, rows, errors = table.where, ChannelRows(), list[InputError]()
+    used = list_position_columns(sidecar)
+    for column, values in zip(table.columns, table.values.T, strict=True):
+        if column.label in used:
+            continue
         try:
             meaning = _find_meaning(column, sidecar, where)
         except InputError as error:
@@ -59,15 +95,7 @@ def read_channel_rows(path: Path, sidecar: RecordSidecar) -> ChannelRows:
             continue
         with np.errstate(invalid="ignore", over="ignore"):  # numbers too large are reported below
             channel[meaning.number] = meaning.factor * values
-    if "time" not in rows and (time := _find_own_time(tables[0])) is not None:
-        rows["time"] = {1: time}
-    if not errors:  # a wrong column may be the missing one
-        errors += _find_missing_channels(rows, sidecar, where)
-    for name in rows:
-        errors += _find_impossible_values(name, rows[name], where)
-    if errors:
-        raise join_errors(errors)
-    return rows
+    return rows, errors
 
 
 def _find_own_time(table: MeasuredTable) -> RealArray | None:
@@ -87,6 +115,10 @@ def _find_meaning(column: TableColumn, sidecar: RecordSidecar, where: str) -> Re
         known = [channel.column(i + 1) for channel in CHANNELS.values() for i in range(sidecar.rows(channel.per))]
         hint = suggest_key(column.name, None, known) or suggest_names(column.name, known)
         raise InputError(place, "unknown column", hint)
+    stated = None if column.unit is None else find_factor(column.unit, find_key_units(meaning.channel.unit))
+    if column.unit is not None and stated != meaning.factor:
+        hint = "Correct the wrong one, or map the columns: [columns] in the sidecar (docs/logger-files.md)."
+        raise InputError(place, f"has the unit {column.unit!r} in the file, which is not that of its name", hint)
     allowed = sidecar.rows(meaning.channel.per)
     if meaning.number > allowed:
         hint = f"It has {allowed}: correct the sidecar, or remove the column."

@@ -4,7 +4,11 @@ import re
 from dataclasses import dataclass
 from typing import Literal
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.input_files.units import find_key_units
+
+ChannelRows = dict[str, dict[int, RealArray]]
+"""Rows of each channel by number from 1."""
 
 
 @dataclass(frozen=True)

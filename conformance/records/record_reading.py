@@ -9,9 +9,9 @@ from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.input_files.bounded_file import MAX_FILE_BYTES, check_file, file_digest
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_model, read_toml
-from pantocheck.conformance.records.channel_rows import ChannelRows, read_channel_rows
+from pantocheck.conformance.records.channel_rows import read_channel_rows
 from pantocheck.conformance.records.record import Record, RecordInvalid
-from pantocheck.conformance.records.record_channels import CHANNELS
+from pantocheck.conformance.records.record_channels import CHANNELS, ChannelRows
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.record_summary import RecordSummary
 from pantocheck.conformance.records.samples import RecordSamples, build_record
@@ -93,7 +93,8 @@ def read_samples(path: Path) -> tuple[RecordSamples, RecordSidecar, Path]:
     sidecar_path = path.with_suffix(".toml")
     sidecar = read_model(sidecar_path, RecordSidecar, "sidecar")
     table = locate_table(sidecar_path, sidecar.file, sidecar.sha256)
-    return _build_samples(read_channel_rows(table, sidecar), sidecar), sidecar, table
+    rows, ignored = read_channel_rows(table, sidecar)
+    return _build_samples(rows, sidecar, ignored), sidecar, table
 
 
 def locate_table(sidecar_path: Path, name: str, digest: str | None) -> Path:
@@ -144,11 +145,20 @@ def build_record_error(table: Path, error: RecordInvalid) -> InputError:
     )
 
 
-def _build_samples(rows: ChannelRows, sidecar: RecordSidecar) -> RecordSamples:
+def _build_samples(rows: ChannelRows, sidecar: RecordSidecar, ignored: tuple[str, ...]) -> RecordSamples:
     """Stack the rows of each channel; supports without a row of uplift are left out."""
     channels: dict[str, RealArray] = {
         name: numbered[1] if CHANNELS[name].per == "record" else np.vstack([numbered[i] for i in sorted(numbered)])
         for name, numbered in rows.items()
     }
     supports = [(sidecar.support_position_m or ())[i - 1] for i in sorted(rows.get("uplift", {}))]
-    return RecordSamples(**channels, support_position=np.array(supports) if supports else None)
+    return RecordSamples(
+        force=channels["force"],
+        time=channels.get("time"),
+        speed=channels.get("speed"),
+        position=channels.get("position"),
+        contact_height=channels.get("contact_height"),
+        uplift=channels.get("uplift"),
+        support_position=np.array(supports) if supports else None,
+        ignored=ignored,
+    )

@@ -1,12 +1,18 @@
 """Sidecar of a contact-force record: the TOML file beside its table of samples."""
 
+from itertools import pairwise
 from typing import Annotated, Literal
 
 from pydantic import Field
 
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.sourced_table import InputTable, NumberList, PositiveList, validation_problem
+from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.text_settings import TextSettings
+from pantocheck.conformance.input_files.units import suggest_key
+from pantocheck.conformance.records.logger.column_tables import ColumnSource, SensorSum
+from pantocheck.conformance.records.logger.track_tables import KilometreTable, MarkPosition, PositionTable
+from pantocheck.conformance.records.record_channels import CHANNELS, find_column
 from pantocheck.conformance.records.sidecar_tables import (
     CaseDigest,
     CaseName,
@@ -42,6 +48,20 @@ class RecordSidecar(InputTable):
     table: Annotated[TextSettings, Field(description="layout of a text table, if it is not found from the file")] = (
         TextSettings()
     )
+    columns: Annotated[
+        dict[str, ColumnSource] | None,
+        Field(
+            min_length=1,
+            max_length=200,
+            description="columns of the file by channel, such as force_1_N; default: the file uses these names itself",
+        ),
+    ] = None
+    track: Annotated[
+        KilometreTable | None, Field(description="kilometres of the line, if the positions are kilometres")
+    ] = None
+    position: Annotated[
+        PositionTable | None, Field(description="position from distance pulses or kilometre marks, if not in a column")
+    ] = None
     speed_km_h: Speed
     pantographs: Annotated[int, Field(ge=1, le=20, description="number of pantographs")]
     evaluated_m: Annotated[
@@ -92,6 +112,54 @@ class RecordSidecar(InputTable):
                 "spacing_m",
                 f"{len(self.spacing_m)} distances for {self.pantographs} pantographs",
                 "Give the distances between successive pantographs, in running order.",
+            )
+
+    @cross_check
+    def _check_columns(self) -> Problems:
+        for name in self.columns or ():
+            meaning = find_column(name, 1)
+            known = [channel.column(1) for channel in CHANNELS.values()]
+            if meaning is None or meaning.factor != 1 or meaning.channel.column(meaning.number) != name:
+                hint = suggest_key(name, None, known) or suggest_names(name, known)
+                yield validation_problem(f"columns.{name[:80]}", "not a channel of a record in SI units", hint)
+            elif meaning.number > self.rows(meaning.channel.per):
+                yield validation_problem(
+                    f"columns.{name}",
+                    f"the sidecar has no {meaning.channel.per} {meaning.number}",
+                    "Correct pantographs or support_position_m, or remove the channel.",
+                )
+
+    @cross_check
+    def _check_sensors(self) -> Problems:
+        for name, source in (self.columns or {}).items():
+            if isinstance(source, SensorSum) and not name.startswith("force_"):
+                yield validation_problem(
+                    f"columns.{name[:80]}.sum", "sensors are summed to a force only", "Give column and unit."
+                )
+
+    @cross_check
+    def _check_position(self) -> Problems:
+        if self.position is None:
+            return
+        if any(name.startswith("position_") for name in self.columns or ()):
+            yield validation_problem(
+                "position", "the position stands in columns, too", "Remove the table position, or the column."
+            )
+        if self.position.kind == "marks":
+            yield from self._find_mark_problems(self.position)
+
+    def _find_mark_problems(self, position: MarkPosition) -> Problems:
+        if self.track is None:
+            yield validation_problem(
+                "track", "missing beside kilometre marks", "State zero_km and kilometres of the line in [track]."
+            )
+            return
+        places = [self.track.place(mark.km) for mark in position.mark]
+        if any(later <= earlier for earlier, later in pairwise(places)):
+            yield validation_problem(
+                "position.mark",
+                f"the kilometres are not {self.track.kilometres}",
+                "Correct the marks, or kilometres in [track].",
             )
 
     @property

@@ -30,6 +30,8 @@ class RecordSamples:
         Uplift of the contact wire at the supports [m].
     support_position : (s,) ndarray or None
         Positions of the supports [m].
+    ignored : tuple of str
+        Names of the columns of the file that are not used.
     """
 
     force: RealArray
@@ -39,6 +41,7 @@ class RecordSamples:
     contact_height: RealArray | None = None
     uplift: RealArray | None = None
     support_position: RealArray | None = None
+    ignored: tuple[str, ...] = ()
 
     def select(self, mask: NDArray[np.bool_]) -> "RecordSamples":
         """Samples inside a mask."""

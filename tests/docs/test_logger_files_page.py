@@ -1,9 +1,16 @@
 """Page about files of data loggers: its table lists all formats, and its sidecars are valid."""
 
 import re
+import tomllib
 from pathlib import Path
 
+import pytest
+from jsonschema import validate
+
 from pantocheck.conformance.input_files.table_formats import TABLE_FORMATS
+from pantocheck.conformance.input_files.text_settings import TextSettings
+from pantocheck.conformance.records.record_sidecar import RecordSidecar
+from pantocheck.conformance.schemas import build_schema
 
 PAGE = Path(__file__).parents[2] / "docs" / "logger-files.md"
 
@@ -13,3 +20,16 @@ def test_page_lists_the_suffixes_and_extras_of_all_formats() -> None:
     rows = [row.split("|") for row in PAGE.read_text(encoding="utf-8").splitlines() if re.match(r"\| .*\(`\.", row)]
     listed = {(*re.findall(r"`(\.\w+)`", row[1]), *re.findall(r"extra `(\w+)`", row[2])) for row in rows}
     assert listed == {(*row.suffixes, *filter(None, [row.extra])) for row in TABLE_FORMATS}
+
+
+SIDECARS = re.findall(r"```toml\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
+
+
+def test_layout_of_the_page_is_valid() -> None:
+    assert TextSettings.model_validate(tomllib.loads(SIDECARS[0])["table"]).header_lines == 4
+
+
+@pytest.mark.parametrize("text", SIDECARS[1:])
+def test_sidecars_of_the_page_are_valid_and_follow_their_schema(text: str) -> None:
+    RecordSidecar.model_validate(tomllib.loads(text))
+    validate(tomllib.loads(text), build_schema("record"))

@@ -57,7 +57,13 @@ from pantocheck.conformance.grading import (
 )
 from pantocheck.conformance.quantities import bands, filters, limit_text, signals
 from pantocheck.conformance.records import record
-from pantocheck.conformance.records.measured import block_bootstrap, force_checks, usable_sections
+from pantocheck.conformance.records.logger import track_position
+from pantocheck.conformance.records.measured import (
+    block_bootstrap,
+    force_checks,
+    record_preparation,
+    usable_sections,
+)
 from pantocheck.conformance.results import results_part, results_reading, traces
 
 ROOT = Path(__file__).parents[2]
@@ -67,6 +73,7 @@ ROWS = re.findall(
     re.MULTILINE,
 )
 MODULES: list[ModuleType] = [
+    track_position, record_preparation,
     attachment, reported_numbers, force_content, force_copy, force_dynamics, implied_force, mean_force, roll_off,
     rounding, support_coincidence, support_passing, assessed_record, baseline, discretisation,
     extended_band, record_mismatch, record_uncertainty, start_agreement, start_and_section, validity_warnings,

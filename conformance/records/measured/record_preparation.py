@@ -30,6 +30,9 @@ from pantocheck.conformance.records.record import MAX_SAMPLES, RecordInvalid
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.samples import RecordSamples, analysis_section
 
+MOST_NAMES = 20
+"""Largest number of names in a note."""
+
 
 @dataclass(frozen=True)
 class PreparedRecord:
@@ -146,7 +149,7 @@ def prepare_record(
         speed=mean_speed,
         section=section,
         seconds=seconds,
-        notes=(*_resampling_notes(placed, rate), *([length] if seconds else [])),
+        notes=(*_resampling_notes(placed, rate), *_ignored_notes(samples), *([length] if seconds else [])),
         warnings=(*warnings, *edge_warnings(pantographs, mean_speed), *remarks),
     )
 
@@ -222,6 +225,14 @@ def _prepare_line(
     complete = ~has_gaps(samples.support_position, uplift, last_position)
     supports = samples.support_position[complete]
     return LineSignals(section, supports, uplift[complete], last_position=last_position), warnings
+
+
+def _ignored_notes(samples: RecordSamples) -> list[str]:
+    """Names of the columns that are not used, cut to a readable length."""
+    if not samples.ignored:
+        return []
+    names = ", ".join(samples.ignored[:MOST_NAMES])
+    return [f"Columns of the file that are not used: {names}{', ...' if len(samples.ignored) > MOST_NAMES else ''}."]
 
 
 def _resampling_notes(placed: PlacedSamples, rate: float) -> list[str]:

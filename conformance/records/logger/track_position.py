@@ -1,0 +1,110 @@
+"""Position of a train from distance pulses and kilometre marks."""
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from pantocheck.conformance.array_types import RealArray
+
+FEWEST_PULSES = 2
+"""Smallest number of pulses that gives a speed."""
+
+LONGEST_EXTRAPOLATION = 1.0
+"""Longest extrapolation beyond the first and last pulse, in intervals of two pulses; the next pulse would be known."""
+
+RISING, FALLING = 0.6, 0.4
+"""Levels of a rising and a falling edge as shares of the range of a pulse train; noise between them is no pulse."""
+
+
+class PulsesUnusable(ValueError):
+    """Pulses that give no position; a guessed distance would shift every place of the record."""
+
+
+def count_distance(count: RealArray, metres_per_pulse: float) -> RealArray:
+    """Distance from the first sample, from a counter of pulses.
+
+    A counter stands still between two pulses. The distance is interpolated between the samples at which it changes.
+
+    Parameters
+    ----------
+    count : (n,) ndarray
+        Reading of the counter, increasing or decreasing [pulses].
+    metres_per_pulse : float
+        Distance per pulse [m].
+
+    Returns
+    -------
+    (n,) ndarray
+        Distance [m], 0 at the first sample; NaN where the train stands before the first or after the last pulse.
+
+    Raises
+    ------
+    PulsesUnusable
+        The counter runs forwards and backwards, has gaps, or counts fewer than two pulses.
+    """
+    if not np.isfinite(count).all():
+        raise PulsesUnusable(f"sample {int(np.argmin(np.isfinite(count))) + 1} of the counter is missing")
+    steps = np.diff(count)
+    backwards = np.flatnonzero(steps * (count[-1] - count[0]) < 0)
+    if backwards.size:
+        raise PulsesUnusable(f"the counter runs backwards at sample {backwards[0] + 2}")
+    changes = np.flatnonzero(steps) + 1
+    if changes.size < FEWEST_PULSES:
+        raise PulsesUnusable(f"{changes.size} pulses are counted")
+    travelled = np.abs(count[changes] - count[0]) * metres_per_pulse
+    return _interpolate_from_start(changes.astype(np.float64), travelled, count.size)
+
+
+def pulse_distance(signal: RealArray, metres_per_pulse: float) -> RealArray:
+    """Distance from the first sample, from the rising edges of a pulse train; parameters as in `count_distance`.
+
+    The time of an edge is interpolated between two samples.
+
+    Raises
+    ------
+    PulsesUnusable
+        The signal is missing or constant, has fewer than two edges, or more than one edge in two samples.
+    """
+    if not np.isfinite(signal).all() or np.ptp(signal) == 0:
+        raise PulsesUnusable("the pulse train is constant, or values are missing")
+    level = (signal - signal.min()) / np.ptp(signal)
+    state = np.where(level >= RISING, 1.0, np.where(level <= FALLING, 0.0, np.nan))
+    known = np.flatnonzero(np.isfinite(state))
+    edges = known[1:][(state[known[1:]] == 1) & (state[known[:-1]] == 0)]
+    if edges.size < FEWEST_PULSES:
+        raise PulsesUnusable(f"the pulse train has {edges.size} rising edges")
+    if np.median(np.diff(edges)) <= 2:
+        raise PulsesUnusable("the pulse train has about one edge in two samples: pulses may be lost")
+    before, after = level[edges - 1], level[edges]
+    crossing = edges - (after - RISING) / np.maximum(after - before, 1e-12)
+    return _interpolate_from_start(crossing, np.arange(edges.size) * metres_per_pulse, signal.size)
+
+
+def _interpolate_from_start(index: RealArray, travelled: RealArray, size: int) -> RealArray:
+    """Distance at every sample, 0 at the first one, from distances at (fractional) samples."""
+    samples = np.arange(size, dtype=np.float64)
+    distance = np.interp(samples, index, travelled, left=np.nan, right=np.nan)
+    for first, second, outside in ((0, 1, samples < index[0]), (-1, -2, samples > index[-1])):
+        interval = abs(index[first] - index[second])
+        slope = (travelled[first] - travelled[second]) / (index[first] - index[second])
+        near = outside & (np.abs(samples - index[first]) <= LONGEST_EXTRAPOLATION * interval)
+        distance[near] = travelled[first] + slope * (samples[near] - index[first])
+    begin = int(np.argmax(np.isfinite(distance)))
+    return np.asarray(distance - distance[begin])
+
+
+def interpolate_marks(time: RealArray, mark_time: RealArray, mark_position: RealArray) -> RealArray:
+    """Position between marks by monotone cubics; NaN before the first and after the last mark.
+
+    Parameters
+    ----------
+    time : (n,) ndarray
+        Time of the samples [s].
+    mark_time, mark_position : (k,) ndarray
+        Times [s] and positions [m] of the marks, both increasing.
+
+    Returns
+    -------
+    (n,) ndarray
+        Position [m].
+    """
+    return np.asarray(PchipInterpolator(mark_time, mark_position, extrapolate=False)(time))
