@@ -12,6 +12,8 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.reports.document import Document
 from pantocheck.conformance.reports.formats.badge import render_badge
+from pantocheck.conformance.reports.formats.embedded_results import strip_times
+from pantocheck.conformance.reports.formats.reproducibility import read_source_date
 
 if TYPE_CHECKING:
     from pantocheck.conformance.results.results_format import Results
@@ -86,7 +88,13 @@ def write_all(results: "Results", folder: Path, formats: Sequence[str]) -> list[
 
 
 def write_pages(results: dict[str, Any], folder: Path, formats: Sequence[str]) -> None:
-    """Write every format but results.json; the certificate is composed once for all its formats."""
+    """Write every format but results.json; the certificate is composed once for all its formats.
+
+    If the environment sets `SOURCE_DATE_EPOCH`, the times of the run are left out, so that a second run of the same
+    input gives the same bytes.
+    """
+    if read_source_date() is not None:
+        results = strip_times(results)
     pages = [name for name in formats if name in ("html", "pdf")]
     if pages:
         from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
