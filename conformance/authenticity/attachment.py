@@ -1,80 +1,114 @@
-"""Extraction of the results from a certificate of unknown origin."""
+"""Reading of a PDF of unknown origin, and of the results attached to it."""
 
+from dataclasses import dataclass
 from io import BytesIO
-from pathlib import Path
-from typing import Any
 
 from pypdf import PdfReader
 
-from pantocheck.conformance.input_files.bounded_file import read_bytes
+from pantocheck.conformance.authenticity.revision_ends import cut_original_revision
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.reports.formats.embedded_results import NAME
 from pantocheck.conformance.reports.page_text import clean_text
+from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.results.results_reading import parse_results
 
-MAX_DOCUMENT_BYTES = 64 * 2**20
-"""Largest PDF that is read [bytes]; a certificate of two cases has half a million."""
+
+@dataclass(frozen=True)
+class PdfCertificate:
+    """Certificate as PDF.
+
+    Parameters
+    ----------
+    name : str
+        Name of the file.
+    content : bytes
+        Content of the file, with all updates.
+    original : bytes
+        First revision: the document as it was written, without the updates that were appended.
+    reader : PdfReader
+        Reader of the first revision.
+    attachment : bytes
+        Attached results.
+    results : Results
+        The same results as values.
+    """
+
+    name: str
+    content: bytes
+    original: bytes
+    reader: PdfReader
+    attachment: bytes
+    results: Results
 
 
-def open_document(path: Path) -> PdfReader:
-    """Open a PDF for reading.
+def parse_pdf_certificate(content: bytes, name: str) -> PdfCertificate:
+    """Read a certificate as PDF.
+
+    Parameters
+    ----------
+    content : bytes
+        Content of the file.
+    name : str
+        Name of the file in messages.
 
     Raises
     ------
     InputError
-        It cannot be read, is too large, is damaged or is not a PDF.
+        Damaged, encrypted, without pages, or without valid results.
     """
-    content = read_bytes(path, str(path), MAX_DOCUMENT_BYTES)
-    if b"%PDF-" not in content[:1024]:
-        raise InputError(str(path), "not a PDF", "Name the certificate.pdf that 'pantocheck run' wrote.")
+    original = cut_original_revision(content)
+    reader = open_document(original, name)
+    attachment = read_attachment(reader, name)
+    return PdfCertificate(
+        name, content, original, reader, attachment, parse_results(attachment, f"{name}, attachment {NAME}")
+    )
+
+
+def open_document(content: bytes, name: str) -> PdfReader:
+    """Open a PDF for reading; parameters as in `parse_pdf_certificate`.
+
+    Raises
+    ------
+    InputError
+        It is damaged, encrypted or without pages.
+    """
     try:
         reader = PdfReader(BytesIO(content), strict=True)
-        pages = len(reader.pages)
+        encrypted = reader.is_encrypted
+        pages = 0 if encrypted else len(reader.pages)
     except Exception as error:
-        raise _build_damage_error(path, error) from None
+        raise _build_damage_error(name, error) from None
+    if encrypted:
+        raise InputError(name, "an encrypted PDF", "Pantocheck writes no encrypted PDF. Request the certificate again.")
     if pages == 0:
-        raise InputError(str(path), "a PDF without pages", "Request the certificate again.")
+        raise InputError(name, "a PDF without pages", "Request the certificate again.")
     return reader
 
 
-def read_title_and_first_page(path: Path, reader: PdfReader) -> tuple[str, str]:
-    """Read the title in the metadata and the text of the first page.
+def read_attachment(reader: PdfReader, name: str) -> bytes:
+    """Content of the attached results.
 
     Raises
     ------
     InputError
-        The PDF is damaged.
-    """
-    try:
-        title = reader.metadata.title if reader.metadata else None
-        return str(title or ""), reader.pages[0].extract_text()
-    except Exception as error:
-        raise _build_damage_error(path, error) from None
-
-
-def read_embedded_results(path: Path, reader: PdfReader) -> dict[str, Any]:
-    """Read the results embedded in a certificate and validate their format.
-
-    Raises
-    ------
-    InputError
-        The attachment is missing, repeated, too large, not JSON, or not in the format of the suite.
+        The attachment is missing, repeated or cannot be decoded.
     """
     try:
         attachments = reader.attachments.get(NAME, [])
         content = bytes(attachments[0]) if len(attachments) == 1 else b""
     except Exception as error:
-        raise _build_damage_error(path, error) from None
+        raise _build_damage_error(name, error) from None
     if len(attachments) != 1:
-        number = len(attachments) or "no"
-        hint = f"A certificate holds one {NAME}; other PDFs cannot be verified."
-        raise InputError(str(path), f"{number} attachment named {NAME}", hint)
-    where = f"{path}, attachment {NAME}"
-    return parse_results(content, where).to_dict()
+        hint = (
+            f"A certificate holds one {NAME}. Other PDFs cannot be verified; reports on campaigns, mass drops and "
+            "comparisons hold no results."
+        )
+        raise InputError(name, f"{len(attachments) or 'no'} attachment named {NAME}", hint)
+    return content
 
 
-def _build_damage_error(path: Path, error: Exception) -> InputError:
+def _build_damage_error(name: str, error: Exception) -> InputError:
     """Message for an exception of the parser; its exceptions for damaged files have no common base."""
     return InputError(
-        str(path), f"a damaged PDF ({clean_text(str(error)) or type(error).__name__})", "Request the certificate again."
+        name, f"a damaged PDF ({clean_text(str(error)) or type(error).__name__})", "Request the certificate again."
     )

@@ -1,23 +1,23 @@
 """Recomputation of results from their own numbers: a value that does not follow from its inputs is a discrepancy."""
 
-import math
 from collections.abc import Iterator
-from itertools import pairwise
 from typing import Any
 
-from pantocheck.conformance.authenticity.reported_numbers import EXACT, ROUNDED, same_number, select_item
+from pantocheck.conformance.authenticity.reported_numbers import EXACT, format_exact, same_number, select_item
+from pantocheck.conformance.authenticity.trace_check import check_trace, check_uplift
 from pantocheck.conformance.authenticity.uncertainty_check import check_combination, check_components
 from pantocheck.conformance.grading.case_verdict import judge_case, read_participation
 from pantocheck.conformance.grading.near_limit import ValueErrors, near_limit_remarks
 from pantocheck.conformance.grading.start_agreement import list_verification_components
 from pantocheck.conformance.grading.verdicts import Verdict, judge, margin
 from pantocheck.conformance.input_files.trust import limit_counts
-from pantocheck.conformance.quantities.bands import BANDS
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, statistical_extremes
 from pantocheck.conformance.results.criterion_format import COMPONENT_NAMES
 from pantocheck.conformance.results.finding_format import count_findings, count_verdict, judge_finding
 from pantocheck.conformance.results.record_facts import RecordFacts
 from pantocheck.conformance.results.results_format import Results
+from pantocheck.conformance.results.scope import build_scope
+from pantocheck.model.statics.wave_factors import amplification_coefficient, doppler_factor
 
 
 def find_discrepancies(results: dict[str, Any]) -> list[str]:
@@ -44,6 +44,8 @@ def find_discrepancies(results: dict[str, Any]) -> list[str]:
     if stated.criteria_verdict is not None:  # null: made by a version without a second verdict
         pairs.append(("EN 50318 criteria: ", stated.criteria_verdict, decided.criteria_verdict))
     findings = count_findings(row.finding for case in stated.cases for row in case.criteria)
+    if stated.scope and stated.scope != build_scope(stated.cases):
+        discrepancies.append("the scope does not follow from the cases")
     return [
         *discrepancies,
         *(() if stated.findings == findings else ("the numbers of findings do not follow from the criteria",)),
@@ -64,12 +66,13 @@ def _check_case(case: dict[str, Any], trust: Any) -> Iterator[str]:
         yield f"{case['id']}: verdict '{stated}' stated, '{verdict}' follows from the criteria and the record"
     if verification is not None:
         yield from _check_verification(case, verification, record)
+    yield from (f"{case['id']}: {text}" for text in (*check_uplift(case), *_check_line(case)))
     for key, quantities in case["quantities"].items():
         trace = case["traces"].get(key)
         # Statistics delivered as numbers are rounded, and printed tables are not always consistent.
         computed = trace is not None or case["run"]["rate_Hz"] is not None
         statistics = (*_check_order(quantities), *(_check_statistics(quantities) if computed else ()))
-        for text in (*statistics, *(_check_trace(quantities, trace) if trace else ())):
+        for text in (*statistics, *(check_trace(quantities, trace) if trace else ())):
             yield f"{case['id']}, pantograph {key}: {text}"
 
 
@@ -98,7 +101,7 @@ def _check_value(row: dict[str, Any], quantities: dict[str, Any]) -> Iterator[st
     """The graded value must be the reported quantity."""
     reported = select_item(quantities.get(str(row["pantograph"]), {}).get(row["quantity"]), row["item"])
     if row["value"] != reported:
-        yield f"value {_format(row['value'])} graded, {_format(reported)} reported among the quantities"
+        yield f"value {format_exact(row['value'])} graded, {format_exact(reported)} reported among the quantities"
 
 
 def _check_grade(row: dict[str, Any], trust: Any) -> Iterator[str]:
@@ -110,7 +113,7 @@ def _check_grade(row: dict[str, Any], trust: Any) -> Iterator[str]:
             yield "no limit"
         return
     if lower is not None and upper is not None and lower > upper:
-        yield f"lower limit {_format(lower)} above upper limit {_format(upper)}"
+        yield f"lower limit {format_exact(lower)} above upper limit {format_exact(upper)}"
         return
     judged = "skip" if value is None else judge(value, lower, upper)
     finding = row["finding"]
@@ -122,10 +125,10 @@ def _check_grade(row: dict[str, Any], trust: Any) -> Iterator[str]:
         yield f"verdict '{row['verdict']}' stated, '{verdict}' follows from value, limits and trust"
     expected = None if value is None else margin(value, lower, upper)
     if not same_number(row["margin"], expected, EXACT):
-        yield f"margin {_format(row['margin'])} stated, {_format(expected)} follows from value and limits"
+        yield f"margin {format_exact(row['margin'])} stated, {format_exact(expected)} follows from value and limits"
     errors = ValueErrors(row["discretisation_error"], row["spread"], row["components"], row["limit_uncertainty"])
     if row["components"] and not same_number(row["uncertainty"], errors.uncertainty, EXACT):
-        printed, combined = _format(row["uncertainty"]), _format(errors.uncertainty)
+        printed, combined = format_exact(row["uncertainty"]), format_exact(errors.uncertainty)
         yield f"uncertainty {printed} stated, {combined} follows from its components"
     remarks = near_limit_remarks(value, (lower, upper), row["unit"], errors)
     if row["close"] != remarks:
@@ -144,48 +147,28 @@ def _check_statistics(quantities: dict[str, Any]) -> Iterator[str]:
         expected |= {k: coefficient_of_variation(mean, v) for k, v in ratios.items() if v is not None}
     for name, value in expected.items():
         if name in quantities and not same_number(quantities[name], value, EXACT):
-            stated = _format(quantities[name])
-            yield f"{name} {stated} stated, {_format(value)} follows from mean and standard deviation"
+            stated = format_exact(quantities[name])
+            yield f"{name} {stated} stated, {format_exact(value)} follows from mean and standard deviation"
+
+
+def _check_line(case: dict[str, Any]) -> Iterator[str]:
+    """Quantities of the line must follow from the wave speed and from the elasticities that they are functions of."""
+    line, speed = case["quantities"].get("0", {}), (case["run"]["speed_km_h"] or 0) / 3.6
+    expected: dict[str, float] = {}
+    if wave := line.get("wave_speed_m_s"):
+        expected["speed_over_wave_speed"] = speed / wave
+        expected["doppler_factor"] = doppler_factor(speed, wave)
+    if "reflection_coefficient" in line and line.get("doppler_factor"):
+        expected["amplification_coefficient"] = amplification_coefficient(
+            line["reflection_coefficient"], line["doppler_factor"]
+        )
+    for name, value in expected.items():
+        if name in line and not same_number(line[name], value, EXACT):
+            yield f"{name} {format_exact(line[name])} stated, {format_exact(value)} follows from the wave speed"
 
 
 def _check_order(quantities: dict[str, Any]) -> Iterator[str]:
     """The minimum must not exceed the maximum."""
     low, high = quantities.get("min_force_N"), quantities.get("max_force_N")
     if low is not None and high is not None and low > high:
-        yield f"min_force_N {_format(low)} above max_force_N {_format(high)}"
-
-
-def _check_trace(quantities: dict[str, Any], trace: dict[str, Any]) -> Iterator[str]:
-    """Drawn curves must agree with the stated quantities."""
-    for key, name in (("mean_N", "mean_force_N"), ("std_N", "std_force_N")):
-        if name in quantities and trace[key] is not None and not same_number(trace[key], quantities[name], ROUNDED):
-            yield f"{name} {_format(quantities[name])} stated, {_format(trace[key])} drawn"
-    force = trace["force_20_N"]
-    if force:
-        # The drawn force is thinned: it may miss the extremes, but must not exceed them.
-        slack = ROUNDED * max(map(abs, force))
-        if "max_force_N" in quantities and max(force) > quantities["max_force_N"] + slack:
-            yield f"max_force_N {_format(quantities['max_force_N'])} stated, {_format(max(force))} drawn"
-        if "min_force_N" in quantities and min(force) < quantities["min_force_N"] - slack:
-            yield f"min_force_N {_format(quantities['min_force_N'])} stated, {_format(min(force))} drawn"
-    yield from _check_bands(quantities, trace["spectrum"]["frequency_Hz"], trace["spectrum"]["amplitude_N"])
-
-
-def _check_bands(quantities: dict[str, Any], frequency: list[float], amplitude: list[float]) -> Iterator[str]:
-    """RMS values of the bands must follow from the drawn spectrum by Parseval, if it has all its lines."""
-    steps = [b - a for a, b in pairwise(frequency)]
-    complete = len(frequency) == len(amplitude) and steps and max(steps) - min(steps) <= ROUNDED * max(frequency)
-    if not complete:
-        return
-    for low, high, name in BANDS:
-        # Rounding may have moved a line onto an edge, so that its band is unknown.
-        doubtful = any(abs(f - edge) <= ROUNDED * edge for f in frequency for edge in (low, high) if edge)
-        if name not in quantities or doubtful:
-            continue
-        power = sum(a * a / 2 for f, a in zip(frequency, amplitude, strict=True) if low < f <= high)
-        if not same_number(quantities[name], math.sqrt(power), ROUNDED):
-            yield f"{name} {_format(quantities[name])} stated, {_format(math.sqrt(power))} follows from the spectrum"
-
-
-def _format(value: float | None) -> str:
-    return "nothing" if value is None else f"{value:.10g}"
+        yield f"min_force_N {format_exact(low)} above max_force_N {format_exact(high)}"

@@ -20,3 +20,8 @@ def same_number(a: float | None, b: float | None, tolerance: float = EXACT) -> b
     if a is None or b is None:
         return a is b
     return math.isclose(a, b, rel_tol=tolerance, abs_tol=tolerance)
+
+
+def format_exact(value: float | None) -> str:
+    """Number with the digits that show a discrepancy; `nothing` for None."""
+    return "nothing" if value is None else f"{value:.10g}"

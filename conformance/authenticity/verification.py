@@ -1,72 +1,129 @@
-"""Verification of a certificate: its embedded results are extracted and graded again."""
+"""Verification of a document: its results are graded again, its pages are made again, its cases are compared."""
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Literal
 
-from pantocheck.conformance.authenticity.attachment import (
-    open_document,
-    read_embedded_results,
-    read_title_and_first_page,
-)
+from pantocheck.conformance.authenticity.attachment import PdfCertificate
+from pantocheck.conformance.authenticity.authenticity_check import DocumentCheck, judge_details
+from pantocheck.conformance.authenticity.certificate_reading import Certificate, read_certificate
+from pantocheck.conformance.authenticity.completeness import find_gaps
+from pantocheck.conformance.authenticity.library_check import check_library
+from pantocheck.conformance.authenticity.page_check import check_pages
+from pantocheck.conformance.authenticity.pdf_updates import check_updates
 from pantocheck.conformance.authenticity.recomputation import find_discrepancies
+from pantocheck.conformance.authenticity.version_differences import list_suite_differences, list_version_differences
 from pantocheck.conformance.grading.verdicts import Verdict
-from pantocheck.conformance.reports.certificate.certificate_page import HEADING
-from pantocheck.conformance.reports.page_text import clean_text
-from pantocheck.conformance.reports.words import read_words
+from pantocheck.conformance.results.results_format import Results
+
+DocumentState = Literal["consistent", "incomplete", "contradicted"]
+"""State of a document without a signature: without contradiction, the same but compared in part, or contradicted."""
 
 
 @dataclass(frozen=True)
 class Verification:
-    """Result of the verification of a certificate."""
+    """Result of the verification of a document.
 
-    verdict: Verdict
-    """Verdict stated in the embedded results."""
-    cases: int
-    criteria: int
-    discrepancies: tuple[str, ...]
-    """One line each; none if the certificate is consistent."""
+    Parameters
+    ----------
+    results : Results
+        Results inside the document.
+    checks : tuple of DocumentCheck
+        Checks in the order of reports.
+    """
+
+    results: Results
+    checks: tuple[DocumentCheck, ...]
+
+    @property
+    def verdict(self) -> Verdict:
+        """Verdict stated in the results."""
+        return self.results.verdict
+
+    @property
+    def cases(self) -> int:
+        """Number of cases."""
+        return len(self.results.cases)
+
+    @property
+    def criteria(self) -> int:
+        """Number of criteria, those of the verification up to 50 Hz included."""
+        return sum(
+            len(case.criteria) + (0 if case.verification is None else len(case.verification.criteria))
+            for case in self.results.cases
+        )
+
+    @property
+    def discrepancies(self) -> tuple[str, ...]:
+        """Contradictions, one line each."""
+        return tuple(line for check in self.checks if check.outcome == "contradicted" for line in check.details)
+
+    @property
+    def state(self) -> DocumentState:
+        """State of the document, decided by its worst check."""
+        outcomes = {check.outcome for check in self.checks}
+        if "contradicted" in outcomes:
+            return "contradicted"
+        return "incomplete" if "incomplete" in outcomes else "consistent"
 
     @property
     def consistent(self) -> bool:
-        """Whether every verdict follows from the numbers."""
-        return not self.discrepancies
+        """Whether the document was compared in full and contradicts itself nowhere."""
+        return self.state == "consistent"
+
+    def add_checks(self, checks: Iterable[DocumentCheck]) -> "Verification":
+        """Verification with further checks."""
+        return replace(self, checks=(*self.checks, *checks))
 
 
-def verify_certificate(path: Path) -> Verification:
-    """Grade the results embedded in a certificate again and compare.
+def verify_document(path: Path) -> Verification:
+    """Verify a certificate or a results.json.
 
-    A consistent certificate has verdicts that follow from its numbers. Only a new run shows that the numbers come from
-    the named system.
+    A consistent document has verdicts that follow from its numbers, pages that follow from its results, and the cases
+    of the library. Only a record or a new run shows that the numbers come from the named system.
 
     Parameters
     ----------
     path : Path
-        Certificate as PDF.
+        Certificate as PDF or HTML page, or results.json.
 
     Raises
     ------
     InputError
-        Not a PDF, damaged, or without valid results.
+        None of these, damaged, or without valid results.
     """
-    reader = open_document(path)
-    results = read_embedded_results(path, reader)
-    discrepancies = find_discrepancies(results)
-    word = read_words()["verdict"][results["verdict"]]["word"]
-    title, first_page = read_title_and_first_page(path, reader)
-    if not title.startswith(word):
-        discrepancies.append(f"the document's title does not begin with the verdict {word}: '{title}'")
-    heading = next((line for line in first_page.splitlines() if line.startswith(HEADING)), "")
-    if word not in heading.split():
-        discrepancies.append(f"the first page does not print the verdict {word} in its heading: '{heading}'")
-    return Verification(
-        verdict=results["verdict"],
-        cases=len(results["cases"]),
-        criteria=sum(len(case["criteria"]) + _count_verified(case) for case in results["cases"]),
-        discrepancies=tuple(clean_text(text) for text in discrepancies),
+    return verify_certificate(read_certificate(path))
+
+
+def verify_certificate(document: Certificate) -> Verification:
+    """Verify a document that was read; see `verify_document`."""
+    results = document.results
+    updates = check_updates(document) if isinstance(document, PdfCertificate) else []
+    checks = (
+        _check_numbers(results),
+        *_check_completeness(results),
+        check_pages(document),
+        *updates,
+        *check_library(results),
+    )
+    if any(check.outcome == "incomplete" for check in checks):
+        text = "Other versions made this document; install them to compare it in full."
+        checks = (DocumentCheck("incomplete", text, tuple(list_version_differences(results))), *checks)
+    return Verification(results, checks)
+
+
+def _check_numbers(results: Results) -> DocumentCheck:
+    return judge_details(
+        "Verdicts, margins, uncertainties and statistics follow from the embedded numbers.",
+        "The embedded numbers and verdicts contradict each other.",
+        find_discrepancies(results.to_dict()),
     )
 
 
-def _count_verified(case: dict[str, Any]) -> int:
-    """Number of criteria of the verification up to 50 Hz of a case."""
-    return 0 if case["verification"] is None else len(case["verification"]["criteria"])
+def _check_completeness(results: Results) -> list[DocumentCheck]:
+    """Missing parts; a document of another version may state less."""
+    gaps = tuple(find_gaps(results))
+    if gaps and list_suite_differences(results):
+        return [DocumentCheck("incomplete", "The document states less than one of the installed version.", gaps)]
+    return [DocumentCheck("contradicted", "Parts that every run writes are missing.", gaps)] if gaps else []

@@ -29,7 +29,7 @@ COMMANDS = {
     "compare-statics": "Compare elasticities and contact wire heights measured along a line with its model.",
     "compare-response": "Compare frequency responses measured at a pantograph head with its model.",
     "sign": "Sign a certificate or results.",
-    "verify": "Check that the verdict of a certificate follows from its numbers.",
+    "verify": "Verify a document: its verdicts, its pages, its cases and its signatures.",
     "site": "Write a static site from many results: systems against cases, and versions over time.",
     "doctor": "Show versions, extras, caches and folders of this installation.",
     "schema": "Print or write the JSON Schema of a file format, for editors and validators.",

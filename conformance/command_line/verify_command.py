@@ -1,48 +1,98 @@
-"""`pantocheck verify`: grading of the results in a certificate once more."""
+"""`pantocheck verify`: verification of a certificate as PDF or HTML page, or of a results.json."""
 
+import textwrap
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from pantocheck.conformance.authenticity.authenticity_check import CheckOutcome
+from pantocheck.conformance.authenticity.origin_check import check_origin
 from pantocheck.conformance.authenticity.signatures.signature_check import check_signatures
-from pantocheck.conformance.authenticity.signatures.signature_facts import describe_signatures
-from pantocheck.conformance.authenticity.verification import verify_certificate
+from pantocheck.conformance.authenticity.verification import Verification, verify_document
 from pantocheck.conformance.command_line.guard import strip_control_characters
 from pantocheck.conformance.command_line.results_output import EXIT_CODES
 
+WIDTH = 80
+"""Columns of the output, so that it can be read in any terminal and mail."""
+
+HEADINGS: dict[CheckOutcome, str] = {
+    "contradicted": "Contradictions",
+    "incomplete": "Not compared in full",
+    "proved": "Proved",
+    "open": "Not proved",
+}
+"""Headings of the checks by their outcome, in the order of the output."""
+
 
 def verify_command(
-    certificate: Annotated[Path, typer.Argument(metavar="CERTIFICATE.pdf", help="Certificate to verify.")],
+    document: Annotated[
+        Path, typer.Argument(metavar="FILE", help="certificate.pdf, certificate.html or results.json.")
+    ],
     trust_roots: Annotated[
         Path | None, typer.Option(help="PEM file of the authorities whose signatures are trusted.")
     ] = None,
+    any_verdict: Annotated[
+        bool, typer.Option("--any-verdict", help="Exit code 0 for a consistent document of any verdict.")
+    ] = False,
 ) -> None:
-    """Check that the verdict of a certificate follows from its numbers.
+    """Verify a document: its verdicts, its pages, its cases and its signatures.
 
-    The results in the PDF are graded again. Exit code 0: every verdict and margin follows from the numbers, and the
-    verdict is `pass`. Exit code 1: discrepancies, which are listed, or another verdict. Exit code 2: the verdict is
-    `error`, or the file is not a certificate.
+    The results in the document are graded again, the pages are made again and compared, and the cases are compared
+    with the installed library. Exit code 0: no contradiction, compared in full, and the verdict is `pass`. Exit code 1:
+    another verdict, a contradiction, or a document of another version that cannot be compared in full. Exit code 2: the
+    verdict is `error`, or the file is no such document.
 
-    A signature shows who made the certificate: with --trust-roots, every signature must lead to one of these
-    authorities. Without, signers are named, but not trusted. The check does not show that the limits are those of the
-    library.
+    A consistent document need not be authentic: invented results can be consistent. A signature shows who made it: with
+    --trust-roots, every signature must lead to one of these authorities. Without, signers are named, but not trusted.
 
     Example: pantocheck verify report/certificate.pdf
     """
-    verification = verify_certificate(certificate)
-    size = f"{_count(verification.cases, 'case', 'cases')}, {verification.criteria} criteria"
-    report = check_signatures(certificate, trust_roots)
-    discrepancies = (*verification.discrepancies, *report.contradictions)
-    if not discrepancies:
-        word = "authentic" if report.authentic else "consistent"
-        typer.echo(f"{word}: the verdict '{verification.verdict}' follows from the embedded numbers ({size}).")
-    else:
-        count = _count(len(discrepancies), "discrepancy", "discrepancies")
-        typer.echo(f"not consistent: {count} ({size}; stated verdict '{verification.verdict}').")
-    for text in (*(f"  {text}" for text in discrepancies), *describe_signatures(report)):
-        typer.echo(strip_control_characters(text))
-    raise typer.Exit(1 if discrepancies else EXIT_CODES[verification.verdict])
+    verification = verify_document(document)
+    report = check_signatures(document, trust_roots)
+    verification = verification.add_checks(check_origin(report))
+    word = "authentic" if report.authentic else "consistent"
+    typer.echo("\n".join(_describe(verification, word)))
+    raise typer.Exit(_exit_code(verification, any_verdict))
+
+
+def _exit_code(verification: Verification, any_verdict: bool) -> int:
+    if not verification.consistent:
+        return 1
+    return 0 if any_verdict else EXIT_CODES[verification.verdict]
+
+
+def _describe(verification: Verification, word: str) -> Iterator[str]:
+    size = f"{_count(verification.cases, 'case', 'cases')}, {_count(verification.criteria, 'criterion', 'criteria')}"
+    verdict = verification.verdict
+    match verification.state:
+        case "consistent":
+            yield _wrap(f"{word}: the verdict '{verdict}' follows from the embedded numbers ({size}).", "")
+        case "incomplete":
+            yield _wrap(f"consistent in part: the verdict '{verdict}' follows ({size}), but not all was compared.", "")
+        case "contradicted":
+            count = _count(len(verification.discrepancies), "contradiction", "contradictions")
+            yield _wrap(f"not consistent: {count} ({size}; stated verdict '{verdict}').", "")
+    for outcome, heading in HEADINGS.items():
+        checks = [check for check in verification.checks if check.outcome == outcome]
+        if checks:
+            yield f"{heading}:"
+        for check in checks:
+            yield _wrap(check.statement, "  * ")
+            yield from (_wrap(line, "    - ") for line in check.details)
+
+
+def _wrap(text: str, mark: str) -> str:
+    """Paragraph of the width of the output; a long word such as a digest is not broken."""
+    return textwrap.fill(
+        strip_control_characters(text.strip()),
+        WIDTH,
+        initial_indent=mark,
+        subsequent_indent=" " * len(mark),
+        break_on_hyphens=False,
+        break_long_words=False,
+    )
 
 
 def _count(number: int, singular: str, plural: str) -> str:

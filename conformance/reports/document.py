@@ -223,7 +223,9 @@ class Document:
     header: PlainHeader | VerdictHeader
     blocks: tuple[Block, ...]
     results: dict[str, Any] | None = None
-    """Results to be embedded in the HTML and in the PDF, which then bears the date of their run; None: neither."""
+    """Results to be embedded in the HTML and in the PDF, which then bear the date; None: neither."""
+    date: int = 0
+    """Date of the document [s since 1970]; 0: not known."""
 
 
 def to_plain(value: Any) -> Any:

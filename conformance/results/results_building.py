@@ -12,6 +12,7 @@ from pantocheck.conformance.grading.uncertainty import Uncertainty
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.evaluation import Value
 from pantocheck.conformance.results.finding_format import count_findings
+from pantocheck.conformance.results.renderer_identity import identify_renderer
 from pantocheck.conformance.results.results_format import CaseResult, Platform, Results, SystemIdentity
 from pantocheck.conformance.results.results_part import Number
 from pantocheck.conformance.results.scope import build_scope
@@ -100,6 +101,7 @@ def build_results(
             machine=host.machine(),
             system=host.system(),
         ),
+        renderer=identify_renderer(),
         scope=build_scope(cases),
         findings=count_findings(row.finding for case in cases for row in case.criteria),
         cases=list(cases),

@@ -48,6 +48,18 @@ class Platform(ResultsPart):
     system: str
 
 
+class Renderer(ResultsPart):
+    """Software that lays out pages and figures: with equal values, the same results give the same bytes."""
+
+    typst: str
+    matplotlib: str
+    jinja2: str
+    numpy: str
+    fonts: Annotated[str, Field(description="SHA-256 of the fonts beside those of Typst")]
+    machine: str
+    system: str
+
+
 class InputGroup(ResultsPart):
     """Source of a group of inputs."""
 
@@ -222,6 +234,9 @@ class Results(ResultsPart):
     platform: Platform
     administration: Annotated[
         Administration | None, Field(description="administrative data of the report; null: none were given")
+    ] = None
+    renderer: Annotated[
+        Renderer | None, Field(description="software that made the pages; null: made by an older version")
     ] = None
     scope: Annotated[
         list[ScopeStep], Field(description="every step of the procedure; empty: made by an older version")

@@ -7,7 +7,15 @@ from types import ModuleType
 
 import pytest
 
-from pantocheck.conformance.authenticity import attachment, reported_numbers
+from pantocheck.conformance.authenticity import (
+    certificate_reading,
+    page_check,
+    pdf_comparison,
+    pdf_structure,
+    reported_numbers,
+    text_differences,
+    trace_check,
+)  # fmt: skip
 from pantocheck.conformance.authenticity.signatures import (
     certificates,
     cms_signing,
@@ -74,7 +82,8 @@ ROWS = re.findall(
 )
 MODULES: list[ModuleType] = [
     track_position, record_preparation,
-    attachment, reported_numbers, force_content, force_copy, force_dynamics, implied_force, mean_force, roll_off,
+    certificate_reading, page_check, pdf_comparison, pdf_structure, reported_numbers, text_differences, trace_check,
+    force_content, force_copy, force_dynamics, implied_force, mean_force, roll_off,
     rounding, support_coincidence, support_passing, assessed_record, baseline, discretisation,
     extended_band, record_mismatch, record_uncertainty, start_agreement, start_and_section, validity_warnings,
     verification_limits, bands, filters, limit_text, signals, record, block_bootstrap, force_checks, usable_sections,

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from pantocheck.conformance.authenticity.attachment import MAX_DOCUMENT_BYTES
+from pantocheck.conformance.authenticity.certificate_reading import MAX_DOCUMENT_BYTES
 from pantocheck.conformance.authenticity.signatures.certificates import read_certificates
 from pantocheck.conformance.authenticity.signatures.detached_file import (
     MAX_SIGNATURE_BYTES,

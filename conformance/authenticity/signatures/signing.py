@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from pantocheck.conformance.authenticity.attachment import MAX_DOCUMENT_BYTES
+from pantocheck.conformance.authenticity.certificate_reading import MAX_DOCUMENT_BYTES
 from pantocheck.conformance.authenticity.signatures.cms_signing import Signer, check_role, sign_detached
 from pantocheck.conformance.authenticity.signatures.detached_file import (
     MAX_SIGNATURE_BYTES,

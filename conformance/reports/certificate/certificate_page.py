@@ -40,13 +40,27 @@ from pantocheck.conformance.reports.certificate.verdict_reasons import (
     summarise_case,
 )
 from pantocheck.conformance.reports.formats.embedded_results import digest_results
+from pantocheck.conformance.reports.formats.reproducibility import find_date
 from pantocheck.conformance.reports.words import read_words
 
 HEADING = "Conformance report"
 
 
 def build_certificate(results: dict[str, Any]) -> doc.Document:
-    """The certificate of a run, from results.json as a dictionary."""
+    """The certificate of a run, from results.json as a dictionary, with the date of `find_date`."""
+    return build_dated_certificate(results, find_date(results))
+
+
+def build_dated_certificate(results: dict[str, Any], date: int) -> doc.Document:
+    """The certificate of a run with a given date.
+
+    Parameters
+    ----------
+    results : dict
+        Content of results.json.
+    date : int
+        Date of the document [s since 1970]; 0: not known.
+    """
     prepared = prepare_results(results)
     header = build_header(prepared)
     cases = prepared["cases"]
@@ -61,7 +75,7 @@ def build_certificate(results: dict[str, Any]) -> doc.Document:
         header=header,
         blocks=(
             *((doc.WarningBox(warnings),) if warnings else ()),
-            build_document_section(prepared, digest_results(results)),
+            build_document_section(prepared, digest_results(results), date),
             *build_verdict_section(prepared),
             *build_scope_section(prepared, dict(zip((case["id"] for case in cases), anchors, strict=True))),
             *build_findings_section(prepared),
@@ -75,6 +89,7 @@ def build_certificate(results: dict[str, Any]) -> doc.Document:
             ),
         ),
         results=results,
+        date=date,
     )
 
 

@@ -20,7 +20,7 @@ SIGNATURE = "added to the file after writing, if any; the command below shows it
 VERIFICATION = "pantocheck verify FILE, with the name of this file"
 
 
-def build_document_section(results: dict[str, Any], digest: str) -> Section:
+def build_document_section(results: dict[str, Any], digest: str, date: int) -> Section:
     """Section on the identity of a report.
 
     Parameters
@@ -29,10 +29,12 @@ def build_document_section(results: dict[str, Any], digest: str) -> Section:
         Results from `prepare_results`.
     digest : str
         Digest of the results before their preparation; it covers the administrative data, and not the page.
+    date : int
+        Date of the document [s since 1970]; 0: not known.
     """
     pairs = (
         *list_administration(results),
-        ("Date of this document", format_date(results)),
+        ("Date of this document", format_date(date)),
         ("Digest of the results", digest),
         ("Signature", SIGNATURE),
         ("Verification", VERIFICATION),

@@ -11,6 +11,7 @@ from pantocheck.conformance.reports.document import Document, to_plain
 from pantocheck.conformance.reports.formats.embedded_results import BLOCK_ID, encode_data_block
 from pantocheck.conformance.reports.formats.inline_figure import inline_figure
 from pantocheck.conformance.reports.formats.page_code import read_page_code
+from pantocheck.conformance.reports.formats.reproducibility import format_date
 from pantocheck.conformance.reports.words import TEMPLATES, read_words
 
 
@@ -26,6 +27,7 @@ def render_html(document: Document) -> str:
         scripts=tuple(map(Markup, code.scripts)),
         policy=Markup(code.policy),
         results=block,
+        date="" if document.results is None else format_date(document.date),
         results_id=BLOCK_ID,
     )
 

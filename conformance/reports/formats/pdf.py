@@ -12,7 +12,6 @@ from matplotlib.ft2font import FT2Font
 
 from pantocheck.conformance.reports.document import Document, to_plain
 from pantocheck.conformance.reports.formats.embedded_results import NAME, encode_attachment
-from pantocheck.conformance.reports.formats.reproducibility import find_date
 from pantocheck.conformance.reports.page_text import change_texts
 from pantocheck.conformance.reports.words import TEMPLATES, read_words
 
@@ -23,14 +22,8 @@ FONTS = Path(matplotlib.get_data_path(), "fonts", "ttf")
 def render_pdf(document: Document) -> bytes:
     """PDF of a document.
 
-    The same document gives the same bytes if the environment sets `SOURCE_DATE_EPOCH`; without it, a document with
-    results bears the time of their run, and a document without results bears no date. A character without a glyph is
+    The same document gives the same bytes. A document without results bears no date. A character without a glyph is
     printed as U+FFFD; the embedded results keep it.
-
-    Raises
-    ------
-    InputError
-        `SOURCE_DATE_EPOCH` is not a number of seconds.
     """
     words = read_words()
     data = {
@@ -45,7 +38,7 @@ def render_pdf(document: Document) -> bytes:
     if document.results is not None:
         data["attachment"] = NAME
         files[NAME] = encode_attachment(document.results)
-        options = {"pdf_standards": "a-3a", "timestamp": find_date(document.results)}
+        options = {"pdf_standards": "a-3a", "timestamp": document.date}
     files["main.typ"] = files.pop("page.typ")
     files["page.json"] = json.dumps(change_texts(data, replace_missing_glyphs)).encode("ascii")
     return bytes(typst.compile(files, ignore_system_fonts=True, font_paths=[str(FONTS)], **options))

@@ -27,7 +27,13 @@ def read_source_date() -> int | None:
 
 
 def find_date(results: dict[str, Any]) -> int:
-    """Date of a document [s since 1970]: `SOURCE_DATE_EPOCH`, else the start of the run, else 0."""
+    """Date of a document [s since 1970]: `SOURCE_DATE_EPOCH`, else the start of the run, else 0.
+
+    Raises
+    ------
+    InputError
+        `SOURCE_DATE_EPOCH` is not a number of seconds.
+    """
     date = read_source_date()
     if date is not None:
         return date
@@ -35,7 +41,6 @@ def find_date(results: dict[str, Any]) -> int:
     return int(datetime.fromisoformat(started).timestamp()) if started else 0
 
 
-def format_date(results: dict[str, Any]) -> str:
-    """Date of a document in words; empty if it is not known."""
-    seconds = find_date(results)
+def format_date(seconds: int) -> str:
+    """Date of a document [s since 1970] in words; empty if it is not known."""
     return f"{datetime.fromtimestamp(seconds, UTC):%Y-%m-%d %H:%M:%S} UTC" if seconds else ""

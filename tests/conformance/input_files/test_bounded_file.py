@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from pantocheck.conformance.authenticity.attachment import open_document
+from pantocheck.conformance.authenticity.certificate_reading import read_certificate
 from pantocheck.conformance.cases.case_file import CaseFile
 from pantocheck.conformance.identification.mode import read_modes
 from pantocheck.conformance.input_files.bounded_file import NO_LINK, file_digest, open_file, read_bytes
@@ -23,7 +23,7 @@ READERS: dict[str, Reader] = {
     "model.toml": lambda path: read_model(path, CaseFile, "case"),
     "results.json": read_results,
     "modes.json": read_modes,
-    "certificate.pdf": open_document,
+    "certificate.pdf": read_certificate,
     "digest": file_digest,
 } | {f"table{form.suffixes[0]}": lambda path: read_tables(path, ("a",), 100) for form in TABLE_FORMATS}
 

@@ -10,6 +10,7 @@ import pytest
 from pypdf import PdfReader
 from typer.testing import CliRunner
 
+from helpers.graded_wave import render_document
 from helpers.signed_files import sign
 from helpers.signer_fixtures import Signers
 from pantocheck.conformance.authenticity.signatures.signature_box import BOXES
@@ -17,8 +18,7 @@ from pantocheck.conformance.authenticity.signatures.signature_check import check
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.command_line.passphrase import PASSPHRASE_VARIABLE
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
-from pantocheck.conformance.reports.formats.pdf import render_pdf
+from pantocheck.conformance.results.results_format import Results
 
 
 def invoke(*arguments: Any) -> Any:
@@ -26,10 +26,15 @@ def invoke(*arguments: Any) -> Any:
 
 
 @pytest.fixture
-def passing_certificate(passing: dict[str, Any], tmp_path: Path) -> Path:
+def passing_certificate(accepted_wave: Results, tmp_path: Path) -> Path:
     path = tmp_path / "certificate.pdf"
-    path.write_bytes(render_pdf(build_certificate(passing)))
+    path.write_bytes(render_document(accepted_wave.to_dict(), path.name))
     return path
+
+
+def one_line(output: str) -> str:
+    """Output without its line breaks."""
+    return " ".join(output.split())
 
 
 def test_commands_from_signing_to_authentic(
@@ -53,13 +58,15 @@ def test_commands_from_signing_to_authentic(
     trusted = invoke("verify", signed, "--trust-roots", roots_file)
     assert trusted.exit_code == 0
     assert trusted.stdout.startswith("authentic: the verdict 'pass' follows")
-    assert "signature 2: signed by Ben Assessor as assessor (trusted: its chain leads to Test root)." in trusted.stdout
-    assert "Revocation of certificates was not checked" in trusted.stdout
+    assert "signature 2: signed by Ben Assessor as assessor (trusted: its chain leads to Test root)." in one_line(
+        trusted.stdout
+    )
+    assert "Revocation of certificates was not checked" in one_line(trusted.stdout)
 
     named = invoke("verify", signed)
     assert named.exit_code == 0
     assert named.stdout.startswith("consistent: ")
-    assert "signed by Ada Author as author (not trusted: no trust root given)" in named.stdout
+    assert "signed by Ada Author as author (not trusted: no trust root given)" in one_line(named.stdout)
 
     bare = invoke("verify", passing_certificate)
     assert bare.exit_code == 0
@@ -78,10 +85,10 @@ def test_commands_from_signing_to_authentic(
 
 
 def test_failing_certificate_may_be_authentic(
-    certificate: bytes, signers: Signers, roots_file: Path, tmp_path: Path
+    wave_results: Results, signers: Signers, roots_file: Path, tmp_path: Path
 ) -> None:
     """A signature shows who made a document. It does not improve its verdict."""
-    (tmp_path / "certificate.pdf").write_bytes(certificate)
+    (tmp_path / "certificate.pdf").write_bytes(render_document(wave_results.to_dict(), "certificate.pdf"))
     signed = sign(tmp_path / "certificate.pdf", signers.author)
     result = invoke("verify", signed, "--trust-roots", roots_file)
     assert result.exit_code == 1
@@ -105,7 +112,7 @@ def test_hostile_names_are_escaped(passing_certificate: Path, tmp_path: Path, si
     name = "Eve\x1b[2J\u202egnp\r\n<script> #panic() \x07"
     signed = sign(passing_certificate, signers.issue(name), place="top-right", role="#eval(1) ${x}")
     output = invoke("verify", signed).stdout
-    assert "signed by Eve [2Jgnp <script> #panic() as #eval(1) ${x}" in output
+    assert "signed by Eve [2Jgnp <script> #panic() as #eval(1) ${x}" in one_line(output)
     assert all(character.isprintable() or character == "\n" for character in output)
     widget = PdfReader(signed).pages[0]["/Annots"][0].get_object()
     assert widget["/T"] == "#eval(1) ${x}"
@@ -141,16 +148,16 @@ def test_poppler_confirms_the_signatures(passing_certificate: Path, signers: Sig
 def test_without_the_package(
     passing_certificate: Path, signers: Signers, roots_file: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A signed certificate can be verified without pyHanko: its signature is named as not checked, never as valid."""
+    """Without pyHanko, a signature is named as not checked: the verification is incomplete, and never accepted."""
     import sys
 
     signed = sign(passing_certificate, signers.author)
     for name in [*(name for name in sys.modules if name.startswith("pyhanko")), "pyhanko"]:
         monkeypatch.setitem(sys.modules, name, None)
     result = invoke("verify", signed)
-    assert result.exit_code == 0
-    assert "signatures were not checked: they need the package pyhanko" in result.stdout
-    assert "pip install 'pantocheck[sign]'" in result.stdout
+    assert result.exit_code == 1
+    assert "signatures were not checked: they need the package pyhanko" in one_line(result.stdout)
+    assert "pip install 'pantocheck[sign]'" in one_line(result.stdout)
     demanded = invoke("verify", signed, "--trust-roots", roots_file)
     assert demanded.exit_code == 2
     assert not check_signatures(signed, None).authentic

@@ -1,0 +1,39 @@
+"""Result of one check of a document."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal
+
+from pantocheck.conformance.reports.page_text import clean_text
+
+CheckOutcome = Literal["proved", "contradicted", "incomplete", "open"]
+"""CheckOutcome of a check, `open` if it was not requested or needs more than the document.
+
+`incomplete`: another version wrote the document, so that a part of it could not be compared. This is no contradiction,
+but such a document is never accepted: otherwise a changed version number would hide changed pages.
+"""
+
+
+@dataclass(frozen=True)
+class DocumentCheck:
+    """Result of one check.
+
+    Parameters
+    ----------
+    outcome : CheckOutcome
+        CheckOutcome of the check.
+    statement : str
+        Fact that was proved or not, as a sentence.
+    details : tuple of str
+        One line per contradiction, or per part that could not be compared.
+    """
+
+    outcome: CheckOutcome
+    statement: str
+    details: tuple[str, ...] = ()
+
+
+def judge_details(proved: str, contradicted: str, details: Iterable[str]) -> DocumentCheck:
+    """Check that is proved without details, and contradicted by each of them; control characters are removed."""
+    lines = tuple(dict.fromkeys(map(clean_text, details)))
+    return DocumentCheck("contradicted", contradicted, lines) if lines else DocumentCheck("proved", proved)
