@@ -108,24 +108,40 @@ def read_results_runs(path: Path) -> list[ComparedRun]:
 
 
 def simulate_run(case: Case, system: System) -> ComparedRun:
-    """Run a case on a system.
+    """Run a case on a system; errors as of `deliver_case` and `describe_delivery`."""
+    return describe_delivery(case, system, deliver_case(case, system))
+
+
+def deliver_case(case: Case, system: System) -> Delivered:
+    """Run a case on a system that must deliver data.
 
     Raises
     ------
     InputError
-        The system does not run the case, fails, or delivers the data of another case.
+        The system does not run the case, or fails.
     """
     outcome = system.run(case)
     if not isinstance(outcome, Delivered):
         raise InputError(f"system '{system.name}'", outcome.reason, "Choose another case or system.")
-    evaluation = CaseEvaluation(case, outcome)
+    return outcome
+
+
+def describe_delivery(case: Case, system: System, delivered: Delivered) -> ComparedRun:
+    """Quantities, uncertainty and signals of a delivery.
+
+    Raises
+    ------
+    InputError
+        The delivery does not belong to the case.
+    """
+    evaluation = CaseEvaluation(case, delivered)
     if evaluation.mismatch is not None:
         raise InputError(f"system '{system.name}'", evaluation.mismatch, "Choose another case or system.")
     return ComparedRun(
         kind="system",
         name=system.name,
         source=f"{system.kind} {system.name} {system.version}".strip(),
-        digest=outcome.digest or "",
+        digest=delivered.digest or "",
         case=case.id,
         speed_km_h=3.6 * case.speed,
         values=evaluation.evaluation.values,

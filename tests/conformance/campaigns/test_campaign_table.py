@@ -11,9 +11,9 @@ from pantocheck.conformance.campaigns.campaign_design import PlannedRun
 from pantocheck.conformance.campaigns.campaign_driver import drive_campaign
 from pantocheck.conformance.campaigns.campaign_file import Execution
 from pantocheck.conformance.campaigns.campaign_run import RunRow
-from pantocheck.conformance.campaigns.campaign_session import run_campaign
 from pantocheck.conformance.campaigns.campaign_store import open_store
 from pantocheck.conformance.campaigns.campaign_table import collect_columns, write_campaign_table, write_parquet
+from pantocheck.conformance.interface.campaign_session import run_campaign
 
 
 def test_columns_have_numbers_texts_and_gaps(tmp_path: Path) -> None:

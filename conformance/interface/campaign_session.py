@@ -1,6 +1,5 @@
 """Campaigns from Python: the same as `pantocheck campaign`, in a script or a notebook."""
 
-import importlib.util
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -17,6 +16,7 @@ from pantocheck.conformance.campaigns.campaign_store import open_store
 from pantocheck.conformance.campaigns.campaign_table import collect_columns, write_campaign_table
 from pantocheck.conformance.campaigns.executor_choice import choose_executor
 from pantocheck.conformance.input_files.toml_file import validate_model
+from pantocheck.conformance.interface.column_table import tabulate_columns
 
 
 def run_campaign(campaign: str | Path | Mapping[str, Any], out: str | Path) -> Any:
@@ -49,11 +49,7 @@ def run_campaign(campaign: str | Path | Mapping[str, Any], out: str | Path) -> A
             drive_campaign(prepared.design, prepared.execute, store, executor, execution, _ignore)
         write_campaign_table(store, folder / "campaign.csv")
         columns = collect_columns(store)
-    if importlib.util.find_spec("pandas") is None:
-        return columns
-    import pandas
-
-    return pandas.DataFrame(columns)
+    return tabulate_columns(columns)
 
 
 def _prepare(campaign: str | Path | Mapping[str, Any]) -> PreparedCampaign:

@@ -1,0 +1,1 @@
+"""Python interface: cases, runs, graded results and mass drops for scripts and notebooks."""

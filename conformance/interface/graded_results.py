@@ -1,0 +1,134 @@
+"""Graded results in Python: verdict, criteria, and the files of a report."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pantocheck.conformance.cases.profile_file import load_profile
+from pantocheck.conformance.grading.assessed_record import load_assessed_record
+from pantocheck.conformance.grading.profile_grading import assess_record
+from pantocheck.conformance.grading.verdicts import Verdict
+from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.interface.column_table import tabulate_rows
+from pantocheck.conformance.plan import Plan, prepare_plan
+from pantocheck.conformance.records.sidecar_tables import LineTable
+from pantocheck.conformance.reports.formats.report_writers import check_formats, write_all
+from pantocheck.conformance.results.results_format import Results
+from pantocheck.conformance.results.results_reading import read_results
+from pantocheck.conformance.runner import run_cases
+
+
+@dataclass(frozen=True)
+class GradedResults:
+    """Results of a run of the suite.
+
+    Parameters
+    ----------
+    results : Results
+        Content of results.json.
+    """
+
+    results: Results
+
+    @property
+    def verdict(self) -> Verdict:
+        """Overall verdict: `pass`, `unverified`, `info`, `skip`, `fail` or `error`."""
+        return self.results.verdict
+
+    def to_dataframe(self) -> Any:
+        """Criteria, one per row: a table of pandas, or columns of numpy."""
+        names = ("quantity", "pantograph", "value", "lower", "upper", "margin", "verdict", "trust")
+        rows = [
+            {"case": case.id, **{name: getattr(criterion, name) for name in names}}
+            for case in self.results.cases
+            for criterion in case.criteria
+        ]
+        return tabulate_rows(rows, ("case", *names))
+
+    def write(self, folder: str | Path, formats: Sequence[str] = ("html", "pdf", "json", "csv")) -> list[Path]:
+        """Write the report; returns the paths of its files.
+
+        Parameters
+        ----------
+        folder : str or Path
+            Folder of the files.
+        formats : sequence of str
+            Formats: html, pdf, json, csv, junit, md, badge.
+
+        Raises
+        ------
+        InputError
+            A format does not exist, or a file cannot be written.
+        """
+        return write_all(self.results, Path(folder), check_formats(tuple(formats)))
+
+
+def open_results(path: str | Path) -> GradedResults:
+    """Read a results.json.
+
+    Raises
+    ------
+    InputError
+        It cannot be read, or is not in the format of the suite.
+    """
+    return GradedResults(read_results(Path(path)))
+
+
+def grade_cases(
+    *cases: str | Path,
+    system: str = "builtin",
+    trust: Trust = "secondary",
+    changes: Sequence[str] = (),
+    limits: str | Path | None = None,
+) -> GradedResults:
+    """Run cases on a system and grade them, as `pantocheck run` does.
+
+    Parameters
+    ----------
+    cases : str or Path
+        Ids, globs or paths of cases.
+    system : str
+        `builtin`, `record:DIR` or `command:PROGRAM ARGUMENTS`.
+    trust : Trust
+        Lowest trust of the limits that count.
+    changes : sequence of str
+        Changes of the inputs, `KEY=VALUE` as with `--set`.
+    limits : str, Path or None
+        File of own limits.
+
+    Raises
+    ------
+    InputError
+        A case, change, limit or system is wrong.
+    """
+    options: dict[str, Any] = {"cases": tuple(map(str, cases)), "system": system, "trust": trust}
+    if changes:
+        options["set"] = tuple(changes)
+    if limits is not None:
+        options["limits"] = str(limits)
+    prepared = prepare_plan(Plan.model_validate(options))
+    return GradedResults(run_cases(prepared.cases, prepared.start_system(), trust, 1, None, prepared.participation))
+
+
+def assess_run(record: str | Path, profile: str, measured: str | Path | None = None) -> GradedResults:
+    """Grade a record by the rules of a profile, as `pantocheck assess` does.
+
+    Parameters
+    ----------
+    record : str or Path
+        Record to grade.
+    profile : str
+        Name of a profile of the library, or path of a profile file.
+    measured : str, Path or None
+        Measured record, for a profile that compares.
+
+    Raises
+    ------
+    InputError
+        A record or the profile is wrong.
+    """
+    rules = load_profile(profile)
+    subject = load_assessed_record(Path(record), rules, LineTable())
+    reference = None if measured is None else load_assessed_record(Path(measured), rules, LineTable())
+    return GradedResults(assess_record(subject, rules, "secondary", reference))

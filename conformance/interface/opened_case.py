@@ -1,0 +1,131 @@
+"""Cases in Python: open, change, simulate and grade."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.input_changes import InputChange, build_change
+from pantocheck.conformance.cases.library import find_case_files, list_library, load_case
+from pantocheck.conformance.cases.library_folder import library_folder
+from pantocheck.conformance.comparison.compared_run import deliver_case, describe_delivery
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.interface.opened_run import SimulatedRun
+from pantocheck.conformance.results.outcome import missing_record_reason
+from pantocheck.conformance.systems.system import System
+from pantocheck.conformance.systems.system_choice import choose_system
+
+ORIGIN = "with_"
+"""Origin of a change in messages."""
+
+
+@dataclass(frozen=True)
+class OpenedCase:
+    """A case with the changes of its inputs; `with_` gives a changed copy.
+
+    Parameters
+    ----------
+    path : Path
+        Case file.
+    case : Case
+        Content of the case, its line and its pantographs.
+    changes : tuple of InputChange
+        Changes of the inputs.
+    """
+
+    path: Path
+    case: Case
+    changes: tuple[InputChange, ...] = ()
+
+    @property
+    def id(self) -> str:
+        """Id of the case."""
+        return self.case.id
+
+    @property
+    def inputs(self) -> dict[str, Any]:
+        """All inputs as dictionaries: `case`, `line` and `pantographs`, with the keys of the files."""
+        return {
+            "case": self.case.file.model_dump(mode="json", exclude_none=True, by_alias=True),
+            "line": self.case.line.model_dump(mode="json", exclude_none=True, by_alias=True),
+            "pantographs": [
+                pantograph.model_dump(mode="json", exclude_none=True, by_alias=True)
+                for pantograph in self.case.pantographs
+            ],
+        }
+
+    def with_(self, changes: Mapping[str, object] | None = None, /, **further: object) -> "OpenedCase":
+        """Copy of the case with other inputs.
+
+        Parameters
+        ----------
+        changes : mapping of str to object
+            New values by key, as of `--set`: keys of the case, of its line (`line.contact_wire.tension_N`) or of its
+            pantographs (`pantograph[1].chain.masses_kg`).
+        **further : object
+            New values of keys of the case without dots, for example `speed_km_h=300`.
+
+        Raises
+        ------
+        InputError
+            A key does not exist, or the changed files are invalid.
+        """
+        values = {**(changes or {}), **further}
+        kept = (change for change in self.changes if change.key not in values)
+        every = (*kept, *(build_change(key, value, ORIGIN) for key, value in values.items()))
+        return OpenedCase(self.path, load_case(self.path, every), every)
+
+    def simulate(self) -> SimulatedRun:
+        """Simulate the passage once with the reference simulator, with the discretisation of the case.
+
+        The uncertainty of discretisation stays unknown; `run` determines it with further simulations.
+
+        Raises
+        ------
+        InputError
+            The case has no train.
+        """
+        from pantocheck.conformance.systems.reference_simulator import UnrefinedSimulator
+
+        return self._run_on(UnrefinedSimulator())
+
+    def run(self, system: str = "builtin") -> SimulatedRun:
+        """Run the case on a system: `builtin`, `record:DIR` or `command:PROGRAM ARGUMENTS`.
+
+        Raises
+        ------
+        InputError
+            The system does not run the case, fails, or delivers no record.
+        """
+        return self._run_on(choose_system(system))
+
+    def _run_on(self, system: System) -> SimulatedRun:
+        delivered = deliver_case(self.case, system)
+        if delivered.record is None:
+            raise InputError(f"case '{self.id}'", missing_record_reason(delivered), "Choose a case with a train.")
+        return SimulatedRun(describe_delivery(self.case, system, delivered), self.case, system, delivered.record)
+
+
+def open_case(name: str | Path) -> OpenedCase:
+    """Open a case of the library by its id, or a case file by its path.
+
+    Parameters
+    ----------
+    name : str or Path
+        Id such as `en50318-2018/ac-simple/320-twin`, or path of a case file.
+
+    Raises
+    ------
+    InputError
+        There is no such case, it is invalid, or several cases have this name.
+    """
+    paths = find_case_files([str(name)])
+    if len(paths) != 1:
+        raise InputError(f"case '{name}'", f"{len(paths)} cases have this name", "Give the id of one case.")
+    return OpenedCase(paths[0], load_case(paths[0]))
+
+
+def list_cases() -> list[str]:
+    """Ids of all cases of the library."""
+    return list(list_library(library_folder()))
