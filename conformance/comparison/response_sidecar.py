@@ -20,7 +20,7 @@ RESPONSE_SCHEMA = "pantocheck.response/1"
 HeadPoint = Literal["head_centre", "left_strip", "right_strip", "other"]
 """Point of the head: its centre, one of its contact strips, or another one."""
 
-ColumnName = Annotated[str, Field(min_length=1, max_length=200)]
+ResponseColumn = Annotated[str, Field(min_length=1, max_length=200)]
 
 
 class ResponseSidecar(InputTable):
@@ -62,7 +62,7 @@ class ResponseSidecar(InputTable):
         Positive, Field(le=1e12, description="factor from the table to the unit in the name of its columns")
     ] = 1.0
     columns: Annotated[
-        dict[str, ColumnName],
+        dict[str, ResponseColumn],
         Field(
             default_factory=dict,
             max_length=10,
