@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Discriminator, Field, Tag
 
 from pantocheck.conformance.campaigns.distributions import Distribution
+from pantocheck.conformance.campaigns.run_traces import StoredTraces
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.sourced_table import InputTable, Positive, SourcedTable, validation_problem
 from pantocheck.conformance.input_files.trust import Trust
@@ -160,6 +161,10 @@ class Execution(InputTable):
         float | None, Field(gt=0, description="time after which no further run is started [s]")
     ] = None
     run_time_limit_s: Annotated[float | None, Field(gt=0, description="time after which a single run fails [s]")] = None
+    traces: Annotated[
+        StoredTraces,
+        Field(description="runs whose curves of force and uplift are stored: none, failing (verdict fail), or all"),
+    ] = "none"
     timeout_s: Annotated[Positive, Field(description="time limit of a program for a case [s]")] = TIMEOUT_S
 
     @cross_check

@@ -95,7 +95,8 @@ def prepare_campaign(file: CampaignFile, folder: Path) -> PreparedCampaign:
     profile = _read_profile(file, folder)
     design = _build_design(file, folder, tuple(cases))
     files = {case_id: str(path) for case_id, (path, _) in cases.items()}
-    execute = RunExecution(files, changes, limits, profile, file.trust, file.refined, file.execution.timeout_s)
+    timeout, stored = file.execution.timeout_s, file.execution.traces
+    execute = RunExecution(files, changes, limits, profile, file.trust, file.refined, timeout, stored)
     _check_systems(design.systems, file.execution.timeout_s)
     first_cases = _check_first_designs(design, execute)
     limited = overlay_limits([case for _, case in cases.values()], limits)

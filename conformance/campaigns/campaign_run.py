@@ -2,13 +2,14 @@
 
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
 from pantocheck.conformance.campaigns.campaign_design import PlannedRun
 from pantocheck.conformance.campaigns.design_axes import Inputs
 from pantocheck.conformance.campaigns.profile_limits import ProfileLimits
+from pantocheck.conformance.campaigns.run_traces import StoredTraces, pack_traces
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.input_changes import InputChange, build_change
 from pantocheck.conformance.cases.library import load_case, overlay_limits
@@ -45,6 +46,8 @@ class RunRow:
         Values by the name of their column, such as `1.mean_force_N`.
     wall_s : float
         Computing time [s].
+    traces : bytes
+        Compressed curves; empty if they are not stored.
     """
 
     run: PlannedRun
@@ -52,6 +55,7 @@ class RunRow:
     reason: str | None
     quantities: dict[str, float]
     wall_s: float
+    traces: bytes = b""
 
     @property
     def is_failed(self) -> bool:
@@ -79,6 +83,8 @@ class RunExecution:
         Whether the reference simulator also runs on two other meshes.
     timeout_s : float
         Time limit of a program for a case [s].
+    stored_traces : str
+        Runs whose curves are stored, as in `StoredTraces`.
     """
 
     case_files: dict[str, str]
@@ -88,6 +94,7 @@ class RunExecution:
     trust: Trust
     refined: bool
     timeout_s: float
+    stored_traces: StoredTraces
 
     def __call__(self, run: PlannedRun) -> RunRow:
         """Execute a run."""
@@ -98,7 +105,8 @@ class RunExecution:
         except InputError as error:
             return build_failed_row(run, str(error), time.perf_counter() - start)
         missing = () if self.profile is None else self.profile.resolve(case)[1]
-        return _build_row(run, result, missing, time.perf_counter() - start)
+        row = _build_row(run, result, missing, time.perf_counter() - start)
+        return replace(row, traces=pack_traces(result, row.verdicts["verdict"], self.stored_traces))
 
     def read_case(self, run: PlannedRun) -> Case:
         """Case of a run, with its inputs and the limits of the user.

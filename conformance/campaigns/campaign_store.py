@@ -30,6 +30,7 @@ CREATE TABLE IF NOT EXISTS run (
   quantities TEXT NOT NULL,
   wall_s REAL NOT NULL
 );
+CREATE TABLE IF NOT EXISTS trace (number INTEGER PRIMARY KEY, content BLOB NOT NULL);
 """
 
 
@@ -46,7 +47,7 @@ class CampaignStore:
         self._connection = connection
 
     def add(self, row: RunRow) -> None:
-        """Write a finished run; it survives the end of this process and of the machine."""
+        """Write a finished run with its traces; both survive the end of this process and of the machine."""
         run = row.run
         values = (
             *(run.number, run.design, run.case_id, run.system, json.dumps(run.inputs, default=str)),
@@ -54,6 +55,8 @@ class CampaignStore:
         )
         with self._connection:
             self._connection.execute(f"INSERT INTO run VALUES ({', '.join('?' * len(values))})", values)
+            if row.traces:
+                self._connection.execute("INSERT INTO trace VALUES (?, ?)", (run.number, row.traces))
 
     def holds(self, number: int) -> bool:
         """Whether a run is finished."""
@@ -70,6 +73,12 @@ class CampaignStore:
         """Remove the failed runs, so that they are repeated."""
         with self._connection:
             self._connection.execute("DELETE FROM run WHERE verdict = ?", (FAILED,))
+            self._connection.execute("DELETE FROM trace WHERE number NOT IN (SELECT number FROM run)")
+
+    def find_traces(self, number: int) -> bytes | None:
+        """Compressed traces of a run; None if they are not stored."""
+        found = self._connection.execute("SELECT content FROM trace WHERE number = ?", (number,)).fetchone()
+        return None if found is None else bytes(found[0])
 
     def rows(self) -> Iterator[RunRow]:
         """Finished runs by their numbers, one at a time."""

@@ -73,6 +73,12 @@ def campaign_command(
         Path | None,
         typer.Option(metavar="DIR", help="Compare with the runs of another campaign that have equal inputs."),
     ] = None,
+    traces: Annotated[
+        str | None,
+        typer.Option(
+            metavar="RUNS", help="Store the curves of force and uplift: none, failing or all.", show_default="none"
+        ),
+    ] = None,
     retry_failed: Annotated[bool, typer.Option("--retry-failed", help="Repeat the failed runs.")] = False,
 ) -> None:
     """Run cases with varied inputs, and write a table of all runs.
@@ -101,6 +107,7 @@ def campaign_command(
         "cluster": cluster,
         "max_failed_share": max_failed,
         "time_budget_s": time_budget,
+        "traces": traces,
     }
     prepared = _prepare(campaign, design, {key: value for key, value in execution.items() if value is not None})
     if compare is not None:

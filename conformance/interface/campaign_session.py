@@ -12,9 +12,11 @@ from pantocheck.conformance.campaigns.campaign_preparation import (
     prepare_campaign,
     read_campaign,
 )
-from pantocheck.conformance.campaigns.campaign_store import open_store
+from pantocheck.conformance.campaigns.campaign_store import open_store, read_store
 from pantocheck.conformance.campaigns.campaign_table import collect_columns, write_campaign_table
 from pantocheck.conformance.campaigns.executor_choice import choose_executor
+from pantocheck.conformance.campaigns.run_traces import RunTraces, unpack_traces
+from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import validate_model
 from pantocheck.conformance.interface.column_table import tabulate_columns
 
@@ -50,6 +52,34 @@ def run_campaign(campaign: str | Path | Mapping[str, Any], out: str | Path) -> A
         write_campaign_table(store, folder / "campaign.csv")
         columns = collect_columns(store)
     return tabulate_columns(columns)
+
+
+def read_traces(folder: str | Path, run: int) -> RunTraces:
+    """Read the traces of a run of a campaign.
+
+    Parameters
+    ----------
+    folder : str or Path
+        Folder of the campaign.
+    run : int
+        Number of the run, as in campaign.csv.
+
+    Returns
+    -------
+    RunTraces
+        Force of every pantograph over the analysis section, and uplift at its supports.
+
+    Raises
+    ------
+    InputError
+        The folder holds no campaign, or no traces of this run.
+    """
+    with read_store(Path(folder)) as store:
+        content = store.find_traces(run)
+    if content is None:
+        hint = 'Run a campaign with traces = "all" in [execution] in a new folder; finished runs are not repeated.'
+        raise InputError(f"folder '{folder}'", f"has no traces of run {run}", hint)
+    return unpack_traces(content)
 
 
 def _prepare(campaign: str | Path | Mapping[str, Any]) -> PreparedCampaign:

@@ -7,13 +7,18 @@ import numpy as np
 import pytest
 
 from helpers.cheap_campaign import ThisProcess, compute_row, fail_even, speed_design
+from helpers.example_results import passing_case
 from pantocheck.conformance.campaigns.campaign_design import PlannedRun
 from pantocheck.conformance.campaigns.campaign_driver import drive_campaign
 from pantocheck.conformance.campaigns.campaign_file import Execution
 from pantocheck.conformance.campaigns.campaign_run import RunRow
 from pantocheck.conformance.campaigns.campaign_store import open_store
 from pantocheck.conformance.campaigns.campaign_table import collect_columns, write_campaign_table, write_parquet
-from pantocheck.conformance.interface.campaign_session import run_campaign
+from pantocheck.conformance.campaigns.run_traces import StoredTraces, pack_traces, unpack_traces
+from pantocheck.conformance.grading.verdicts import Verdict
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.interface.campaign_session import read_traces, run_campaign
+from pantocheck.conformance.results.results_format import CaseResult
 
 
 def test_columns_have_numbers_texts_and_gaps(tmp_path: Path) -> None:
@@ -64,3 +69,35 @@ def test_campaign_from_python_gives_a_table(tmp_path: Path) -> None:
     assert list(table["pantograph.uplift_force_N"]) == [110.0, 130.0]
     # The mean force of a passage is the uplift force within some newtons.
     assert list(table["1.mean_force_N"]) == pytest.approx([110, 130], abs=5)
+
+
+def test_traces_of_failing_runs_are_stored_with_their_rows(tmp_path: Path) -> None:
+    """The mean of the stored force is the mean force of the row; the curves have six digits and all samples."""
+    (tmp_path / "limits.toml").write_text(
+        '[[limit]]\ncase = "*"\nquantity = "mean_force_N"\nupper = 120.0\ntrust = "primary"\nsource = "test"\n'
+    )
+    content = {
+        "cases": ["en50318-2002/250"],
+        "set": ["discretisation.element_m=3", "discretisation.time_step_s=0.005"],
+        "vary": [{"key": "pantograph.uplift_force_N", "values": [110.0, 130.0]}],
+        "limits": str(tmp_path / "limits.toml"),
+        "execution": {"workers": 1, "traces": "failing"},
+    }
+    table = run_campaign(content, tmp_path)
+    traces = read_traces(tmp_path, 2)
+    assert float(np.mean(traces.traces["1"].force_N)) == pytest.approx(table["1.mean_force_N"][1], rel=1e-4)
+    assert len(traces.uplift) >= 1
+    with pytest.raises(InputError, match="has no traces of run 1"):
+        read_traces(tmp_path, 1)
+
+
+@pytest.mark.parametrize(
+    ("stored", "verdict", "is_stored"),
+    [("none", "fail", False), ("failing", "pass", False), ("failing", "fail", True), ("all", "pass", True)],
+)
+def test_verdict_decides_which_traces_are_packed(stored: StoredTraces, verdict: Verdict, is_stored: bool) -> None:
+    result = CaseResult.model_validate(passing_case())
+    content = pack_traces(result, verdict, stored)
+    assert bool(content) is is_stored
+    if is_stored:
+        assert unpack_traces(content).traces == result.traces
