@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 
@@ -46,6 +46,8 @@ class RunRow:
         Values by the name of their column, such as `1.mean_force_N`.
     wall_s : float
         Computing time [s].
+    uncertainties : dict
+        Half-widths of the 95 % intervals of the quantities that have one.
     traces : bytes
         Compressed curves; empty if they are not stored.
     """
@@ -55,6 +57,7 @@ class RunRow:
     reason: str | None
     quantities: dict[str, float]
     wall_s: float
+    uncertainties: dict[str, float] = field(default_factory=dict)
     traces: bytes = b""
 
     @property
@@ -157,7 +160,8 @@ def _build_row(run: PlannedRun, result: CaseResult, missing: Sequence[str], wall
         "verification_verdict": None if result.verification is None else result.verification.verdict,
     }
     reason = result.reason or ("; ".join(missing) or None)
-    return RunRow(run, verdicts, reason, dict(_name_quantities(result.quantities)), wall_s)
+    quantities, widths = (dict(_name_quantities(values)) for values in (result.quantities, result.uncertainty))
+    return RunRow(run, verdicts, reason, quantities, wall_s, widths)
 
 
 def _name_quantities(quantities: Mapping[str, Mapping[str, Number]]) -> Iterator[tuple[str, float]]:

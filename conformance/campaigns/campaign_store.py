@@ -28,7 +28,8 @@ CREATE TABLE IF NOT EXISTS run (
   verdicts TEXT NOT NULL,
   reason TEXT,
   quantities TEXT NOT NULL,
-  wall_s REAL NOT NULL
+  wall_s REAL NOT NULL,
+  uncertainties TEXT NOT NULL
 );
 CREATE TABLE IF NOT EXISTS trace (number INTEGER PRIMARY KEY, content BLOB NOT NULL);
 """
@@ -52,6 +53,7 @@ class CampaignStore:
         values = (
             *(run.number, run.design, run.case_id, run.system, json.dumps(run.inputs, default=str)),
             *(row.verdicts["verdict"], json.dumps(row.verdicts), row.reason, json.dumps(row.quantities), row.wall_s),
+            json.dumps(row.uncertainties),
         )
         with self._connection:
             self._connection.execute(f"INSERT INTO run VALUES ({', '.join('?' * len(values))})", values)
@@ -83,14 +85,13 @@ class CampaignStore:
     def rows(self) -> Iterator[RunRow]:
         """Finished runs by their numbers, one at a time."""
         query = (
-            "SELECT number, design, case_id, system, inputs, verdicts, reason, quantities, wall_s"
+            "SELECT number, design, case_id, system, inputs, verdicts, reason, quantities, wall_s, uncertainties"
             " FROM run ORDER BY number"
         )
-        for number, design, case_id, system, inputs, verdicts, reason, quantities, wall in self._connection.execute(
-            query
-        ):
+        for number, design, case_id, system, *row in self._connection.execute(query):
+            inputs, verdicts, reason, quantities, wall_s, widths = row
             run = PlannedRun(number, design, case_id, system, json.loads(inputs))
-            yield RunRow(run, json.loads(verdicts), reason, json.loads(quantities), wall)
+            yield RunRow(run, json.loads(verdicts), reason, json.loads(quantities), wall_s, json.loads(widths))
 
     def check_identity(self, identity: Mapping[str, Any], folder: Path) -> None:
         """Compare the campaign of the store with this one, or write its identity into a new store.

@@ -14,6 +14,9 @@ from pantocheck.conformance.campaigns.campaign_store import CampaignStore
 from pantocheck.conformance.input_files.atomic_writing import produce_atomically
 
 RUN_COLUMNS = ("run", "design", "case", "system")
+UNCERTAINTY = ".uncertainty"
+"""End of the name of a column that holds the half-width of the 95 % interval of a quantity."""
+
 VERDICT_COLUMNS = ("verdict", "criteria_verdict", "verification_verdict", "reason")
 
 
@@ -30,15 +33,26 @@ def write_campaign_table(store: CampaignStore, path: Path) -> None:
 
 def _write(store: CampaignStore, path: Path) -> None:
     inputs: dict[str, None] = {}
-    quantities: dict[str, None] = {}
+    values: dict[str, None] = {}
     for row in store.rows():
         inputs |= dict.fromkeys(row.run.inputs)
-        quantities |= dict.fromkeys(row.quantities)
+        values |= dict.fromkeys(list_values(row))
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow((*RUN_COLUMNS, *inputs, *VERDICT_COLUMNS, *quantities))
+        writer.writerow((*RUN_COLUMNS, *inputs, *VERDICT_COLUMNS, *values))
         for row in store.rows():
-            writer.writerow([*_list_cells(row, list(inputs)), *(row.quantities.get(name, "") for name in quantities)])
+            cells = list_values(row)
+            writer.writerow([*_list_cells(row, list(inputs)), *(cells.get(name, "") for name in values)])
+
+
+def list_values(row: RunRow) -> dict[str, float]:
+    """Quantities of a run, each with the half-width of its 95 % interval behind it, if that is known."""
+    values: dict[str, float] = {}
+    for name, value in row.quantities.items():
+        values[name] = value
+        if name in row.uncertainties:
+            values[f"{name}{UNCERTAINTY}"] = row.uncertainties[name]
+    return values
 
 
 def write_parquet(table: Path) -> Path | None:
@@ -60,7 +74,8 @@ def collect_columns(store: CampaignStore) -> dict[str, np.ndarray[Any, Any]]:
     for place, row in enumerate(store.rows()):
         run = row.run
         plan = zip(RUN_COLUMNS, (run.number, run.design, run.case_id, run.system), strict=True)
-        for name, value in {**dict(plan), **run.inputs, **row.verdicts, "reason": row.reason, **row.quantities}.items():
+        facts = {**run.inputs, **row.verdicts, "reason": row.reason}
+        for name, value in {**dict(plan), **facts, **list_values(row)}.items():
             column = columns.setdefault(name, [])
             column += [None] * (place - len(column))  # cells of earlier runs without this value
             column.append(value)

@@ -56,7 +56,7 @@ class Series(ResultsPart):
     x: list[float]
     y: list[float]
     error: list[float] | None = None
-    """Half the length of the error bar of each point."""
+    """Half the length of the error bar of each point, or half the width of the band along a line."""
 
 
 class Mark(ResultsPart):

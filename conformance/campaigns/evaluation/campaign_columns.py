@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import islice
 from typing import Any
 
@@ -82,6 +82,8 @@ class CampaignColumns:
         Numbers of every evaluated value by its column; NaN: not in the result.
     designs : (n,) ndarray
         Number of the design of every run, from 1.
+    widths : dict
+        Half-widths of the 95 % intervals of the values by column; NaN: not known.
     """
 
     cases: tuple[str, ...]
@@ -89,6 +91,7 @@ class CampaignColumns:
     inputs: dict[str, tuple[Any, ...]]
     values: dict[str, RealArray]
     designs: IntegerArray
+    widths: dict[str, RealArray] = field(default_factory=dict)
 
     def is_numeric(self, key: str) -> bool:
         """Whether an input is a number in all runs."""
@@ -106,6 +109,7 @@ class CampaignColumns:
             {key: tuple(values[i] for i in places) for key, values in self.inputs.items()},
             {name: numbers[places] for name, numbers in self.values.items()},
             self.designs[places],
+            {name: widths[places] for name, widths in self.widths.items()},
         )
 
     def group(self, keys: Sequence[str]) -> dict[str, RealArray]:
@@ -163,17 +167,19 @@ def read_columns(store: CampaignStore, values: Sequence[EvaluatedValue], keys: S
             row.run.system,
             row.run.inputs,
             [row.quantities.get(name, np.nan) for name in names],
+            [row.uncertainties.get(name, np.nan) for name in names],
         )
         for row in store.rows()
         if row.quantities
     ]
-    numbers = np.array([numbers for *_, numbers in rows]).reshape(len(rows), len(values))
+    numbers, widths = (np.array([row[i] for row in rows]).reshape(len(rows), len(values)) for i in (-2, -1))
     return CampaignColumns(
         tuple(case for _, case, *_ in rows),
         tuple(system for _, _, system, *_ in rows),
-        {key: tuple(inputs.get(key) for *_, inputs, _ in rows) for key in keys},
+        {key: tuple(inputs.get(key) for *_, inputs, _, _ in rows) for key in keys},
         {value.column: numbers[:, i] for i, value in enumerate(values)},
         np.array([design for design, *_ in rows], np.int64),
+        {value.column: widths[:, i] for i, value in enumerate(values)},
     )
 
 

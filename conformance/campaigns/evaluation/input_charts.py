@@ -46,7 +46,7 @@ def build_input_charts(
                 for name, numbers in groups.items()
             ]
             yield Chart(
-                caption=f"{owners[0].label} against {key}.",
+                caption=f"{owners[0].label} against {key}; bands and bars: 95 % interval, if it is known.",
                 alternative=f"Chart of {owners[0].label} against {key}.",
                 x_label=key,
                 y_label=owners[0].label,
@@ -94,13 +94,21 @@ def _build_series(
     columns: CampaignColumns, key: str, value: EvaluatedValue, name: str, numbers: RealArray, as_points: bool
 ) -> Series:
     x, y = np.array(columns.inputs[key], float)[numbers], columns.values[value.column][numbers]
+    width = columns.widths.get(value.column, np.full(columns.designs.size, np.nan))[numbers]
     known = ~np.isnan(y)
-    x, y = x[known], y[known]
+    x, y, width = x[known], y[known], width[known]
+    places = np.unique(x)
+    is_single = places.size == x.size  # the mean of several runs has no interval of its own
     if not as_points:
-        places = np.unique(x)
-        x, y = places, np.array([y[x == place].mean() for place in places])
-    label = ", ".join(filter(None, (value.owner, name))) or "runs"
-    return Series(label=label, style="points" if as_points else "line", x=x.tolist(), y=y.tolist())
+        order = [np.flatnonzero(x == place) for place in places]
+        x, y, width = places, np.array([y[i].mean() for i in order]), np.array([width[i].mean() for i in order])
+    return Series(
+        label=", ".join(filter(None, (value.owner, name))) or "runs",
+        style="points" if as_points else "line",
+        x=x.tolist(),
+        y=y.tolist(),
+        error=width.tolist() if x.size and (is_single or as_points) and not np.isnan(width).any() else None,
+    )
 
 
 def _average_cells(x: RealArray, y: RealArray, values: RealArray) -> RealArray:

@@ -24,6 +24,7 @@ from pantocheck.conformance.reports.figures.figure_style import (
 MARKERS = "os^Dv"
 FILLS = ("#3a424a", "#aab3bc", "white", "white")
 HATCHES = ("", "", "////", "....")
+BAND_OPACITY = 0.18
 TICK_WIDTH = 10
 """Characters on a line of a tick label."""
 
@@ -72,6 +73,9 @@ def draw_chart(data: dict[str, Any], y_range: tuple[float, float] | None = None)
 def _draw_line(axes: Axes, series: dict[str, Any], number: int) -> None:
     style, shade = LINES[number % len(LINES)], SHADES[number % 3]
     axes.plot(series["x"], series["y"], style, color=shade, linewidth=1.1, label=series["label"])
+    if series["error"] is not None:
+        y, width = np.array(series["y"]), np.array(series["error"])
+        axes.fill_between(series["x"], y - width, y + width, color=shade, alpha=BAND_OPACITY, linewidth=0)
 
 
 def _draw_points(axes: Axes, series: dict[str, Any], number: int) -> None:

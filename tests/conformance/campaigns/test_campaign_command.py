@@ -63,6 +63,7 @@ def test_campaign_in_processes_equals_that_in_one_process(campaign: Path, tmp_pa
     assert [row["pantograph.uplift_force_N"] for row in rows] == ["110.0", "130.0", "-1.0"]
     assert float(rows[0]["1.mean_force_N"]) == pytest.approx(110, abs=5)
     assert "must be greater than 0" in rows[2]["reason"]
+    assert 0 < float(rows[0]["1.mean_force_N.uncertainty"]) < 5
 
     prepared = read_campaign(campaign)
     with open_store(folder, prepared.identity) as store:

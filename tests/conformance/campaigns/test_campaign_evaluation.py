@@ -55,6 +55,17 @@ def test_chart_has_a_curve_per_pantograph_and_other_input_with_the_limit(columns
     assert [(mark.axis, mark.low) for mark in chart.marks] == [("y", 50.0)]
 
 
+def test_curve_of_single_runs_has_a_band_and_a_mean_has_none(columns: CampaignColumns) -> None:
+    """Several runs at one speed, here with three spacings that are not told apart, have no common interval."""
+    columns.widths[FRONT.column] = np.full(9, 1.5)
+    chart, _ = build_input_charts(columns, [FRONT, REAR], GRID)
+    assert chart.series[0].error == [1.5, 1.5, 1.5]
+    assert chart.series[3].error is None
+    (mean,) = build_input_charts(columns, [FRONT], ["speed_km_h"])
+    assert mean.series[0].error is None
+    assert mean.series[0].y == pytest.approx([200 / 6, 250 / 6, 300 / 6])
+
+
 def test_many_curves_become_points(columns: CampaignColumns) -> None:
     values = [EvaluatedValue(FRONT.column), REAR, EvaluatedValue("3.std_force_N")]
     columns.values["3.std_force_N"] = columns.values[FRONT.column]

@@ -48,6 +48,7 @@ def test_chart_is_deterministic() -> None:
         {"marks": [Mark(label="printed", axis="x", low=1e-4, high=1e-2)]},
         {"x_scale": "log"},
         {"series": [POINTS]},
+        {"series": [LINE.model_copy(update={"error": [0.1, 0.2, 0.1]})]},
         {"series": [LINE.model_copy(update={"style": "boxes", "x": [1.0, 1.0, 2.0]})]},
         {
             "series": [LINE.model_copy(update={"style": "bars", "x": [0.0, 1.0, 2.0]})],
