@@ -16,12 +16,14 @@ from pantocheck.conformance.input_files.sourced_table import (
     NO_TRUST,
     InputTable,
     find_missing_source,
+    is_absent,
     validation_problem,
 )
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.records.logger.event_tables import EventKind
 
 
 class SpeedFormula(InputTable):
@@ -104,6 +106,17 @@ class Rule(InputTable):
         return self.tolerance is not None or self.tolerance_pct is not None
 
 
+class ExclusionRule(InputTable):
+    """Stretches of the line that a measured record may leave out of the statistics of the contact force."""
+
+    kinds: Annotated[
+        tuple[EventKind, ...], Field(strict=False, min_length=1, description="kinds of events that may be left out")
+    ]
+    largest_share_pct: Annotated[
+        float, Field(gt=0, le=50, description="largest share of the analysis section that may be left out [%]")
+    ]
+
+
 class Profile(InputTable):
     """Rules for the assessment of a record."""
 
@@ -126,6 +139,10 @@ class Profile(InputTable):
             "not pass; shown: the report shows the state"
         ),
     ] = "shown"
+    exclusion: Annotated[
+        ExclusionRule | None,
+        Field(exclude_if=is_absent, description="stretches that may be left out; default: none"),
+    ] = None
     filter: Filter = Filter()
     rule: Annotated[tuple[Rule, ...], Field(strict=False, min_length=1, max_length=1000)]
 

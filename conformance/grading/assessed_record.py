@@ -8,6 +8,7 @@ import numpy as np
 
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.profile_file import Profile
+from pantocheck.conformance.grading.excluded_stretches import apply_exclusions
 from pantocheck.conformance.grading.record_uncertainty import assess_uncertainty
 from pantocheck.conformance.grading.uncertainty import Uncertainty
 from pantocheck.conformance.input_files.bounded_file import file_digest
@@ -23,6 +24,7 @@ from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.record_summary import RecordSummary
 from pantocheck.conformance.records.samples import RecordSamples
 from pantocheck.conformance.records.sidecar_tables import LineTable, SystemTable
+from pantocheck.conformance.results.event_format import EventFacts
 from pantocheck.conformance.results.results_format import InputGroup
 
 FEWEST_STATISTICS = 3
@@ -66,6 +68,8 @@ class AssessedRecord:
         Remarks for the reader of the report.
     warnings : tuple of str
         Caveats for the reader of the report.
+    events : tuple of EventFacts
+        Events of the analysis section.
     """
 
     name: str
@@ -79,6 +83,7 @@ class AssessedRecord:
     prepared: PreparedRecord | None
     notes: tuple[str, ...]
     warnings: tuple[str, ...]
+    events: tuple[EventFacts, ...] = ()
 
     @property
     def pantographs(self) -> tuple[int, ...]:
@@ -127,6 +132,8 @@ def load_assessed_record(path: Path, profile: Profile, line: LineTable) -> Asses
         raise build_record_error(table, error) from None
     supports = list_line_supports(sidecar.support_position_m or (), known_line.span_m, prepared.section)
     prepared = replace(prepared, line=replace(prepared.line, line_supports=supports))
+    excluded, events, exclusion_warnings = apply_exclusions(prepared.events, prepared.section, profile.exclusion)
+    prepared = replace(prepared, excluded=excluded)
     digest = join_digests(file_digest(path.with_suffix(".toml")), file_digest(table), known_line.model_dump_json())
     missing = _missing_statement(samples, sidecar)
     evaluation = prepared.evaluation if missing is None else skip_record(missing, prepared.pantographs)
@@ -141,7 +148,8 @@ def load_assessed_record(path: Path, profile: Profile, line: LineTable) -> Asses
         uncertainty=assess_uncertainty(prepared, _block_length(known_line, sidecar), digest),
         prepared=prepared,
         notes=prepared.notes,
-        warnings=prepared.warnings,
+        warnings=(*prepared.warnings, *exclusion_warnings),
+        events=events,
     )
 
 

@@ -113,6 +113,7 @@ def grade_record(
         **describe_uncertainty(subject.uncertainty),
         record=record,
         run=_run_facts(subject, profile),
+        events=list(subject.events) or None,
         traces={}
         if subject.prepared is None
         else build_pantograph_traces(

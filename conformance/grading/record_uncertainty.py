@@ -6,6 +6,7 @@ from pantocheck.conformance.cases.start_and_section import shift_section
 from pantocheck.conformance.grading.uncertainty import Component, Uncertainty
 from pantocheck.conformance.quantities.evaluation import SectionedSignals, ValuesByOwner
 from pantocheck.conformance.quantities.signals import PantographSignals
+from pantocheck.conformance.quantities.stretch_quantities import SignalsOutside
 from pantocheck.conformance.records.measured.block_bootstrap import FEWEST_BLOCKS, bootstrap_uncertainties
 from pantocheck.conformance.records.measured.record_preparation import PreparedRecord
 
@@ -35,7 +36,7 @@ def assess_uncertainty(record: PreparedRecord, span_m: float, digest: str) -> Un
             "discretisation": ONE_RUN,
             "start": ONE_RUN,
             "section": shift_component(record, shift_section(record.section, span_m)),
-            "length": length_component(record.pantographs, span_m, record.speed, digest),
+            "length": length_component(record.evaluated_pantographs, span_m, record.speed, digest),
         }
     )
 
@@ -57,13 +58,13 @@ def shift_component(signals: SectionedSignals, sections: Sequence[tuple[float, f
 
 
 def length_component(
-    pantographs: Mapping[int, PantographSignals], span_m: float, speed: float, digest: str
+    pantographs: Mapping[int, PantographSignals | SignalsOutside], span_m: float, speed: float, digest: str
 ) -> Component:
     """Uncertainty from the length of the record, by a moving-block bootstrap with blocks of one span.
 
     Parameters
     ----------
-    pantographs : mapping of int to PantographSignals
+    pantographs : mapping of int to PantographSignals or SignalsOutside
         Signals by number from 1.
     span_m : float
         Length of a span [m].

@@ -15,7 +15,7 @@ from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.force_quantities import PANTOGRAPH_QUANTITIES
 from pantocheck.conformance.quantities.quantity import Need, Quantity
 from pantocheck.conformance.quantities.sampling import WHOLE_RECORD
-from pantocheck.conformance.quantities.signals import PantographSignals
+from pantocheck.conformance.quantities.signals import ForceChannel, PantographSignals
 from pantocheck.conformance.quantities.unavailable import BandNotObservable, ChannelMissing, QuantityUnavailable
 
 Stretch = tuple[float, float]
@@ -46,29 +46,34 @@ OVERLAP_QUANTITIES: tuple[Quantity, ...] = tuple(
 
 
 @dataclass(frozen=True)
-class SignalsOutsideOverlaps:
-    """Signals of one pantograph over the analysis section without the overlaps.
+class SignalsOutside:
+    """Signals of one pantograph over the analysis section without overlaps or other stretches.
 
     Parameters
     ----------
     whole : PantographSignals
         Signals over the analysis section.
-    overlaps : sequence of Stretch
-        Overlaps of the line.
+    stretches : sequence of Stretch
+        Stretches that are left out.
     """
 
     whole: PantographSignals
-    overlaps: Sequence[Stretch]
+    stretches: Sequence[Stretch]
 
     @cached_property
     def kept(self) -> NDArray[np.bool_]:
-        """Whether each sample of the analysis section lies outside of all overlaps, (n,)."""
+        """Whether each sample of the analysis section lies outside of all stretches, (n,)."""
         position = self.whole.position[self.whole.inside]
-        inside = [(start <= position) & (position < end) for start, end in self.overlaps]
+        inside = [(start <= position) & (position < end) for start, end in self.stretches]
         kept = ~np.any(inside, axis=0)
         if not kept.any():
-            raise ChannelMissing("the whole analysis section lies inside overlaps")
+            raise ChannelMissing("the whole analysis section lies inside overlaps or excluded stretches")
         return np.asarray(kept)
+
+    @property
+    def force(self) -> ForceChannel:
+        """Contact force of the whole record."""
+        return self.whole.force
 
     @property
     def filter_applied_Hz(self) -> float | None:
@@ -128,7 +133,7 @@ def evaluate_outside_overlaps(
     for number, whole in pantographs.items():
         if not any(start < whole.section[1] and end > whole.section[0] for start, end in overlaps):
             continue
-        outside = SignalsOutsideOverlaps(whole, overlaps)
+        outside = SignalsOutside(whole, overlaps)
         for quantity in PANTOGRAPH_QUANTITIES:
             if quantity.name in _STATED:
                 try:

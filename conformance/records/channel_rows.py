@@ -18,7 +18,12 @@ from pantocheck.conformance.input_files.table_formats import MDF, read_tables
 from pantocheck.conformance.input_files.units import find_key_units, suggest_key
 from pantocheck.conformance.records.logger.column_values import add_time_column, find_factor
 from pantocheck.conformance.records.logger.mapped_rows import read_mapped_rows
-from pantocheck.conformance.records.logger.placed_rows import list_position_columns, list_used_channels, place_rows
+from pantocheck.conformance.records.logger.placed_rows import (
+    EVENTS,
+    list_further_columns,
+    list_used_channels,
+    place_rows,
+)
 from pantocheck.conformance.records.record import LARGEST_NUMBER, MAX_SAMPLES
 from pantocheck.conformance.records.record_channels import CHANNELS, ChannelRows, RecordColumn, find_column
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
@@ -64,7 +69,7 @@ def read_channel_rows(path: Path, sidecar: RecordSidecar) -> tuple[ChannelRows, 
     if not errors:  # a wrong column may be the missing one
         place_rows(rows, table, sidecar, sidecar_where)
         errors += _find_missing_channels(rows, sidecar, where)
-    for name in rows:
+    for name in rows.keys() - {EVENTS}:
         errors += _find_impossible_values(name, rows[name], where)
     if errors:
         raise join_errors(errors)
@@ -79,7 +84,7 @@ def _list_ignored(table: MeasuredTable, sidecar: RecordSidecar) -> tuple[str, ..
 def _read_own_rows(table: MeasuredTable, sidecar: RecordSidecar) -> tuple[ChannelRows, list[InputError]]:
     """Rows of a file that uses the names of the channels, and an error for each wrong column."""
     where, rows, errors = table.where, ChannelRows(), list[InputError]()
-    used = list_position_columns(sidecar)
+    used = list_further_columns(sidecar)
     for column, values in zip(table.columns, table.values.T, strict=True):
         if column.label in used:
             continue
@@ -135,6 +140,8 @@ def _find_missing_channels(rows: ChannelRows, sidecar: RecordSidecar, where: str
         if not present:
             yield InputError(where, f"has no channel {missing}", "Store force_N, and time_s or position_m.")
     for name, numbered in rows.items():
+        if name == EVENTS:
+            continue
         expected = sidecar.rows(CHANNELS[name].per)
         first_alone = name == "position" and list(numbered) == [1] and sidecar.spacing_m is not None
         if name != "uplift" and len(numbered) != expected and not first_alone:

@@ -10,6 +10,7 @@ from pantocheck.conformance.input_files.bounded_file import MAX_FILE_BYTES, chec
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_model, read_toml
 from pantocheck.conformance.records.channel_rows import read_channel_rows
+from pantocheck.conformance.records.logger.placed_rows import EVENTS
 from pantocheck.conformance.records.record import Record, RecordInvalid
 from pantocheck.conformance.records.record_channels import CHANNELS, ChannelRows
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
@@ -147,6 +148,7 @@ def build_record_error(table: Path, error: RecordInvalid) -> InputError:
 
 def _build_samples(rows: ChannelRows, sidecar: RecordSidecar, ignored: tuple[str, ...]) -> RecordSamples:
     """Stack the rows of each channel; supports without a row of uplift are left out."""
+    levels = rows.pop(EVENTS, None)
     channels: dict[str, RealArray] = {
         name: numbered[1] if CHANNELS[name].per == "record" else np.vstack([numbered[i] for i in sorted(numbered)])
         for name, numbered in rows.items()
@@ -161,4 +163,5 @@ def _build_samples(rows: ChannelRows, sidecar: RecordSidecar, ignored: tuple[str
         uplift=channels.get("uplift"),
         support_position=np.array(supports) if supports else None,
         ignored=ignored,
+        event_level=None if levels is None else np.vstack(list(levels.values())),
     )

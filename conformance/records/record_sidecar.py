@@ -11,6 +11,7 @@ from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.text_settings import TextSettings
 from pantocheck.conformance.input_files.units import suggest_key
 from pantocheck.conformance.records.logger.column_tables import ColumnSource, SensorSum
+from pantocheck.conformance.records.logger.event_tables import EventChannel, EventTable
 from pantocheck.conformance.records.logger.track_tables import KilometreTable, MarkPosition, PositionTable
 from pantocheck.conformance.records.record_channels import CHANNELS, find_column
 from pantocheck.conformance.records.sidecar_tables import (
@@ -62,6 +63,14 @@ class RecordSidecar(InputTable):
     position: Annotated[
         PositionTable | None, Field(description="position from distance pulses or kilometre marks, if not in a column")
     ] = None
+    event: Annotated[
+        tuple[EventTable, ...],
+        Field(strict=False, max_length=10000, description="places of the line, such as overlaps and tunnels"),
+    ] = ()
+    event_channel: Annotated[
+        tuple[EventChannel, ...],
+        Field(strict=False, max_length=20, description="columns of the file that mark such places"),
+    ] = ()
     speed_km_h: Speed
     pantographs: Annotated[int, Field(ge=1, le=20, description="number of pantographs")]
     evaluated_m: Annotated[
@@ -135,6 +144,14 @@ class RecordSidecar(InputTable):
             if isinstance(source, SensorSum) and not name.startswith("force_"):
                 yield validation_problem(
                     f"columns.{name[:80]}.sum", "sensors are summed to a force only", "Give column and unit."
+                )
+
+    @cross_check
+    def _check_events(self) -> Problems:
+        for i, event in enumerate(self.event, 1):
+            if event.from_km is not None and self.track is None:
+                yield validation_problem(
+                    f"event[{i}].from_km", "the table track is missing", "State zero_km and kilometres in [track]."
                 )
 
     @cross_check

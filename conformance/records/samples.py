@@ -32,6 +32,8 @@ class RecordSamples:
         Positions of the supports [m].
     ignored : tuple of str
         Names of the columns of the file that are not used.
+    event_level : (k, n) ndarray or None
+        Channels that mark events, in the order of the sidecar.
     """
 
     force: RealArray
@@ -42,6 +44,7 @@ class RecordSamples:
     uplift: RealArray | None = None
     support_position: RealArray | None = None
     ignored: tuple[str, ...] = ()
+    event_level: RealArray | None = None
 
     def select(self, mask: NDArray[np.bool_]) -> "RecordSamples":
         """Samples inside a mask."""
@@ -49,7 +52,7 @@ class RecordSamples:
         return replace(self, **{name: value[..., mask] for name, value in parts.items() if value is not None})
 
 
-_SAMPLED = ("force", "time", "speed", "position", "contact_height", "uplift")
+_SAMPLED = ("force", "time", "speed", "position", "contact_height", "uplift", "event_level")
 
 
 def complete_samples(samples: RecordSamples, sidecar: RecordSidecar) -> tuple[RealArray, RealArray]:
@@ -138,7 +141,7 @@ def build_record(
     """
     for name in _SAMPLED:
         value = getattr(samples, name)
-        if name != "uplift" and value is not None and not np.isfinite(value).all():
+        if name not in ("uplift", "event_level") and value is not None and not np.isfinite(value).all():
             bad = np.argwhere(~np.isfinite(value.T))[:, 0]
             raise RecordInvalid(name, f"{bad.size} values are not finite, the first at sample {bad[0] + 1}")
     time, position = complete_samples(samples, sidecar)

@@ -13,6 +13,7 @@ from pantocheck.conformance.input_files.sourced_table import is_absent
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.results.administration import Administration
 from pantocheck.conformance.results.criterion_format import CaseVerification, ComponentName, Criterion
+from pantocheck.conformance.results.event_format import EventFacts
 from pantocheck.conformance.results.figure_data import Chart, ExtremePlace, TextTable, Traces, UpliftTrace
 from pantocheck.conformance.results.finding_format import FindingCounts
 from pantocheck.conformance.results.lift_force_facts import LawForces
@@ -202,6 +203,10 @@ class CaseResult(ResultsPart):
     uplift: list[UpliftTrace]
     charts: list[Chart] = []
     tables: list[TextTable] = []
+    events: Annotated[
+        list[EventFacts] | None,
+        Field(exclude_if=is_absent, description="events of the line in the analysis section; missing: none is stated"),
+    ] = None
     comparison: Annotated[
         MeasuredRun | None,
         Field(exclude_if=is_absent, description="measured run beside this one; missing: nothing is compared"),

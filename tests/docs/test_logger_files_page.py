@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from jsonschema import validate
 
+from pantocheck.conformance.cases.profile_file import ExclusionRule
 from pantocheck.conformance.input_files.table_formats import TABLE_FORMATS
 from pantocheck.conformance.input_files.text_settings import TextSettings
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
@@ -29,7 +30,12 @@ def test_layout_of_the_page_is_valid() -> None:
     assert TextSettings.model_validate(tomllib.loads(SIDECARS[0])["table"]).header_lines == 4
 
 
-@pytest.mark.parametrize("text", SIDECARS[1:])
+def test_exclusion_of_the_page_is_valid() -> None:
+    rule = ExclusionRule.model_validate(tomllib.loads(SIDECARS[-1])["exclusion"])
+    assert rule.kinds == ("overlap", "tunnel")
+
+
+@pytest.mark.parametrize("text", SIDECARS[1:-1])
 def test_sidecars_of_the_page_are_valid_and_follow_their_schema(text: str) -> None:
     RecordSidecar.model_validate(tomllib.loads(text))
     validate(tomllib.loads(text), build_schema("record"))

@@ -64,7 +64,7 @@ from pantocheck.conformance.grading import (
     verification_limits,
 )
 from pantocheck.conformance.quantities import bands, filters, limit_text, signals
-from pantocheck.conformance.records import record
+from pantocheck.conformance.records import events, record
 from pantocheck.conformance.records.logger import track_position
 from pantocheck.conformance.records.measured import (
     block_bootstrap,
@@ -81,7 +81,7 @@ ROWS = re.findall(
     re.MULTILINE,
 )
 MODULES: list[ModuleType] = [
-    track_position, record_preparation,
+    track_position, record_preparation, events,
     certificate_reading, page_check, pdf_comparison, pdf_structure, reported_numbers, text_differences, trace_check,
     force_content, force_copy, force_dynamics, implied_force, mean_force, roll_off,
     rounding, support_coincidence, support_passing, assessed_record, baseline, discretisation,

@@ -7,7 +7,7 @@ from pydantic import Field
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.sourced_table import InputTable, Positive, validation_problem
 
-ColumnName = Annotated[
+FileColumnName = Annotated[
     str, Field(min_length=1, max_length=300, description="name of a column or channel as in the file")
 ]
 
@@ -15,7 +15,7 @@ ColumnName = Annotated[
 class ColumnTable(InputTable):
     """Column of the file: the value is scale times the number of the file plus offset, in the stated unit."""
 
-    column: ColumnName
+    column: FileColumnName
     unit: Annotated[
         str | None,
         Field(max_length=40, description="unit of the value, such as kN; default: the unit that the file states"),

@@ -22,15 +22,19 @@ from pantocheck.conformance.records.logger.track_tables import (
 from pantocheck.conformance.records.record_channels import ChannelRows
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 
+EVENTS = "event_level"
+"""Name of the channels of events among the rows."""
 
-def list_position_columns(sidecar: RecordSidecar) -> tuple[str, ...]:
-    """Column of the distance pulses, if the sidecar names one."""
-    return () if sidecar.position is None or sidecar.position.kind == "marks" else (sidecar.position.column,)
+
+def list_further_columns(sidecar: RecordSidecar) -> tuple[str, ...]:
+    """Columns of distance pulses and of events, if the sidecar names them."""
+    pulses = () if sidecar.position is None or sidecar.position.kind == "marks" else (sidecar.position.column,)
+    return (*pulses, *(channel.column for channel in sidecar.event_channel))
 
 
 def list_used_channels(sidecar: RecordSidecar) -> tuple[str, ...]:
     """Names of all columns of the file that the sidecar uses."""
-    names = dict.fromkeys((*list_used_columns(sidecar.columns or {}), *list_position_columns(sidecar)))
+    names = dict.fromkeys((*list_used_columns(sidecar.columns or {}), *list_further_columns(sidecar)))
     return tuple(name for name in names if name != TIME_COLUMN)
 
 
@@ -59,7 +63,11 @@ def place_rows(rows: ChannelRows, table: MeasuredTable, sidecar: RecordSidecar, 
                 f"{where}, key position", "the file has a position, too", "Remove the table position, or the column."
             )
         rows["position"] = {1: _find_position(sidecar.position, rows, table, sidecar.track, where)}
-    elif sidecar.track is not None and "position" in rows:
+    if sidecar.event_channel:
+        file = FileColumns(table, where)
+        indices = [file.find(channel.column, "event_channel.column") for channel in sidecar.event_channel]
+        rows[EVENTS] = {number: table.values[:, index] for number, index in enumerate(indices, 1)}
+    if sidecar.position is None and sidecar.track is not None and "position" in rows:
         zero = 1000 * sidecar.track.zero_km
         for number, values in rows["position"].items():
             rows["position"][number] = sidecar.track.direction * (values - zero)

@@ -7,7 +7,7 @@ from pydantic import Discriminator, Field
 
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.sourced_table import InputTable, Positive, validation_problem
-from pantocheck.conformance.records.logger.column_tables import ColumnName
+from pantocheck.conformance.records.logger.column_tables import FileColumnName
 
 
 class KilometreTable(InputTable):
@@ -32,7 +32,7 @@ class CounterPosition(InputTable):
     """Position from a counter of distance pulses; it may count up or down."""
 
     kind: Literal["counter"]
-    column: ColumnName
+    column: FileColumnName
     metres_per_pulse: Annotated[Positive, Field(le=1000, description="distance per pulse [m]")]
     start_m: Annotated[float, Field(description="position of the first pantograph at the first sample [m]")]
 
@@ -41,7 +41,7 @@ class PulsePosition(InputTable):
     """Position from a pulse train: the signal of a wheel sensor, whose rising edges are counted."""
 
     kind: Literal["pulses"]
-    column: ColumnName
+    column: FileColumnName
     metres_per_pulse: Annotated[Positive, Field(le=1000, description="distance per pulse [m]")]
     start_m: Annotated[float, Field(description="position of the first pantograph at the first sample [m]")]
 

@@ -16,7 +16,8 @@ from pantocheck.conformance.quantities.bands import Band
 from pantocheck.conformance.quantities.force_quantities import PANTOGRAPH_QUANTITIES
 from pantocheck.conformance.quantities.sampling import Sampling
 from pantocheck.conformance.quantities.signals import ForceSignals, PantographSignals
-from pantocheck.conformance.quantities.unavailable import QuantityUnavailable, SectionNotCovered
+from pantocheck.conformance.quantities.stretch_quantities import SignalsOutside
+from pantocheck.conformance.quantities.unavailable import ChannelMissing, QuantityUnavailable, SectionNotCovered
 
 BOOTSTRAP_REPLICATES = 1000
 FEWEST_BLOCKS = 5
@@ -79,7 +80,9 @@ class BlockReplicates(Sampling):
         return np.asarray(np.sqrt(self.mean(signals.band_part(band.low, band.high) ** 2)))
 
 
-def bootstrap_uncertainties(signals: PantographSignals, block_s: float, digest: str) -> dict[str, float]:
+def bootstrap_uncertainties(
+    signals: PantographSignals | SignalsOutside, block_s: float, digest: str
+) -> dict[str, float]:
     """Half-widths of the 95 % intervals of the statistics of a record.
 
     The uncertainty of the largest and smallest value shows their dependence on single events of the record. It does not
@@ -87,8 +90,8 @@ def bootstrap_uncertainties(signals: PantographSignals, block_s: float, digest: 
 
     Parameters
     ----------
-    signals : PantographSignals
-        Signals of one pantograph.
+    signals : PantographSignals or SignalsOutside
+        Signals of one pantograph, with or without excluded stretches.
     block_s : float
         Length of a block: one span [s].
     digest : str
@@ -101,7 +104,7 @@ def bootstrap_uncertainties(signals: PantographSignals, block_s: float, digest: 
     """
     try:
         replicates = _draw_blocks(signals.delivered.size, block_s * signals.force.rate, digest)
-    except SectionNotCovered:
+    except (SectionNotCovered, ChannelMissing):
         return {}
     if replicates is None:
         return {}

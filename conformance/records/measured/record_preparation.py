@@ -1,13 +1,14 @@
 """Preparation of a measured record: from samples to signals, with a note on each cut."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.quantities.evaluation import Evaluation, evaluate_section, evaluate_signals
+from pantocheck.conformance.quantities.evaluation import Evaluation, evaluate_signals
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.quantities.signals import (
     ForceChannel,
@@ -16,7 +17,9 @@ from pantocheck.conformance.quantities.signals import (
     edge_warnings,
     has_gaps,
 )
+from pantocheck.conformance.quantities.stretch_quantities import SignalsOutside
 from pantocheck.conformance.quantities.unavailable import SectionNotCovered
+from pantocheck.conformance.records.events import RecordEvent, TooManyEvents, list_events
 from pantocheck.conformance.records.measured.force_checks import detect_filtered, find_outliers
 from pantocheck.conformance.records.measured.sample_positions import PlacedSamples, missing_share, place_samples
 from pantocheck.conformance.records.measured.usable_sections import (
@@ -56,6 +59,10 @@ class PreparedRecord:
         Remarks on the preparation.
     warnings : tuple of str
         Caveats for the reader of the report.
+    events : tuple of RecordEvent
+        Events of the analysis section.
+    excluded : tuple of tuple of float
+        Stretches that are left out of the statistics of the pantographs [m, m].
     """
 
     pantographs: dict[int, PantographSignals]
@@ -66,15 +73,25 @@ class PreparedRecord:
     seconds: float
     notes: tuple[str, ...]
     warnings: tuple[str, ...]
+    events: tuple[RecordEvent, ...] = ()
+    excluded: tuple[tuple[float, float], ...] = ()
 
     @cached_property
     def evaluation(self) -> Evaluation:
         """Quantities over the analysis section."""
-        return evaluate_signals(self.pantographs, self.line)
+        return evaluate_signals(self.evaluated_pantographs, self.line)
+
+    @property
+    def evaluated_pantographs(self) -> Mapping[int, PantographSignals | SignalsOutside]:
+        """Signals without the excluded stretches."""
+        if not self.excluded:
+            return self.pantographs
+        return {number: SignalsOutside(signals, self.excluded) for number, signals in self.pantographs.items()}
 
     def evaluate_section(self, section: tuple[float, float]) -> Evaluation:
         """Evaluate the quantities over another section [m, m]; the force is not filtered again."""
-        return evaluate_section(self.pantographs, self.line, section)
+        moved = {number: replace(signals, section=section) for number, signals in self.pantographs.items()}
+        return replace(self, pantographs=moved, line=replace(self.line, section=section)).evaluation
 
 
 @dataclass(frozen=True)
@@ -151,7 +168,19 @@ def prepare_record(
         seconds=seconds,
         notes=(*_resampling_notes(placed, rate), *_ignored_notes(samples), *([length] if seconds else [])),
         warnings=(*warnings, *edge_warnings(pantographs, mean_speed), *remarks),
+        events=_list_section_events(sidecar, position[0], samples.event_level, section),
     )
+
+
+def _list_section_events(
+    sidecar: RecordSidecar, position: RealArray, levels: RealArray | None, section: tuple[float, float]
+) -> tuple[RecordEvent, ...]:
+    """Events that touch the analysis section."""
+    try:
+        events = list_events(sidecar, position, levels)
+    except TooManyEvents as error:
+        raise RecordInvalid("event_channel", str(error)) from None
+    return tuple(event for event in events if event.start <= section[1] and event.end >= section[0])
 
 
 def _prepare_pantograph(placed: PlacedSamples, row: int, settings: _Settings) -> tuple[PantographSignals, list[str]]:

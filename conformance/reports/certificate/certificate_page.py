@@ -13,6 +13,7 @@ from pantocheck.conformance.reports.certificate.case_figures import draw_case_fi
 from pantocheck.conformance.reports.certificate.comparison_section import comparison_blocks
 from pantocheck.conformance.reports.certificate.criteria_table import criteria_blocks
 from pantocheck.conformance.reports.certificate.document_facts import build_document_section
+from pantocheck.conformance.reports.certificate.event_section import event_blocks
 from pantocheck.conformance.reports.certificate.findings_table import build_findings_section
 from pantocheck.conformance.reports.certificate.quantity_tables import (
     build_band_table,
@@ -145,6 +146,7 @@ def _case_section(number: int, case: dict[str, Any], anchor: str) -> doc.Section
         blocks.append(doc.Section("Criteria", criteria_blocks(case, anchor, f"{anchor}-source")))
     blocks += verification_blocks(case, anchor)
     blocks += comparison_blocks(case)
+    blocks += event_blocks(case)
     blocks += [doc.Section(table["caption"], (_study_table(table),)) for table in case["tables"]]
     bands, quantities = build_band_table(case), build_quantity_table(case)
     if bands.rows:

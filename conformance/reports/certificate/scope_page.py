@@ -27,14 +27,19 @@ def prepare_results(results: dict[str, Any]) -> dict[str, Any]:
 
 
 def list_identity_warnings(results: dict[str, Any]) -> tuple[str, ...]:
-    """Warnings on modified copies of library cases, changed inputs and limits that a limits file weakens."""
+    """Warnings on modified copies of library cases, excluded stretches, changed inputs and weakened limits."""
     copies = [
         f"The {case['id']} has other inputs, limits or sources than the library {_kind(case)}."
         for case in results["cases"]
         if case["library"] == "modified"
     ]
+    shorter = [
+        f"{case['id']}: stretches of the analysis section are left out of the force statistics, as its profile permits."
+        for case in results["cases"]
+        if any(event["excluded"] for event in case.get("events") or ())
+    ]
     inputs = [f"{case['id']}: {text}." for case in results["cases"] if (text := describe_changes(case))]
-    return (*copies, *inputs, *(warn_of_changes(case) for case in results["cases"] if case["limit_changes"]))
+    return (*copies, *shorter, *inputs, *(warn_of_changes(case) for case in results["cases"] if case["limit_changes"]))
 
 
 def summarise_identity(results: dict[str, Any]) -> list[str]:

@@ -47,7 +47,7 @@ def test_section_without_an_overlap_has_no_such_quantities(overlaps: list[tuple[
 def test_section_inside_an_overlap_is_skipped_with_the_reason() -> None:
     values, skipped = evaluate_outside_overlaps(signals((200.0, 250.0)), [(150.0, 300.0)])
     assert values == {1: {}}
-    assert set(skipped[1].values()) == {"the whole analysis section lies inside overlaps"}
+    assert set(skipped[1].values()) == {"the whole analysis section lies inside overlaps or excluded stretches"}
     assert len(skipped[1]) == len(OVERLAP_QUANTITIES)
 
 
