@@ -6,14 +6,6 @@ const MANY_ROWS = 10;
 /** Verdicts from the worst to the best. */
 const VERDICTS = ["error", "fail", "skip", "info", "unverified", "pass"];
 
-/** An element with attributes and children; a text becomes a text node, never markup. */
-function element(name, attributes = {}, ...children) {
-  const made = document.createElement(name);
-  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
-  made.append(...children);
-  return made;
-}
-
 /** Verdict shown in a part of a page; undefined without one. */
 function verdictOf(part) {
   const mark = part.querySelector(".verdict");

@@ -10,7 +10,7 @@ from markupsafe import Markup
 from pantocheck.conformance.reports.document import Document, to_plain
 from pantocheck.conformance.reports.formats.embedded_results import BLOCK_ID, encode_data_block
 from pantocheck.conformance.reports.formats.inline_figure import inline_figure
-from pantocheck.conformance.reports.formats.page_code import read_page_code
+from pantocheck.conformance.reports.formats.page_code import read_plain_code, read_results_code
 from pantocheck.conformance.reports.formats.reproducibility import format_date
 from pantocheck.conformance.reports.words import TEMPLATES, read_words
 
@@ -19,7 +19,7 @@ def render_html(document: Document) -> str:
     """HTML text of a document; its results are embedded as a data block."""
     # The encoded results hold no character that HTML interprets.
     block = None if document.results is None else Markup(encode_data_block(document.results))
-    code = read_page_code()
+    code = read_plain_code() if document.results is None else read_results_code()
     page = _build_environment().get_template("page.html")
     return page.render(
         document=to_plain(replace(document, results=None)),

@@ -7,9 +7,21 @@ from hashlib import sha256
 
 from pantocheck.conformance.reports.words import TEMPLATES
 
-PAGE_STYLE = "page.css"
-TABLE_SCRIPTS = ("scripts/folding.js", "scripts/tables.js")
+PAGE_STYLE, PLOT_STYLE = "page.css", "uplot/uPlot.min.css"
+
+PLOT_LIBRARY = "uplot/uPlot.iife.min.js"
+"""Unmodified file of the release 1.6.32 of uPlot, from its package of the npm registry; licence in the same folder."""
+
+TABLE_SCRIPTS = ("elements", "folding", "tables")
 """Parts of the script of every page."""
+
+CURVE_SCRIPTS = (
+    *("results", "download", "spectrum", "spans"),
+    *("plot_style", "legend", "plot_keys", "touch", "plot"),
+    *("force_view", "uplift_view", "views"),
+)
+"""Further parts of the script of a page with results, in the order of their use."""
+
 
 
 @dataclass(frozen=True)
@@ -28,9 +40,16 @@ class PageCode:
 
 
 @cache
-def read_page_code() -> PageCode:
-    """Styles and scripts of every page."""
+def read_plain_code() -> PageCode:
+    """Styles and scripts of a page without results."""
     return PageCode((_read(PAGE_STYLE),), (_join_parts(TABLE_SCRIPTS),))
+
+
+@cache
+def read_results_code() -> PageCode:
+    """Styles and scripts of a page with results, whose curves the library for plots draws."""
+    scripts = (_read(PLOT_LIBRARY), _join_parts((*TABLE_SCRIPTS, *CURVE_SCRIPTS)))
+    return PageCode((_read(PLOT_STYLE), _read(PAGE_STYLE)), scripts)
 
 
 def _read(name: str) -> str:
@@ -39,7 +58,8 @@ def _read(name: str) -> str:
 
 def _join_parts(names: tuple[str, ...]) -> str:
     """Parts of a script in one scope, so that their names do not reach the page."""
-    return "\n".join(("(() => {", '"use strict";', *map(_read, names), "})();"))
+    parts = (_read(f"scripts/{name}.js") for name in names)
+    return "\n".join(("(() => {", '"use strict";', *parts, "})();"))
 
 
 def _digest(text: str) -> str:

@@ -1,0 +1,116 @@
+// The force of one pantograph: curves over the track, spectrum of the visible stretch, spans over each other.
+
+/** Series of a constant level. */
+function level(label, value, count, style) {
+  return { label, values: Array(count).fill(value), width: 1, ...style };
+}
+
+/** Curves of a force: as delivered, filtered, and its levels. */
+function forceCurves(trace) {
+  const count = trace.position_m.length;
+  const curves = [{ label: "unfiltered", values: trace.force_N, colour: "faint", width: 1 }];
+  if (trace.force_20_N) curves.push({ label: "0–20 Hz", values: trace.force_20_N, colour: "ink", width: 2 });
+  if (trace.std_N !== null) {
+    curves.push(level("mean", trace.mean_N, count, { colour: "ink", dash: [9, 3, 2, 3] }));
+    curves.push(level("mean + 3 σ", trace.mean_N + 3 * trace.std_N, count, { colour: "ink", dash: [6, 3] }));
+    curves.push(level("mean − 3 σ", trace.mean_N - 3 * trace.std_N, count, { colour: "ink", dash: [3, 3] }));
+  }
+  return curves;
+}
+
+/** Time between two points of a trace [s]; null if the points are uneven or the speed is not known. */
+function traceStep(shownCase, trace) {
+  const step = trace.position_m.length > 1 ? evenStep(trace.position_m) : null;
+  const speed = shownCase.run.speed_km_h;
+  return step && speed ? step / (speed / 3.6) : null;
+}
+
+/** Sentence on the resolution of a trace in the page. */
+function describeResolution(shownCase, trace) {
+  const step = traceStep(shownCase, trace);
+  const count = trace.position_m.length;
+  if (step === null) return `The curves have ${count} points: of each few neighbouring samples, the lowest and the highest.`;
+  const rate = shownCase.run.rate_Hz;
+  const nth = rate ? Math.max(1, Math.round(step * rate)) : 1;
+  const thinned = nth > 1 ? `one of ${nth} samples of the record, ` : "";
+  const mirrored = nth > 1 ? ` In its spectrum, parts of the force above ${formatNumber(0.5 / step)} Hz appear mirrored.` : "";
+  return `The curves have ${count} points: ${thinned}every ${formatNumber(1e3 * step, 3)} ms.${mirrored}`;
+}
+
+/** View of the force of a figure. */
+class ForceView {
+  constructor(figure) {
+    this.case = caseOf(figure);
+    this.trace = this.case.traces[figure.dataset.owner];
+    const { position_m: x, supports_m: lines } = this.trace;
+    const name = `pantograph ${figure.dataset.owner}`;
+    this.plot = new Plot({
+      ...{ label: `Contact force of ${name}`, xLabel: "position along the track [m]", xUnit: "m", yLabel: "contact force [N]" },
+      ...{ yUnit: "N", height: 300, x, lines, curves: forceCurves(this.trace) },
+    });
+    const headings = ["position_m", "force_N", "force_20_N"];
+    const makeRows = () => x.map((place, i) => [place, this.trace.force_N[i], this.trace.force_20_N?.[i]]);
+    const save = saveButton("Curves as CSV", fileName(this.case, name, "force"), headings, makeRows);
+    this.tools = [...this.plot.makeButtons(), save];
+    const note = element("p", { class: "small" }, describeResolution(this.case, this.trace));
+    this.parts = [this.plot.element, note, element("div", { class: "pair" }, ...this.makeSpectrum(name), ...this.makeSpans(name))];
+  }
+
+  /** Spectrum of the visible stretch, below the force; none without an even step. */
+  makeSpectrum(name) {
+    this.step = traceStep(this.case, this.trace);
+    if (this.step === null) return [];
+    this.spectrum = new Plot({
+      ...{ label: `Amplitude spectrum of the force of ${name}`, xLabel: "frequency [Hz]", xUnit: "Hz", yLabel: "amplitude [N]" },
+      ...{ yUnit: "N", height: 230, lines: [5, 20], x: [0, HIGHEST_HZ], curves: [{ label: "amplitude", values: [0, 0], colour: "ink" }] },
+    });
+    this.spectrumTitle = element("p", { class: "small" });
+    return [element("div", {}, this.spectrumTitle, this.spectrum.element)];
+  }
+
+  /** Forces of the spans over each other; none with fewer than two spans. */
+  makeSpans(name) {
+    const { position_m: position, force_20_N: filtered, force_N: delivered, supports_m: supports } = this.trace;
+    const { distance, spans } = laySpans(position, filtered ?? delivered, supports);
+    if (spans.length < 2) return [];
+    const curves = spans.map(({ start, end, force }, number) => ({
+      ...{ label: `${formatNumber(start, 6)}–${formatNumber(end, 6)} m`, values: force, ...curveStyle(number) },
+    }));
+    this.spans = new Plot({
+      ...{ label: `Spans of ${name}`, xLabel: "distance from the support [m]", xUnit: "m", yLabel: "contact force [N]" },
+      ...{ yUnit: "N", height: 230, x: distance, curves },
+    });
+    const title = `Spans over each other, ${filtered ? "0–20 Hz" : "unfiltered"}.`;
+    return [element("div", {}, element("p", { class: "small" }, title), this.spans.element)];
+  }
+
+  /** Draw all plots of the view. */
+  draw() {
+    for (const plot of [this.plot, this.spectrum, this.spans]) plot?.draw();
+    if (!this.spectrum) return;
+    this.plot.onRange = (range) => this.updateSpectrum(range);
+    this.updateSpectrum(this.plot.stretch);
+  }
+
+  /** Compute the spectrum of the samples between two positions. */
+  updateSpectrum([start, end]) {
+    const { position_m: position, force_N: force } = this.trace;
+    const visible = force.filter((_, i) => position[i] >= start && position[i] <= end);
+    const stretch = `${formatNumber(Math.max(start, position[0]), 6)} m to ${formatNumber(Math.min(end, position.at(-1)), 6)} m`;
+    if (visible.length < FEWEST_SAMPLES) {
+      this.spectrumTitle.textContent = `The visible stretch, ${stretch}, is too short for a spectrum.`;
+      return;
+    }
+    this.spectrumTitle.textContent = `Spectrum of the visible stretch, ${stretch}, unfiltered.`;
+    const { frequency, amplitude } = amplitudeSpectrum(visible, this.step);
+    this.spectrum.setCurves(frequency, [amplitude]);
+  }
+
+  /** Show the place of an extreme, one span wide. */
+  showPlace(place, text, name) {
+    const supports = this.trace.supports_m;
+    const { position_m: x } = this.trace;
+    const span = supports.length > 1 ? Math.abs(supports.at(-1) - supports[0]) / (supports.length - 1) : (x.at(-1) - x[0]) / 5;
+    this.plot.showPlace(place.position_m, span, text, name);
+  }
+}

@@ -1,0 +1,38 @@
+// Colours of plots, from the style sheet, so that they follow the light or dark scheme.
+
+/** Dashes of curves, so that they differ without colour. */
+const DASHES = [[], [7, 3], [2, 2], [9, 3, 2, 3]];
+
+/** Number of colours of curves in the style sheet. */
+const COLOURS = 6;
+
+/** Colour of the style sheet by the name of its variable. */
+function colour(name) {
+  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+}
+
+/** Colour and dash of the n-th of several equal curves. */
+function curveStyle(number) {
+  const dash = Math.floor(number / COLOURS) % DASHES.length;
+  return { colour: `curve-${(number % COLOURS) + 1}`, dash: DASHES[dash] };
+}
+
+/** Axis of a plot. */
+function axis(label, size) {
+  return {
+    label,
+    size,
+    labelSize: 22,
+    font: "12px system-ui, sans-serif",
+    labelFont: "13px system-ui, sans-serif",
+    stroke: () => colour("ink"),
+    grid: { stroke: () => colour("line"), width: 1 },
+    ticks: { stroke: () => colour("line"), width: 1 },
+    values: (_, ticks) => ticks.map((tick) => formatNumber(tick, 6)),
+  };
+}
+
+/** Call a function whenever the reader's system changes between the light and the dark scheme. */
+function onSchemeChange(redraw) {
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
+}

@@ -1,0 +1,46 @@
+// The uplift of the contact wire at the supports of a case.
+
+/** Stretch of time that shows the largest uplift [s]. */
+const UPLIFT_STRETCH_S = 2;
+
+/** Levels of the limits of the largest uplift. */
+function upliftLimits(shownCase, count) {
+  const limits = shownCase.criteria
+    .filter((criterion) => criterion.quantity === "max_uplift_at_support_mm")
+    .flatMap(({ lower, upper }) => [["lower limit", lower], ["upper limit", upper]])
+    .filter(([, value]) => value !== null);
+  return [...new Map(limits.map(([label, value]) => [`${label} ${formatNumber(value)} mm`, value]))].map(([label, value]) =>
+    level(label, value, count, { colour: "ink", dash: [6, 3] }),
+  );
+}
+
+/** View of the uplift of a figure. */
+class UpliftView {
+  constructor(figure) {
+    this.case = caseOf(figure);
+    const supports = this.case.uplift.filter((support) => support.time_s.length);
+    const [x, ...uplift] = uPlot.join(supports.map((support) => [support.time_s, support.uplift_mm]));
+    const curves = supports.map((support, number) => ({
+      ...{ label: `support at ${formatNumber(support.support_m, 6)} m`, values: uplift[number], ...curveStyle(number) },
+    }));
+    this.plot = new Plot({
+      ...{ label: "Uplift at the supports", xLabel: "time [s]", xUnit: "s", yLabel: "uplift [mm]", yUnit: "mm", height: 260 },
+      ...{ x, curves: [...curves, ...upliftLimits(this.case, x.length)] },
+    });
+    const makeRows = () =>
+      supports.flatMap((support) => support.time_s.map((time, i) => [support.support_m, time, support.uplift_mm[i]]));
+    const headings = ["support_m", "time_s", "uplift_mm"];
+    this.tools = [...this.plot.makeButtons(), saveButton("Curves as CSV", fileName(this.case, "uplift"), headings, makeRows)];
+    this.parts = [this.plot.element];
+  }
+
+  /** Draw the plot. */
+  draw() {
+    this.plot.draw();
+  }
+
+  /** Show the time of the largest uplift. */
+  showPlace(place, text, name) {
+    this.plot.showPlace(place.time_s, UPLIFT_STRETCH_S, text, name);
+  }
+}
