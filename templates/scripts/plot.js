@@ -135,7 +135,7 @@ class Plot {
       "+": ["Zoom in", () => this.zoom(ZOOM_FACTOR)],
       "←": ["Move left", () => this.pan(-PAN_SHARE)],
       "→": ["Move right", () => this.pan(PAN_SHARE)],
-      "Show all": ["Show the whole curves", () => this.showAll()],
+      "Show all": ["Show all", () => this.showAll()],
     };
     return Object.entries(buttons).map(([sign, [label, act]]) => {
       const button = element("button", { type: "button", title: label, "aria-label": label }, sign);

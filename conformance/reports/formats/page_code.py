@@ -23,7 +23,6 @@ CURVE_SCRIPTS = (
 """Further parts of the script of a page with results, in the order of their use."""
 
 
-
 @dataclass(frozen=True)
 class PageCode:
     """Style sheets and scripts of a page."""

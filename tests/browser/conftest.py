@@ -1,0 +1,114 @@
+"""A real browser for the pages: headless Chromium of the distribution, driven by Playwright.
+
+Without a browser the tests are skipped with the reason.
+"""
+
+import shutil
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from operator import itemgetter
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from helpers.example_identification import build_example_line
+from helpers.example_results import chart, example, with_hostile_text
+from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
+from pantocheck.conformance.reports.document import Document, Figure, Figures, PlainHeader, Section, make_grid
+from pantocheck.conformance.reports.figures.study_chart import draw_chart
+from pantocheck.conformance.reports.formats.html import render_html
+from pantocheck.conformance.reports.mass_drop.identification_report import build_identification_document
+
+sync_api = pytest.importorskip("playwright.sync_api", reason="the package playwright is not installed")
+
+NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+"""Programs that Playwright can drive without a browser of its own."""
+
+SWITCHES = (
+    *("--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking"),
+    *("--disable-component-update", "--disable-sync"),
+)
+
+WIDE, NARROW = 1280, 390
+"""Widths of a desktop and of a phone [px]."""
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Any]:
+    """One browser for all tests of a process."""
+    program = next(filter(None, map(shutil.which, NAMES)), None)
+    if program is None:
+        pytest.skip(f"no browser: none of {', '.join(NAMES)} is installed")
+    with sync_api.sync_playwright() as driver:
+        started = driver.chromium.launch(executable_path=program, args=list(SWITCHES))
+        yield started
+        started.close()
+
+
+def build_plain_document() -> Document:
+    """A page without results: a chart and a table long enough for sorting."""
+    numbers = [{"f": f"{value:g}", "note": f"mode {value:g}"} for value in (3.5, -1.0, 20.0, *range(30, 40))]
+    table = make_grid("Modes", numbers, {"f [Hz]": itemgetter("f"), "Note": itemgetter("note")})
+    data = chart("measured", "Damping ratios")
+    figure = Figure(draw_chart(data), data["alternative"], data["caption"])
+    blocks = (Section("Modes", (Figures((figure,)), table)),)
+    return Document("Identification", PlainHeader("Identification", "13 modes"), blocks)
+
+
+@pytest.fixture(scope="session")
+def page_files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """Pages by name: certificates, one of them with hostile texts, a mass-drop report, and a page without results."""
+    documents = {
+        "certificate": build_certificate(example()),
+        "hostile": build_certificate(with_hostile_text()),
+        "identification": build_identification_document([build_example_line()]),
+        "plain": build_plain_document(),
+    }
+    folder = tmp_path_factory.mktemp("pages")
+    for name, document in documents.items():
+        (folder / f"{name}.html").write_text(render_html(document), "utf-8")
+    return {name: folder / f"{name}.html" for name in documents}
+
+
+@dataclass
+class Watch:
+    """Messages and requests of a page besides its own file."""
+
+    complaints: list[str] = field(default_factory=list)
+
+    def observe(self, page: Any, address: str) -> None:
+        """Note console messages, errors and requests of a page."""
+        page.on("console", lambda message: self.complaints.append(f"console: {message.text}"))
+        page.on("pageerror", lambda error: self.complaints.append(f"error: {error}"))
+        page.on(
+            "request",
+            lambda request: None if request.url == address else self.complaints.append(f"request: {request.url}"),
+        )
+
+
+Opener = Callable[..., Any]
+
+
+@pytest.fixture
+def open_page(browser: Any, page_files: dict[str, Path]) -> Iterator[Opener]:
+    """Function that opens a page by name; a message, an error or a request of a page fails the test.
+
+    Its options are those of a context of Playwright, such as `color_scheme` or `java_script_enabled`.
+    """
+    watch, contexts = Watch(), []
+
+    def open_named(name: str, width: int = WIDE, **options: Any) -> Any:
+        context = browser.new_context(viewport={"width": width, "height": 900}, **options)
+        contexts.append(context)
+        context.set_default_timeout(5000)
+        page = context.new_page()
+        address = page_files[name].as_uri()
+        watch.observe(page, address)
+        page.goto(address)
+        return page
+
+    yield open_named
+    for context in contexts:
+        context.close()
+    assert watch.complaints == []
