@@ -206,6 +206,9 @@ def test_css_colours_have_contrast_against_the_paper(scheme: str) -> None:
     inks = re.findall(r"--(?:accent|ink|soft|link): (#[0-9a-f]{6})", part)
     assert len(inks) == 9
     assert all(contrast(ink, paper) > 5 for ink in inks)
+    curves = re.findall(r"--(?:curve-\d|faint): (#[0-9a-f]{6})", part)
+    assert len(curves) == 7
+    assert all(contrast(curve, paper) > 3 for curve in curves)  # WCAG AA for graphical objects
     [box] = re.findall(r"--caution-paper: (#[0-9a-f]{6})", part)
     [ink] = re.findall(r"--ink: (#[0-9a-f]{6})", part)
     assert contrast(ink, box) > 5
