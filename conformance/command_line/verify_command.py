@@ -9,6 +9,8 @@ import typer
 
 from pantocheck.conformance.authenticity.authenticity_check import CheckOutcome
 from pantocheck.conformance.authenticity.origin_check import check_origin
+from pantocheck.conformance.authenticity.record_check import check_record_quantities
+from pantocheck.conformance.authenticity.rerun_check import check_rerun
 from pantocheck.conformance.authenticity.signatures.signature_check import check_signatures
 from pantocheck.conformance.authenticity.verification import Verification, verify_document
 from pantocheck.conformance.command_line.guard import strip_control_characters
@@ -33,6 +35,12 @@ def verify_command(
     trust_roots: Annotated[
         Path | None, typer.Option(help="PEM file of the authorities whose signatures are trusted.")
     ] = None,
+    record: Annotated[
+        list[Path] | None, typer.Option(help="Record of a case: its quantities are computed from the samples again.")
+    ] = None,
+    rerun: Annotated[
+        bool, typer.Option("--rerun", help="Run the built-in simulator again and compare every number.")
+    ] = False,
     any_verdict: Annotated[
         bool, typer.Option("--any-verdict", help="Exit code 0 for a consistent document of any verdict.")
     ] = False,
@@ -47,11 +55,22 @@ def verify_command(
     A consistent document need not be authentic: invented results can be consistent. A signature shows who made it: with
     --trust-roots, every signature must lead to one of these authorities. Without, signers are named, but not trusted.
 
-    Example: pantocheck verify report/certificate.pdf
+    Invented numbers can be consistent, too. --record computes the quantities of a record again, and --rerun runs the
+    built-in simulator again.
+
+    Examples:
+
+    pantocheck verify report/certificate.pdf
+
+    pantocheck verify report/certificate.pdf --rerun --trust-roots authority.pem
+
+    pantocheck verify report/results.json --record run.csv
     """
     verification = verify_document(document)
     report = check_signatures(document, trust_roots)
-    verification = verification.add_checks(check_origin(report))
+    records = [check for path in record or () for check in check_record_quantities(verification.results, path)]
+    reruns = check_rerun(verification.results) if rerun else []
+    verification = verification.add_checks([*records, *reruns, *check_origin(report)])
     word = "authentic" if report.authentic else "consistent"
     typer.echo("\n".join(_describe(verification, word)))
     raise typer.Exit(_exit_code(verification, any_verdict))

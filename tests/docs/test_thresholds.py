@@ -12,7 +12,9 @@ from pantocheck.conformance.authenticity import (
     page_check,
     pdf_comparison,
     pdf_structure,
+    record_check,
     reported_numbers,
+    rerun_check,
     text_differences,
     trace_check,
 )  # fmt: skip
@@ -82,7 +84,8 @@ ROWS = re.findall(
 )
 MODULES: list[ModuleType] = [
     track_position, record_preparation, events,
-    certificate_reading, page_check, pdf_comparison, pdf_structure, reported_numbers, text_differences, trace_check,
+    certificate_reading, page_check, pdf_comparison, pdf_structure, record_check, reported_numbers, rerun_check,
+    text_differences, trace_check,
     force_content, force_copy, force_dynamics, implied_force, mean_force, roll_off,
     rounding, support_coincidence, support_passing, assessed_record, baseline, discretisation,
     extended_band, record_mismatch, record_uncertainty, start_agreement, start_and_section, validity_warnings,

@@ -1,0 +1,89 @@
+"""Comparison of two results number by number: bit for bit, or within a relative tolerance."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from pantocheck.conformance.authenticity.reported_numbers import format_exact
+
+LeafPath = tuple[str | int, ...]
+"""Keys and indices that lead to a leaf of nested dictionaries and lists."""
+
+
+@dataclass(frozen=True)
+class NumberComparison:
+    """Comparison of the numbers of two trees.
+
+    Parameters
+    ----------
+    count : int
+        Number of compared leaves.
+    largest : float
+        Largest relative difference of two numbers within the tolerance.
+    differences : tuple of str
+        Leaves that differ by more, one sentence each.
+    """
+
+    count: int
+    largest: float
+    differences: tuple[str, ...]
+
+
+def compare_numbers(stated: Any, computed: Any, tolerance: float) -> NumberComparison:
+    """Compare two trees of numbers and texts.
+
+    A number may differ by the tolerance relative to the largest number of its list, or to itself outside of a list: a
+    curve passes through zero.
+
+    Parameters
+    ----------
+    stated : nested dict and list
+        Content of a document.
+    computed : nested dict and list
+        Content that was computed again.
+    tolerance : float
+        Largest relative difference; 0: all bits are equal.
+    """
+    ours, theirs = dict(_leaves(stated, ())), dict(_leaves(computed, ()))
+    scales = _scales(theirs)
+    differences, largest = [], 0.0
+    for path in dict.fromkeys([*ours, *theirs]):
+        a, b = ours.get(path), theirs.get(path)
+        if path not in ours or path not in theirs:
+            place = "the document" if path not in ours else "the computation"
+            differences.append(f"{_name(path)}: missing in {place}")
+        elif isinstance(a, float) and isinstance(b, float):
+            change = abs(a - b) / (scales[path[:-1]] if isinstance(path[-1], int) else abs(b) or 1.0) if a != b else 0.0
+            if change > tolerance or math.isnan(change):
+                differences.append(f"{_name(path)}: {format_exact(a)} stated, {format_exact(b)} computed")
+            else:
+                largest = max(largest, change)
+        elif a != b:
+            differences.append(f"{_name(path)}: '{a}' stated, '{b}' computed")
+    return NumberComparison(len(theirs), largest, tuple(differences))
+
+
+def _leaves(tree: Any, path: LeafPath) -> Iterator[tuple[LeafPath, Any]]:
+    if isinstance(tree, dict):
+        for key, value in tree.items():
+            yield from _leaves(value, (*path, key))
+    elif isinstance(tree, list):
+        yield (*path, "number of values"), len(tree)
+        for index, value in enumerate(tree):
+            yield from _leaves(value, (*path, index))
+    else:
+        yield path, float(tree) if isinstance(tree, int) and not isinstance(tree, bool) else tree
+
+
+def _scales(leaves: dict[LeafPath, Any]) -> dict[LeafPath, float]:
+    """Largest absolute number of each list, 1 for a list of zeros."""
+    scales: dict[LeafPath, float] = {}
+    for path, value in leaves.items():
+        if isinstance(value, float) and isinstance(path[-1], int):
+            scales[path[:-1]] = max(scales.get(path[:-1], 0.0), abs(value))
+    return {path: scale or 1.0 for path, scale in scales.items()}
+
+
+def _name(path: LeafPath) -> str:
+    return ", ".join(f"value {part + 1}" if isinstance(part, int) else part for part in path)

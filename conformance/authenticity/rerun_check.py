@@ -1,0 +1,112 @@
+"""Check of results by a new run of the built-in simulator."""
+
+import platform as host
+from collections.abc import Iterator
+from dataclasses import dataclass
+from importlib.metadata import version
+from typing import Any
+
+from pantocheck.conformance.authenticity.authenticity_check import DocumentCheck, judge_details
+from pantocheck.conformance.authenticity.number_comparison import NumberComparison, compare_numbers
+from pantocheck.conformance.authenticity.version_differences import list_suite_differences
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.library import list_library, load_case
+from pantocheck.conformance.cases.library_folder import library_folder
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.results.results_format import CaseResult, Results
+from pantocheck.conformance.runner import run_case
+from pantocheck.conformance.studies.damping_sensitivity import add_damping_study
+from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
+
+OTHER_PLATFORM = 1e-6
+"""Largest relative difference of a new run on another processor or with other versions of the numerical packages.
+
+The same run without the vector instructions of the processor differs by less than 1e-9 (docs/verify.md)."""
+
+MOST_NUMBERS = 10
+"""Largest number of differing numbers that are listed."""
+
+COMPUTED_PARTS = (
+    *("quantities", "uncertainty", "uncertainty_components", "spread"),
+    *("traces", "uplift", "charts", "tables"),
+)
+"""Parts of a result that the simulator computes. Limits and verdicts follow from them and are checked without a run."""
+
+
+@dataclass(frozen=True)
+class Rerun:
+    """New run of one case."""
+
+    case: str
+    comparison: NumberComparison
+
+
+def check_rerun(results: Results) -> list[DocumentCheck]:
+    """Run the library cases of results again and compare all computed numbers.
+
+    Parameters
+    ----------
+    results : Results
+        Results of the built-in simulator.
+
+    Raises
+    ------
+    InputError
+        Another system made the results.
+    """
+    simulator = ReferenceSimulator()
+    if (results.system.kind, results.system.name) != (simulator.kind, simulator.name):
+        raise InputError(
+            "option --rerun",
+            f"the system '{results.system.name}' is not the built-in simulator",
+            "Run this system again with 'pantocheck run --system', or give its record with --record.",
+        )
+    known = list_library(library_folder())
+    computed = [case for case in results.cases if case.quantities]
+    skipped = [case.id for case in computed if case.library == "own" or case.id not in known]
+    tolerance = 0.0 if _is_same_platform(results) else OTHER_PLATFORM
+    reruns = [
+        _rerun(load_case(known[case.id]), case, results, simulator, tolerance)
+        for case in computed
+        if case.id not in skipped
+    ]
+    return [*_judge(results, reruns, tolerance), *_name_skipped(skipped)]
+
+
+def _rerun(case: Case, stated: CaseResult, results: Results, simulator: ReferenceSimulator, tolerance: float) -> Rerun:
+    with_study = add_damping_study(case) if stated.tables else case
+    result = run_case(with_study, simulator, results.trust)
+    return Rerun(stated.id, compare_numbers(_computed(stated), _computed(result), tolerance))
+
+
+def _computed(result: CaseResult) -> dict[str, Any]:
+    content = result.model_dump(mode="json")
+    return {key: content[key] for key in COMPUTED_PARTS}
+
+
+def _judge(results: Results, reruns: list[Rerun], tolerance: float) -> Iterator[DocumentCheck]:
+    if not reruns:
+        return
+    numbers, largest = sum(run.comparison.count for run in reruns), max(run.comparison.largest for run in reruns)
+    differences = [f"{run.case}: {text}" for run in reruns for text in run.comparison.differences]
+    agreement = "bit for bit" if largest == 0 else f"within {tolerance:g} (largest relative difference {largest:.1e})"
+    proved = f"A new run of the built-in simulator gives the same {numbers} numbers, {agreement}."
+    contradicted = f"A new run of the built-in simulator gives other numbers ({len(differences)} of {numbers})."
+    if differences and (versions := list_suite_differences(results)):
+        yield DocumentCheck("incomplete", contradicted, (*versions, *differences[:MOST_NUMBERS]))
+    else:
+        yield judge_details(proved, contradicted, differences[:MOST_NUMBERS])
+
+
+def _name_skipped(skipped: list[str]) -> Iterator[DocumentCheck]:
+    if skipped:
+        text = "These cases were not run again: they are not in the installed library."
+        yield DocumentCheck("open", text, tuple(skipped))
+
+
+def _is_same_platform(results: Results) -> bool:
+    """Whether the numerical packages and the kind of processor are those of the results."""
+    stated = results.platform
+    versions = {name: version(name) for name in ("numpy", "scipy", "numba")}
+    machine = (stated.machine, stated.system) == (host.machine(), host.system())
+    return machine and all(getattr(stated, name) == number for name, number in versions.items())
