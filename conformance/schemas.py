@@ -31,6 +31,7 @@ from pantocheck.conformance.comparison.static_sidecar import StaticSidecar
 from pantocheck.conformance.identification.damping.damping_format import DampingResults
 from pantocheck.conformance.identification.identification_format import IdentificationFile
 from pantocheck.conformance.identification.mode import ModesFile
+from pantocheck.conformance.identification.pantograph_fit.pantograph_fit_format import PantographFit
 from pantocheck.conformance.identification.population_format import PopulationFile
 from pantocheck.conformance.mass_drops.drop_sidecar import DropSidecar as MassDropSidecar
 from pantocheck.conformance.plan import Plan
@@ -75,6 +76,7 @@ WRITTEN_FORMATS: dict[str, type[BaseModel]] = {
     "campaign-results": CampaignResults,
     "drop-comparison": DropComparison,
     "response-comparison": ResponseComparison,
+    "pantograph-fit": PantographFit,
 }
 """JSON files that the suite writes."""
 

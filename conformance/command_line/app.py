@@ -32,6 +32,7 @@ COMMANDS = {
     "verify": "Verify a document: its verdicts, its pages, its cases and its signatures.",
     "site": "Write a static site from many results: systems against cases, and versions over time.",
     "doctor": "Show versions, extras, caches and folders of this installation.",
+    "fit-pantograph": "Fit a chain of lumped masses to frequency responses measured at a pantograph head.",
     "schema": "Print or write the JSON Schema of a file format, for editors and validators.",
     "self-test": "Test the suite with faulty systems: each fault must be detected.",
 }

@@ -46,6 +46,12 @@ def test_units_of_the_page_are_those_of_each_kind() -> None:
             assert convert_key(f"modulus_{unit}", list_response_columns(kind)) is not None, (kind, unit)
 
 
+def test_options_of_the_fit_are_those_of_its_command() -> None:
+    rows = set(re.findall(r"^\| `(--[a-zA-Z-]+)", TEXT, re.MULTILINE))
+    help_text = CliRunner().invoke(app, ["fit-pantograph", "--help"], env={"COLUMNS": "200"}).output
+    assert rows == set(re.findall(r"(--[a-zA-Z-]+)", help_text)) - {"--help", "--out"}
+
+
 def test_options_of_the_page_are_those_of_the_command() -> None:
     options = set(re.findall(r"(--[a-z-]+)", re.search(r"```sh\npantocheck compare-response(.*?)```", TEXT, re.S)[1]))
     help_text = CliRunner().invoke(app, ["compare-response", "--help"], env={"COLUMNS": "200"}).output

@@ -1,0 +1,170 @@
+"""`pantocheck fit-pantograph`: chain of lumped masses from measured frequency responses."""
+
+import math
+from collections import Counter
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import tomli_w
+import typer
+
+from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.cases.pantograph_file import PantographFile
+from pantocheck.conformance.command_line.console import build_table, console, escape_text, format_number
+from pantocheck.conformance.comparison.response_comparison import compare_responses
+from pantocheck.conformance.comparison.response_record import ResponseRecord, read_response
+from pantocheck.conformance.identification.pantograph_fit.chain_selection import MASS_COUNTS, FitTask, fit_chains
+from pantocheck.conformance.identification.pantograph_fit.fit_description import (
+    CHAIN_KEYS,
+    FileTexts,
+    build_pantograph_fit,
+    describe_pantograph,
+    name_parameter,
+)
+from pantocheck.conformance.identification.pantograph_fit.pantograph_fit_format import PantographFit
+from pantocheck.conformance.identification.rounded_model import write_model
+from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.suggestions import suggest_names
+from pantocheck.conformance.input_files.toml_file import validate_model
+from pantocheck.conformance.reports.comparison.pantograph_fit_page import build_pantograph_fit_document
+from pantocheck.conformance.reports.formats.report_writers import write_report
+
+LONGEST_SOURCE = 500
+"""Largest number of characters of a source in a pantograph file."""
+
+
+def fit_pantograph_command(
+    responses: Annotated[
+        list[Path],
+        typer.Argument(help="Tables of measured responses, or their sidecars (docs/pantograph-response.md)."),
+    ],
+    out: Annotated[Path, typer.Option(help="Pantograph file to write; the reports stand beside it.")],
+    masses: Annotated[
+        int | None,
+        typer.Option(
+            help="Number of masses.", min=MASS_COUNTS[0], max=MASS_COUNTS[-1], show_default="by information criterion"
+        ),
+    ] = None,
+    fix: Annotated[
+        list[str] | None,
+        typer.Option(metavar="KEY.NUMBER=VALUE", help="Fixed value, e.g. masses_kg.3=7.5; repeat for several."),
+    ] = None,
+    band: Annotated[
+        str | None, typer.Option(metavar="LOW:HIGH", help="Frequencies of the fit [Hz].", show_default="all rows")
+    ] = None,
+    title: Annotated[str, typer.Option(help="Title of the pantograph.")] = "Fitted pantograph",
+    contact_stiffness: Annotated[
+        float, typer.Option("--contact-stiffness-N-m", help="Contact of the file, not part of a response.", min=1.0)
+    ] = 50e3,
+) -> None:
+    """Fit a chain of lumped masses to frequency responses measured at a pantograph head.
+
+    Chains of two, three and four masses are fitted. The report shows intervals and states which parameters the band
+    does not determine.
+
+    Example: pantocheck fit-pantograph at-55N.csv at-70N.csv --masses 3 --out my-pantograph.toml
+    """
+    records = [read_response(path) for path in responses]
+    _refuse_other_suffix(out)
+    check_writable(out.parent)
+    task = FitTask(_parse_band(band), _parse_fixed(fix or [], masses))
+    output = console()
+    with output.status("fitting"):
+        selection = fit_chains(records, task)
+        chosen = masses or selection.best
+        texts = FileTexts(title, _name_source(records))
+        tables = describe_pantograph(selection.fits[chosen], selection.intervals(chosen), texts, contact_stiffness)
+        pantograph = validate_model(tables, PantographFile, "fitted pantograph")
+        comparison = compare_responses(records, pantograph, None)
+        report = build_pantograph_fit(selection, chosen, title, comparison)
+        write_atomically(out, tomli_w.dumps(tables).encode())
+        files = [out, *_write_reports(report, out)]
+    _print_fit(report)
+    for path in files:
+        output.print(escape_text(str(path)), soft_wrap=True)
+
+
+def _refuse_other_suffix(path: Path) -> None:
+    if path.suffix != ".toml":
+        raise InputError("--out", f"{path.name!r} is no TOML file", "Give a name that ends in .toml .")
+
+
+def _parse_band(text: str | None) -> tuple[float, float]:
+    """Lowest and highest frequency of the fit [Hz]."""
+    if text is None:
+        return 0.0, math.inf
+    try:
+        low, high = map(float, text.split(":"))
+    except ValueError:
+        low, high = math.nan, math.nan
+    if not 0 <= low < high:
+        raise InputError("--band", f"{text[:40]!r} is not a band", "Give LOW:HIGH in hertz, e.g. 0.5:50.")
+    return low, high
+
+
+def _parse_fixed(texts: list[str], masses: int | None) -> RealArray | None:
+    """Fixed values of a chain, (3, n), NaN: free; None: all are free, and the number of masses is not chosen."""
+    if not texts:
+        return None
+    if masses is None:
+        raise InputError("--fix", "given without a number of masses", "Give --masses as well.")
+    fixed = np.full((3, masses), np.nan)
+    names = {name_parameter(key, n + 1): (row, n) for row, key in enumerate(CHAIN_KEYS) for n in range(masses)}
+    counts = Counter(text.split("=", 1)[0] for text in texts)
+    for text in texts:
+        name, _, value = text.partition("=")
+        if name not in names:
+            raise InputError("--fix", f"there is no parameter {name[:40]!r}", suggest_names(name, list(names)))
+        if counts[name] > 1:
+            raise InputError("--fix", f"{name} is given {counts[name]} times", "Fix each parameter once.")
+        fixed[names[name]] = _parse_value(name, value)
+    return fixed
+
+
+def _parse_value(name: str, text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    smallest_allowed = value > 0 or (value == 0 and not name.startswith("masses_kg"))
+    if not (smallest_allowed and value < 1e9):
+        raise InputError("--fix", f"{name} has the value {text[:40]!r}", "Give a number, e.g. masses_kg.3=7.5.")
+    return value
+
+
+def _name_source(records: list[ResponseRecord]) -> str:
+    """Origin of the fitted values: tables and their sources."""
+    names = ", ".join(f"{record.source} ({record.sidecar.source})" for record in records)
+    return f"pantocheck fit-pantograph, from {names}"[:LONGEST_SOURCE]
+
+
+def _write_reports(report: PantographFit, out: Path) -> list[Path]:
+    """Write the reports beside the pantograph file; return their paths."""
+    files = [out.with_name(f"{out.stem}-fit{suffix}") for suffix in (".json", ".html", ".pdf")]
+    write_model(files[0], report)
+    document = build_pantograph_fit_document(report.model_dump(mode="json", by_alias=True))
+    for path in files[1:]:
+        write_report(document, path)
+    return files
+
+
+def _print_fit(report: PantographFit) -> None:
+    """Print the candidates, the parameters and the caveats."""
+    output = console()
+    numbers = ("RMS deviation %", "variance ratio", "BIC")
+    candidates = build_table("masses", *numbers, title="Chains", right=numbers)
+    for item in report.candidates:
+        values = (item.complex_deviation_pct, item.variance_ratio, item.information_criterion)
+        mark = " (chosen)" if item.masses == report.masses else ""
+        candidates.add_row(f"{item.masses}{mark}", *(format_number(value) for value in values))
+    output.print(candidates)
+    parameters = build_table("parameter", "value", "± 95 %", "", right=("value", "± 95 %"))
+    for parameter in report.parameters:
+        state = parameter.determination.replace("_", " ")
+        name = name_parameter(parameter.key, parameter.number)
+        parameters.add_row(name, format_number(parameter.value), format_number(parameter.half_width, 2), state)
+    output.print(parameters)
+    for warning in report.warnings:
+        output.print(escape_text(f"warning: {warning}"))

@@ -1,0 +1,1 @@
+"""From measured frequency responses of a pantograph head to a chain of lumped masses."""

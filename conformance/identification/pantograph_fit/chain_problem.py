@@ -1,0 +1,107 @@
+"""Least-squares problem of a chain: weighted residuals of the logarithm of the dynamic stiffness, and free parameters.
+
+Masses and stiffnesses enter by their logarithm, because their sizes are unknown; dampings are linear, because they may
+be zero.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pantocheck.conformance.array_types import ComplexArray, RealArray
+from pantocheck.conformance.identification.pantograph_fit.chain_stiffness import chain_response, logarithmic_derivatives
+
+SMALLEST_VALUES = (1e-3, 1e-3, 0.0)
+"""Smallest mass [kg], stiffness [N/m] and damping [N s/m] of a fit."""
+
+LARGEST_VALUES = (1e3, 1e8, 1e6)
+"""Largest mass [kg], stiffness [N/m] and damping [N s/m] of a fit: more than any pantograph has."""
+
+
+@dataclass(frozen=True)
+class MeasuredStiffness:
+    """Measured dynamic stiffness, of one or several responses one behind the other.
+
+    Parameters
+    ----------
+    frequency : (m,) ndarray
+        Frequencies [Hz].
+    stiffness : (m,) ndarray
+        Dynamic stiffness [N/m].
+    weight : (2, m) ndarray
+        Inverse standard deviations of the logarithm of the modulus and of the phase [1/rad].
+    """
+
+    frequency: RealArray
+    stiffness: ComplexArray
+    weight: RealArray
+
+    @property
+    def s(self) -> ComplexArray:
+        """Frequencies i omega [rad/s]."""
+        return np.asarray(2j * np.pi * self.frequency, dtype=np.complex128)
+
+    def select_rows(self, rows: NDArray[np.int64]) -> "MeasuredStiffness":
+        """Part of the rows."""
+        return MeasuredStiffness(self.frequency[rows], self.stiffness[rows], self.weight[:, rows])
+
+
+@dataclass(frozen=True)
+class ChainProblem:
+    """Fit of a chain of n masses with some parameters fixed.
+
+    Parameters
+    ----------
+    data : MeasuredStiffness
+        Measured responses.
+    fixed : (3, n) ndarray
+        Fixed masses [kg], stiffnesses [N/m] and dampings [N s/m]; NaN: free.
+    """
+
+    data: MeasuredStiffness
+    fixed: RealArray
+
+    @property
+    def free(self) -> NDArray[np.bool_]:
+        """Mask of the free parameters, (3, n)."""
+        return np.isnan(self.fixed)
+
+    @property
+    def bounds(self) -> tuple[RealArray, RealArray]:
+        """Lower and upper bounds of the free parameters, as the solver takes them."""
+        shape = self.fixed.shape
+        lower, upper = (np.broadcast_to(np.array(v)[:, None], shape) for v in (SMALLEST_VALUES, LARGEST_VALUES))
+        return self.pack(lower), self.pack(upper)
+
+    def pack(self, values: RealArray) -> RealArray:
+        """Free parameters of the solver from the values of a chain, (3, n)."""
+        packed = np.array(values, dtype=float)
+        packed[:2] = np.log(packed[:2])
+        return np.asarray(packed[self.free])
+
+    def unpack(self, parameters: RealArray) -> RealArray:
+        """Values of the chain, (3, n), from the free parameters of the solver."""
+        values = np.zeros(self.fixed.shape)
+        values[self.free] = parameters
+        values[:2] = np.exp(values[:2])
+        return np.where(self.free, values, self.fixed)
+
+    def residuals(self, parameters: RealArray) -> RealArray:
+        """Weighted residuals of the moduli, then of the phases."""
+        deviation = np.log(chain_response(self.unpack(parameters), self.data.s).stiffness / self.data.stiffness)
+        return np.concatenate([self.data.weight[0] * deviation.real, self.data.weight[1] * deviation.imag])
+
+    def value_jacobian(self, values: RealArray) -> RealArray:
+        """Derivatives of the residuals by the values of the free parameters, in their own units."""
+        s = self.data.s
+        derivatives = logarithmic_derivatives(chain_response(values, s), s)[self.free]
+        return np.concatenate(
+            [self.data.weight[0] * derivatives.real, self.data.weight[1] * derivatives.imag], axis=1
+        ).T
+
+    def jacobian(self, parameters: RealArray) -> RealArray:
+        """Derivatives of the residuals by the free parameters of the solver."""
+        values = self.unpack(parameters)
+        scale = np.vstack([values[:2], np.ones(values.shape[1])])
+        return self.value_jacobian(values) * scale[self.free]
