@@ -28,6 +28,7 @@ COMMANDS = {
     "export-line": "Write the supports and droppers of a line as tables for a spreadsheet.",
     "compare-statics": "Compare elasticities and contact wire heights measured along a line with its model.",
     "compare-response": "Compare frequency responses measured at a pantograph head with its model.",
+    "check-adapter": "Check the adapter of a simulator with a short case.",
     "sign": "Sign a certificate or results.",
     "verify": "Verify a document: its verdicts, its pages, its cases and its signatures.",
     "site": "Write a static site from many results: systems against cases, and versions over time.",

@@ -1,15 +1,9 @@
-"""Adapter of `simulator.py`: the complete protocol of Pantocheck, with the standard library of Python only.
+"""Adapter of `simulator.py`, with the kit `pantocheck_adapter.py`, which answers the messages and writes the record.
 
 Try it:  pantocheck run 'en50318-2002/*' --system 'command:python3 examples/string_catenary/adapter.py'
 """
 
-import hashlib
-import json
-import sys
-import time
-
-PROTOCOL = "pantocheck.command/2"
-NAME, VERSION = "string catenary", "1.0"
+from pantocheck_adapter import START_OF_THE_CASE, Record, Skip, serve
 
 
 def reason_to_skip(case):
@@ -39,68 +33,27 @@ def reason_to_skip(case):
     return None
 
 
-def run(case):
-    """Simulate a case, write its record into the working folder, and build the answer without its id."""
+def simulate(case):
+    """Simulate a case; the simulator starts from equilibrium under the uplift force, with the train at full speed."""
     import simulator
 
-    start = time.perf_counter()
+    reason = reason_to_skip(case)
+    if reason is not None:
+        raise Skip(reason)
     supports, history = simulator.simulate(case)
-    wall = time.perf_counter() - start
-    names = ["time_s", "position_1_m", "force_1_N", "contact_height_1_m"]
-    names += [f"uplift_{i + 1}_m" for i in range(len(supports))]
-    with open("record.csv", "w") as table:
-        print(",".join(names), file=table)
-        for sample in history:
-            print(",".join(f"{value:.9g}" for value in sample), file=table)
-    sidecar = {
-        "schema": "pantocheck.record/1",
-        "case": case["id"],
-        "file": "record.csv",
-        "speed_km_h": case["speed_km_h"],
-        "pantographs": 1,
-        "evaluated_m": case["evaluated_m"],
-        "filter_applied_Hz": "none",
-        "support_position_m": list(map(float, supports)),
-    }
-    with open("record.toml", "w") as file:
-        for key, value in sidecar.items():
-            print(key, "=", json.dumps(value), file=file)  # these values look the same in JSON and TOML
-        print(f"[system]\nname = {json.dumps(NAME)}\nversion = {json.dumps(VERSION)}", file=file)
-        # The line starts in equilibrium under the uplift force, and the train at full speed.
-        print(f"[start]\nplace_m = {case['pantographs'][-1]['start_m']}\nramp_m = 0.0", file=file)
-        print('state = "equilibrium_under_uplift_forces"', file=file)
-        print(f"[run]\nwall_s = {wall:.3f}\nsimulated_s = {history[-1, 0]:.9g}", file=file)
-        print(f"dt_s = {case['discretisation']['time_step_s']}", file=file)
-        print(f"element_m = {case['discretisation']['element_m']}", file=file)
-    record = {"sidecar": describe_file("record.toml"), "table": describe_file("record.csv")}
-    return {"message": "delivered", "record": record, "notes": ["Finite differences, explicit time stepping."]}
-
-
-def describe_file(name):
-    """Name and SHA-256 of a file."""
-    with open(name, "rb") as file:
-        return {"file": name, "sha256": hashlib.sha256(file.read()).hexdigest()}
-
-
-def main():
-    """Answer messages until `stop` or the end of the input."""
-    answers = sys.stdout
-    sys.stdout = sys.stderr  # output of libraries must not mix with the answers
-    for line in sys.stdin:
-        message = json.loads(line)
-        if message["message"] == "stop":
-            break
-        if message["message"] == "start":
-            answer = {"message": "started", "protocol": PROTOCOL, "name": NAME, "version": VERSION}
-        elif (reason := reason_to_skip(message["case"])) is not None:
-            answer = {"message": "skipped", "id": message["id"], "reason": reason}
-        else:
-            try:
-                answer = run(message["case"]) | {"id": message["id"]}
-            except (ArithmeticError, ValueError) as error:
-                answer = {"message": "errored", "id": message["id"], "reason": str(error) or type(error).__name__}
-        print(json.dumps(answer), file=answers, flush=True)
+    time, position, force, height, *uplift = history.T
+    return Record(
+        time_s=time,
+        position_m=[position],
+        force_N=[force],
+        start=START_OF_THE_CASE,
+        contact_height_m=[height],
+        support_position_m=supports,
+        uplift_m=uplift,
+        run={"dt_s": case["discretisation"]["time_step_s"], "element_m": case["discretisation"]["element_m"]},
+        notes=["Finite differences, explicit time stepping."],
+    )
 
 
 if __name__ == "__main__":
-    main()
+    serve("string catenary", "1.0", simulate)

@@ -1,0 +1,122 @@
+"""Check of an adapter: each gap and each fault is named with the next step."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.command_line.app import app
+from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.records.sidecar_tables import RunTable, StartTable
+from pantocheck.conformance.results.outcome import Delivered, Errored, Outcome, Skipped
+from pantocheck.conformance.self_test.adapter_check import AdapterCheck, build_short_case, check_adapter
+from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
+
+
+@dataclass(frozen=True)
+class Adapter:
+    """Adapter that delivers a prepared outcome."""
+
+    outcome: Outcome
+    name: str = "adapter"
+    version: str = "1"
+    kind: Literal["command"] = "command"
+
+    def run(self, case: Case) -> Outcome:
+        return self.outcome
+
+
+@pytest.fixture(scope="module")
+def delivered() -> Delivered:
+    """Complete delivery of the short case."""
+    case = build_short_case()
+    return replace(ReferenceSimulator().run_unrefined(case), case_digest=case.digest)
+
+
+def change_record(**changes: Any) -> Callable[[Delivered], Outcome]:
+    """Replace channels of the record; a function changes the channel itself."""
+
+    def change(delivered: Delivered) -> Outcome:
+        record = delivered.record
+        assert record is not None
+        values = {key: new(getattr(record, key)) if callable(new) else new for key, new in changes.items()}
+        return replace(delivered, record=replace(record, **values))
+
+    return change
+
+
+def keep_first_support(delivered: Delivered) -> Outcome:
+    record = delivered.record
+    assert isinstance(record, Record)
+    assert record.support_position is not None
+    assert record.support_uplift is not None
+    kept = {"support_position": record.support_position[:1], "support_uplift": record.support_uplift[:1]}
+    return replace(delivered, record=replace(record, **kept))
+
+
+OTHER_START = StartTable(place_m=60.0, ramp_m=30.0, state="line_at_rest")
+
+GAPS: dict[str, tuple[Callable[[Delivered], Outcome], str, str, str]] = {
+    "start": (lambda d: replace(d, start=None), "missing", "start", ". State place_m, ramp_m and state"),
+    "digest": (lambda d: replace(d, case_digest=None), "missing", "case digest", "Copy it from the case"),
+    "height": (change_record(contact_height=None), "missing", "channels", "contact_height_range_mm are skipped"),
+    "uplift": (
+        change_record(support_position=None, support_uplift=None),
+        "missing", "channels", "max_uplift_at_support_mm are skipped",
+    ),
+    "one support": (keep_first_support, "missing", "channels", "max_uplift_at_support_mm are skipped"),
+    "filtered force": (change_record(filter_applied_Hz=20.0), "missing", "channels", "rms_20_50_N"),
+    "force in kN": (change_record(force=lambda f: f / 1e3), "wrong", "units", "mean_force_N is 0.001 times"),
+    "uplift in mm": (
+        change_record(support_uplift=lambda u: 1e3 * u), "wrong", "units", "max_uplift_at_support_mm is 1000 times",
+    ),
+    "height in cm": (
+        change_record(contact_height=lambda h: 100 * h), "wrong", "units", "contact_height_range_mm is 100 times",
+    ),
+    "force of another run": (change_record(force=lambda f: f[:, ::-1]), "wrong", "record", "contradicted: "),
+    "other start": (lambda d: replace(d, start=OTHER_START), "note", "start", "its ramp is 30 m long"),
+    "run": (lambda d: replace(d, run=RunTable()), "note", "run", "no dt_s and element_m in [run]"),
+    "no record": (lambda d: replace(d, record=None), "missing", "record", "'delivered' without a record"),
+    "skipped": (lambda _: Skipped("no droppers"), "missing", "short case", "no droppers"),
+    "failed": (lambda _: Errored("diverged"), "wrong", "short case", "diverged"),
+    "another speed": (change_record(speed=50.0), "wrong", "record", "50"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", GAPS)
+def test_gaps_are_named(delivered: Delivered, name: str) -> None:
+    change, state, subject, text = GAPS[name]
+    check = check_adapter(Adapter(change(delivered)))
+    found = [finding for finding in check.findings if (finding.state, finding.subject) == (state, subject)]
+    assert any(text in finding.text for finding in found), check.findings
+    assert check.passed == (state == "note")
+
+
+def test_complete_delivery(delivered: Delivered) -> None:
+    """The reference simulator itself passes, and equals itself in every compared value."""
+    check = check_adapter(Adapter(delivered))
+    assert check.passed
+    assert {finding.state for finding in check.findings} == {"ok"}
+    assert len(check.values) == 5
+    assert all(value.difference == 0 for value in check.values)
+
+
+def test_other_values_are_a_note(delivered: Delivered) -> None:
+    """A value far from the reference simulator is no fault of an adapter."""
+    larger = change_record(force=lambda f: f + 40 * np.sin(2 * np.pi * 40 * np.arange(f.size) / 1000))
+    check: AdapterCheck = check_adapter(Adapter(larger(delivered)))
+    assert any("rms_20_50_N" in finding.text for finding in check.findings if finding.subject == "values")
+
+
+def test_command_names_a_program_that_does_not_answer(tmp_path: Path) -> None:
+    (tmp_path / "silent.py").write_text("print('hello')")
+    result = CliRunner().invoke(app, ["check-adapter", f"python3 {tmp_path / 'silent.py'}"])
+    assert result.exit_code == 1
+    assert "its answer is not JSON: 'hello'" in " ".join(result.stdout.split())
+    missing = CliRunner().invoke(app, ["check-adapter", "no-such-program"])
+    assert missing.exit_code == 2
