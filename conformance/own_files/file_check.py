@@ -12,7 +12,7 @@ from pantocheck.conformance.cases.limits import Limit, LimitsFile
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.comparison.response_record import read_response
-from pantocheck.conformance.comparison.response_sidecar import RESPONSE_SCHEMA
+from pantocheck.conformance.comparison.response_sidecar import RESPONSE_SCHEMA, ResponseSidecar
 from pantocheck.conformance.comparison.static_record import read_static_table
 from pantocheck.conformance.comparison.static_sidecar import STATIC_SCHEMA
 from pantocheck.conformance.grading.validity_warnings import speed_warnings
@@ -166,6 +166,9 @@ def _check_static(path: Path) -> str:
 
 
 def _check_response(path: Path) -> str:
+    sidecar = read_model(path.with_suffix(".toml"), ResponseSidecar, "sidecar")
+    if not path.with_name(sidecar.file).exists():
+        return "response sidecar; its table is not beside it"
     record = read_response(path)
     low, high = record.frequency[[0, -1]]
     kind = record.sidecar.kind.replace("_", " ")

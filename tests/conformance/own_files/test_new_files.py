@@ -16,6 +16,7 @@ from pantocheck.conformance.cases.library import load_case
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.command_line.app import app
+from pantocheck.conformance.comparison.response_sidecar import ResponseSidecar
 from pantocheck.conformance.input_files.key_descriptions import list_bounds
 from pantocheck.conformance.input_files.table_models import find_field, key_adapter, list_models
 from pantocheck.conformance.own_files.file_check import check_input_file
@@ -28,6 +29,7 @@ MODELS: dict[NewKind, type[BaseModel]] = {
     "line": LineFile,
     "case": CaseFile,
     "pantograph": PantographFile,
+    "response": ResponseSidecar,
     "administration": Administration,
 }
 
@@ -139,7 +141,7 @@ def test_comments_state_the_bounds_of_every_number(kind: NewKind) -> None:
     """The bounds stand on the line of the key, or on a comment line that names the key."""
     text = read_template(kind)
     numbers = list(list_numbers(MODELS[kind], tomllib.loads(text)))
-    assert len(numbers) >= {"line": 20, "case": 2, "pantograph": 3, "administration": 0}[kind]
+    assert len(numbers) >= {"line": 20, "case": 2, "pantograph": 3, "response": 2, "administration": 0}[kind]
     missing = [
         (key, bounds)
         for key, bounds in numbers
