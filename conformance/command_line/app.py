@@ -16,6 +16,7 @@ COMMANDS = {
     "cases": "List the cases of the library with the number and the trust of their limits.",
     "show": "Show the inputs, the limits and the notes of a case with their trust and source.",
     "new": "Write a commented, valid line, case, pantograph, response or administration file.",
+    "describe": "Describe a measured file: channels, rates, ranges, gaps and suspicious contents.",
     "check": "Check input files and report all their problems at once.",
     "simulate": "Simulate a case and write its record.",
     "drop": "Simulate the mass drops of a case and write their records.",

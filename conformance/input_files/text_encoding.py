@@ -2,8 +2,10 @@
 
 import codecs
 from collections.abc import Iterator
+from pathlib import Path
 from typing import BinaryIO
 
+from pantocheck.conformance.input_files.bounded_file import MAX_FILE_BYTES, open_file
 from pantocheck.conformance.input_files.input_error import InputError
 
 _CHUNK = 2**20  # [bytes]
@@ -42,6 +44,12 @@ def find_encoding(file: BinaryIO, where: str) -> str:
             where, "is not text", "Export a text file (UTF-8), or state the encoding in the sidecar: [table] encoding."
         )
     return found
+
+
+def name_encoding(path: Path, where: str) -> str:
+    """Name of the encoding of a text file for messages; errors as in `find_encoding`."""
+    with open_file(path, where, MAX_FILE_BYTES) as file:
+        return {"utf-8-sig": "UTF-8", "utf-16": "UTF-16", "cp1252": "Windows-1252"}[find_encoding(file, where)]
 
 
 def _decodes(file: BinaryIO, encoding: str) -> bool:
