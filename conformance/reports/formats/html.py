@@ -1,10 +1,12 @@
 """A document as one HTML file: complete without its script, nothing fetched, every text escaped."""
 
 from dataclasses import replace
+from functools import cache
 from itertools import count
 from typing import Any
 
-from jinja2 import Environment, FunctionLoader, StrictUndefined
+from jinja2 import Environment, FunctionLoader, StrictUndefined, pass_context
+from jinja2.runtime import Context
 from markupsafe import Markup
 
 from pantocheck.conformance.reports.document import Document, to_plain
@@ -29,9 +31,11 @@ def render_html(document: Document) -> str:
         results=block,
         date="" if document.results is None else format_date(document.date),
         results_id=BLOCK_ID,
+        figure_numbers=count(1),
     )
 
 
+@cache
 def _build_environment() -> Environment:
     environment = Environment(
         loader=FunctionLoader(lambda name: (TEMPLATES / name).read_text("utf-8")),
@@ -39,12 +43,13 @@ def _build_environment() -> Environment:
         undefined=StrictUndefined,
         keep_trailing_newline=True,
     )
-    numbers = count(1)
-
-    def inline(figure: dict[str, Any]) -> Markup:
-        return Markup(inline_figure(figure["svg"], figure["alternative"], f"figure-{next(numbers)}-"))
-
     # Figures and drawings are made by this project, with every text escaped, and may enter the page as markup.
-    environment.filters |= {"inline_svg": Markup, "inline_figure": inline}
+    environment.filters |= {"inline_svg": Markup, "inline_figure": _inline}
     environment.globals |= {"verdicts": read_words()["verdict"], "trusts": read_words()["trust"]}
     return environment
+
+
+@pass_context
+def _inline(context: Context, figure: dict[str, Any]) -> Markup:
+    """Markup of a figure, with a number of its own on the page."""
+    return Markup(inline_figure(figure["svg"], figure["alternative"], f"figure-{next(context['figure_numbers'])}-"))

@@ -5,10 +5,11 @@ figure may come from a file of unknown origin; matplotlib escapes it, and only t
 """
 
 import re
+from functools import lru_cache
 from html import escape
 
-TAG = re.compile(r"<[^>]*>")
-"""A tag: matplotlib escapes `>` in texts and in attributes."""
+TAG = re.compile(r"<[^/>][^>]*>")
+"""A tag, but not the end of an element: matplotlib escapes `>` in texts and in attributes."""
 
 STYLE_ELEMENT = re.compile(r"<style\b[^>]*>[^<]*</style>")
 STYLE_ATTRIBUTE = re.compile(r'\bstyle="([^"]*)"')
@@ -45,14 +46,15 @@ def inline_figure(svg: str, alternative: str, prefix: str) -> str:
     written = "".join(f' {name}="{value}"' for name, value in attributes.items())
 
     def change_tag(match: re.Match[str]) -> str:
-        tag = STYLE_ATTRIBUTE.sub(_state_attributes, match[0])
+        tag = STYLE_ATTRIBUTE.sub(lambda found: _state_attributes(found[1]), match[0])
         tag = IDENTITY.sub(lambda found: f' id="{prefix}{found[1]}"' if found[1] in used else "", tag)
-        return REFERENCE.sub(lambda found: prefix + found[0], tag)
+        return REFERENCE.sub(lambda found: prefix + found[0], tag) if "#" in tag else tag
 
     return f"<svg{written}{root}{TAG.sub(change_tag, drawing[end:])}"
 
 
-def _state_attributes(match: re.Match[str]) -> str:
+@lru_cache(maxsize=1000)  # a figure has few styles and many elements
+def _state_attributes(style: str) -> str:
     """Presentation attributes instead of a style attribute."""
-    pairs = (declaration.split(":", 1) for declaration in match[1].split(";") if ":" in declaration)
+    pairs = (declaration.split(":", 1) for declaration in style.split(";") if ":" in declaration)
     return " ".join(f'{name.strip()}="{value.strip()}"' for name, value in pairs)
