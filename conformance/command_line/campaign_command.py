@@ -14,6 +14,7 @@ from pantocheck.conformance.campaigns.campaign_preparation import (
 )
 from pantocheck.conformance.campaigns.campaign_store import CampaignStore, open_store, read_store
 from pantocheck.conformance.campaigns.campaign_table import write_campaign_table, write_parquet
+from pantocheck.conformance.campaigns.evaluation.campaign_columns import choose_values
 from pantocheck.conformance.campaigns.evaluation.campaign_comparison import RunPair, pair_runs
 from pantocheck.conformance.campaigns.evaluation.campaign_evaluation import evaluate_campaign
 from pantocheck.conformance.campaigns.executor_choice import choose_executor
@@ -121,7 +122,7 @@ def campaign_command(
             ending = _drive(prepared, store)
         except KeyboardInterrupt as interruption:
             ending, interrupted = "interrupted", interruption_exit_code(interruption)
-        pairs = () if compare is None else _pair_runs(store, compare)
+        pairs = () if compare is None else _pair_runs(prepared, store, compare)
         results = evaluate_campaign(prepared, store, ending, pairs)
         files = _write_results(results, store, out)
     counts = f"{results.finished} of {results.total} runs finished, {results.failed} failed"
@@ -158,9 +159,9 @@ def _drive(prepared: PreparedCampaign, store: CampaignStore) -> CampaignEnding:
             return drive_campaign(prepared.design, prepared.execute, store, executor, execution, report)
 
 
-def _pair_runs(store: CampaignStore, folder: Path) -> list[RunPair]:
+def _pair_runs(prepared: PreparedCampaign, store: CampaignStore, folder: Path) -> list[RunPair]:
     with read_store(folder) as other:
-        return pair_runs(store, other)
+        return pair_runs(store, other, choose_values(store, prepared.limits))
 
 
 def _write_results(results: CampaignResults, store: CampaignStore, folder: Path) -> list[Path]:

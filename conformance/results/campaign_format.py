@@ -98,6 +98,7 @@ class CampaignResults(ResultsPart):
     reasons: Annotated[dict[str, int], Field(description="most frequent reasons of runs without a result")]
     charts: list[Chart]
     maps: list[ValueMap]
+    omitted_maps: Annotated[int, Field(description="number of further maps that are left out")] = 0
     statistics: list[ValueStatistics]
     indices: list[SobolIndices] = []
     comparison: Annotated[

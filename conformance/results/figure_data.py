@@ -49,12 +49,18 @@ class UpliftTrace(ResultsPart):
 
 
 class Series(ResultsPart):
-    """Data of a chart. `boxes` draws a box plot of the values at each x; `bars` stand side by side at the ticks."""
+    """Data of a chart.
+
+    `boxes` draws a box plot of the values at each x; `bars` stand side by side at the ticks; `tornado` draws horizontal
+    bars, one below the other, at the ticks; `band` is the area between `y` and `high`.
+    """
 
     label: str
-    style: Literal["line", "points", "boxes", "bars"]
+    style: Literal["line", "points", "boxes", "bars", "band", "tornado"]
     x: list[float]
     y: list[float]
+    high: list[float] | None = None
+    """Upper edge of a band."""
     error: list[float] | None = None
     """Half the length of the error bar of each point, or half the width of the band along a line."""
 

@@ -1,9 +1,11 @@
 """Columns of a campaign: the inputs and the evaluated values of all runs that have a result."""
 
+from array import array
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import islice
+from sys import intern
 from typing import Any
 
 import numpy as np
@@ -112,7 +114,7 @@ class CampaignColumns:
             {name: widths[places] for name, widths in self.widths.items()},
         )
 
-    def group(self, keys: Sequence[str]) -> dict[str, RealArray]:
+    def group(self, keys: Sequence[str]) -> dict[str, IntegerArray]:
         """Numbers of the runs (from 0) that agree in case, system and some inputs, by a text with what differs."""
         parts: list[tuple[str, list[Any]]] = [("", list(self.cases)), ("", list(self.systems))]
         parts += [(f"{key} = ", [_make_hashable(value) for value in self.inputs[key]]) for key in keys]
@@ -158,28 +160,27 @@ def drop_constant(values: Sequence[EvaluatedValue], columns: CampaignColumns) ->
 
 
 def read_columns(store: CampaignStore, values: Sequence[EvaluatedValue], keys: Sequence[str]) -> CampaignColumns:
-    """Read the values and the varied inputs of the runs that have a result."""
-    names = [value.column for value in values]
-    rows = [
-        (
-            row.run.design,
-            row.run.case_id,
-            row.run.system,
-            row.run.inputs,
-            [row.quantities.get(name, np.nan) for name in names],
-            [row.uncertainties.get(name, np.nan) for name in names],
-        )
-        for row in store.rows()
-        if row.quantities
-    ]
-    numbers, widths = (np.array([row[i] for row in rows]).reshape(len(rows), len(values)) for i in (-2, -1))
+    """Read the values and the varied inputs of the runs that have a result, in some 20 bytes per number."""
+    cases, systems, designs = list[str](), list[str](), array("q")
+    inputs: dict[str, list[Any]] = {key: [] for key in keys}
+    numbers, widths = ({value.column: array("d") for value in values} for _ in range(2))
+    for row in store.rows():
+        if row.quantities:
+            cases.append(intern(row.run.case_id))
+            systems.append(intern(row.run.system))
+            designs.append(row.run.design)
+            for key, column in inputs.items():
+                column.append(row.run.inputs.get(key))
+            for name in numbers:
+                numbers[name].append(row.quantities.get(name, np.nan))
+                widths[name].append(row.uncertainties.get(name, np.nan))
     return CampaignColumns(
-        tuple(case for _, case, *_ in rows),
-        tuple(system for _, _, system, *_ in rows),
-        {key: tuple(inputs.get(key) for *_, inputs, _, _ in rows) for key in keys},
-        {value.column: numbers[:, i] for i, value in enumerate(values)},
-        np.array([design for design, *_ in rows], np.int64),
-        {value.column: widths[:, i] for i, value in enumerate(values)},
+        tuple(cases),
+        tuple(systems),
+        {key: tuple(column) for key, column in inputs.items()},
+        {name: np.array(column) for name, column in numbers.items()},
+        np.array(designs, np.int64),
+        {name: np.array(column) for name, column in widths.items()},
     )
 
 

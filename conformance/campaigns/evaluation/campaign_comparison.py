@@ -29,10 +29,17 @@ class RunPair:
     there: dict[str, float]
 
 
-def pair_runs(store: CampaignStore, other: CampaignStore) -> list[RunPair]:
+def pair_runs(store: CampaignStore, other: CampaignStore, values: Sequence[EvaluatedValue]) -> list[RunPair]:
     """Pair the runs of two campaigns that have the same case, inputs and system.
 
     The system does not count if the campaigns have no system in common: then their systems are compared.
+
+    Parameters
+    ----------
+    store, other : CampaignStore
+        Finished runs of both campaigns.
+    values : sequence of EvaluatedValue
+        Values that are kept.
 
     Raises
     ------
@@ -41,10 +48,11 @@ def pair_runs(store: CampaignStore, other: CampaignStore) -> list[RunPair]:
     """
     systems = [{row.run.system for row in each.rows()} for each in (store, other)]
     with_system = bool(systems[0] & systems[1])
-    there = {key: quantities for key, _, quantities in _list_runs(other, with_system)}
+    columns = [value.column for value in values]
+    there = {key: quantities for key, _, quantities in _list_runs(other, with_system, columns)}
     pairs = [
         RunPair(place, quantities, there[key])
-        for key, place, quantities in _list_runs(store, with_system)
+        for key, place, quantities in _list_runs(store, with_system, columns)
         if key in there
     ]
     if not pairs:
@@ -70,11 +78,13 @@ def compare_values(pairs: Sequence[RunPair], values: Sequence[EvaluatedValue]) -
             )
 
 
-def _list_runs(store: CampaignStore, with_system: bool) -> Iterator[tuple[str, str, dict[str, float]]]:
-    """Key, place in words and quantities of the runs that have a result."""
+def _list_runs(
+    store: CampaignStore, with_system: bool, columns: Sequence[str]
+) -> Iterator[tuple[str, str, dict[str, float]]]:
+    """Key, place in words and some quantities of the runs that have a result."""
     for row in store.rows():
         if row.quantities:
             run = row.run
             key = json.dumps([run.case_id, run.system if with_system else None, run.inputs], sort_keys=True)
             place = ", ".join([run.case_id, *(f"{name} = {value}" for name, value in run.inputs.items())])
-            yield key, place, row.quantities
+            yield key, place, {name: row.quantities[name] for name in columns if name in row.quantities}

@@ -12,7 +12,7 @@ from pantocheck.conformance.campaigns.evaluation.campaign_columns import (
     read_columns,
 )
 from pantocheck.conformance.campaigns.evaluation.campaign_comparison import RunPair, compare_values
-from pantocheck.conformance.campaigns.evaluation.input_charts import build_input_charts, build_maps
+from pantocheck.conformance.campaigns.evaluation.input_charts import MOST_MAPS, build_input_charts, build_maps
 from pantocheck.conformance.campaigns.evaluation.saltelli_evaluation import build_indices, select_independent
 from pantocheck.conformance.campaigns.evaluation.sample_evaluation import build_sample_charts, build_statistics
 from pantocheck.conformance.cases.library import source_text
@@ -46,6 +46,7 @@ def evaluate_campaign(
     charted = drop_constant(values, columns)
     saltelli = [axis for axis in design.axes if isinstance(axis, SampleAxis) and axis.sampling.method == "saltelli"]
     independent = select_independent(columns, saltelli[0]) if saltelli else columns
+    maps = list(build_maps(columns, charted, grid))
     verdicts, reasons = count_reasons(store)
     finished, failed = store.count()
     return CampaignResults(
@@ -65,7 +66,8 @@ def evaluate_campaign(
             *build_input_charts(columns, charted, grid),
             *build_sample_charts(independent, charted, grid, sampled),
         ],
-        maps=list(build_maps(columns, charted, grid)),
+        maps=maps[:MOST_MAPS],
+        omitted_maps=len(maps[MOST_MAPS:]),
         indices=[item for axis in saltelli for item in build_indices(columns, charted, grid, axis)],
         comparison=list(compare_values(pairs, values)),
         statistics=list(build_statistics(independent, values, grid)),

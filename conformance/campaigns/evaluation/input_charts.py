@@ -5,7 +5,7 @@ from itertools import combinations
 
 import numpy as np
 
-from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.array_types import IntegerArray, RealArray
 from pantocheck.conformance.campaigns.evaluation.campaign_columns import CampaignColumns, EvaluatedValue
 from pantocheck.conformance.results.campaign_format import ValueMap
 from pantocheck.conformance.results.figure_data import Chart, Mark, Series
@@ -14,7 +14,25 @@ FEWEST_POINTS = 3
 """Fewest different values of an input that make a curve or a side of a map."""
 
 MOST_CURVES = 8
-"""Largest number of curves in a chart; with more, the runs are points."""
+"""Largest number of curves in a chart; with more, the runs of all other inputs form one curve with its range."""
+
+MOST_PLACES = 500
+"""Largest number of points of a curve; more values of an input are put together in intervals of equal length."""
+
+MOST_MAPS_OF_A_VALUE = 4
+"""Largest number of maps of one value over one pair of inputs; with more, one map has the mean over all others."""
+
+MOST_MAPS = 36
+"""Largest number of maps of a report: those of all pairs of three inputs and twelve values."""
+
+MOST_CELLS = 40
+"""Largest number of cells along a side of a map; more values of an input are put together."""
+
+RANGE = (0.05, 0.95)
+"""Quantiles at the ends of the range of the runs at one value of an input."""
+
+RANGE_NOTE = "; shaded: 5 to 95 % of the runs at one value"
+INTERVAL_NOTE = "; shaded: 95 % interval of each run"
 
 
 def build_input_charts(
@@ -29,7 +47,7 @@ def build_input_charts(
     values : sequence of EvaluatedValue
         Evaluated values; those of one quantity share a chart.
     grid_keys : sequence of str
-        Inputs of the grid. Curves are the mean over all random designs.
+        Inputs of the grid. Several runs at one value of the input give their mean and their range.
 
     Yields
     ------
@@ -37,16 +55,17 @@ def build_input_charts(
         Chart with the limits of the quantity.
     """
     for key in _list_curve_keys(columns, grid_keys):
-        groups = columns.group([other for other in grid_keys if other != key])
         for quantity in dict.fromkeys(value.quantity for value in values):
             owners = [value for value in values if value.quantity == quantity]
+            groups = _group_others(columns, grid_keys, (key,), MOST_CURVES // len(owners))
             series = [
-                _build_series(columns, key, value, name, numbers, len(owners) * len(groups) > MOST_CURVES)
+                item
                 for value in owners
-                for name, numbers in groups.items()
+                for name, places in groups.items()
+                for item in _build_curve(columns, key, value, name, places)
             ]
             yield Chart(
-                caption=f"{owners[0].label} against {key}; bands and bars: 95 % interval, if it is known.",
+                caption=f"{owners[0].label} against {key}{_explain_shade(series)}.",
                 alternative=f"Chart of {owners[0].label} against {key}.",
                 x_label=key,
                 y_label=owners[0].label,
@@ -60,20 +79,20 @@ def build_maps(
 ) -> Iterator[ValueMap]:
     """Maps of each value over each pair of numeric inputs; parameters as in `build_input_charts`."""
     for x_key, y_key in combinations(_list_curve_keys(columns, grid_keys), 2):
-        groups = columns.group([other for other in grid_keys if other not in (x_key, y_key)])
+        groups = _group_others(columns, grid_keys, (x_key, y_key), MOST_MAPS_OF_A_VALUE)
+        x, y = (_merge_places(np.array(columns.inputs[key], float), MOST_CELLS) for key in (x_key, y_key))
         for value in values:
-            for name, numbers in groups.items():
+            for name, places in groups.items():
                 suffix = f" ({name})" if name else ""
-                x, y = (np.array(columns.inputs[key], float)[numbers] for key in (x_key, y_key))
-                cells = _average_cells(x, y, columns.values[value.column][numbers])
+                cells = _average_cells(x[places], y[places], columns.values[value.column][places])
                 yield ValueMap(
                     caption=f"{value.title} over {x_key} and {y_key}{suffix}.",
                     alternative=f"Map of {value.title} over {x_key} and {y_key}{suffix}.",
                     x_label=x_key,
                     y_label=y_key,
                     value_label=value.title,
-                    x=np.unique(x).tolist(),
-                    y=np.unique(y).tolist(),
+                    x=np.unique(x[places]).tolist(),
+                    y=np.unique(y[places]).tolist(),
                     values=[[None if np.isnan(cell) else float(cell) for cell in row] for row in cells],
                     lower=value.lower,
                     upper=value.upper,
@@ -90,25 +109,51 @@ def _list_curve_keys(columns: CampaignColumns, keys: Sequence[str]) -> list[str]
     return [key for key in keys if columns.is_numeric(key) and len(columns.distinct(key)) >= FEWEST_POINTS]
 
 
-def _build_series(
-    columns: CampaignColumns, key: str, value: EvaluatedValue, name: str, numbers: RealArray, as_points: bool
-) -> Series:
-    x, y = np.array(columns.inputs[key], float)[numbers], columns.values[value.column][numbers]
-    width = columns.widths.get(value.column, np.full(columns.designs.size, np.nan))[numbers]
+def _group_others(
+    columns: CampaignColumns, grid_keys: Sequence[str], drawn: Sequence[str], most: int
+) -> dict[str, IntegerArray]:
+    """Runs that agree in all inputs of the grid but the drawn ones; all runs of a case if there are more groups."""
+    groups = columns.group([key for key in grid_keys if key not in drawn])
+    if len(groups) <= max(most, 1):
+        return groups
+    by_case = columns.group(())
+    return by_case if len(by_case) <= max(most, 1) else {"all cases": np.arange(len(columns.cases))}
+
+
+def _build_curve(
+    columns: CampaignColumns, key: str, value: EvaluatedValue, name: str, runs: IntegerArray
+) -> Iterator[Series]:
+    """Curve of a value against an input: the runs with their intervals, or the mean of several runs with its range."""
+    x, y = _merge_places(np.array(columns.inputs[key], float)[runs], MOST_PLACES), columns.values[value.column][runs]
+    width = columns.widths.get(value.column, np.full(columns.designs.size, np.nan))[runs]
     known = ~np.isnan(y)
-    x, y, width = x[known], y[known], width[known]
-    places = np.unique(x)
-    is_single = places.size == x.size  # the mean of several runs has no interval of its own
-    if not as_points:
-        order = [np.flatnonzero(x == place) for place in places]
-        x, y, width = places, np.array([y[i].mean() for i in order]), np.array([width[i].mean() for i in order])
-    return Series(
-        label=", ".join(filter(None, (value.owner, name))) or "runs",
-        style="points" if as_points else "line",
-        x=x.tolist(),
-        y=y.tolist(),
-        error=width.tolist() if x.size and (is_single or as_points) and not np.isnan(width).any() else None,
-    )
+    order = np.argsort(x[known], kind="stable")
+    x, y, width = (part[known][order] for part in (x, y, width))
+    places, start = np.unique(x, return_index=True)
+    label = ", ".join(filter(None, (value.owner, name))) or "runs"
+    if places.size == x.size:
+        error = width.tolist() if x.size and not np.isnan(width).any() else None
+        yield Series(label=label, style="line", x=x.tolist(), y=y.tolist(), error=error)
+        return
+    parts = np.split(y, start[1:])
+    low, high = (np.array([np.quantile(part, end) for part in parts]).tolist() for end in RANGE)
+    yield Series(label=label, style="line", x=places.tolist(), y=[float(part.mean()) for part in parts])
+    yield Series(label=label, style="band", x=places.tolist(), y=low, high=high)
+
+
+def _explain_shade(series: Sequence[Series]) -> str:
+    """Meaning of the shaded areas of a chart, for its caption."""
+    if any(item.style == "band" for item in series):
+        return RANGE_NOTE
+    return INTERVAL_NOTE if any(item.error is not None for item in series) else ""
+
+
+def _merge_places(x: RealArray, most: int) -> RealArray:
+    """Values of an input; of more than `most` different ones, the middle of their interval."""
+    if np.unique(x).size <= most:
+        return x
+    low, length = x.min(), np.ptp(x) / most
+    return np.asarray(low + length * (np.minimum((x - low) // length, most - 1) + 0.5))
 
 
 def _average_cells(x: RealArray, y: RealArray, values: RealArray) -> RealArray:

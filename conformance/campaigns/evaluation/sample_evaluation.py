@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.array_types import IntegerArray, RealArray
 from pantocheck.conformance.campaigns.evaluation.campaign_columns import CampaignColumns, EvaluatedValue
 from pantocheck.conformance.campaigns.evaluation.input_charts import mark_limit
 from pantocheck.conformance.campaigns.evaluation.sample_statistics import (
@@ -23,6 +23,9 @@ QUANTILES = (0.05, 0.5, 0.95)
 
 MOST_DISTRIBUTIONS = 6
 """Largest number of distributions in a chart."""
+
+DISTRIBUTION_POINTS = 500
+"""Largest number of points of a distribution."""
 
 CONVERGENCE_POINTS = 50
 """Number of points of a curve against the number of runs."""
@@ -80,10 +83,11 @@ def estimate_exceedance(exceeds: RealArray) -> Estimate:
 
 def _chart_distribution(value: EvaluatedValue, samples: dict[str, RealArray]) -> Chart:
     """Share of the runs below each value."""
-    series = [
-        Series(label=name or "runs", style="line", x=np.sort(sample).tolist(), y=_rank_shares(sample.size).tolist())
-        for name, sample in samples.items()
-    ]
+    series = []
+    for name, sample in samples.items():
+        ranks = np.unique(np.linspace(1, sample.size, min(sample.size, DISTRIBUTION_POINTS)).astype(int))
+        x, shares = np.sort(sample)[ranks - 1], ranks / sample.size
+        series.append(Series(label=name or "runs", style="line", x=x.tolist(), y=shares.tolist()))
     return Chart(
         caption=f"Distribution of {value.title} under the random inputs.",
         alternative=f"Distribution of {value.title}.",
@@ -115,7 +119,7 @@ def _chart_convergence(value: EvaluatedValue, name: str, sample: RealArray) -> C
 
 
 def _chart_influences(
-    columns: CampaignColumns, value: EvaluatedValue, name: str, numbers: RealArray, keys: Sequence[str]
+    columns: CampaignColumns, value: EvaluatedValue, name: str, numbers: IntegerArray, keys: Sequence[str]
 ) -> Iterator[Chart]:
     """Influence of each random input by linear regression, the largest first."""
     output = columns.values[value.column][numbers]
@@ -129,14 +133,15 @@ def _chart_influences(
     yield Chart(
         caption=(
             f"Change of {value.title} by one standard deviation of each input{group}, from linear regression, which "
-            f"explains {100 * determination:.0f} % of the variance."
+            f"explains {100 * determination:.0f} % of the variance. Seeds are left out."
         ),
         alternative=f"Influences of the inputs on {value.title}{group}.",
         x_label="",
         y_label=f"change of {value.label}",
         ticks=[re.sub("[._]", " ", keys[i]) for i in order],
         series=[
-            Series(label="change", style="bars", x=list(map(float, range(len(keys)))), y=influences[order].tolist())
+            Series(label=f"{side} input", style="tornado", x=list(map(float, range(len(keys)))), y=changes.tolist())
+            for side, changes in (("larger", influences[order]), ("smaller", -influences[order]))
         ],
     )
 
@@ -145,10 +150,6 @@ def _exceed(sample: RealArray, value: EvaluatedValue) -> RealArray:
     lower = -np.inf if value.lower is None else value.lower
     upper = np.inf if value.upper is None else value.upper
     return np.asarray((sample < lower) | (sample > upper), float)
-
-
-def _rank_shares(runs: int) -> RealArray:
-    return np.arange(1.0, runs + 1) / runs
 
 
 def _select_known(values: RealArray) -> RealArray:

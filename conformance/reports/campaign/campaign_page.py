@@ -6,6 +6,7 @@ from typing import Any
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.figures.heat_map import draw_map
 from pantocheck.conformance.reports.figures.study_chart import draw_chart
+from pantocheck.conformance.reports.figures.tornado_chart import draw_tornado
 from pantocheck.conformance.reports.page_text import clean_tree, format_percent, format_value
 
 CAMPAIGN_ENDINGS = {
@@ -19,6 +20,9 @@ CAMPAIGN_SCOPE = (
     "Each run is one simulation with the discretisation of its case, unless the campaign asks for refined runs. The "
     "table campaign.csv has all inputs, verdicts and quantities of every run."
 )
+
+SHOWN_ROWS = 100
+"""Largest number of rows of a table: four pages."""
 
 INDICES = (
     "First order (Saltelli et al. 2010): share of the variance that an input causes alone. Total (Jansen 1999): share "
@@ -34,9 +38,7 @@ def build_campaign_report(results: dict[str, Any]) -> doc.Document:
     blocks: list[doc.Block] = [doc.Paragraph(CAMPAIGN_SCOPE), doc.Facts(_list_facts(results))]
     blocks += _list_reasons(results["reasons"])
     maps = [doc.Figure(draw_map(data), data["alternative"], data["caption"]) for data in results["maps"]]
-    charts = [
-        doc.Figure(draw_chart(data), data["alternative"], data["caption"], data["wide"]) for data in results["charts"]
-    ]
+    charts = [doc.Figure(_draw(data), data["alternative"], data["caption"], data["wide"]) for data in results["charts"]]
     if results["statistics"]:
         blocks.append(doc.Section("Random inputs", (_build_statistics_table(results["statistics"]),)))
     if results["comparison"]:
@@ -45,9 +47,19 @@ def build_campaign_report(results: dict[str, Any]) -> doc.Document:
         )
     if results["indices"]:
         blocks.append(doc.Section("Sobol indices", (_build_indices_table(results["indices"]), doc.SmallPrint(INDICES))))
+    if results["omitted_maps"]:
+        blocks.append(
+            doc.Paragraph(f"{results['omitted_maps']} further maps are left out; campaign.csv has all values.")
+        )
     if maps or charts:
         blocks.append(doc.Section("Figures", (doc.Figures((*maps, *charts)),)))
     return doc.Document(results["title"], header, tuple(blocks))
+
+
+def _draw(chart: dict[str, Any]) -> str:
+    """Draw a chart as a tornado, or against its axes."""
+    is_tornado = any(series["style"] == "tornado" for series in chart["series"])
+    return draw_tornado(chart) if is_tornado else draw_chart(chart)
 
 
 def _list_facts(results: dict[str, Any]) -> tuple[tuple[str, str], ...]:
@@ -85,7 +97,7 @@ def _build_comparison_table(comparison: list[dict[str, Any]]) -> doc.Table:
 
 
 def _build_indices_table(indices: list[dict[str, Any]]) -> doc.Table:
-    rows = [{**item, **share} for item in indices for share in item["shares"]]
+    rows = [{**item, **share} for item in indices for share in item["shares"]][:SHOWN_ROWS]
     cells: dict[str, Callable[[Any], str]] = {
         "Value": lambda row: row["label"] + (f", {row['group']}" if row["group"] else ""),
         "Runs per set": lambda row: str(row["runs"]),
@@ -118,4 +130,6 @@ def _build_statistics_table(statistics: list[dict[str, Any]]) -> doc.Table:
         "Outside [%]": lambda row: _format_share(row["exceedance"]),
     }
     caption = "Values over the random designs; share of runs outside the limit with its 95 % interval (Wilson 1927)"
-    return doc.make_grid(caption, statistics, cells)
+    if len(statistics) > SHOWN_ROWS:
+        caption += f" (the first {SHOWN_ROWS} of {len(statistics)} rows; campaign.json has all)"
+    return doc.make_grid(caption, statistics[:SHOWN_ROWS], cells)

@@ -50,11 +50,15 @@ def draw_chart(data: dict[str, Any], y_range: tuple[float, float] | None = None)
         if scale == "log":
             label_decades(axis)
     bars = [series for series in data["series"] if series["style"] == "bars"]
-    others = [series for series in data["series"] if series["style"] != "bars"]
+    bands = [series for series in data["series"] if series["style"] == "band"]
+    others = [series for series in data["series"] if series["style"] not in ("bars", "band")]
     for number, series in enumerate(bars):
         _draw_bars(axes, series, number, len(bars))
     for number, series in enumerate(others):
         {"line": _draw_line, "points": _draw_points, "boxes": _draw_boxes}[series["style"]](axes, series, number)
+    for number, series in enumerate(bands):  # each belongs to the line of the same number
+        shade = SHADES[number % 3]
+        axes.fill_between(series["x"], series["y"], series["high"], color=shade, alpha=BAND_OPACITY, linewidth=0)
     for mark in data["marks"]:
         _draw_mark(axes, mark)
     if data["ticks"]:

@@ -21,6 +21,7 @@ from pantocheck.conformance.campaigns.evaluation.input_charts import build_input
 from pantocheck.conformance.campaigns.evaluation.sample_evaluation import build_sample_charts, build_statistics
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.reports.campaign.campaign_page import build_campaign_report
+from pantocheck.conformance.reports.figures.tornado_chart import draw_tornado
 from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.results.campaign_format import CampaignResults
 from pantocheck.conformance.results.results_building import build_suite
@@ -55,23 +56,69 @@ def test_chart_has_a_curve_per_pantograph_and_other_input_with_the_limit(columns
     assert [(mark.axis, mark.low) for mark in chart.marks] == [("y", 50.0)]
 
 
-def test_curve_of_single_runs_has_a_band_and_a_mean_has_none(columns: CampaignColumns) -> None:
-    """Several runs at one speed, here with three spacings that are not told apart, have no common interval."""
+def test_curve_of_single_runs_has_their_intervals_and_a_mean_has_a_range(columns: CampaignColumns) -> None:
+    """Several runs at one speed, here with three spacings that are not told apart, have 5 and 95 % quantiles."""
     columns.widths[FRONT.column] = np.full(9, 1.5)
     chart, _ = build_input_charts(columns, [FRONT, REAR], GRID)
     assert chart.series[0].error == [1.5, 1.5, 1.5]
     assert chart.series[3].error is None
-    (mean,) = build_input_charts(columns, [FRONT], ["speed_km_h"])
-    assert mean.series[0].error is None
-    assert mean.series[0].y == pytest.approx([200 / 6, 250 / 6, 300 / 6])
+    (mean,) = build_input_charts(columns, [REAR], ["speed_km_h"])
+    line, band = mean.series
+    rear = columns.values[REAR.column].reshape(3, 3)
+    assert line.y == pytest.approx([rear[0].mean(), rear[1].mean(), rear[2, :2].mean()])
+    assert band.y[0] == pytest.approx(np.quantile(rear[0], 0.05))
+    assert band.high is not None
+    assert band.high[1] == pytest.approx(np.quantile(rear[1], 0.95))
+    assert "5 to 95 % of the runs" in mean.caption
 
 
-def test_many_curves_become_points(columns: CampaignColumns) -> None:
+def test_more_than_eight_curves_become_one_with_its_range(columns: CampaignColumns) -> None:
+    """Three values and three spacings are nine curves: each value keeps one."""
     values = [EvaluatedValue(FRONT.column), REAR, EvaluatedValue("3.std_force_N")]
     columns.values["3.std_force_N"] = columns.values[FRONT.column]
     chart, _ = build_input_charts(columns, values, GRID)
-    assert {series.style for series in chart.series} == {"points"}
-    assert sum(len(series.x) for series in chart.series) == 26
+    assert [series.style for series in chart.series] == ["line", "band"] * 3
+    assert [series.label for series in chart.series[::2]] == ["pantograph 1", "pantograph 2", "pantograph 3"]
+
+
+def test_figures_of_many_runs_stay_small() -> None:
+    """20,000 runs over 4000 values of one input and 5 of another: curves of 500 points, maps of 40 x 5 cells."""
+    speeds, forces = np.meshgrid(np.linspace(200.0, 300.0, 4000), np.linspace(100.0, 104.0, 5))
+    inputs = {"speed_km_h": tuple(speeds.ravel().tolist()), "force": tuple(forces.ravel().tolist())}
+    numbers = speeds.ravel() / 5 + forces.ravel()
+    count = numbers.size
+    columns = CampaignColumns(
+        ("a",) * count, ("builtin",) * count, inputs, {FRONT.column: numbers}, np.arange(1, count + 1)
+    )
+    chart, _ = build_input_charts(columns, [FRONT], ("speed_km_h", "force"))
+    line, band = chart.series[:2]
+    assert len(line.x) == len(band.x) == 500
+    # The mean of each interval of 0.2 km/h lies on the straight line of its force.
+    assert line.y == pytest.approx(np.array(line.x) / 5 + 100, abs=0.02)
+    (value_map,) = build_maps(columns, [FRONT], ("speed_km_h", "force"))
+    assert (len(value_map.x), len(value_map.y)) == (40, 5)
+    distribution, *_ = build_sample_charts(columns, [FRONT], (), ("speed_km_h", "force"))
+    assert len(distribution.series[0].x) == 500
+    assert (distribution.series[0].x[-1], distribution.series[0].y[-1]) == (numbers.max(), 1.0)
+
+
+def test_tornado_has_both_signs_of_every_input_the_largest_first() -> None:
+    """A linear value: its changes by one standard deviation are the coefficients times the deviations."""
+    inputs = np.random.default_rng(1).standard_normal((50, 2))
+    numbers = 100 + inputs @ np.array([1.0, -3.0])
+    columns = CampaignColumns(
+        ("a",) * 50,
+        ("builtin",) * 50,
+        {key: tuple(column.tolist()) for key, column in zip("ab", inputs.T, strict=True)},
+        {FRONT.column: numbers},
+        np.arange(1, 51),
+    )
+    *_, tornado = build_sample_charts(columns, [EvaluatedValue(FRONT.column)], (), ("a", "b"))
+    assert tornado.ticks == ["b", "a"]
+    larger, smaller = tornado.series
+    assert larger.y == pytest.approx([-3 * inputs[:, 1].std(), inputs[:, 0].std()])
+    assert smaller.y == pytest.approx([-change for change in larger.y])
+    assert draw_tornado(tornado.model_dump(mode="json")).startswith("<svg")
 
 
 def test_map_has_a_cell_per_run(columns: CampaignColumns) -> None:
@@ -166,7 +213,7 @@ def test_comparison_has_the_differences_of_equal_inputs(tmp_path: Path, system: 
             if run.number > 1:
                 other.add(shift_force(row, -5.0 if run.number == 3 else -2.0, system))
         with read_store(tmp_path / "b") as opened:
-            (comparison,) = compare_values(pair_runs(store, opened), [mean_force])
+            (comparison,) = compare_values(pair_runs(store, opened, [mean_force]), [mean_force])
     assert (comparison.runs, comparison.place) == (3, "cheap, speed_km_h = 200.2")
     assert comparison.mean == pytest.approx(3)
     assert comparison.rms == pytest.approx((33 / 3) ** 0.5)
@@ -177,6 +224,6 @@ def test_comparison_without_common_inputs_is_refused(tmp_path: Path) -> None:
     with open_store(tmp_path / "a", {}) as store, open_store(tmp_path / "b", {}) as other:
         store.add(compute_row(next(speed_design(1).list_runs())))
         with pytest.raises(InputError, match="no run has the inputs"):
-            pair_runs(store, other)
+            pair_runs(store, other, [])
     with pytest.raises(InputError, match=r"has no campaign\.sqlite"), read_store(tmp_path):
         pass
