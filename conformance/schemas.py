@@ -35,6 +35,7 @@ from pantocheck.conformance.identification.pantograph_fit.pantograph_fit_format 
 from pantocheck.conformance.identification.population_format import PopulationFile
 from pantocheck.conformance.mass_drops.drop_sidecar import DropSidecar as MassDropSidecar
 from pantocheck.conformance.plan import Plan
+from pantocheck.conformance.procedure.dossier_file import DossierFile
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.record_summary import RecordSummary
 from pantocheck.conformance.results.administration import Administration
@@ -51,6 +52,7 @@ READ_FORMATS: dict[str, type[BaseModel]] = {
     "limits": LimitsFile,
     "plan": Plan,
     "campaign": CampaignFile,
+    "dossier": DossierFile,
     "record": RecordSidecar,
     "mass-drop": MassDropSidecar,
     "static": StaticSidecar,

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from typing import Any
 
+from pantocheck.conformance.authenticity.procedure_check import check_procedure
 from pantocheck.conformance.authenticity.reported_numbers import EXACT, format_exact, same_number, select_item
 from pantocheck.conformance.authenticity.trace_check import check_trace, check_uplift
 from pantocheck.conformance.authenticity.uncertainty_check import check_combination, check_components
@@ -49,6 +50,9 @@ def find_discrepancies(results: dict[str, Any]) -> list[str]:
     return [
         *discrepancies,
         *(() if stated.findings == findings else ("the numbers of findings do not follow from the criteria",)),
+        *check_procedure(
+            stated.procedure, decided.procedure, stated.cases, lambda row: _check_grade(row, results["trust"])
+        ),
         *(f"{where}verdict '{old}' stated, '{new}' follows from the cases" for where, old, new in pairs if old != new),
     ]
 

@@ -254,6 +254,11 @@ def _numbers(table: InputTable, exclude: set[str] | None = None) -> object:
     return drop_keys(table.model_dump(mode="json", exclude=exclude), PROVENANCE | {"title", "id", "model"})
 
 
+def content_digest(table: InputTable) -> str:
+    """SHA-256 of a line or pantograph as a system computes with it; title and provenance are left out."""
+    return json_digest(_numbers(table))
+
+
 def json_digest(tree: object) -> str:
     """SHA-256 of nested lists, dictionaries, text and numbers, independent of the order of keys."""
     text = json.dumps(tree, sort_keys=True, separators=(",", ":"), allow_nan=False)

@@ -31,7 +31,7 @@ def new_command(
         ),
     ] = None,
 ) -> None:
-    """Write a commented, valid line, case, pantograph, response or administration file.
+    """Write a commented, valid line, case, pantograph, response, administration or dossier file.
 
     Examples:
 

@@ -4,7 +4,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import get_args
 
-from pantocheck.conformance.grading.verdicts import Verdict, worst_verdict
+from pantocheck.conformance.grading.procedure_verdict import decide_procedure, judge_procedure
+from pantocheck.conformance.grading.verdicts import Verdict, judge_parts, worst_verdict
 from pantocheck.conformance.results.record_facts import RecordFacts
 from pantocheck.conformance.results.results_format import CaseResult, Results, VerdictName
 
@@ -27,7 +28,7 @@ def judge_case(criteria: Iterable[Verdict], record: RecordFacts | None) -> Verdi
     """
     if record is not None and record.state == "contradicted":
         return "error"
-    verdict = worst_verdict(verdict for verdict in criteria if verdict != "info")
+    verdict = judge_parts(criteria)
     lowered = record is not None and record.state == "unverified" and record.demanded
     return "unverified" if verdict == "pass" and lowered else verdict
 
@@ -89,15 +90,21 @@ class Participation:
     def decide_run(self, results: Results) -> Results:
         """Results with the verdicts of their cases and of the run.
 
-        A requested verdict in which no case takes part is `info`.
+        A requested verdict in which no case takes part is `info`. With a procedure, its required steps decide.
         """
         cases, system = [self.decide_case(case) for case in results.cases], results.system.name
         by_name = {name: self.judge_name(name, cases, system) for name in get_args(VerdictName)}
         overall = self.judge_run([(case.id, case.verdict) for case in cases], system)
+        verdict = worst_verdict([overall, *(by_name[name] or "info" for name in self.requested)])
+        procedure = results.procedure
+        if procedure is not None:
+            procedure = decide_procedure(procedure, cases, system in self.accepted_unverified)
+            verdict = judge_procedure(procedure.steps)
         return results.model_copy(
             update={
                 "cases": cases,
-                "verdict": worst_verdict([overall, *(by_name[name] or "info" for name in self.requested)]),
+                "verdict": verdict,
+                "procedure": procedure,
                 "criteria_verdict": by_name["criteria"],
                 "verification_verdict": by_name["verification"],
                 "requested": list(self.requested),

@@ -41,6 +41,8 @@ class Requirement:
         Source of the limits.
     finding : PublishedFinding or None
         Finding of a publication that the limits grade.
+    unit : str or None
+        Unit of a value that is no quantity of a run; None: that of the quantity.
     """
 
     quantity: str
@@ -51,6 +53,7 @@ class Requirement:
     trust: Trust | Computed
     source: str
     finding: PublishedFinding | None = None
+    unit: str | None = None
 
 
 @dataclass(frozen=True)
@@ -141,7 +144,8 @@ def build_criterion(
         Errors of the value.
     """
     name, lower, upper = requirement.quantity, requirement.lower, requirement.upper
-    unit = QUANTITIES[name].unit if name in QUANTITIES else ""  # a baseline can have quantities of an older registry
+    known = QUANTITIES[name].unit if name in QUANTITIES else ""  # a baseline can have quantities of an older registry
+    unit = known if requirement.unit is None else requirement.unit
     verdict: Verdict = "skip"
     reason, distance = missing, None
     if value is not None and (lower is not None or upper is not None):

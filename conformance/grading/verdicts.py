@@ -47,3 +47,8 @@ def margin(value: float, lower: float | None, upper: float | None) -> float:
 def worst_verdict(verdicts: Iterable[Verdict]) -> Verdict:
     """Worst of several verdicts, in the order of `WORST_FIRST`; `info` if there are none."""
     return min(verdicts, key=WORST_FIRST.index, default="info")
+
+
+def judge_parts(verdicts: Iterable[Verdict]) -> Verdict:
+    """Worst of the verdicts that count; `info`, which marks a criterion that does not count, if none does."""
+    return worst_verdict(verdict for verdict in verdicts if verdict != "info")

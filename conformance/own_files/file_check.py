@@ -26,6 +26,7 @@ from pantocheck.conformance.line_tables.line_table_check import check_line_table
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
 from pantocheck.conformance.mass_drops.drop_sidecar import DropSidecar
 from pantocheck.conformance.own_files.file_kinds import recognise_json, recognise_toml
+from pantocheck.conformance.procedure.dossier_reading import read_dossier
 from pantocheck.conformance.records.record_reading import RECORD_SCHEMAS, read_samples
 from pantocheck.conformance.results.results_reading import MAX_RESULTS_BYTES
 from pantocheck.conformance.schemas import READ_FORMATS, WRITTEN_FORMATS
@@ -195,8 +196,15 @@ def _check_json(path: Path) -> str:
     return f"{kind} file"
 
 
+def _check_dossier(path: Path) -> str:
+    dossier = read_dossier(path)
+    pairs, cases = len(dossier.file.pair), len(dossier.cases)
+    return f"dossier: {len(dossier.lines)} line(s), {cases} reference model(s), {pairs} pair(s) of runs"
+
+
 _CHECKS: dict[str, Callable[[Path], str]] = {
     "case": _check_case,
+    "dossier": _check_dossier,
     "line": _check_line,
     "limits": _check_limits,
     "pantograph": _check_pantograph,

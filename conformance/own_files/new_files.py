@@ -9,7 +9,7 @@ from typing import Literal, get_args
 
 from pantocheck.conformance.input_files.input_error import InputError
 
-NewKind = Literal["line", "case", "pantograph", "response", "administration"]
+NewKind = Literal["line", "case", "pantograph", "response", "administration", "dossier"]
 """Kinds of input files with a template."""
 
 NEW_KINDS: tuple[NewKind, ...] = get_args(NewKind)

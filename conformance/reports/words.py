@@ -17,8 +17,10 @@ def read_words() -> dict[str, Any]:
 
 
 def quantity_label(quantity: str) -> str:
-    """Label of a quantity; a quantity that the suite does not know keeps its name."""
-    return QUANTITIES[quantity].label if quantity in QUANTITIES else quantity
+    """Label of a quantity, or of a value of the procedure; a name that the suite does not know remains."""
+    if quantity in QUANTITIES:
+        return QUANTITIES[quantity].label
+    return str(read_words()["label"].get(quantity, quantity))
 
 
 def quantity_unit(quantity: str) -> str:

@@ -12,6 +12,7 @@ from pantocheck.conformance.grading.uncertainty import Uncertainty
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.evaluation import Value
 from pantocheck.conformance.results.finding_format import count_findings
+from pantocheck.conformance.results.procedure_format import Procedure
 from pantocheck.conformance.results.renderer_identity import identify_renderer
 from pantocheck.conformance.results.results_format import CaseResult, Platform, Results, SystemIdentity
 from pantocheck.conformance.results.results_part import Number
@@ -71,6 +72,7 @@ def build_results(
     trust: Trust,
     started: str,
     participation: Participation = EVERY_CASE,
+    procedure: Procedure | None = None,
 ) -> Results:
     """Combine the results of cases.
 
@@ -86,6 +88,8 @@ def build_results(
         Start of the run, from `utc_now`.
     participation : Participation
         Cases and verdicts that decide the verdict of the run, and accepted unverified records.
+    procedure : Procedure or None
+        Steps of a dossier, whose verdicts follow from those of the cases; None: no dossier.
     """
     results = Results(
         suite=build_suite(),
@@ -104,6 +108,7 @@ def build_results(
         renderer=identify_renderer(),
         scope=build_scope(cases),
         findings=count_findings(row.finding for case in cases for row in case.criteria),
+        procedure=procedure,
         cases=list(cases),
     )
     return participation.decide_run(results)

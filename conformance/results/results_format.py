@@ -18,6 +18,7 @@ from pantocheck.conformance.results.figure_data import Chart, ExtremePlace, Text
 from pantocheck.conformance.results.finding_format import FindingCounts
 from pantocheck.conformance.results.lift_force_facts import LawForces
 from pantocheck.conformance.results.measured_run_format import MeasuredRun
+from pantocheck.conformance.results.procedure_format import Procedure
 from pantocheck.conformance.results.record_facts import RecordFacts
 from pantocheck.conformance.results.results_part import Number, Owner, ResultsPart
 from pantocheck.conformance.results.suite_part import Suite
@@ -253,6 +254,10 @@ class Results(ResultsPart):
     """Ids of the cases that are shown for information: they do not take part in the verdict."""
     accepted_unverified: list[str] = []
     """Names of systems whose unverified records the user accepts."""
+    procedure: Annotated[
+        Procedure | None,
+        Field(exclude_if=is_absent, description="steps of the EN 50318 procedure for a dossier; missing: no dossier"),
+    ] = None
     cases: list[CaseResult]
 
     def to_dict(self) -> dict[str, Any]:

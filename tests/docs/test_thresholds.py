@@ -59,12 +59,14 @@ from pantocheck.conformance.grading import (
     baseline,
     discretisation,
     extended_band,
+    procedure_verdict,
     record_mismatch,
     record_uncertainty,
     start_agreement,
     validity_warnings,
     verification_limits,
 )
+from pantocheck.conformance.procedure import compared_sides
 from pantocheck.conformance.quantities import bands, filters, limit_text, signals
 from pantocheck.conformance.records import events, record
 from pantocheck.conformance.records.logger import track_position
@@ -92,11 +94,11 @@ MODULES: list[ModuleType] = [
     verification_limits, bands, filters, limit_text, signals, record, block_bootstrap, force_checks, usable_sections,
     results_part, results_reading, traces, static_comparison, static_criteria, static_differences, static_record,
     drop_comparison, drop_motion, drop_statistics, force_difference, paired_forces, motion_bands, release_alignment,
-    response_columns, response_comparison, response_deviation, response_record,
+    response_columns, response_comparison, response_deviation, response_record, procedure_verdict, compared_sides,
     certificates, cms_signing, detached_file, key_files, timestamp_client,
 ]  # fmt: skip
 BY_FILE = {"/".join(module.__name__.split(".")[2:]) + ".py": module for module in MODULES}
-FOLDERS = ("quantities", "consistency", "grading", "records", "results", "authenticity", "comparison")
+FOLDERS = ("quantities", "consistency", "grading", "records", "results", "authenticity", "comparison", "procedure")
 
 
 def defined_numbers() -> set[tuple[str, str]]:

@@ -8,16 +8,22 @@ import tomli_w
 
 
 def change_keys(content: Any, changes: dict[str, Any]) -> None:
-    """Set values of a table by dotted key such as `limit.1.lower`; None removes a key. List items count from 0."""
+    """Set values of a table by dotted key such as `limit.1.lower`; None removes a key. List items count from 0.
+
+    The item after the last one is appended.
+    """
     for key, value in changes.items():
         *tables, last = key.split(".")
         table = content
         for name in tables:
             table = table[int(name)] if isinstance(table, list) else table[name]
+        place = int(last) if isinstance(table, list) else last
         if value is None:
-            del table[last]
+            del table[place]
+        elif isinstance(table, list) and place == len(table):
+            table.append(value)
         else:
-            table[int(last) if isinstance(table, list) else last] = value
+            table[place] = value
 
 
 def write_toml(path: Path, content: dict[str, Any]) -> Path:

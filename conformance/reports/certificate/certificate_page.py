@@ -15,6 +15,7 @@ from pantocheck.conformance.reports.certificate.criteria_table import criteria_b
 from pantocheck.conformance.reports.certificate.document_facts import build_document_section
 from pantocheck.conformance.reports.certificate.event_section import event_blocks
 from pantocheck.conformance.reports.certificate.findings_table import build_findings_section
+from pantocheck.conformance.reports.certificate.procedure_page import build_procedure_section, list_step_reasons
 from pantocheck.conformance.reports.certificate.quantity_tables import (
     build_band_table,
     build_quantity_table,
@@ -28,6 +29,7 @@ from pantocheck.conformance.reports.certificate.scope_page import (
     list_identity_warnings,
     prepare_results,
 )
+from pantocheck.conformance.reports.certificate.step_sections import build_step_section
 from pantocheck.conformance.reports.certificate.two_verdicts import (
     build_verdict_section,
     case_verdict,
@@ -67,7 +69,8 @@ def build_dated_certificate(results: dict[str, Any], date: int) -> doc.Document:
     cases = prepared["cases"]
     anchors = [f"case-{number}" for number in range(1, len(cases) + 1)]
     warnings = list_identity_warnings(prepared)
-    reasons = list_reasons(prepared) or (doc.Paragraph("Nothing was graded."),)
+    steps = list_step_reasons(prepared) if "procedure" in prepared else ()
+    reasons = (*steps, *list_reasons(prepared)) or (doc.Paragraph("Nothing was graded."),)
     trusts = read_words()["trust"].items()
     levels = doc.BulletList(tuple((doc.TrustMark(name), f": {level['meaning']}") for name, level in trusts))
     closing = doc.Paragraph(f"This is a {header.statement}. It is not a certification by a third party.")
@@ -77,12 +80,11 @@ def build_dated_certificate(results: dict[str, Any], date: int) -> doc.Document:
         blocks=(
             *((doc.WarningBox(warnings),) if warnings else ()),
             build_document_section(prepared, digest_results(results), date),
-            *build_verdict_section(prepared),
-            *build_scope_section(prepared, dict(zip((case["id"] for case in cases), anchors, strict=True))),
+            *_build_scope(prepared, anchors),
             *build_findings_section(prepared),
             doc.Section("Reasons", reasons, anchor="reasons"),
             doc.Section("Cases", (_case_index(cases, anchors),), anchor="cases"),
-            *map(_case_section, range(len(cases)), cases, anchors),
+            *_build_case_sections(prepared, anchors),
             doc.Section(
                 "Reproducibility",
                 (list_suite_facts(prepared), doc.Section("Levels of trust", (levels,)), closing),
@@ -94,17 +96,38 @@ def build_dated_certificate(results: dict[str, Any], date: int) -> doc.Document:
     )
 
 
+def _build_scope(results: dict[str, Any], anchors: list[str]) -> tuple[doc.Section, ...]:
+    """Steps of the procedure of a dossier, or the verdicts and the scope of a run."""
+    if "procedure" in results:
+        return (build_procedure_section(results),)
+    links = dict(zip((case["id"] for case in results["cases"]), anchors, strict=True))
+    return (*build_verdict_section(results), *build_scope_section(results, links))
+
+
+def _build_case_sections(results: dict[str, Any], anchors: list[str]) -> tuple[doc.Section, ...]:
+    """Sections of the cases; with a procedure, behind the section of their step."""
+    numbered = enumerate(zip(results["cases"], anchors, strict=True))
+    sections = {case["id"]: _case_section(number, case, anchor) for number, (case, anchor) in numbered}
+    if "procedure" not in results:
+        return tuple(sections.values())
+    ordered: list[doc.Section] = []
+    for number, step in enumerate(results["procedure"]["steps"], 1):
+        ordered += [build_step_section(number, step, results), *(sections[name] for name in step["cases"])]
+    return tuple(ordered)
+
+
 def build_header(results: dict[str, Any]) -> doc.VerdictHeader:
     """Head of the pages made from results.json."""
     level = read_words()["trust"].get(results["trust"])
     system, suite = name_system(results), name_suite(results)
+    title = f"{results['procedure']['title']}. " if "procedure" in results else ""
     trust = f" Lowest trust of the limits that count: {results['trust']} ({level['meaning']})." if level else ""
     return doc.VerdictHeader(
         heading=HEADING,
         verdict=results["verdict"],
         statement=results["statement"],
         headline=build_headline(results),
-        subject=f"{system}, checked with {suite}.{trust}",
+        subject=f"{title}{system}, checked with {suite}.{trust}",
         footer=f"{suite} · {system}",
     )
 

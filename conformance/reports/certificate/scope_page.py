@@ -23,6 +23,10 @@ def prepare_results(results: dict[str, Any]) -> dict[str, Any]:
     ]
     scope = [step | {"cases": [names[case] for case in step["cases"]]} for step in cleaned["scope"]]
     renamed = {key: [names.get(case, case) for case in cleaned[key]] for key in ("information", "verification_only")}
+    procedure = cleaned.get("procedure")
+    if procedure is not None:
+        steps = [step | {"cases": [names[case] for case in step["cases"]]} for step in procedure["steps"]]
+        renamed["procedure"] = procedure | {"steps": steps}
     return cleaned | {"cases": cases, "scope": scope} | renamed
 
 

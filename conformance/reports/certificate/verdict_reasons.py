@@ -7,6 +7,7 @@ from typing import Any
 from pantocheck.conformance.quantities.limit_text import format_margin
 from pantocheck.conformance.reports.certificate.criteria_table import criterion_title, is_close
 from pantocheck.conformance.reports.certificate.findings_table import count_sentences
+from pantocheck.conformance.reports.certificate.procedure_page import build_procedure_headline
 from pantocheck.conformance.reports.certificate.scope_page import summarise_identity
 from pantocheck.conformance.reports.certificate.two_verdicts import select_criteria, verdict_sentences
 from pantocheck.conformance.reports.document import BulletList, Section
@@ -32,6 +33,8 @@ CLAUSES = {
 
 def build_headline(results: dict[str, Any]) -> str:
     """The verdict in sentences: passed cases, reasons against a better verdict, and the exceptions of the user."""
+    if "procedure" in results:
+        return build_procedure_headline(results)
     cases = [case for case in results["cases"] if case["id"] not in results["information"]]
     verdicts = Counter(case["verdict"] for case in cases)
     accepted = verdicts["unverified"] if results["system"]["name"] in results["accepted_unverified"] else 0

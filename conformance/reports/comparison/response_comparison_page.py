@@ -57,9 +57,13 @@ def build_response_comparison(results: dict[str, Any]) -> doc.Document:
 def build_response_blocks(results: dict[str, Any]) -> tuple[doc.Block, ...]:
     """Criteria, and a section of each response; `results` is the content of response_comparison.json."""
     criteria = results["criteria"]
-    sections = (_build_response_section(response, criteria) for response in results["responses"])
     graded = (doc.Section("Criteria", (_build_criteria_table(criteria),)),) if criteria else ()
-    return (*graded, *sections)
+    return (*graded, *build_response_sections(results))
+
+
+def build_response_sections(results: dict[str, Any]) -> tuple[doc.Section, ...]:
+    """Section of each response, with its figure and its bands."""
+    return tuple(_build_response_section(response, results["criteria"]) for response in results["responses"])
 
 
 def list_response_remarks(results: dict[str, Any]) -> list[str]:

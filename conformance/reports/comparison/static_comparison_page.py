@@ -5,6 +5,7 @@ from typing import Any
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.figures.static_figure import draw_static_values
 from pantocheck.conformance.reports.page_text import clean_tree, format_plain, format_value, replace_minus
+from pantocheck.conformance.reports.words import quantity_label
 
 SPANS_OF_A_FIGURE = 10
 """Largest number of spans in a figure: the droppers of each span stay visible on paper."""
@@ -16,11 +17,6 @@ HEADLINES = {
     "fail": "A difference between model and measurement exceeds a tolerance of the user.",
     "skip": "The record is not complete for every tolerance.",
     "info": "No tolerance was given: the differences are shown and not graded.",
-}
-CRITERION_NAMES = {
-    "elasticity_difference_mm_N": "Largest difference of the elasticity",
-    "elasticity_difference_pct": "Largest difference of the elasticity, relative to the measured one",
-    "contact_wire_height_difference_mm": "Largest difference of the contact wire height",
 }
 SCOPE = (
     "Static check of the line model against measured values. The tolerances are those of the user, not of a standard. "
@@ -46,8 +42,13 @@ def build_static_comparison(results: dict[str, Any]) -> doc.Document:
     blocks += [doc.Paragraph(SCOPE), doc.Facts(_list_facts(results))]
     if results["criteria"]:
         blocks.append(doc.Section("Criteria", (_build_criteria_table(results["criteria"]),)))
-    blocks += [_build_section(values, results) for values in results["values"]]
+    blocks += build_static_sections(results)
     return doc.Document(header.heading, header, tuple(blocks))
+
+
+def build_static_sections(results: dict[str, Any]) -> tuple[doc.Section, ...]:
+    """Section of each kind of values, with figures and a table of the spans."""
+    return tuple(_build_section(values, results) for values in results["values"])
 
 
 def list_remarks(results: dict[str, Any]) -> list[str]:
@@ -106,7 +107,7 @@ def _build_criteria_table(criteria: list[dict[str, Any]]) -> doc.Table:
     )
     rows: list[tuple[doc.RichText, ...]] = [
         (
-            f"{CRITERION_NAMES[item['quantity']]} [{item['unit']}]",
+            f"{quantity_label(item['quantity'])} [{item['unit']}]",
             format_value(item["value"]),
             format_plain(item["tolerance"]),
             format_value(item["discretisation"], 2),

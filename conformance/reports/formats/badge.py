@@ -21,7 +21,14 @@ LETTER, MARGIN = 6.6, 8
 
 
 def summarise_verdict(results: dict[str, Any]) -> str:
-    """Verdict with the numbers of passed and of counted criteria; a modified copy of a library case is named."""
+    """Verdict with the numbers of passed and of counted criteria; a modified copy of a library case is named.
+
+    With a procedure, the numbers are those of its required steps.
+    """
+    if "procedure" in results:
+        required = [step["verdict"] for step in results["procedure"]["steps"] if step["required"]]
+        word = read_words()["verdict"][results["verdict"]]["word"].lower()
+        return f"{word} {required.count('pass')}/{len(required)} steps"
     verdicts = Counter(row["verdict"] for case in results["cases"] for row in select_criteria(results, case))
     counted = sum(count for verdict, count in verdicts.items() if verdict != "info")
     word = read_words()["verdict"][results["verdict"]]["word"].lower()

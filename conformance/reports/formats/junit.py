@@ -1,4 +1,4 @@
-"""JUnit XML: one test suite per case, one test case per criterion, so that any CI server shows the verdicts."""
+"""JUnit XML: one test suite per case or step, one test case per criterion, so that any CI server shows the verdicts."""
 
 from collections import Counter
 from collections.abc import Iterator
@@ -21,7 +21,7 @@ COUNTERS = ("tests", "failures", "errors", "skipped")
 def render_junit(results: dict[str, Any]) -> bytes:
     """JUnit XML of results.json as a dictionary."""
     results = prepare_results(results)
-    suites = [_suite(case, results) for case in results["cases"]]
+    suites = [*_list_steps(results), *(_suite(case, results) for case in results["cases"])]
     total = {name: str(sum(int(suite.attrib[name]) for suite in suites)) for name in COUNTERS}
     root = ElementTree.Element("testsuites", {"name": "pantocheck", **total})
     root.extend(suites)
@@ -37,9 +37,7 @@ def _suite(case: dict[str, Any], results: dict[str, Any]) -> ElementTree.Element
         tests.append(_record_test(case, results))
     if case["id"] in results["information"]:
         tests = [test if test[0].tag == "system-out" else _skip_test(test) for test in tests]
-    elements = Counter(test[0].tag for test in tests)
-    counts = (len(tests), elements["failure"], elements["error"], elements["skipped"])
-    attributes = {"name": case["id"], **dict(zip(COUNTERS, map(str, counts), strict=True))}
+    attributes = {"name": case["id"], **_count_tests(tests)}
     if case["run"]["wall_s"] is not None:
         attributes["time"] = f"{case['run']['wall_s']:.3f}"
     if results["started"]:
@@ -64,6 +62,35 @@ def _suite(case: dict[str, Any], results: dict[str, Any]) -> ElementTree.Element
             ElementTree.SubElement(properties, "property", {"name": name, "value": str(value)})
     suite.extend(tests)
     return suite
+
+
+def _list_steps(results: dict[str, Any]) -> Iterator[ElementTree.Element]:
+    """One suite per step of the procedure of a dossier: its own criteria and claims, and the step as a whole."""
+    procedure = results.get("procedure") or {"steps": []}
+    for step in procedure["steps"]:
+        name = f"step/{step['step']}"
+        tests = [_criterion_test(name, row) for row in step["criteria"]]
+        if step["step"] == "limits_of_validity":
+            tests += [_claim_test(name, claim) for claim in procedure["claims"]]
+        reason = step["reason"] or step["unverified"] or step["closest"] or "no criterion of its own"
+        tests.append(_test(name, "step", step["verdict"], f"{step['state']}: {reason}"))
+        if not step["required"]:
+            tests = [test if test[0].tag == "system-out" else _skip_test(test) for test in tests]
+        suite = ElementTree.Element("testsuite", {"name": name, **_count_tests(tests)})
+        suite.extend(tests)
+        yield suite
+
+
+def _claim_test(suite: str, claim: dict[str, Any]) -> ElementTree.Element:
+    name = f"claim on {' '.join(filter(None, (claim['kind'], claim['name'])))}"
+    return _test(suite, name, claim["verdict"], claim["reason"] or f"verified by {', '.join(claim['evidence'])}")
+
+
+def _count_tests(tests: list[ElementTree.Element]) -> dict[str, str]:
+    """Attributes of a suite that count its tests."""
+    elements = Counter(test[0].tag for test in tests)
+    counts = (len(tests), elements["failure"], elements["error"], elements["skipped"])
+    return dict(zip(COUNTERS, map(str, counts), strict=True))
 
 
 def _list_tests(case: dict[str, Any], results: dict[str, Any], name: str) -> Iterator[ElementTree.Element]:

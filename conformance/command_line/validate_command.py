@@ -1,0 +1,87 @@
+"""`pantocheck validate`: the EN 50318 procedure for a dossier, with one certificate."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pantocheck.conformance.command_line.console import build_table, console, escape_text, format_number, style_verdict
+from pantocheck.conformance.command_line.options import (
+    AdministrationOption,
+    FormatsOption,
+    OutOption,
+    ReportNumberOption,
+    build_options,
+    state_administration,
+)
+from pantocheck.conformance.command_line.results_output import EXIT_CODES, report_progress
+from pantocheck.conformance.input_files.atomic_writing import check_writable
+from pantocheck.conformance.procedure.dossier_reading import read_dossier
+from pantocheck.conformance.procedure.validation import Validation
+from pantocheck.conformance.reports.certificate.procedure_page import name_state
+from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline
+from pantocheck.conformance.reports.formats.report_writers import check_formats, write_all
+from pantocheck.conformance.reports.words import read_words
+from pantocheck.conformance.results.results_format import Results
+from pantocheck.conformance.runner import RunInterrupted
+from pantocheck.conformance.systems.system_choice import choose_system
+
+
+def validate_command(
+    dossier: Annotated[Path, typer.Argument(metavar="DOSSIER.toml", help="Dossier (docs/validate.md).")],
+    out: OutOption = None,
+    formats: FormatsOption = None,
+    administration: AdministrationOption = None,
+    report_number: ReportNumberOption = None,
+    jobs: Annotated[int, typer.Option(help="Number of reference models that run in parallel.", min=1, max=256)] = 1,
+) -> None:
+    """Validate a simulator for a line by a dossier: the EN 50318 procedure in one certificate.
+
+    Steps: pantograph model, static check of the line, simulation parameters, reference models, line tests, limits of
+    validity. No PASS while a required step is missing.
+
+    Example: pantocheck validate dossier.toml --out validation
+    """
+    options = build_options(
+        out=out, formats=formats, administration=state_administration(administration, report_number)
+    )
+    folder, report_formats = Path(options.out), check_formats(options.formats)
+    content = read_dossier(dossier)
+    system = choose_system(content.system, content.file.timeout_s)
+    check_writable(folder)
+    runs, interrupted = len(content.cases) + len(content.file.pair), 0
+    try:
+        with report_progress(runs) as progress:
+            results = Validation(content, system, folder, jobs, progress).run()
+    except RunInterrupted as interruption:
+        results, interrupted = interruption.results, interruption.exit_code
+        typer.echo("Interrupted: the results of the finished steps are written.", err=True)
+    results = results.model_copy(update={"administration": options.administration})
+    files = write_all(results, folder, report_formats)
+    _print_steps(results)
+    for path in files:
+        console().print(escape_text(str(path)), soft_wrap=True)
+    raise typer.Exit(interrupted or EXIT_CODES[results.verdict])
+
+
+def _print_steps(results: Results) -> None:
+    """Print the verdict, and a table of the steps with their reasons."""
+    output, content = console(), results.to_dict()
+    output.print(style_verdict(results.verdict), escape_text(f" {build_headline(content)}"))
+    table = build_table("step", "state", "verdict", "margin", "+-", right=("margin", "+-"))
+    for step in content["procedure"]["steps"]:
+        name = read_words()["procedure"][step["step"]]
+        numbers = (format_number(step["margin"], 3), format_number(step["uncertainty"], 2))
+        table.add_row(name, name_state(step), style_verdict(step["verdict"]), *numbers)
+    output.print(table)
+    for step in content["procedure"]["steps"]:
+        for reason in filter(None, (step["reason"], step["unverified"])):
+            output.print(escape_text(f"  {read_words()['procedure'][step['step']]}: {reason}"))
+    for case in results.cases:
+        if case.verdict != "pass":
+            reason = case.reason or "see the certificate"
+            output.print(escape_text(f"  {case.id}: "), style_verdict(case.verdict), escape_text(f" {reason}"))
+    for claim in results.procedure.claims if results.procedure is not None else ():
+        if claim.reason is not None:
+            subject = " ".join(filter(None, (claim.kind, claim.name)))
+            output.print(escape_text(f"  claim on {subject} not verified: {claim.reason}"))

@@ -1,0 +1,126 @@
+"""The two sides of a pair of runs, and whether they are runs of the same passage."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from pantocheck.conformance.cases.profile_file import Profile
+from pantocheck.conformance.grading.assessed_record import AssessedRecord, find_equal_pantograph
+from pantocheck.conformance.grading.record_mismatch import SPACING_TOLERANCE_M
+from pantocheck.conformance.results.record_facts import RecordFacts
+
+LARGEST_SHIFT_SPANS = 0.5
+"""Largest difference between the ends of the analysis sections of a pair, in spans: with more, another span counts."""
+
+
+@dataclass(frozen=True)
+class RunSide:
+    """Run of a pair with the passage that it belongs to.
+
+    Parameters
+    ----------
+    record : AssessedRecord
+        Record with its quantities.
+    line : str
+        Name of the line.
+    pantographs : tuple of str
+        Names of the pantographs in running order.
+    direction : str
+        Direction of the train.
+    spacing_m : tuple of float or None
+        Distances of successive pantographs [m]; None if they are not known.
+    span_m : float
+        Length of a span of the line [m].
+    supports : tuple of float
+        Positions of the supports [m].
+    facts : RecordFacts or None
+        State of the record from the checks with its case; None without a case.
+    """
+
+    record: AssessedRecord
+    line: str
+    pantographs: tuple[str, ...]
+    direction: str
+    spacing_m: tuple[float, ...] | None
+    span_m: float
+    supports: tuple[float, ...] = ()
+    facts: RecordFacts | None = None
+
+
+def measure_spacing(record: AssessedRecord) -> tuple[float, ...] | None:
+    """Distances of successive pantographs: stated, or from positions that were sampled together; None if unknown."""
+    stated = getattr(record.header, "spacing_m", None)
+    if stated is not None or len(record.pantographs) == 1:
+        return tuple(stated or ())
+    if record.prepared is None:
+        return None
+    positions = [signals.position for _, signals in sorted(record.prepared.pantographs.items())]
+    if len({position.size for position in positions}) > 1:
+        return None
+    return tuple(float(np.median(ahead - behind)) for ahead, behind in pairwise(positions))
+
+
+def find_copy(simulated: RunSide, measured: RunSide) -> str | None:
+    """Reason why two records are not independent of each other; None if they are."""
+    first, second = simulated.record, measured.record
+    if first.record_digest == second.record_digest or first.digest == second.digest:
+        return "the simulated and the measured record are the same file"
+    if first.pantographs == second.pantographs and (number := find_equal_pantograph(first, second)) is not None:
+        return f"the contact force of pantograph {number} is the same in both records: one is a copy of the other"
+    return None
+
+
+def list_mismatches(simulated: RunSide, measured: RunSide, profile: Profile) -> Iterator[str]:
+    """Differences between the passages of two runs, in words.
+
+    Parameters
+    ----------
+    simulated, measured : RunSide
+        Runs of a pair.
+    profile : Profile
+        Rules of the line tests, with the speed tolerance.
+    """
+    for name, other, own in (
+        ("line", measured.line, simulated.line),
+        ("pantographs", ", ".join(measured.pantographs), ", ".join(simulated.pantographs)),
+        ("direction", measured.direction, simulated.direction),
+    ):
+        if other != own:
+            yield f"the {name} of the measured run: {other}; of the simulated run: {own}"
+    speeds = [side.record.header.speed_km_h for side in (measured, simulated)]
+    if not abs(speeds[0] / speeds[1] - 1) <= profile.speed_tolerance_pct / 100:
+        yield f"the speed of the measured run: {speeds[0]:g} km/h; of the simulated run: {speeds[1]:g} km/h"
+    for side, run in ((simulated, "simulated"), (measured, "measured")):
+        if len(side.record.pantographs) != len(side.pantographs):
+            yield f"the {run} record has {len(side.record.pantographs)} pantographs, {len(side.pantographs)} are named"
+    yield from _compare_spacing(simulated, measured)
+    yield from _compare_sections(simulated, measured)
+
+
+def _compare_spacing(simulated: RunSide, measured: RunSide) -> Iterator[str]:
+    if simulated.spacing_m is None or measured.spacing_m is None:
+        yield "the spacing of the pantographs is not known for both runs (key spacing_m of the sidecar)"
+    elif len(simulated.spacing_m) == len(measured.spacing_m):
+        pairs = zip(simulated.spacing_m, measured.spacing_m, strict=True)
+        for own, other in pairs:
+            if abs(own - other) > SPACING_TOLERANCE_M:
+                yield f"the spacing of the measured run: {other:g} m; of the simulated run: {own:g} m"
+
+
+def _compare_sections(simulated: RunSide, measured: RunSide) -> Iterator[str]:
+    own, other = (_section(side.record) for side in (simulated, measured))
+    if own is None or other is None:
+        return  # a record without an analysis section has no quantities, and says so
+    allowed = LARGEST_SHIFT_SPANS * simulated.span_m
+    if max(abs(a - b) for a, b in zip(own, other, strict=True)) > allowed:
+        yield (
+            f"the analysis section of the measured run: {other[0]:g} to {other[1]:g} m; "
+            f"of the simulated run: {own[0]:g} to {own[1]:g} m"
+        )
+
+
+def _section(record: AssessedRecord) -> tuple[float, float] | None:
+    stated = record.header.evaluated_m
+    return None if stated is None else (stated[0], stated[1])

@@ -1,0 +1,134 @@
+"""Reading of a dossier: all files that it names are read and checked before the first run."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+from typing import TypeVar
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.force_rules import resolve_rule
+from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.cases.library_folder import library_folder
+from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.cases.pantograph_file import PantographFile
+from pantocheck.conformance.input_files.input_error import InputError, join_errors
+from pantocheck.conformance.input_files.toml_file import read_model
+from pantocheck.conformance.plan import place_cases
+from pantocheck.conformance.procedure.dossier import Dossier
+from pantocheck.conformance.procedure.dossier_file import DossierFile
+from pantocheck.conformance.procedure.run_pair import CaseRun
+
+Content = TypeVar("Content")
+
+
+def read_dossier(path: Path) -> Dossier:
+    """Read a dossier and the files that it names.
+
+    Parameters
+    ----------
+    path : Path
+        The dossier.
+
+    Raises
+    ------
+    InputError
+        The dossier or a file that it names is missing or invalid; the error lists the problems of all of them.
+    """
+    file = read_model(path, DossierFile, "dossier")
+    reader = _FileReader(path)
+    lines = {entry.name: reader.read(f"line[{i}].file", entry.file, _read_line) for i, entry in enumerate(file.line, 1)}
+    pantographs = {
+        entry.name: reader.read(f"pantograph[{i}].file", entry.file, _read_pantograph)
+        for i, entry in enumerate(file.pantograph, 1)
+    }
+    pair_cases = {
+        pair.name: reader.attempt(f"pair[{i}].simulated.case", partial(_select_run, pair.simulated.case, path.parent))
+        for i, pair in enumerate(file.pair, 1)
+        if isinstance(pair.simulated, CaseRun)
+    }
+    cases = reader.attempt(
+        "reference.cases",
+        lambda: select_cases(place_cases(file.reference.cases, path.parent)) if file.reference.cases else [],
+    )
+    dossier = Dossier(
+        file,
+        path.parent,
+        {name: line for name, line in lines.items() if line is not None},
+        {name: part for name, part in pantographs.items() if part is not None},
+        tuple(cases or ()),
+        {name: case for name, case in pair_cases.items() if case is not None},
+    )
+    for key, name in dossier.list_tables():
+        reader.check_table(key, dossier.locate(name))
+    if reader.problems:
+        raise join_errors(reader.problems)
+    return dossier
+
+
+@dataclass(frozen=True)
+class _FileReader:
+    """Reader of the files of a dossier that collects all problems.
+
+    Parameters
+    ----------
+    path : Path
+        The dossier.
+    problems : list of InputError
+        Problems found so far.
+    """
+
+    path: Path
+    problems: list[InputError] = field(default_factory=list)
+
+    def read(self, key: str, name: str, parse: Callable[[Path], Content]) -> Content | None:
+        """Content of a file beside the dossier, or else in the library; None after a problem."""
+        return self.attempt(key, lambda: parse(self._locate(name)))
+
+    def attempt(self, key: str, read: Callable[[], Content]) -> Content | None:
+        """Result of a function; None after a problem, which is kept under the key."""
+        try:
+            return read()
+        except InputError as error:
+            self.problems.extend(
+                InputError(f"{self._name(key)}: {problem.where}", problem.found, problem.hint)
+                for problem in error.problems
+            )
+            return None
+
+    def check_table(self, key: str, path: Path) -> None:
+        """Check that a table has a sidecar."""
+        if not path.with_suffix(".toml").is_file():
+            hint = f"Name a table beside its sidecar, relative to {self.path.parent} ."
+            self.problems.append(InputError(self._name(key), f"there is no file {path.with_suffix('.toml')}", hint))
+
+    def _locate(self, name: str) -> Path:
+        for folder in (self.path.parent, library_folder()):
+            if (folder / name).is_file():
+                return folder / name
+        raise InputError(
+            f"file '{name}'",
+            "there is no such file",
+            f"Name a file relative to {self.path.parent} or to the library, e.g. en50318-2002/line.toml .",
+        )
+
+    def _name(self, key: str) -> str:
+        return f"dossier '{self.path.name}', key {key}"
+
+
+def _read_line(path: Path) -> LineFile:
+    return read_model(path, LineFile, "line")
+
+
+def _read_pantograph(path: Path) -> PantographFile:
+    return resolve_rule(read_model(path, PantographFile, "pantograph"), f"pantograph '{path.name}'")
+
+
+def _select_run(name: str, folder: Path) -> Case:
+    """Case of the simulated run of a pair: one case with a train."""
+    cases = select_cases(place_cases([name], folder))
+    trains = [case for case in cases if not case.is_static]
+    if len(trains) != 1 or trains[0].file.mass_drop is not None:
+        ids = ", ".join(case.id for case in cases)
+        raise InputError(f"case '{name}'", f"expected one case with a train, found {ids}", "Give the id of one case.")
+    return trains[0]

@@ -1,0 +1,111 @@
+"""Runs of a pair: a case that the system under test runs, or a record."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.profile_file import Profile
+from pantocheck.conformance.cases.start_and_section import span_length
+from pantocheck.conformance.comparison.measured_run import list_run_supports
+from pantocheck.conformance.grading.assessed_record import load_assessed_record
+from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
+from pantocheck.conformance.grading.uncertainty import Uncertainty
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.procedure.compared_sides import RunSide, measure_spacing
+from pantocheck.conformance.procedure.dossier import Dossier
+from pantocheck.conformance.procedure.run_pair import RecordRun
+from pantocheck.conformance.records.record_writing import write_record
+from pantocheck.conformance.records.sidecar_tables import LineTable
+from pantocheck.conformance.results.outcome import Delivered, missing_record_reason
+from pantocheck.conformance.systems.system import System
+
+
+def read_run(run: RecordRun, dossier: Dossier, profile: Profile) -> RunSide:
+    """Read a recorded run of a pair.
+
+    Parameters
+    ----------
+    run : RecordRun
+        Table of the dossier.
+    dossier : Dossier
+        Dossier with the line.
+    profile : Profile
+        Rules of the line tests.
+
+    Raises
+    ------
+    InputError
+        The record cannot be read or is impossible.
+    """
+    span = dossier.lines[run.line].geometry.longest_span
+    record = load_assessed_record(dossier.locate(run.record), profile, LineTable(span_m=span))
+    return RunSide(
+        record, run.line, run.pantographs, run.direction, measure_spacing(record), span, list_run_supports(record)
+    )
+
+
+def make_run(case: Case, direction: str, system: System, dossier: Dossier, profile: Profile, path: Path) -> RunSide:
+    """Run a case on the system under test, keep its record, and read it like any other record.
+
+    Parameters
+    ----------
+    case : Case
+        Case of the run.
+    direction : str
+        Direction of the train.
+    system : System
+        System under test.
+    dossier : Dossier
+        Dossier with the names of lines and pantographs.
+    profile : Profile
+        Rules of the line tests.
+    path : Path
+        Table to write the record to.
+
+    Raises
+    ------
+    InputError
+        The system delivers no record, or one that contradicts its case; or the filter of the case is not that of the
+        line tests.
+    """
+    if case.file.filter != profile.filter:
+        found = f"the filter of case {case.id} is not that of the line tests"
+        raise InputError("dossier, table line_test.filter", found, "State the same filter.")
+    outcome = system.run(case)
+    where = f"system '{system.name}', case '{case.id}'"
+    if not isinstance(outcome, Delivered) or outcome.record is None:
+        raise InputError(where, missing_record_reason(outcome), "Every simulated run needs a record with samples.")
+    evaluation = CaseEvaluation(case, outcome)
+    if (fault := evaluation.mismatch or evaluation.contradiction) is not None:
+        raise InputError(where, fault, "Deliver the record of this case.")
+    spacing = tuple(case.file.spacing_m or ())
+    write_record(
+        path,
+        outcome.record,
+        case=case.id,
+        system={"name": system.name, "version": system.version},
+        run=outcome.run.model_dump(exclude={"wall_s"}),
+        further=_further_keys(case, outcome, spacing),
+    )
+    record = load_assessed_record(path, profile, LineTable())
+    components = {**record.uncertainty.components, **evaluation.uncertainty.components}
+    return RunSide(
+        replace(record, uncertainty=Uncertainty(components)),
+        dossier.name_line(case.line),
+        tuple(dossier.name_pantograph(part) for part in case.pantographs),
+        direction,
+        spacing,
+        span_length(case),
+        tuple(case.line.geometry.span_limits),
+        evaluation.record_facts,
+    )
+
+
+def _further_keys(case: Case, outcome: Delivered, spacing: tuple[float, ...]) -> Mapping[str, object]:
+    return {
+        "case_digest": case.digest,
+        "spacing_m": list(spacing) or None,
+        "start": None if outcome.start is None else outcome.start.model_dump(),
+        "line": {"span_m": case.line.geometry.longest_span},
+    }

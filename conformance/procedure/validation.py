@@ -1,0 +1,128 @@
+"""Validation of a simulator by a dossier: the steps in the order of the EN 50318 procedure."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from itertools import chain
+from pathlib import Path
+
+from pantocheck.conformance.grading.case_selection import choose_verdicts
+from pantocheck.conformance.grading.case_verdict import Participation
+from pantocheck.conformance.procedure.dossier import Dossier
+from pantocheck.conformance.procedure.joined_pairs import join_pairs
+from pantocheck.conformance.procedure.line_test_step import LineTests
+from pantocheck.conformance.procedure.pantograph_model_step import check_pantographs
+from pantocheck.conformance.procedure.reference_models_step import run_reference_models
+from pantocheck.conformance.procedure.simulation_parameters_step import check_parameters
+from pantocheck.conformance.procedure.static_check_step import check_statics
+from pantocheck.conformance.procedure.step_result import StepInterrupted, StepResult
+from pantocheck.conformance.procedure.validity_step import list_claims
+from pantocheck.conformance.results.procedure_format import STEP_NAMES, Procedure, StepName
+from pantocheck.conformance.results.results_building import build_results, utc_now
+from pantocheck.conformance.results.results_format import CaseResult, Results, SystemIdentity
+from pantocheck.conformance.runner import Progress, RunInterrupted
+from pantocheck.conformance.systems.process_control import interruption_exit_code
+from pantocheck.conformance.systems.system import System
+
+INTERRUPTED = "the run was interrupted before this step was finished"
+"""Reason of a step that the user ended."""
+
+
+@dataclass
+class Validation:
+    """Validation of a system by a dossier; finished steps are kept while it runs.
+
+    Parameters
+    ----------
+    dossier : Dossier
+        Dossier with its files.
+    system : System
+        System under test.
+    folder : Path
+        Folder of the results.
+    jobs : int
+        Number of reference models that run in parallel.
+    progress : Progress or None
+        Callback for each finished case or pair.
+    """
+
+    dossier: Dossier
+    system: System
+    folder: Path
+    jobs: int = 1
+    progress: Progress | None = None
+    finished: dict[StepName, StepResult] = field(default_factory=dict)
+
+    def run(self) -> Results:
+        """Carry out all steps.
+
+        Returns
+        -------
+        Results
+            Results with the procedure.
+
+        Raises
+        ------
+        RunInterrupted
+            Ctrl-C, SIGTERM or SIGHUP ended the run; the exception holds the results of the finished part.
+        """
+        started = utc_now()
+        try:
+            for name, carry_out in self._list_steps():
+                self.finished[name] = carry_out()
+        except StepInterrupted as interruption:
+            self.finished[interruption.result.step] = interruption.result
+            raise RunInterrupted(self._combine(started), interruption.exit_code) from None
+        except KeyboardInterrupt as interruption:
+            raise RunInterrupted(self._combine(started), interruption_exit_code(interruption)) from None
+        return self._combine(started)
+
+    def _list_steps(self) -> Iterator[tuple[StepName, Callable[[], StepResult]]]:
+        """Steps in the order in which they are carried out: the parameters are those of the runs."""
+        dossier = self.dossier
+        tests = LineTests(dossier, self.system, self.folder)
+        yield "pantograph_model", lambda: check_pantographs(dossier)
+        yield "static_check", lambda: check_statics(dossier)
+        yield (
+            "reference_models",
+            lambda: run_reference_models(dossier, self.system, self.participation, self.jobs, self.progress),
+        )
+        yield "line_test", lambda: tests.run(self.progress)
+        yield "simulation_parameters", lambda: check_parameters(dossier, self._list_runs())
+        yield "limits_of_validity", lambda: list_claims(dossier)
+
+    @property
+    def participation(self) -> Participation:
+        """Verdicts that decide, accepted records, and the cases of steps that are not required."""
+        file = self.dossier.file
+        ids = [case.id for case in self.dossier.cases]
+        for_information = [step for step in STEP_NAMES if step not in file.required]
+        cases = (case for name in for_information if name in self.finished for case in self.finished[name].cases)
+        return Participation(
+            information=tuple(case.id for case in cases),
+            accepted_unverified=file.accept_unverified,
+            requested=choose_verdicts(file.reference.verdicts, file.system, ids),
+        )
+
+    def _list_runs(self) -> list[CaseResult]:
+        """Results of the cases and pairs with a run of a train."""
+        cases = chain.from_iterable(self.finished[name].cases for name in ("reference_models", "line_test"))
+        return [case for case in cases if case.run.speed_km_h is not None and case.quantities]
+
+    def _combine(self, started: str) -> Results:
+        steps = [self.finished.get(name, StepResult(name, "not done", INTERRUPTED)) for name in STEP_NAMES]
+        file = self.dossier.file
+        procedure = Procedure(
+            title=file.title,
+            digest=self.dossier.digest,
+            note=file.note,
+            steps=[step.describe(step.step in file.required) for step in steps],
+            responses=[item for step in steps for item in step.responses],
+            statics=[item for step in steps for item in step.statics],
+            parameters=[item for step in steps for item in step.parameters],
+            joined=join_pairs([case for step in steps if step.step == "line_test" for case in step.cases]),
+            evidence=[item for step in steps for item in step.evidence],
+            claims=[item for step in steps for item in step.claims],
+        )
+        identity = SystemIdentity(name=self.system.name, version=self.system.version, kind=self.system.kind)
+        cases = [case for step in steps for case in step.cases]
+        return build_results(cases, identity, file.trust, started, self.participation, procedure)

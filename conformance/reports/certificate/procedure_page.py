@@ -1,0 +1,90 @@
+"""Procedure on page 1 of a certificate: its steps with verdict, margin and uncertainty, and the headline."""
+
+from typing import Any
+
+from pantocheck.conformance.quantities.limit_text import format_margin
+from pantocheck.conformance.reports import document as doc
+from pantocheck.conformance.reports.page_text import format_value, replace_minus
+from pantocheck.conformance.reports.words import read_words
+
+PROCEDURE_KEY = (
+    "Margin and uncertainty belong to the criterion of the step with the smallest margin. The margin is the distance "
+    "to the nearer limit, divided by half the distance between the limits, or by the limit. The uncertainty is the "
+    "half-width of the 95 % interval of value and limit together, in the unit of the value. Steps that are not "
+    "required are for information and have no part in the verdict. The steps follow the style of EN 50318; the text "
+    "of the standard is not reproduced."
+)
+
+
+def name_step(step: dict[str, Any]) -> str:
+    """Step of the procedure in words."""
+    return str(read_words()["procedure"][step["step"]])
+
+
+def name_state(step: dict[str, Any]) -> str:
+    """State of a step in words, with a remark on a step for information."""
+    return f"{step['state']}{'' if step['required'] else ', for information'}"
+
+
+def anchor_step(step: dict[str, Any]) -> str:
+    """Anchor of the section of a step."""
+    return f"step-{step['step'].replace('_', '-')}"
+
+
+def build_procedure_headline(results: dict[str, Any]) -> str:
+    """Verdict of a dossier in sentences: required steps that pass, and those that do not."""
+    required = [step for step in results["procedure"]["steps"] if step["required"]]
+    others = [step for step in results["procedure"]["steps"] if not step["required"]]
+    passed = sum(step["verdict"] == "pass" for step in required)
+    sentences = [f"{passed} of {len(required)} required steps pass."]
+    words = read_words()["verdict"]
+    for step in required:
+        if step["verdict"] != "pass":
+            state = "not done" if step["state"] == "not done" else words[step["verdict"]]["word"]
+            sentences.append(f"{name_step(step)}: {state}.")
+    if others:
+        names = ", ".join(f"{name_step(step)} ({words[step['verdict']]['word']})" for step in others)
+        sentences.append(f"Not required, for information: {names}.")
+    if results["system"]["name"] in results["accepted_unverified"]:
+        sentences.append(f"Accepted by the user: unverified records of {results['system']['name']}.")
+    return " ".join(sentences)
+
+
+def build_procedure_section(results: dict[str, Any]) -> doc.Section:
+    """Table of the steps in the order of the procedure."""
+    columns = (
+        doc.Column("Step", share=2),
+        doc.Column("State", share=1),
+        doc.Column("Verdict"),
+        doc.Column("Margin", number=True),
+        doc.Column("±", number=True),
+        doc.Column("Smallest margin of, or reason", share=4),
+    )
+    rows = tuple(_build_row(number, step) for number, step in enumerate(results["procedure"]["steps"], 1))
+    return doc.Section(
+        "Steps of the procedure", (doc.Table(columns, rows), doc.SmallPrint(PROCEDURE_KEY)), anchor="procedure"
+    )
+
+
+def list_step_reasons(results: dict[str, Any]) -> tuple[doc.Section, ...]:
+    """Steps that were not done or are not verified, with their reasons."""
+    sentences = [
+        f"{name_step(step)}: {reason}"
+        for step in results["procedure"]["steps"]
+        for reason in (step["reason"], step["unverified"])
+        if reason
+    ]
+    return (doc.Section("Steps", (doc.BulletList(tuple(sentences)),)),) if sentences else ()
+
+
+def _build_row(number: int, step: dict[str, Any]) -> tuple[doc.RichText, ...]:
+    margin = "–" if step["margin"] is None else replace_minus(format_margin(step["margin"]))
+    texts = [text for text in (step["closest"], step["unverified"], step["reason"]) if text]
+    return (
+        doc.Link(f"{number} {name_step(step)}", anchor_step(step)),
+        name_state(step),
+        doc.VerdictMark(step["verdict"]),
+        margin,
+        format_value(step["uncertainty"], 2),
+        "; ".join(texts) or "–",
+    )

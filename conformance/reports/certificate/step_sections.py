@@ -1,0 +1,246 @@
+"""Sections of the steps of a procedure: verdict, criteria, figures and tables."""
+
+from collections.abc import Callable
+from typing import Any
+
+from pantocheck.conformance.reports import document as doc
+from pantocheck.conformance.reports.certificate.criteria_table import criteria_blocks
+from pantocheck.conformance.reports.certificate.procedure_page import anchor_step, name_step
+from pantocheck.conformance.reports.comparison.response_comparison_page import (
+    build_response_sections,
+    list_response_remarks,
+)
+from pantocheck.conformance.reports.comparison.static_comparison_page import build_static_sections, list_remarks
+from pantocheck.conformance.reports.figures.study_chart import draw_chart
+from pantocheck.conformance.reports.page_text import format_plain, format_value, replace_minus
+from pantocheck.conformance.reports.words import name_pantograph, quantity_label, quantity_unit, read_words
+
+SPREAD_QUANTITY = "std_force_N"
+"""Quantity of the figure that joins the line tests."""
+
+ClaimTexts = tuple[doc.RichText, ...]
+
+
+def build_step_section(number: int, step: dict[str, Any], results: dict[str, Any]) -> doc.Section:
+    """Section of one step; the sections of its cases follow it.
+
+    Parameters
+    ----------
+    number : int
+        Number of the step in the order of the procedure, from 1.
+    step : dict
+        Step of results.json.
+    results : dict
+        Prepared results with the procedure.
+    """
+    word = f"\N{EN SPACE}{step['reason'] or step['unverified'] or ''}"
+    blocks: list[doc.Block] = [doc.Paragraph((doc.VerdictMark(step["verdict"]), word))]
+    if step["criteria"]:
+        anchor = anchor_step(step)
+        blocks.append(doc.Section("Criteria", criteria_blocks(step | {"places": {}}, anchor, f"{anchor}-source")))
+    blocks += BUILDERS[step["step"]](results)
+    if step["notes"]:
+        blocks.append(doc.BulletList(tuple(step["notes"])))
+    return doc.Section(f"{number} {name_step(step)}", tuple(blocks), anchor=anchor_step(step), new_page=True)
+
+
+def _pantograph_blocks(results: dict[str, Any]) -> tuple[doc.Block, ...]:
+    return tuple(
+        doc.Section(
+            response["pantograph"], (*_warn(list_response_remarks(response)), *build_response_sections(response))
+        )
+        for response in results["procedure"]["responses"]
+    )
+
+
+def _static_blocks(results: dict[str, Any]) -> tuple[doc.Block, ...]:
+    return tuple(
+        doc.Section(statics["line"], (*_warn(list_remarks(statics)), *build_static_sections(statics)))
+        for statics in results["procedure"]["statics"]
+    )
+
+
+def _warn(sentences: list[str]) -> tuple[doc.Block, ...]:
+    return (doc.WarningBox(tuple(sentences)),) if sentences else ()
+
+
+def _parameter_blocks(results: dict[str, Any]) -> tuple[doc.Block, ...]:
+    parameters = results["procedure"]["parameters"]
+    if not parameters:
+        return ()
+    columns = (doc.Column("Parameter", 2), doc.Column("Declared", 3), doc.Column("Runs", 3), doc.Column("Confirmed"))
+    rows = tuple(
+        (
+            quantity_label(parameter["name"]),
+            parameter["declared"],
+            parameter["runs"],
+            "yes" if parameter["confirmed"] else "no",
+        )
+        for parameter in parameters
+    )
+    return (doc.Section("Declared parameters and those of the runs", (doc.Table(columns, rows),)),)
+
+
+def _reference_blocks(results: dict[str, Any]) -> tuple[doc.Block, ...]:
+    text = "The system ran the cases of this step, whose sections follow."
+    return (doc.Paragraph(text),) if _find_step(results, "reference_models")["cases"] else ()
+
+
+def _line_test_blocks(results: dict[str, Any]) -> tuple[doc.Block, ...]:
+    blocks: list[doc.Block] = []
+    cases = [case for case in results["cases"] if case["id"] in _find_step(results, "line_test")["cases"]]
+    compared = [case for case in cases if case.get("comparison")]
+    if cases:
+        blocks.append(_build_pair_table(cases))
+    if compared:
+        blocks.append(doc.Figures((_draw_pairs(compared),)))
+    if joined := results["procedure"]["joined"]:
+        blocks.append(doc.Section("Joined over the pairs", (_build_joined_table(joined),)))
+    return tuple(blocks)
+
+
+def _build_pair_table(cases: list[dict[str, Any]]) -> doc.Table:
+    columns = (doc.Column("Pair", 2), doc.Column("Verdict"), doc.Column("Passage or reason", 4))
+    rows = tuple((case["id"], doc.VerdictMark(case["verdict"]), case["reason"] or case["title"]) for case in cases)
+    return doc.Table(columns, rows)
+
+
+def _draw_pairs(cases: list[dict[str, Any]]) -> doc.Figure:
+    """Standard deviation of the force in every pair, simulated and measured, with both uncertainties."""
+    series = []
+    for label in ("simulated", "measured"):
+        parts = [case if label == "simulated" else case["comparison"] for case in cases]
+        points = [
+            (place, value, part["uncertainty"].get(key, {}).get(SPREAD_QUANTITY) or 0.0)
+            for place, part in enumerate(parts)
+            for key, values in part["quantities"].items()
+            if (value := values.get(SPREAD_QUANTITY)) is not None
+        ]
+        series.append(
+            {
+                "label": label, "style": "points", "x": [x for x, _, _ in points], "y": [y for _, y, _ in points],
+                "error": [error for _, _, error in points],
+            }
+        )  # fmt: skip
+    caption = f"{quantity_label(SPREAD_QUANTITY)}, in all pairs, with the uncertainties of both runs."
+    chart = _chart(caption, ("pair", "standard deviation [N]"), [case["id"].removeprefix("pair/") for case in cases])
+    return doc.Figure(draw_chart(chart | {"series": series}), f"{caption} The table has the differences.", caption)
+
+
+def _chart(caption: str, labels: tuple[str, str], ticks: list[str]) -> dict[str, Any]:
+    """Chart of `figure_data.Chart` with names along the horizontal axis, without series."""
+    return {
+        "caption": caption, "alternative": caption, "x_label": labels[0], "y_label": labels[1], "x_scale": "linear",
+        "y_scale": "linear", "ticks": ticks, "series": [], "marks": [], "wide": True,
+    }  # fmt: skip
+
+
+def _build_joined_table(joined: list[dict[str, Any]]) -> doc.Table:
+    numbers = ("Pairs", "Mean difference", "±", "Spread", "Largest")
+    columns = (
+        doc.Column("Quantity", share=2),
+        doc.Column("Owner"),
+        *(doc.Column(heading, number=True) for heading in numbers),
+        doc.Column("Unit"),
+        doc.Column("Largest in", share=1),
+    )
+    rows: tuple[tuple[doc.RichText, ...], ...] = tuple(
+        (
+            quantity_label(item["quantity"]),
+            name_pantograph(item["pantograph"]),
+            str(item["runs"]),
+            replace_minus(f"{item['mean_difference']:+.3g}"),
+            format_value(item["uncertainty"], 2),
+            format_value(item["spread"], 2),
+            replace_minus(f"{item['largest_difference']:+.3g}"),
+            quantity_unit(item["quantity"]),
+            item["largest_in"].removeprefix("pair/"),
+        )
+        for item in joined
+    )
+    return doc.Table(columns, rows, "Simulated minus measured value, all pairs")
+
+
+def _validity_blocks(results: dict[str, Any]) -> tuple[doc.Block, ...]:
+    claims, evidence = results["procedure"]["claims"], results["procedure"]["evidence"]
+    if not claims:
+        return ()
+    columns = (
+        doc.Column("Claim", 2),
+        doc.Column("Claimed", 2),
+        doc.Column("Verified", 2),
+        doc.Column("Verdict"),
+        doc.Column("Runs or reason", 4),
+    )
+    blocks: list[doc.Block] = [doc.Table(columns, tuple(map(_describe_claim, claims)))]
+    if evidence:
+        blocks += [doc.Figures((_draw_evidence(claims, evidence),)), _build_evidence_table(evidence)]
+    return tuple(blocks)
+
+
+def _describe_claim(claim: dict[str, Any]) -> ClaimTexts:
+    subject = read_words()["claim"][claim["kind"]]
+    return (
+        f"{subject} {claim['name']}".strip(),
+        _format_range(claim["claimed"], claim["unit"]),
+        _format_range(claim["verified"], claim["unit"]),
+        doc.VerdictMark(claim["verdict"]),
+        claim["reason"] or ", ".join(claim["evidence"]),
+    )
+
+
+def _format_range(limits: list[float] | None, unit: str) -> str:
+    return "–" if limits is None else f"{format_plain(limits[0])} to {format_plain(limits[1])} {unit}".rstrip()
+
+
+def _draw_evidence(claims: list[dict[str, Any]], evidence: list[dict[str, Any]]) -> doc.Figure:
+    """Speeds of all runs by line, with the claimed range."""
+    lines = list(dict.fromkeys(item["line"] for item in evidence))
+    groups = (("passed", True), ("not passed", False))
+    series = [
+        {
+            "label": label, "style": "points", "error": None,
+            "x": [lines.index(item["line"]) for item in evidence if item["passed"] == passed],
+            "y": [item["speed_km_h"] for item in evidence if item["passed"] == passed],
+        }
+        for label, passed in groups
+        if any(item["passed"] == passed for item in evidence)
+    ]  # fmt: skip
+    marks = [
+        {"label": "claimed speeds", "axis": "y", "low": claim["claimed"][0], "high": claim["claimed"][1]}
+        for claim in claims
+        if claim["kind"] == "speed"
+    ]
+    caption = "Speeds of the runs by line, and the claimed range."
+    chart = _chart(caption, ("line", "speed [km/h]"), lines) | {"series": series, "marks": marks}
+    return doc.Figure(draw_chart(chart), f"{caption} The table has the values.", caption)
+
+
+def _build_evidence_table(evidence: list[dict[str, Any]]) -> doc.Table:
+    cells: dict[str, Callable[[Any], str]] = {
+        "Run": lambda item: item["id"],
+        "Passed": lambda item: "yes" if item["passed"] else "no",
+        "Speed [km/h]": lambda item: format_plain(item["speed_km_h"]),
+        "Spacing [m]": lambda item: ", ".join(map(format_plain, item["spacing_m"])) or "–",
+        "Line": lambda item: item["line"],
+        "Inputs": lambda item: (
+            ", ".join(f"{key} = {format_plain(value)}" for key, value in item["inputs"].items()) or "–"
+        ),
+        "Pantographs": lambda item: ", ".join(item["pantographs"]),
+    }
+    return doc.make_grid("Conditions of the runs", evidence, cells)
+
+
+def _find_step(results: dict[str, Any], name: str) -> dict[str, Any]:
+    return next(step for step in results["procedure"]["steps"] if step["step"] == name)
+
+
+BUILDERS: dict[str, Callable[[dict[str, Any]], tuple[doc.Block, ...]]] = {
+    "pantograph_model": _pantograph_blocks,
+    "static_check": _static_blocks,
+    "simulation_parameters": _parameter_blocks,
+    "reference_models": _reference_blocks,
+    "line_test": _line_test_blocks,
+    "limits_of_validity": _validity_blocks,
+}
+"""Builder of the blocks of each step, below its criteria."""

@@ -1,0 +1,56 @@
+"""Example dossier in a folder of its own, and a system whose runs are computed once for all tests."""
+
+import shutil
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Literal
+
+from helpers.toml_edit import change_keys, write_toml
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.procedure.dossier_reading import read_dossier
+from pantocheck.conformance.procedure.validation import Validation
+from pantocheck.conformance.results.outcome import Delivered
+from pantocheck.conformance.results.results_format import Results
+from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "dossier"
+
+REFERENCE = ["en50318-2002/250"]
+"""Reference models of the tests: one is enough, and each takes a second."""
+
+
+@dataclass(frozen=True)
+class CachedSimulator:
+    """Reference simulator without runs on other meshes; it runs each case once."""
+
+    name: str = ReferenceSimulator.name
+    version: str = ReferenceSimulator.version
+    kind: Literal["builtin", "record", "command"] = "builtin"
+    runs: dict[str, Delivered] = field(default_factory=dict)
+
+    def run(self, case: Case) -> Delivered:
+        """Run a case, or return its earlier result."""
+        if case.digest not in self.runs:
+            self.runs[case.digest] = ReferenceSimulator().run_unrefined(case)
+        return self.runs[case.digest]
+
+
+def copy_example(folder: Path, changes: dict[str, Any] | None = None) -> Path:
+    """Copy the example dossier to a folder, with keys changed as by `change_keys`; return its path."""
+    shutil.copytree(EXAMPLE, folder, dirs_exist_ok=True)
+    path = folder / "dossier.toml"
+    content = tomllib.loads(path.read_text(encoding="utf-8"))
+    change_keys(content, {"reference.cases": REFERENCE} | (changes or {}))
+    return write_toml(path, content)
+
+
+def validate_example(path: Path, system: CachedSimulator, folder: Path) -> Results:
+    """Carry out the procedure for a dossier."""
+    return Validation(read_dossier(path), system, folder).run()
+
+
+def list_verdicts(results: Results) -> dict[str, str]:
+    """Verdict of every step."""
+    assert results.procedure is not None
+    return {step.step: step.verdict for step in results.procedure.steps}
