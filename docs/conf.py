@@ -1,0 +1,27 @@
+"""Configuration of the documentation site: `sphinx-build -W docs OUT`."""
+
+import sys
+from importlib.metadata import version as installed_version
+from pathlib import Path
+
+DOCS = Path(__file__).parent
+sys.path.insert(0, str(DOCS))
+
+from site_pages import write_generated_pages  # noqa: E402
+
+write_generated_pages(DOCS / "generated")
+
+project = "Pantocheck"
+author = "The Pantocheck authors"
+copyright = "2026, The Pantocheck authors"
+version = release = installed_version("pantocheck")
+
+extensions = ["myst_parser", "numpydoc", "sphinx.ext.autodoc", "sphinx.ext.mathjax"]
+source_suffix = {".md": "markdown"}
+root_doc = "contents"
+exclude_patterns = ["_build", "site_pages"]
+myst_enable_extensions = ["dollarmath", "deflist"]
+myst_heading_anchors = 3
+numpydoc_show_class_members = False
+autosummary_generate = False
+html_theme = "furo"

@@ -1,0 +1,54 @@
+"""Pages of the documentation site that are generated from the code, and the contents of the site."""
+
+import re
+from collections.abc import Iterator
+from importlib import import_module
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+import pantocheck.conformance
+import pantocheck.model
+from pantocheck.conformance.command_line.app import COMMANDS, load_command
+from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.schemas import FORMAT_NAMES, build_schema
+
+DOCS = Path(__file__).parents[2] / "docs"
+
+
+@pytest.fixture(scope="module")
+def pages() -> Iterator[dict[str, str]]:
+    """Text of every generated page by its name."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(DOCS))
+        package: ModuleType = import_module("site_pages")
+        yield {name: build() for name, build in package.PAGES.items()}
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_option_of_a_command_is_described(pages: dict[str, str], name: str) -> None:
+    section = pages["commands"].split(f"## pantocheck {name}\n")[1].split("\n## ")[0]
+    options = {option for parameter in load_command(name).params for option in parameter.opts if option[:2] == "--"}
+    assert {option for option in options - {"--help"} if option not in section} == set()
+
+
+@pytest.mark.parametrize("name", FORMAT_NAMES)
+def test_every_key_of_a_format_is_described(pages: dict[str, str], name: str) -> None:
+    section = pages["formats"].split(f"## {name}\n")[1].split("\n## ")[0]
+    schema = build_schema(name)
+    parts = [schema, *schema.get("$defs", {}).values()]
+    assert {key for part in parts for key in part.get("properties", {}) if f"`{key}`" not in section} == set()
+
+
+def test_every_quantity_and_public_name_is_described(pages: dict[str, str]) -> None:
+    assert {name for name in QUANTITIES if f"`{name}`" not in pages["quantity-reference"]} == set()
+    public = {*pantocheck.conformance.__all__, *pantocheck.model.__all__}
+    assert {name for name in public if name not in pages["interface"]} == set()
+
+
+def test_contents_list_every_page_once(pages: dict[str, str]) -> None:
+    blocks = re.findall(r"```\{toctree\}\n(.*?)```", (DOCS / "contents.md").read_text("utf-8"), re.DOTALL)
+    listed = [line for block in blocks for line in block.splitlines() if line and not line.startswith(":")]
+    written = {path.stem for path in DOCS.glob("*.md")} - {"contents"}
+    assert sorted(listed) == sorted(written | {f"generated/{name}" for name in pages})
