@@ -52,7 +52,10 @@ class ForceView {
     const makeRows = () => x.map((place, i) => [place, this.trace.force_N[i], this.trace.force_20_N?.[i]]);
     const save = saveButton("Curves as CSV", fileName(this.case, name, "force"), headings, makeRows);
     this.tools = [...this.plot.makeButtons(), save];
-    const note = element("p", { class: "small" }, describeResolution(this.case, this.trace));
+    const limited = this.case.criteria.some(({ pantograph, lower, upper, unit }) =>
+      String(pantograph) === figure.dataset.owner && unit === "N" && (lower ?? upper) !== null);
+    const remark = limited ? " The static figure shows the limits." : "";
+    const note = element("p", { class: "small" }, describeResolution(this.case, this.trace) + remark);
     this.parts = [this.plot.element, note, element("div", { class: "pair" }, ...this.makeSpectrum(name), ...this.makeSpans(name))];
   }
 

@@ -56,7 +56,7 @@ class Plot {
       hooks: {
         setScale: [(canvas, scale) => scale === "x" && this.readStretch()],
         setCursor: [() => this.legend.showValues()],
-        draw: [() => this.drawLines()],
+        draw: [() => drawLines(this)],
       },
     };
     this.canvas = new uPlot(options, [x, ...curves.map((curve) => curve.values)], this.area);
@@ -152,37 +152,5 @@ class Plot {
   /** Tell a text to screen readers. */
   announce(text) {
     this.status.textContent = text;
-  }
-
-  /** Vertical lines, and the mark of a place with its text. */
-  drawLines() {
-    const { ctx, bbox } = this.canvas;
-    ctx.save();
-    ctx.beginPath();
-    ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
-    ctx.clip();
-    for (const place of this.content.lines ?? []) this.drawLine(ctx, bbox, place, "soft", [2, 4]);
-    if (this.mark) {
-      const x = this.drawLine(ctx, bbox, this.mark.place, "curve-2", []);
-      const right = x > bbox.left + bbox.width / 2;
-      ctx.font = `${12 * devicePixelRatio}px system-ui, sans-serif`;
-      ctx.fillStyle = colour("ink");
-      ctx.textAlign = right ? "right" : "left";
-      ctx.fillText(this.mark.text, x + (right ? -6 : 6), bbox.top + 14 * devicePixelRatio);
-    }
-    ctx.restore();
-  }
-
-  /** A vertical line; its place on the canvas is returned. */
-  drawLine(ctx, bbox, place, name, dash) {
-    const x = this.canvas.valToPos(place, "x", true);
-    ctx.beginPath();
-    ctx.setLineDash(dash.map((length) => length * devicePixelRatio));
-    ctx.strokeStyle = colour(name);
-    ctx.lineWidth = devicePixelRatio;
-    ctx.moveTo(x, bbox.top);
-    ctx.lineTo(x, bbox.top + bbox.height);
-    ctx.stroke();
-    return x;
   }
 }

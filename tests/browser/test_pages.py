@@ -109,6 +109,21 @@ def test_link_into_a_folded_section_opens_it(open_page: Any) -> None:
     assert page.locator("#inside").is_visible()
 
 
+def test_policy_refuses_what_was_added_to_a_page(browser: Any, page_files: dict[str, Path], tmp_path: Path) -> None:
+    """A script, a style and an image that reach a page without its digests have no effect."""
+    added = """<script>document.title = "changed"</script><p style="color: red" id="added">text</p>
+        <img src="http://127.0.0.1:9/a.png" onerror="document.title = 'changed'">"""
+    text = page_files["plain"].read_text("utf-8").replace("</main>", f"{added}</main>")
+    (tmp_path / "changed.html").write_text(text, "utf-8")
+    page, refused = browser.new_page(), []
+    page.on("console", lambda message: refused.append(message.text))
+    page.goto((tmp_path / "changed.html").as_uri())
+    assert page.title() == "Identification"
+    assert page.locator("#added").evaluate("part => getComputedStyle(part).color") != "rgb(255, 0, 0)"
+    assert len([text for text in refused if "Content Security Policy" in text]) >= 3
+    page.close()
+
+
 def test_page_holds_no_address_of_another_place(page_files: dict[str, Path]) -> None:
     """Names of XML formats and the comment of the library are no requests; nothing else looks like an address."""
     known = {"http://www.w3.org/2000/svg", "http://www.w3.org/1999/xlink", "https://github.com/leeoniya/uPlot"}

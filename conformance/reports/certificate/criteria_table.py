@@ -85,7 +85,7 @@ def criteria_blocks(case: dict[str, Any], anchor: str, source_anchor: str) -> tu
     return (table, key, *listed)
 
 
-def _link_place(case: dict[str, Any], criterion: dict[str, Any], anchor: str) -> tuple[doc.Link, ...]:
+def _link_place(case: dict[str, Any], criterion: dict[str, Any], anchor: str) -> tuple[doc.Inline, ...]:
     """Link to the figure that shows the place of an extreme; empty for a quantity without a place."""
     owner = str(criterion["pantograph"])
     place = case["places"].get(owner, {}).get(criterion["quantity"])
@@ -96,11 +96,14 @@ def _link_place(case: dict[str, Any], criterion: dict[str, Any], anchor: str) ->
     drawn = any(support["time_s"] for support in case["uplift"]) if owner == "0" else owner in case["traces"]
     if not drawn:
         return ()
-    return (doc.Link(f"at {format_plain(round(place['position_m'], 1))} m", name_figure(anchor, owner)),)
+    return (
+        " ",
+        doc.Link(f"at {format_plain(round(place['position_m'], 1))} m", name_figure(anchor, owner)),
+    )
 
 
 def _row(
-    criterion: dict[str, Any], sources: list[str], source_anchor: str, place: tuple[doc.Link, ...]
+    criterion: dict[str, Any], sources: list[str], source_anchor: str, place: tuple[doc.Inline, ...]
 ) -> tuple[doc.RichText, ...]:
     texts = describe_criterion(criterion)
     number = sources.index(criterion["source"]) + 1 if criterion["source"] else None
