@@ -1,0 +1,113 @@
+"""Equations of the page on theory, written out plainly and compared with the code."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.polynomial import Polynomial
+
+from pantocheck.conformance.identification.decay_kernel import decay_kernel
+from pantocheck.conformance.quantities.bands import band_rms
+from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.model.fem import beam
+from pantocheck.model.fem.residual_flexibility import in_series
+from pantocheck.model.statics.wave_factors import doppler_factor
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs" / "theory.md").read_text(encoding="utf-8")
+
+
+def test_every_section_ends_in_files_that_exist() -> None:
+    for section in PAGE.split("\n## ")[1:]:
+        files = re.findall(r"`([\w/]+\.py)`", section.split("*Files:*")[1])
+        assert files, section.split("\n")[0]
+        assert [file for file in files if not (ROOT / file).is_file()] == []
+
+
+def test_element_matrices_are_the_integrals_of_the_shape_functions() -> None:
+    """Hermite polynomials integrated exactly; the products have degree six."""
+    h, tension, bending, mass = 0.7, 20e3, 195.0, 1.35
+    x = Polynomial([0, 1 / h])
+    shapes = [1 - 3 * x**2 + 2 * x**3, h * (x - 2 * x**2 + x**3), 3 * x**2 - 2 * x**3, h * (x**3 - x**2)]
+
+    def integrate(order: int) -> np.ndarray:
+        parts = [shape.deriv(order) if order else shape for shape in shapes]
+        return np.array([[(first * second).integ()(h) for second in parts] for first in parts])
+
+    stiffness = bending * integrate(2) + tension * integrate(1)
+    np.testing.assert_allclose(np.squeeze(beam.stiffness(h, tension, bending)), stiffness, rtol=1e-12, atol=1e-9)
+    np.testing.assert_allclose(np.squeeze(beam.mass(h, mass)), mass * integrate(0), rtol=1e-12, atol=1e-15)
+
+
+def test_average_acceleration_with_corrected_mass_is_the_method_of_fox_and_goodwin() -> None:
+    """One unknown, force-free: average acceleration with M - dt^2/6 K against the recurrence of the page."""
+    mass, stiffness, dt = 2.0, 300.0, 0.05
+    corrected = mass - dt**2 / 6 * stiffness
+    q, v = 1.0, 0.0
+    a = -stiffness * q / corrected
+    path = [q]
+    for _ in range(50):
+        predicted, speed = q + dt * v + dt**2 / 4 * a, v + dt / 2 * a
+        a = -stiffness * predicted / (corrected + dt**2 / 4 * stiffness)
+        q, v = predicted + dt**2 / 4 * a, speed + dt / 2 * a
+        path.append(q)
+    last, now, following = np.array(path[:-2]), np.array(path[1:-1]), np.array(path[2:])
+    residual = mass * (following - 2 * now + last) / dt**2 + stiffness * (following + 10 * now + last) / 12
+    assert np.abs(residual).max() < 1e-10 * stiffness  # rounding
+
+
+def test_period_errors_of_both_methods() -> None:
+    """Frequencies of the recurrences: late by theta^2 / 12, and early by theta^4 / 480, to leading order."""
+    for theta in (0.1, 0.2):
+        average = 2 * np.arctan(theta / 2) / theta
+        assert (1 - average) / theta**2 == pytest.approx(1 / 12, rel=0.01)
+        corrected = np.arccos((1 - 5 * theta**2 / 12) / (1 + theta**2 / 12)) / theta
+        assert (corrected - 1) / theta**4 == pytest.approx(1 / 480, rel=0.02)
+
+
+def test_gain_of_the_filter() -> None:
+    rate, frequency = 200.0, np.array([5.0, 20.0, 30.0])
+    cutoff = LowPass().single_run(rate)[1]
+    ratio = np.tan(np.pi * frequency / rate) / np.tan(np.pi * cutoff / rate)
+    np.testing.assert_allclose(LowPass().gain(frequency, rate), 1 / (1 + ratio**6), rtol=1e-9)
+    assert LowPass().gain(np.array([20.0]), rate)[0] == pytest.approx(10 ** (-3.0103 / 20), rel=1e-5)
+
+
+def test_bands_partition_the_variance() -> None:
+    rng = np.random.default_rng(1)
+    rate, n = 500.0, 4000
+    lines = np.fft.rfft(rng.normal(size=n))
+    lines[np.fft.rfftfreq(n, 1 / rate) > 50] = 0
+    force = 120 + np.fft.irfft(lines, n)
+    squares = [band_rms(force, rate, low, high) ** 2 for low, high in ((0, 5), (5, 20), (20, 50))]
+    assert sum(squares) == pytest.approx(force.var(), rel=1e-12)
+
+
+def test_spring_in_series_with_the_residual_flexibility() -> None:
+    """First order in frequency: at 0.1 Hz the second order is below 1e-6."""
+    k, c, flexibility, beta = 1e5, 200.0, 3e-6, 1e-4
+    series = in_series(*(np.array([value]) for value in (k, c, flexibility, flexibility * beta)))
+    omega = 2 * np.pi * 0.1
+    exact = 1 / (1 / (k + 1j * omega * c) + flexibility / (1 + 1j * omega * beta))
+    assert series[0][0] == pytest.approx(exact.real, rel=1e-5)
+    assert series[1][0] == pytest.approx(exact.imag / omega, rel=1e-4)
+
+
+def test_doppler_factor() -> None:
+    assert doppler_factor(60.0, 120.0) == pytest.approx((120 - 60) / (120 + 60))
+
+
+def test_transform_of_a_decay() -> None:
+    """The formula of the page against the fast Fourier transform of the samples."""
+    dt, n = 0.01, 512
+    pole = -0.4 + 2j * np.pi * 1.37
+    samples = 2 * np.real((0.7 - 0.2j) * np.exp(pole * dt * np.arange(n)))
+    omega = 2 * np.pi * np.arange(n // 2 + 1) / (n * dt)
+
+    def part(amplitude: complex, root: complex) -> np.ndarray:
+        return amplitude * (1 - np.exp(root * n * dt)) / (1 - np.exp((root - 1j * omega) * dt))
+
+    np.testing.assert_allclose(decay_kernel(np.array([pole]), omega, dt, n).ravel(), part(1, pole), rtol=1e-12)
+    expected = part(0.7 - 0.2j, pole) + part(0.7 + 0.2j, np.conj(pole))
+    np.testing.assert_allclose(np.fft.rfft(samples), expected, rtol=1e-9, atol=1e-9)
