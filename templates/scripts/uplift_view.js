@@ -15,32 +15,25 @@ function upliftLimits(shownCase, count) {
 }
 
 /** View of the uplift of a figure. */
-class UpliftView {
-  constructor(figure) {
-    this.case = caseOf(figure);
-    const supports = this.case.uplift.filter((support) => support.time_s.length);
-    const [x, ...uplift] = uPlot.join(supports.map((support) => [support.time_s, support.uplift_mm]));
-    const curves = supports.map((support, number) => ({
-      ...{ label: `support at ${formatNumber(support.support_m, 6)} m`, values: uplift[number], ...curveStyle(number) },
-    }));
-    this.plot = new Plot({
+function viewUplift(figure) {
+  const shownCase = caseOf(figure);
+  const supports = shownCase.uplift.filter((support) => support.time_s.length);
+  const [x, ...uplift] = uPlot.join(supports.map((support) => [support.time_s, support.uplift_mm]));
+  const curves = supports.map((support, number) => ({
+    ...{ label: `support at ${formatNumber(support.support_m, 6)} m`, values: uplift[number], ...curveStyle(number) },
+  }));
+  const view = new CurvesView(
+    {
       ...{ label: "Uplift at the supports", xLabel: "time [s]", xUnit: "s", yLabel: "uplift [mm]", yUnit: "mm", height: 260 },
-      ...{ x, curves: [...curves, ...upliftLimits(this.case, x.length)] },
-    });
-    const makeRows = () =>
-      supports.flatMap((support) => support.time_s.map((time, i) => [support.support_m, time, support.uplift_mm[i]]));
-    const headings = ["support_m", "time_s", "uplift_mm"];
-    this.tools = [...this.plot.makeButtons(), saveButton("Curves as CSV", fileName(this.case, "uplift"), headings, makeRows)];
-    this.parts = [this.plot.element];
-  }
-
-  /** Draw the plot. */
-  draw() {
-    this.plot.draw();
-  }
-
-  /** Show the time of the largest uplift. */
-  showPlace(place, text, name) {
-    this.plot.showPlace(place.time_s, UPLIFT_STRETCH_S, text, name);
-  }
+      ...{ x, curves: [...curves, ...upliftLimits(shownCase, x.length)] },
+    },
+    {
+      name: fileName(shownCase, "uplift"),
+      headings: ["support_m", "time_s", "uplift_mm"],
+      makeRows: () =>
+        supports.flatMap((support) => support.time_s.map((time, i) => [support.support_m, time, support.uplift_mm[i]])),
+    },
+  );
+  view.showPlace = (place, text, name) => view.plot.showPlace(place.time_s, UPLIFT_STRETCH_S, text, name);
+  return view;
 }

@@ -1,13 +1,14 @@
 // Views in place of the static figures, and links from criteria to the places of their extremes.
 
-const VIEWS = { force: ForceView, uplift: UpliftView };
+/** Makers of views by the curves of a figure. */
+const VIEWS = { force: (figure) => new ForceView(figure), uplift: viewUplift, measured: viewMeasured };
 
 /** Views of the page by the figures that they stand for. */
 const views = new Map();
 
 /** Put a view into its figure; on paper, and by its button, the static figure stands there. */
 function addView(figure) {
-  const view = new VIEWS[figure.dataset.curves](figure);
+  const view = VIEWS[figure.dataset.curves](figure);
   const still = element("button", { type: "button", "aria-pressed": "false" }, "Static figure");
   still.addEventListener("click", () => {
     still.setAttribute("aria-pressed", String(!figure.classList.toggle("viewed")));

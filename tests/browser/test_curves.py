@@ -229,6 +229,19 @@ def test_uplift_leads_to_its_support_and_time(page: Any) -> None:
     assert read_numbers(values)[-1] == pytest.approx(51.3, rel=2e-3)
 
 
+def test_simulated_and_measured_force_stand_in_one_plot(open_page: Any) -> None:
+    """The measured force of the example is 3 N higher everywhere; the values shown have four digits."""
+    page = open_page("measured")
+    figure = "#case-2-measured-1"
+    page.locator(figure).scroll_into_view_if_needed()
+    plot_area(page, 0, figure).press("ArrowRight")
+    _, simulated, measured, difference = (read_numbers(part)[-1] for part in read_status(page, 0, figure).split(", "))
+    assert_allclose((measured - simulated, difference), (3, -3), atol=0.11)
+    _, (headings, *rows) = read_file(page, page.locator(figure), "Curves as CSV")
+    assert headings == ["position_m", "simulated_N", "measured_N"]
+    assert len(rows) == len(example()["cases"][1]["traces"]["1"]["position_m"])
+
+
 def read_file(page: Any, scope: Any, name: str) -> tuple[str, list[list[str]]]:
     """Name and rows of the file that a button saves."""
     with page.expect_download() as download:

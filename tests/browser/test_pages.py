@@ -14,7 +14,7 @@ AXE = Path(__file__).parents[1] / "data" / "axe-core"
 
 AXE_SCRIPT = lzma.decompress((AXE / "axe.min.js.xz").read_bytes())
 
-NAMES = ["certificate", "hostile", "identification", "plain"]
+NAMES = ["certificate", "measured", "hostile", "identification", "plain"]
 
 OVERLAPS = """family => [...document.querySelectorAll("figure > div > svg")].flatMap(svg => {
   const texts = [...svg.querySelectorAll("text")];

@@ -306,6 +306,30 @@ def chart(label: str, caption: str) -> dict[str, Any]:
     return Chart.model_validate({**labels, "series": [series]}).model_dump(mode="json")
 
 
+def with_measured_run() -> dict[str, Any]:
+    """The failing case with a measured run beside it: its force, 3 N higher."""
+    results = example()
+    case = results["cases"][1]
+    curves, mean = case["traces"]["1"], case["quantities"]["1"]["mean_force_N"]
+    forces = {"simulated": curves["force_20_N"], "measured": [force + 3 for force in curves["force_20_N"]]}
+    statistics = {name: dict.fromkeys(("mean_N", "std_N", "max_N", "min_N"), 1.0) for name in forces}
+    case["comparison"] = {
+        "name": "measured.csv",
+        "cutoff_Hz": 20.0,
+        "quantities": {"1": {"mean_force_N": mean + 3}},
+        "uncertainty": {},
+        "pantographs": {
+            "1": {
+                "position_m": curves["position_m"],
+                **{f"{name}_N": values for name, values in forces.items()},
+                **{f"{name}_spectrum": curves["spectrum"] for name in forces},
+                "spans": [{"start_m": 240.0, "end_m": 300.0, **statistics}],
+            }
+        },
+    }
+    return Results.model_validate(results).to_dict()
+
+
 HOSTILE = [
     "<script>alert(1)</script>",
     '#import "x.typ": * "]) #panic()',

@@ -168,7 +168,7 @@ def _case_section(number: int, case: dict[str, Any], anchor: str) -> doc.Section
     if case["criteria"]:
         blocks.append(doc.Section("Criteria", criteria_blocks(case, anchor, f"{anchor}-source")))
     blocks += verification_blocks(case, anchor)
-    blocks += comparison_blocks(case)
+    blocks += comparison_blocks(case, number, anchor)
     blocks += event_blocks(case)
     blocks += [doc.Section(table["caption"], (_study_table(table),)) for table in case["tables"]]
     bands, quantities = build_band_table(case), build_quantity_table(case)

@@ -15,8 +15,18 @@ from pantocheck.conformance.reports.page_text import format_plain, format_value,
 from pantocheck.conformance.reports.words import name_pantograph, quantity_label, quantity_unit
 
 
-def comparison_blocks(case: dict[str, Any]) -> tuple[doc.Block, ...]:
-    """Blocks on the measured run of a case; empty if nothing is compared."""
+def comparison_blocks(case: dict[str, Any], number: int, anchor: str) -> tuple[doc.Block, ...]:
+    """Blocks on the measured run of a case; empty if nothing is compared.
+
+    Parameters
+    ----------
+    case : dict
+        Case of results.json.
+    number : int
+        Index of the case in the results.
+    anchor : str
+        Anchor of the section of the case.
+    """
     comparison = case.get("comparison")
     if comparison is None:
         return ()
@@ -25,7 +35,7 @@ def comparison_blocks(case: dict[str, Any]) -> tuple[doc.Block, ...]:
     figures = tuple(
         figure
         for key, pantograph in comparison["pantographs"].items()
-        for figure in _draw_figures(key, pantograph, comparison)
+        for figure in _draw_figures(doc.Curves("measured", number, key), pantograph, comparison, anchor)
     )
     if figures:
         blocks.append(doc.Figures(figures))
@@ -67,13 +77,21 @@ def _build_value_table(case: dict[str, Any], comparison: dict[str, Any]) -> doc.
     return doc.Table(columns, tuple(rows), "Values of both runs, with the half-widths of their 95 % intervals")
 
 
-def _draw_figures(key: str, pantograph: dict[str, Any], comparison: dict[str, Any]) -> Iterator[doc.Figure]:
+def _draw_figures(
+    curves: doc.Curves, pantograph: dict[str, Any], comparison: dict[str, Any], anchor: str
+) -> Iterator[doc.Figure]:
     if not pantograph["position_m"]:
         return
-    who, cutoff = f"Pantograph {key}", format_plain(comparison["cutoff_Hz"])
+    who, cutoff = f"Pantograph {curves.owner}", format_plain(comparison["cutoff_Hz"])
     largest = format_value(max(map(abs, force_difference(pantograph))), 3)
     caption = f"{who}: contact force up to {cutoff} Hz, simulated and measured; below, their difference."
-    yield doc.Figure(draw_overlay(pantograph), f"{caption} Largest difference {largest} N.", caption)
+    yield doc.Figure(
+        draw_overlay(pantograph),
+        f"{caption} Largest difference {largest} N.",
+        caption,
+        anchor=f"{anchor}-measured-{curves.owner}",
+        curves=curves,
+    )
     caption = f"{who}: amplitude spectra, simulated and measured; below, their difference."
     yield doc.Figure(
         draw_run_spectra(pantograph), f"{caption} The table has the RMS of the bands.", caption, wide=False

@@ -18,7 +18,7 @@ TABLE_SCRIPTS = ("elements", "folding", "tables")
 CURVE_SCRIPTS = (
     *("results", "download", "spectrum", "spans"),
     *("plot_style", "legend", "plot_lines", "plot_keys", "touch", "plot"),
-    *("force_view", "uplift_view", "views"),
+    *("force_view", "curves_view", "uplift_view", "measured_view", "views"),
 )
 """Further parts of the script of a page with results, in the order of their use."""
 

@@ -88,7 +88,7 @@ def test_certificate_shows_both_runs(run: Run) -> None:
     """Overlay, spectra and spans of both pantographs; the results follow from their numbers."""
     results = assess_record(run("simulated"), load_profile("line-test"), "provisional", run("measured", 1.0)).to_dict()
     assert find_discrepancies(results) == []
-    (section,) = comparison_blocks(results["cases"][0])
+    (section,) = comparison_blocks(results["cases"][0], 0, "case-1")
     assert isinstance(section, doc.Section)
     values, figures, *spans = section.blocks[1:]
     assert isinstance(values, doc.Table)
