@@ -106,6 +106,7 @@ def verify_certificate(document: Certificate) -> Verification:
         check_pages(document),
         *updates,
         *check_library(results),
+        *_name_reference(results),
     )
     if any(check.outcome == "incomplete" for check in checks):
         text = "Other versions made this document; install them to compare it in full."
@@ -127,3 +128,10 @@ def _check_completeness(results: Results) -> list[DocumentCheck]:
     if gaps and list_suite_differences(results):
         return [DocumentCheck("incomplete", "The document states less than one of the installed version.", gaps)]
     return [DocumentCheck("contradicted", "Parts that every run writes are missing.", gaps)] if gaps else []
+
+
+def _name_reference(results: Results) -> list[DocumentCheck]:
+    """Values of the reference simulator: no other number of the document proves them."""
+    cases = tuple(case.id for case in results.cases if case.reference is not None)
+    text = "The values of the reference simulator, which are shown for information."
+    return [DocumentCheck("open", text, cases)] if cases else []

@@ -34,13 +34,13 @@ LEGEND = "+-: uncertainty of the value; shift: its change when the analysis sect
 
 
 @contextmanager
-def report_progress(cases: int) -> Iterator[ResultCallback]:
-    """Show a progress bar on standard error if it is a terminal; yields the callback of the runner."""
+def report_progress(cases: int, task: str = "running cases") -> Iterator[ResultCallback]:
+    """Show a progress bar of a task on standard error if it is a terminal; yields the callback of the runner."""
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     errors = Console(stderr=True)
     with Progress(*columns, console=errors, transient=True, disable=not errors.is_terminal) as bar:
-        task = bar.add_task("running cases", total=cases)
-        yield lambda result: bar.advance(task)
+        number = bar.add_task(task, total=cases)
+        yield lambda result: bar.advance(number)
 
 
 def print_results(results: Results, files: Sequence[Path]) -> None:

@@ -20,7 +20,9 @@ from pantocheck.conformance.command_line.options import (
     state_administration,
 )
 from pantocheck.conformance.command_line.results_output import EXIT_CODES, print_results, report_progress
+from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.plan import prepare_plan
+from pantocheck.conformance.reference_run import add_reference
 from pantocheck.conformance.reports.formats.report_writers import write_all
 from pantocheck.conformance.runner import RunInterrupted, run_cases
 
@@ -55,6 +57,13 @@ def run_command(
         bool,
         typer.Option("--damping-study", help="Run every case also with benchmark, initial and updated damping."),
     ] = False,
+    with_reference: Annotated[
+        bool,
+        typer.Option(
+            "--with-reference",
+            help="Show the values and forces of the reference simulator beside those of the system, for information.",
+        ),
+    ] = False,
     timeout: Annotated[
         float | None, typer.Option(help="Time limit of an external program per case [s].", show_default="600")
     ] = None,
@@ -72,6 +81,8 @@ def run_command(
     pantocheck run 'en50318-2002/*' --system 'command:python3 adapter.py'
 
     pantocheck run my-case.toml --set speed_km_h=300 --set line.contact_wire.tension_N=22e3
+
+    pantocheck run 'en50318-2002/*' --system record:records --with-reference
 
     pantocheck run --plan conformance.toml --baseline results.json --drift 2
     """
@@ -93,13 +104,18 @@ def run_command(
         damping_study=damping_study or None,
         timeout_s=timeout,
     )
+    if with_reference:
+        _refuse_reference_beside_itself(options.system)
     prepared = prepare_plan(options)
     system_under_test, cases = prepared.start_system(), prepared.cases
     interrupted = 0
+    jobs = min(options.jobs, len(cases))
     try:
         with report_progress(len(cases)) as progress:
-            jobs = min(options.jobs, len(cases))
             results = run_cases(cases, system_under_test, options.trust, jobs, progress, prepared.participation)
+        if with_reference:
+            with report_progress(len(cases), "reference simulator") as progress:
+                results = add_reference(results, cases, jobs, progress)
     except RunInterrupted as interruption:
         results, interrupted = interruption.results, interruption.exit_code
         typer.echo("Interrupted: the results of the finished cases are written.", err=True)
@@ -109,3 +125,10 @@ def run_command(
         results = prepared.compare(results)
     print_results(results, write_all(results, prepared.out, prepared.formats))
     raise typer.Exit(interrupted or EXIT_CODES[results.verdict])
+
+
+def _refuse_reference_beside_itself(system: str) -> None:
+    if system == "builtin":
+        raise InputError(
+            "--with-reference", "the system under test is the reference simulator", "Name another system by --system."
+        )

@@ -20,6 +20,7 @@ from pantocheck.conformance.results.lift_force_facts import LawForces
 from pantocheck.conformance.results.measured_run_format import MeasuredRun
 from pantocheck.conformance.results.procedure_format import Procedure
 from pantocheck.conformance.results.record_facts import RecordFacts
+from pantocheck.conformance.results.reference_format import ReferenceValues
 from pantocheck.conformance.results.results_part import Number, Owner, ResultsPart
 from pantocheck.conformance.results.suite_part import Suite
 
@@ -211,6 +212,10 @@ class CaseResult(ResultsPart):
     comparison: Annotated[
         MeasuredRun | None,
         Field(exclude_if=is_absent, description="measured run beside this one; missing: nothing is compared"),
+    ] = None
+    reference: Annotated[
+        ReferenceValues | None,
+        Field(exclude_if=is_absent, description="values of the reference simulator; missing: not requested"),
     ] = None
 
 

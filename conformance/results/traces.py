@@ -71,7 +71,12 @@ def _select_supports(supports: Sequence[float], section: tuple[float, float]) ->
 def thin_series(series: RealArray) -> list[float]:
     """Every k-th value, at most `MAX_POINTS`, rounded to six significant digits."""
     step = max(1, -(-series.size // MAX_POINTS))
-    return [float(f"{value:.6g}") for value in series[::step]]
+    return round_series(series[::step])
+
+
+def round_series(series: RealArray) -> list[float]:
+    """Every value, rounded to six significant digits."""
+    return [float(f"{value:.6g}") for value in series]
 
 
 def _build_traces(signals: PantographSignals, position: RealArray, supports: list[float]) -> Traces:

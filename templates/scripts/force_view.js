@@ -5,10 +5,11 @@ function level(label, value, count, style) {
   return { label, values: Array(count).fill(value), width: 1, ...style };
 }
 
-/** Curves of a force: as delivered, filtered, and its levels. */
-function forceCurves(trace) {
+/** Curves of a force: that of the reference behind it, as delivered, filtered, and its levels. */
+function forceCurves(trace, reference) {
   const count = trace.position_m.length;
-  const curves = [{ label: "unfiltered", values: trace.force_N, colour: "faint", width: 1 }];
+  const curves = reference.length ? [{ label: "reference, 0–20 Hz", values: reference, colour: "curve-2", width: 2 }] : [];
+  curves.push({ label: "unfiltered", values: trace.force_N, colour: "faint", width: 1 });
   if (trace.force_20_N) curves.push({ label: "0–20 Hz", values: trace.force_20_N, colour: "ink", width: 2 });
   if (trace.std_N !== null) {
     curves.push(level("mean", trace.mean_N, count, { colour: "ink", dash: [9, 3, 2, 3] }));
@@ -43,13 +44,15 @@ class ForceView {
     this.case = caseOf(figure);
     this.trace = this.case.traces[figure.dataset.owner];
     const { position_m: x, supports_m: lines } = this.trace;
+    const reference = this.case.reference?.force_20_N[figure.dataset.owner] ?? [];
     const name = `pantograph ${figure.dataset.owner}`;
     this.plot = new Plot({
       ...{ label: `Contact force of ${name}`, xLabel: "position along the track [m]", xUnit: "m", yLabel: "contact force [N]" },
-      ...{ yUnit: "N", height: 300, x, lines, curves: forceCurves(this.trace) },
+      ...{ yUnit: "N", height: 300, x, lines, curves: forceCurves(this.trace, reference) },
     });
-    const headings = ["position_m", "force_N", "force_20_N"];
-    const makeRows = () => x.map((place, i) => [place, this.trace.force_N[i], this.trace.force_20_N?.[i]]);
+    const headings = ["position_m", "force_N", "force_20_N", ...(reference.length ? ["reference_force_20_N"] : [])];
+    const beside = (i) => (reference.length ? [reference[i]] : []);
+    const makeRows = () => x.map((place, i) => [place, this.trace.force_N[i], this.trace.force_20_N?.[i], ...beside(i)]);
     const save = saveButton("Curves as CSV", fileName(this.case, name, "force"), headings, makeRows);
     this.tools = [...this.plot.makeButtons(), save];
     const limited = this.case.criteria.some(({ pantograph, lower, upper, unit }) =>

@@ -6,6 +6,7 @@ from itertools import groupby
 from typing import Any
 
 from pantocheck.conformance.quantities.bands import BANDS
+from pantocheck.conformance.reports.certificate.reference_values import select_reference_force
 from pantocheck.conformance.reports.document import Curves, Figure
 from pantocheck.conformance.reports.figures.force_figures import (
     draw_force,
@@ -35,7 +36,8 @@ def draw_case_figures(case: dict[str, Any], number: int, anchor: str) -> Iterato
         if trace["position_m"]:
             rows = [row for row in case["criteria"] if str(row["pantograph"]) == key]
             curves = Curves("force", number, key)
-            yield replace(_force_figure(key, trace, rows), anchor=name_figure(anchor, key), curves=curves)
+            figure = _force_figure(key, trace, rows, select_reference_force(case, key))
+            yield replace(figure, anchor=name_figure(anchor, key), curves=curves)
         if trace["spectrum"]["frequency_Hz"]:
             yield _spectrum_figure(key, trace, case["quantities"].get(key, {}))
         if trace["histogram"]:
@@ -66,7 +68,7 @@ def _chart_figures(charts: list[dict[str, Any]]) -> Iterator[Figure]:
             yield Figure(draw_chart(chart, y_range), chart["alternative"], chart["caption"], wide)
 
 
-def _force_figure(key: str, trace: dict[str, Any], criteria: list[dict[str, Any]]) -> Figure:
+def _force_figure(key: str, trace: dict[str, Any], criteria: list[dict[str, Any]], reference: list[float]) -> Figure:
     start, end = trace["position_m"][0], trace["position_m"][-1]
     mean, std = trace["mean_N"], trace["std_N"]
     text = f"Pantograph {key}: contact force from {format_plain(start)} m to {format_plain(end)} m"
@@ -75,7 +77,8 @@ def _force_figure(key: str, trace: dict[str, Any], criteria: list[dict[str, Any]
         text += f"; mean {format_value(mean)} N, mean ± 3 σ from {low} N to {high} N"
     limited = select_limited(criteria)
     strip = " On the right: limits and values of the force statistics." if limited else ""
-    return Figure(draw_force(trace, limited), f"{text}.", f"{text}.{strip}")
+    behind = " Behind: the reference simulator." if reference else ""
+    return Figure(draw_force(trace, limited, reference), f"{text}.{behind}", f"{text}.{behind}{strip}")
 
 
 def _spectrum_figure(key: str, trace: dict[str, Any], quantities: dict[str, Any]) -> Figure:

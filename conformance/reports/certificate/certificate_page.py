@@ -22,6 +22,7 @@ from pantocheck.conformance.reports.certificate.quantity_tables import (
     list_definitions,
     list_skipped,
 )
+from pantocheck.conformance.reports.certificate.reference_values import reference_note
 from pantocheck.conformance.reports.certificate.scope_page import (
     build_scope_section,
     describe_changes,
@@ -165,6 +166,7 @@ def _case_section(number: int, case: dict[str, Any], anchor: str) -> doc.Section
     warnings = (*changes, *(f"Limits file: {change}." for change in case["limit_changes"]), *case["warnings"])
     if warnings:
         blocks.append(doc.WarningBox(warnings))
+    blocks += reference_note(case)
     if case["criteria"]:
         blocks.append(doc.Section("Criteria", criteria_blocks(case, anchor, f"{anchor}-source")))
     blocks += verification_blocks(case, anchor)

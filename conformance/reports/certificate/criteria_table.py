@@ -6,6 +6,7 @@ from typing import Any
 from pantocheck.conformance.quantities.limit_text import format_margin
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.certificate.case_figures import name_figure
+from pantocheck.conformance.reports.certificate.reference_values import insert_reference
 from pantocheck.conformance.reports.figures.margin_bar import draw_margin_bar
 from pantocheck.conformance.reports.page_text import format_beside_limits, format_plain, format_value, replace_minus
 from pantocheck.conformance.reports.words import name_owner, quantity_label, read_words
@@ -79,7 +80,7 @@ def criteria_blocks(case: dict[str, Any], anchor: str, source_anchor: str) -> tu
     rows = tuple(
         _row(criterion, sources, source_anchor, _link_place(case, criterion, anchor)) for criterion in case["criteria"]
     )
-    table = doc.Table(columns, rows, layout="cards")
+    table = insert_reference(case, doc.Table(columns, rows, layout="cards"), case["criteria"])
     key = doc.SmallPrint(f"{MARGIN_KEY}{error.lower()}.")
     listed = (doc.NumberedList("Sources of the limits", tuple(sources), source_anchor),) if sources else ()
     return (table, key, *listed)

@@ -1,9 +1,11 @@
 """Tables of quantities: one row per quantity, one column per pantograph."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import partial
 from typing import Any
 
 from pantocheck.conformance.quantities.registry import QUANTITIES, table_quantities
+from pantocheck.conformance.reports.certificate.reference_values import has_reference
 from pantocheck.conformance.reports.certificate.two_verdicts import list_criteria
 from pantocheck.conformance.reports.document import Code, Column, RichText, Table
 from pantocheck.conformance.reports.page_text import format_value
@@ -34,7 +36,8 @@ def build_band_table(case: dict[str, Any]) -> Table:
         return f"{format_value(value)} ({'; '.join(_list_verdicts(case, quantity, key))})"
 
     pantographs = [key for key in list_owners(case) if key != "0"]
-    return _table(table_quantities("bands") if pantographs else (), pantographs, cell, BAND_CAPTION)
+    cells = {name_pantograph(key).capitalize(): partial(cell, key=key) for key in pantographs}
+    return _table(table_quantities("bands") if pantographs else (), cells, BAND_CAPTION)
 
 
 def _list_verdicts(case: dict[str, Any], quantity: str, key: str) -> Iterator[str]:
@@ -50,21 +53,27 @@ def _list_verdicts(case: dict[str, Any], quantity: str, key: str) -> Iterator[st
 
 
 def build_quantity_table(case: dict[str, Any]) -> Table:
-    """Every quantity of a case; a quantity that a pantograph does not have is a dash."""
+    """Every quantity of a case, beside that of the reference; a quantity that a pantograph does not have is a dash."""
     keys = list_owners(case)
     order = list(QUANTITIES)
     names = {name for key in keys for name in (*case["quantities"].get(key, {}), *case["skipped"].get(key, {}))}
     ordered = sorted(names, key=lambda name: (order.index(name) if name in order else len(order), name))
 
-    def cell(quantity: str, key: str) -> str:
-        value = case["quantities"].get(key, {}).get(quantity)
+    def cell(quantity: str, key: str, values: dict[str, Any]) -> str:
+        value = values["quantities"].get(key, {}).get(quantity)
         if value is None:
-            return "skipped" if quantity in case["skipped"].get(key, {}) else "–"
-        error = case["uncertainty"].get(key, {}).get(quantity)
+            return "skipped" if quantity in values.get("skipped", {}).get(key, {}) else "–"
+        error = values["uncertainty"].get(key, {}).get(quantity)
         text = _format_list(value) if isinstance(value, list) else format_value(value, 5)
         return text if error is None or isinstance(error, list) else f"{text} ± {format_value(error, 2)}"
 
-    return _table(ordered, keys, cell)
+    cells: dict[str, Callable[[str], str]] = {}
+    for key in keys:
+        name = name_pantograph(key)
+        cells[name.capitalize()] = partial(cell, key=key, values=case)
+        if has_reference(case):
+            cells[f"Reference, {name}"] = partial(cell, key=key, values=case["reference"])
+    return _table(ordered, cells)
 
 
 def _format_list(values: list[float]) -> str:
@@ -94,10 +103,11 @@ def list_skipped(case: dict[str, Any]) -> tuple[str, ...]:
     )
 
 
-def _table(quantities: Iterable[str], keys: list[str], cell: Callable[[str, str], str], caption: str = "") -> Table:
-    owners = (Column(name_pantograph(key).capitalize(), share=1, number=True) for key in keys)
+def _table(quantities: Iterable[str], cells: Mapping[str, Callable[[str], str]], caption: str = "") -> Table:
+    """One row per quantity; one column per heading, with the function of its values."""
+    columns = (Column(heading, share=1, number=True) for heading in cells)
     rows: list[tuple[RichText, ...]] = []
     for name in quantities:
         label = (f"{quantity_label(name)} ", Code(name))
-        rows.append((label, quantity_unit(name) or "–", *(cell(name, key) for key in keys)))
-    return Table((Column("Quantity", share=2.4), Column("Unit"), *owners), tuple(rows), caption)
+        rows.append((label, quantity_unit(name) or "–", *(cell(name) for cell in cells.values())))
+    return Table((Column("Quantity", share=2.4), Column("Unit"), *columns), tuple(rows), caption)

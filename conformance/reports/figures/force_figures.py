@@ -25,9 +25,28 @@ from pantocheck.conformance.reports.page_text import format_value
 FORCE_LEVELS = {name: quantity.force_level for name, quantity in QUANTITIES.items() if quantity.force_level}
 
 
+REFERENCE_STYLE: dict[str, Any] = {
+    "color": INK,
+    "linewidth": 1.1,
+    "linestyle": (0, (3, 1.5)),
+    "label": "reference, 0–20 Hz",
+}
+"""Style of the force of the reference; it is hidden where the force of the system lies on it."""
+
+
 @render_svg
-def draw_force(trace: dict[str, Any], limited: list[dict[str, Any]]) -> Figure:
-    """Contact force of one pantograph from its `traces`; on the right, the levels that `select_limited` returns."""
+def draw_force(trace: dict[str, Any], limited: list[dict[str, Any]], reference: list[float]) -> Figure:
+    """Contact force of one pantograph; on the right, its limits.
+
+    Parameters
+    ----------
+    trace : dict
+        Entry of `traces` in results.json.
+    limited : list of dict
+        Criteria of `select_limited`.
+    reference : list of float
+        Filtered force of the reference simulator at the same positions, drawn behind it; empty: none.
+    """
     figure = Figure(figsize=(FULL, 2.6))
     if limited:
         left, right = figure.subplots(1, 2, sharey=True, width_ratios=(1, 0.062 * (len(limited) + 1)))
@@ -37,13 +56,15 @@ def draw_force(trace: dict[str, Any], limited: list[dict[str, Any]]) -> Figure:
     position = trace["position_m"]
     if trace["force_N"]:
         left.plot(position, trace["force_N"], color=GREY, linewidth=0.6, label="unfiltered")
+    if reference:
+        left.plot(position, reference, **REFERENCE_STYLE)
     if trace["force_20_N"]:
         left.plot(position, trace["force_20_N"], color=INK, linewidth=1.2, label="0–20 Hz")
     _draw_levels(left.axhline, trace)
     for number, support in enumerate(trace["supports_m"]):
         left.axvline(support, color=INK, linewidth=0.8, linestyle=":", label=None if number else "support")
     left.set(xlim=(position[0], position[-1]), xlabel="position along the track [m]", ylabel="contact force [N]")
-    add_legend(left)
+    add_legend(left, 3 if reference else 5)
     return figure
 
 
