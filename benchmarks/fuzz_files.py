@@ -18,12 +18,14 @@ from fuzz_uses import (
     use_digested,
     use_drop,
     use_limits,
+    use_logger,
     use_modes,
     use_profile,
     use_record,
 )
 
-from pantocheck.conformance.authenticity.verification import verify_certificate
+from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.authenticity.verification import verify_document
 from pantocheck.conformance.cases.library import load_case, select_cases
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
@@ -51,6 +53,7 @@ def build_targets(folder: Path) -> list[Target]:
     """Every reader with a small sound file."""
     return [
         *_record_targets(folder),
+        *_logger_targets(folder / "logger"),
         *_case_targets(),
         *_result_targets(),
         *_drop_targets(folder / "drop"),
@@ -80,6 +83,71 @@ def _record_targets(folder: Path) -> Iterator[Target]:
     yield Target("failing summary record", {"a.toml": failing}, "a.toml", use_record)
 
 
+def _logger_targets(folder: Path) -> Iterator[Target]:
+    """Force record of a logger in every installed format: other names and units, events, arcs and distance pulses."""
+    record = _record()
+    folder.mkdir(parents=True)
+    time, pulses = record.time, np.floor((record.position[0] - 60) / 0.5)
+    channels = {"Kraft": record.force[0] / 1000, "Puls": pulses, "UV": (time % 1 < 0.01) * 5.0, "Strom": 400 + 0 * time}
+    channels["Tunnel"] = (np.abs(time - 3) < 0.5) * 1.0
+    rows = np.column_stack([time, *channels.values()])
+    names = ";".join(["Zeit", *channels])
+    body = "\n".join(";".join(f"{value:.6f}" for value in row) for row in rows).replace(".", ",")
+    (folder / "a.csv").write_bytes(f"Messzug 7\n\n{names}\ns;kN;;V;A;\n{body}\n".encode("cp1252"))
+    scipy.io.savemat(folder / "a.mat", {**channels, "t": time}, do_compression=True)
+    with h5py.File(folder / "a.h5", "w") as file:
+        for name, values in {"Zeit": time, **channels}.items():
+            file[f"daq/{name}"] = values
+    write_force_uff(folder / "a.uff", time, channels)
+    files = ["a.csv", "a.mat", "a.h5", "a.uff"]
+    for suffix, package in OPTIONAL_FORMATS.items():
+        if importlib.util.find_spec(package) is not None:
+            OPTIONAL_WRITERS[suffix](time, channels, folder / f"a.{suffix}")
+            files.append(f"a.{suffix}")
+    for name in files:
+        sidecar = _logger_sidecar(name).encode()
+        content = {name: (folder / name).read_bytes(), "a.toml": sidecar}
+        yield Target(f"logger: {name}", content, name, use_logger(name))
+        if name == "a.csv":
+            yield Target("logger: sidecar", content, "a.toml", use_logger(name))
+
+
+def _logger_sidecar(file: str) -> str:
+    group = "daq/" if file.endswith(".h5") else ""
+    time = f'time_s = {{ column = "{group}Zeit", unit = "s" }}\n' if file.endswith((".csv", ".h5")) else ""
+    return f"""schema = "pantocheck.record/1"
+file = "{file}"
+speed_km_h = 250.0
+pantographs = 1
+filter_applied_Hz = "none"
+evaluated_m = [240.0, 360.0]
+[columns]
+{time}force_1_N = {{ column = "{group}Kraft", unit = "kN" }}
+[position]
+kind = "counter"
+column = "{group}Puls"
+metres_per_pulse = 0.5
+start_m = 60.0
+[track]
+zero_km = 0.0
+kilometres = "increasing"
+[[event]]
+kind = "overlap"
+from_km = 0.25
+to_km = 0.26
+exclude = "for the fuzz"
+[[event_channel]]
+column = "{group}Tunnel"
+kind = "tunnel"
+[[arc]]
+pantograph = 1
+detector = "{group}UV"
+above = 2.5
+current = {{ column = "{group}Strom", unit = "A" }}
+nominal_current_A = 600.0
+"""
+
+
 def _case_targets() -> Iterator[Target]:
     """Case with line and pantograph, limits and plan."""
     home = library_folder() / "en50318-2002"
@@ -99,7 +167,7 @@ def _result_targets() -> Iterator[Target]:
     results = run_cases(select_cases([CASE]), open_record_folder(PASSING))
     yield Target("results as baseline", {"r.json": results.to_json()}, "r.json", use_baseline(results))
     pdf = render_pdf(build_certificate(results.to_dict()))
-    yield Target("certificate", {"c.pdf": pdf}, "c.pdf", lambda path: verify_certificate(path / "c.pdf"))
+    yield Target("certificate", {"c.pdf": pdf}, "c.pdf", lambda path: verify_document(path / "c.pdf"))
 
 
 def _drop_targets(folder: Path) -> Iterator[Target]:
@@ -123,7 +191,7 @@ def _drop_targets(folder: Path) -> Iterator[Target]:
         if importlib.util.find_spec(package) is None:
             print(f"format {suffix} is not tried: {package} is not installed", flush=True)
         else:
-            OPTIONAL_WRITERS[suffix](record, folder / f"a.{suffix}")
+            OPTIONAL_WRITERS[suffix](record.time, vectors, folder / f"a.{suffix}")
             names += (f"a.{suffix}",)
     for name in names:
         files = {name: (folder / name).read_bytes(), f"{Path(name).stem}.toml": sidecar}
@@ -132,32 +200,38 @@ def _drop_targets(folder: Path) -> Iterator[Target]:
     yield Target("drop: sidecar", files, "a.toml", use_drop("a.csv"))
 
 
-def _write_tdms(record: DropRecord, path: Path) -> None:
+def _write_tdms(time: RealArray, channels: dict[str, RealArray], path: Path) -> None:
     nptdms = importlib.import_module("nptdms")
+    step = {"wf_increment": float(time[1] - time[0])}
     with nptdms.TdmsWriter(str(path)) as writer:
         writer.write_segment(
-            [
-                nptdms.ChannelObject("group", channel.name, record.signals[:, k], {"wf_increment": 1 / record.rate})
-                for k, channel in enumerate(record.channels)
-            ]
+            [nptdms.ChannelObject("group", name, np.array(values), step) for name, values in channels.items()]
         )
 
 
-def _write_mdf(record: DropRecord, path: Path) -> None:
+def _write_mdf(time: RealArray, channels: dict[str, RealArray], path: Path) -> None:
     asammdf = importlib.import_module("asammdf")
     with asammdf.MDF(version="4.10") as file:
-        file.append(
-            [
-                asammdf.Signal(record.signals[:, k], record.time, name=channel.name, unit="m/s2")
-                for k, channel in enumerate(record.channels)
-            ]
-        )
+        file.append([asammdf.Signal(np.array(values), time, name=name) for name, values in channels.items()])
         file.save(path, overwrite=True)
+
+
+def write_force_uff(path: Path, time: RealArray, channels: dict[str, RealArray]) -> None:
+    """Universal file of force channels: mass-drop record with the names of the channels."""
+    sensors = tuple(DropChannel(name, number, "z", "CW", 1.0) for number, name in enumerate(channels, 1))
+    rate = float(1 / (time[1] - time[0]))
+    signals = np.column_stack(list(channels.values()))
+    drop, line = DropDescription(30.0, "CW", 33.0, 1.5), DropLine((60.0, 54.0), 20e3, 15e3)
+    record = DropRecord("force", "fuzz", rate, signals, sensors, "acceleration", drop, line)
+    write_drop_uff(record, path, "binary")
 
 
 OPTIONAL_FORMATS = {"tdms": "nptdms", "mf4": "asammdf"}
 """Package that writes an optional format."""
-OPTIONAL_WRITERS: dict[str, Callable[[DropRecord, Path], None]] = {"tdms": _write_tdms, "mf4": _write_mdf}
+OPTIONAL_WRITERS: dict[str, Callable[[RealArray, dict[str, RealArray], Path], None]] = {
+    "tdms": _write_tdms,
+    "mf4": _write_mdf,
+}
 
 
 def _drop_record() -> DropRecord:

@@ -17,7 +17,12 @@ from pantocheck.conformance.identification.damping.line_comparison import compar
 from pantocheck.conformance.identification.damping.mode_matching import select_usable
 from pantocheck.conformance.identification.mode import read_modes
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
+from pantocheck.conformance.input_files.measured_table import EVERY_CHANNEL
+from pantocheck.conformance.input_files.table_formats import read_tables
+from pantocheck.conformance.input_files.text_settings import TextSettings
+from pantocheck.conformance.mass_drops.drop_reading import LARGEST_DROP, read_drop_records
+from pantocheck.conformance.own_files.channel_facts import find_time, list_channel_facts
+from pantocheck.conformance.own_files.sidecar_draft import draft_record_sidecar
 from pantocheck.conformance.records.sidecar_tables import LineTable
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.runner import run_cases
@@ -47,6 +52,19 @@ def use_record(folder: Path) -> None:
         check(run_cases([case], system))
     profile = load_profile("acceptance-ac")
     check(assess_record(load_assessed_record(folder / "a.toml", profile, LineTable(wave_speed_m_s=120.0)), profile))
+
+
+def use_logger(file: str) -> Callable[[Path], object]:
+    """Describe the file of a logger, and assess its record."""
+
+    def use(folder: Path) -> None:
+        for table in read_tables(folder / file, EVERY_CHANNEL, LARGEST_DROP):
+            facts = list_channel_facts(table)
+            draft_record_sidecar(file, facts, find_time(table), TextSettings())
+        profile = load_profile("acceptance-ac")
+        check(assess_record(load_assessed_record(folder / file, profile, LineTable()), profile))
+
+    return use
 
 
 def use_digested(folder: Path) -> None:

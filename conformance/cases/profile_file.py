@@ -139,6 +139,15 @@ class Profile(InputTable):
             "not pass; shown: the report shows the state"
         ),
     ] = "shown"
+    shortest_contact_loss_s: Annotated[
+        float | None,
+        Field(
+            exclude_if=is_absent,
+            gt=0,
+            le=10,
+            description="shortest contact loss that counts for long_contact_loss_pct [s]",
+        ),
+    ] = None
     exclusion: Annotated[
         ExclusionRule | None,
         Field(exclude_if=is_absent, description="stretches that may be left out; default: none"),

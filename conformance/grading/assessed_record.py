@@ -133,7 +133,14 @@ def load_assessed_record(path: Path, profile: Profile, line: LineTable) -> Asses
     supports = list_line_supports(sidecar.support_position_m or (), known_line.span_m, prepared.section)
     prepared = replace(prepared, line=replace(prepared.line, line_supports=supports))
     excluded, events, exclusion_warnings = apply_exclusions(prepared.events, prepared.section, profile.exclusion)
-    prepared = replace(prepared, excluded=excluded)
+    prepared = replace(
+        prepared,
+        excluded=excluded,
+        pantographs={
+            number: replace(signals, shortest_loss_s=profile.shortest_contact_loss_s)
+            for number, signals in prepared.pantographs.items()
+        },
+    )
     digest = join_digests(file_digest(path.with_suffix(".toml")), file_digest(table), known_line.model_dump_json())
     missing = _missing_statement(samples, sidecar)
     evaluation = prepared.evaluation if missing is None else skip_record(missing, prepared.pantographs)

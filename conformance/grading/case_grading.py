@@ -14,6 +14,7 @@ from pantocheck.conformance.grading.validity_warnings import validity_warnings
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.records.record_signals import RecordSignals
+from pantocheck.conformance.results.contact_loss_list import build_contact_losses
 from pantocheck.conformance.results.extreme_places import find_force_places, find_uplift_place
 from pantocheck.conformance.results.figure_data import ExtremePlace
 from pantocheck.conformance.results.lift_force_facts import list_law_forces
@@ -101,6 +102,7 @@ def grade_evaluation(evaluation: CaseEvaluation, lowest_trust: Trust) -> CaseRes
         **describe_uncertainty(values.uncertainty),
         traces={} if signals is None else build_pantograph_traces(signals.pantographs, supports),
         uplift=[] if signals is None else build_uplift_traces(signals),
+        contact_losses=None if signals is None else build_contact_losses(signals.pantographs),
         places={} if signals is None else _find_places(signals),
         charts=list(delivered.study.charts),
         tables=list(delivered.study.tables),

@@ -18,6 +18,7 @@ from pantocheck.conformance.grading.extended_band import find_unvalidated
 from pantocheck.conformance.grading.rule_grading import RuleGrading
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.results.contact_loss_list import build_contact_losses
 from pantocheck.conformance.results.extreme_places import find_force_places
 from pantocheck.conformance.results.record_facts import RecordFacts
 from pantocheck.conformance.results.results_building import (
@@ -114,6 +115,7 @@ def grade_record(
         record=record,
         run=_run_facts(subject, profile),
         events=list(subject.events) or None,
+        contact_losses=None if subject.prepared is None else build_contact_losses(subject.prepared.pantographs),
         traces={}
         if subject.prepared is None
         else build_pantograph_traces(

@@ -67,6 +67,7 @@ UNIT_FAMILIES = (
     _ACCELERATION,
     UnitFamily("Times are given in seconds", {"s": 1.0, "ms": 1e-3}),
     UnitFamily("Frequencies are given in hertz", {"Hz": 1.0, "kHz": 1e3}),
+    UnitFamily("Currents are given in amperes", {"A": 1.0, "kA": 1e3, "mA": 1e-3}),
     UnitFamily("Mobilities are given in metres per second per newton", {"m/s/N": 1.0, "mm/s/N": 1e-3, "m/s/kN": 1e-3}),
     UnitFamily(
         "Accelerances are given in metres per second squared per newton",

@@ -145,7 +145,8 @@ def _describe_line(line: LineFile) -> str:
 def _check_record(path: Path) -> str:
     samples, sidecar, table = read_samples(path)
     rows, n = samples.force.shape
-    return f"record: {n} samples of {rows} pantograph(s) in {table.name}, {sidecar.speed_km_h:g} km/h"
+    unused = f"\n  columns that are not used: {', '.join(samples.ignored[:20])}" if samples.ignored else ""
+    return f"record: {n} samples of {rows} pantograph(s) in {table.name}, {sidecar.speed_km_h:g} km/h{unused}"
 
 
 def _check_drop_sidecar(path: Path) -> str:

@@ -7,6 +7,7 @@ from typing import Protocol
 from pantocheck.conformance.quantities.force_quantities import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES
 from pantocheck.conformance.quantities.sampling import WHOLE_RECORD
 from pantocheck.conformance.quantities.signals import ForceSignals, LineSignals, PantographSignals
+from pantocheck.conformance.quantities.stated_quantities import list_stated
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 
 Value = float | tuple[float, ...]
@@ -72,7 +73,7 @@ def evaluate_signals(pantographs: Mapping[int, ForceSignals], line: LineSignals)
     skipped: dict[int, dict[str, str]] = {LINE: {}}
     for pantograph, signals in pantographs.items():
         values[pantograph], skipped[pantograph] = {}, {}
-        for quantity in PANTOGRAPH_QUANTITIES:
+        for quantity in (*PANTOGRAPH_QUANTITIES, *list_stated(signals)):
             try:
                 quantity.needs.check(signals)
                 values[pantograph][quantity.name] = float(quantity.compute(signals, WHOLE_RECORD))

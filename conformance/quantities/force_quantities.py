@@ -7,10 +7,16 @@ from functools import partial
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.bands import BANDS, Band
+from pantocheck.conformance.quantities.contact_losses import loss_durations, loss_starts
 from pantocheck.conformance.quantities.quantity import LineQuantity, Need, PantographQuantity
 from pantocheck.conformance.quantities.sampling import Sampling
 from pantocheck.conformance.quantities.signals import ForceSignals, LineSignals
-from pantocheck.conformance.quantities.statistics import coefficient_of_variation, contact_loss, statistical_extremes
+from pantocheck.conformance.quantities.statistics import (
+    check_unfiltered,
+    coefficient_of_variation,
+    contact_loss,
+    statistical_extremes,
+)
 
 EN50318, VOVAN2015 = "EN 50318", "Vo Van et al. 2015, Table 1"
 
@@ -31,6 +37,15 @@ _en50318 = partial(PantographQuantity, source=EN50318, needs=FORCE_20, unit="N")
 _vovan2015 = partial(PantographQuantity, source=VOVAN2015, tables=("bands", "damping models"))
 _vovan2015_20 = partial(_vovan2015, needs=FORCE)
 _vovan2015_50 = partial(_vovan2015, needs=FORCE_50)
+
+
+_loss = partial(PantographQuantity, needs=FORCE_50, never_negative=True)
+
+
+def _unfiltered(signals: ForceSignals) -> RealArray:
+    """Force in which contact losses are visible [N]; raises `AlreadyFiltered`."""
+    check_unfiltered(signals.filter_applied_Hz)
+    return signals.delivered
 
 
 def _mean(signals: ForceSignals, sampling: Sampling) -> RealArray:
@@ -155,6 +170,20 @@ PANTOGRAPH_QUANTITIES: tuple[PantographQuantity, ...] = (
         never_negative=True,
         tables=("damping models",),
         compute=lambda signals, sampling: contact_loss(signals.delivered, signals.filter_applied_Hz, sampling),
+    ),
+    _loss(
+        name="longest_contact_loss_s",
+        label="Longest contact loss",
+        unit="s",
+        definition="duration of the longest contact loss in the unfiltered force",
+        compute=lambda signals, sampling: sampling.largest(loss_durations(_unfiltered(signals), signals.rate)),
+    ),
+    _loss(
+        name="contact_loss_events",
+        label="Number of contact losses",
+        unit="",
+        definition="number of contact losses in the unfiltered force",
+        compute=lambda signals, sampling: signals.delivered.size * sampling.mean(loss_starts(_unfiltered(signals))),
     ),
     _en50318(
         name="contact_height_range_mm",

@@ -3,11 +3,18 @@
 from pantocheck.conformance.quantities.delivered_quantities import DELIVERED_QUANTITIES
 from pantocheck.conformance.quantities.force_quantities import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES
 from pantocheck.conformance.quantities.quantity import Quantity, QuantityTable
+from pantocheck.conformance.quantities.stated_quantities import STATED_QUANTITIES
 from pantocheck.conformance.quantities.stretch_quantities import OVERLAP_QUANTITIES
 
 QUANTITIES: dict[str, Quantity] = {
     quantity.name: quantity
-    for quantity in (*PANTOGRAPH_QUANTITIES, *OVERLAP_QUANTITIES, *LINE_QUANTITIES, *DELIVERED_QUANTITIES)
+    for quantity in (
+        *PANTOGRAPH_QUANTITIES,
+        *STATED_QUANTITIES,
+        *OVERLAP_QUANTITIES,
+        *LINE_QUANTITIES,
+        *DELIVERED_QUANTITIES,
+    )
 }
 """All quantities, in the order of reports."""
 

@@ -68,6 +68,22 @@ class ForceSignals(Protocol):
     def height(self) -> RealArray:
         """Height of the contact point [m]."""
 
+    @property
+    def rate(self) -> float:
+        """Sampling rate [Hz]."""
+
+    @property
+    def has_arcs(self) -> bool:
+        """Whether the record has an arc detector for this pantograph."""
+
+    @property
+    def arcs(self) -> tuple[RealArray, RealArray] | None:
+        """Arcs, and time under load, as 1, 0 or NaN for a missing value; None without an arc detector."""
+
+    @property
+    def shortest_loss_s(self) -> float | None:
+        """Shortest duration of a long contact loss [s]; None if it is not stated."""
+
     def band(self, low: float, high: float) -> float:
         """RMS of the contact force in the band ]low, high] Hz [N]."""
 
@@ -126,12 +142,35 @@ class PantographSignals:
         Start (included) and end (excluded) of the analysis section [m].
     contact_height : (n,) ndarray or None
         Height of the contact point [m], or None.
+    arc_channels : (2, n) ndarray or None
+        Arcs, and time under load, as 1, 0 or NaN; None without an arc detector.
+    shortest_loss_s : float or None
+        Shortest duration of a long contact loss [s]; None if it is not stated.
     """
 
     position: RealArray
     force: ForceChannel
     section: tuple[float, float]
     contact_height: RealArray | None = None
+    arc_channels: RealArray | None = None
+    shortest_loss_s: float | None = None
+
+    @property
+    def rate(self) -> float:
+        """Sampling rate [Hz]."""
+        return self.force.rate
+
+    @property
+    def has_arcs(self) -> bool:
+        """Whether the record has an arc detector for this pantograph."""
+        return self.arc_channels is not None
+
+    @property
+    def arcs(self) -> tuple[RealArray, RealArray] | None:
+        """Arcs and time under load over the analysis section, as 1, 0 or NaN; None without an arc detector."""
+        if self.arc_channels is None:
+            return None
+        return self.arc_channels[0][self.inside], self.arc_channels[1][self.inside]
 
     @property
     def filter_applied_Hz(self) -> float | None:

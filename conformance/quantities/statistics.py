@@ -52,12 +52,17 @@ def contact_loss(force: RealArray, filter_applied_Hz: float | None, sampling: Sa
     AlreadyFiltered
         The force was filtered; a filter smooths a contact loss to a low force.
     """
+    check_unfiltered(filter_applied_Hz)
+    return sampling.percentage(force <= 0)
+
+
+def check_unfiltered(filter_applied_Hz: float | None) -> None:
+    """Refuse a filtered force for contact losses; parameter and error as in `contact_loss`."""
     if filter_applied_Hz is not None:
         raise AlreadyFiltered(
             f"the force was low-pass filtered at {filter_applied_Hz:g} Hz before delivery; "
             "contact losses can only be counted in an unfiltered force"
         )
-    return sampling.percentage(force <= 0)
 
 
 def force_histogram(force: RealArray) -> tuple[RealArray, RealArray]:

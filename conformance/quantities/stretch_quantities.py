@@ -76,6 +76,27 @@ class SignalsOutside:
         return self.whole.force
 
     @property
+    def rate(self) -> float:
+        """Sampling rate [Hz]."""
+        return self.whole.rate
+
+    @property
+    def has_arcs(self) -> bool:
+        """Whether the record has an arc detector for this pantograph."""
+        return self.whole.has_arcs
+
+    @property
+    def arcs(self) -> tuple[RealArray, RealArray] | None:
+        """Arcs and time under load, as 1, 0 or NaN; None without an arc detector."""
+        arcs = self.whole.arcs
+        return None if arcs is None else (arcs[0][self.kept], arcs[1][self.kept])
+
+    @property
+    def shortest_loss_s(self) -> float | None:
+        """Shortest duration of a long contact loss [s]; None if it is not stated."""
+        return self.whole.shortest_loss_s
+
+    @property
     def filter_applied_Hz(self) -> float | None:
         """Cut-off of the low-pass filter applied before delivery [Hz]; None: unfiltered."""
         return self.whole.filter_applied_Hz

@@ -19,7 +19,7 @@ from pantocheck.conformance.input_files.units import find_key_units, suggest_key
 from pantocheck.conformance.records.logger.column_values import add_time_column, find_factor
 from pantocheck.conformance.records.logger.mapped_rows import read_mapped_rows
 from pantocheck.conformance.records.logger.placed_rows import (
-    EVENTS,
+    MARKS,
     list_further_columns,
     list_used_channels,
     place_rows,
@@ -69,7 +69,7 @@ def read_channel_rows(path: Path, sidecar: RecordSidecar) -> tuple[ChannelRows, 
     if not errors:  # a wrong column may be the missing one
         place_rows(rows, table, sidecar, sidecar_where)
         errors += _find_missing_channels(rows, sidecar, where)
-    for name in rows.keys() - {EVENTS}:
+    for name in rows.keys() - MARKS:
         errors += _find_impossible_values(name, rows[name], where)
     if errors:
         raise join_errors(errors)
@@ -140,7 +140,7 @@ def _find_missing_channels(rows: ChannelRows, sidecar: RecordSidecar, where: str
         if not present:
             yield InputError(where, f"has no channel {missing}", "Store force_N, and time_s or position_m.")
     for name, numbered in rows.items():
-        if name == EVENTS:
+        if name in MARKS:
             continue
         expected = sidecar.rows(CHANNELS[name].per)
         first_alone = name == "position" and list(numbered) == [1] and sidecar.spacing_m is not None

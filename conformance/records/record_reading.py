@@ -10,7 +10,7 @@ from pantocheck.conformance.input_files.bounded_file import MAX_FILE_BYTES, chec
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_model, read_toml
 from pantocheck.conformance.records.channel_rows import read_channel_rows
-from pantocheck.conformance.records.logger.placed_rows import EVENTS
+from pantocheck.conformance.records.logger.placed_rows import ARCING, EVENTS, LOADED, MARKS
 from pantocheck.conformance.records.record import Record, RecordInvalid
 from pantocheck.conformance.records.record_channels import CHANNELS, ChannelRows
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
@@ -148,7 +148,7 @@ def build_record_error(table: Path, error: RecordInvalid) -> InputError:
 
 def _build_samples(rows: ChannelRows, sidecar: RecordSidecar, ignored: tuple[str, ...]) -> RecordSamples:
     """Stack the rows of each channel; supports without a row of uplift are left out."""
-    levels = rows.pop(EVENTS, None)
+    marks = {name: rows.pop(name, {}) for name in MARKS}
     channels: dict[str, RealArray] = {
         name: numbered[1] if CHANNELS[name].per == "record" else np.vstack([numbered[i] for i in sorted(numbered)])
         for name, numbered in rows.items()
@@ -163,5 +163,15 @@ def _build_samples(rows: ChannelRows, sidecar: RecordSidecar, ignored: tuple[str
         uplift=channels.get("uplift"),
         support_position=np.array(supports) if supports else None,
         ignored=ignored,
-        event_level=None if levels is None else np.vstack(list(levels.values())),
+        event_level=np.vstack(list(marks[EVENTS].values())) if marks[EVENTS] else None,
+        arcing=_fill_rows(marks[ARCING], channels["force"]),
+        loaded=_fill_rows(marks[LOADED], channels["force"]),
     )
+
+
+def _fill_rows(rows: dict[int, RealArray], force: RealArray) -> RealArray | None:
+    """Rows of all pantographs, (p, n), with NaN for those without a channel; None without any channel."""
+    if not rows:
+        return None
+    missing = np.full(force.shape[1], np.nan)
+    return np.vstack([rows.get(number, missing) for number in range(1, force.shape[0] + 1)])

@@ -10,6 +10,7 @@ from pantocheck.conformance.input_files.sourced_table import InputTable, NumberL
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.text_settings import TextSettings
 from pantocheck.conformance.input_files.units import suggest_key
+from pantocheck.conformance.records.logger.arc_tables import ArcTable
 from pantocheck.conformance.records.logger.column_tables import ColumnSource, SensorSum
 from pantocheck.conformance.records.logger.event_tables import EventChannel, EventTable
 from pantocheck.conformance.records.logger.track_tables import KilometreTable, MarkPosition, PositionTable
@@ -70,6 +71,9 @@ class RecordSidecar(InputTable):
     event_channel: Annotated[
         tuple[EventChannel, ...],
         Field(strict=False, max_length=20, description="columns of the file that mark such places"),
+    ] = ()
+    arc: Annotated[
+        tuple[ArcTable, ...], Field(strict=False, max_length=20, description="arc detectors of the pantographs")
     ] = ()
     speed_km_h: Speed
     pantographs: Annotated[int, Field(ge=1, le=20, description="number of pantographs")]
@@ -153,6 +157,14 @@ class RecordSidecar(InputTable):
                 yield validation_problem(
                     f"event[{i}].from_km", "the table track is missing", "State zero_km and kilometres in [track]."
                 )
+
+    @cross_check
+    def _check_arcs(self) -> Problems:
+        numbers = [arc.pantograph for arc in self.arc]
+        if len(set(numbers)) < len(numbers) or any(number > self.pantographs for number in numbers):
+            yield validation_problem(
+                "arc", f"found the pantographs {numbers}", f"Give one table for each of the {self.pantographs} at most."
+            )
 
     @cross_check
     def _check_position(self) -> Problems:

@@ -10,6 +10,7 @@ from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value
 from pantocheck.conformance.quantities.force_quantities import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES
 from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.quantities.stated_quantities import STATED_QUANTITIES
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, statistical_extremes
 from pantocheck.conformance.records.record import LARGEST_NUMBER
 from pantocheck.conformance.records.sidecar_tables import (
@@ -59,7 +60,7 @@ class RecordSummary(SourcedTable):
 
     @cross_check
     def _check_values(self) -> Problems:
-        known = [quantity.name for quantity in PANTOGRAPH_QUANTITIES]
+        known = [quantity.name for quantity in (*PANTOGRAPH_QUANTITIES, *STATED_QUANTITIES)]
         for i, values in enumerate(self.pantograph, 1):
             yield from _find_table_problems(values, f"pantograph[{i}]", known)
         static = [quantity.name for quantity in QUANTITIES.values() if quantity.scope == "static"]

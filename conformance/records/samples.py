@@ -34,6 +34,8 @@ class RecordSamples:
         Names of the columns of the file that are not used.
     event_level : (k, n) ndarray or None
         Channels that mark events, in the order of the sidecar.
+    arcing, loaded : (p, n) ndarray or None
+        Arcs, and time under load, as 1, 0 or NaN; all NaN for a pantograph without an arc detector.
     """
 
     force: RealArray
@@ -45,6 +47,8 @@ class RecordSamples:
     support_position: RealArray | None = None
     ignored: tuple[str, ...] = ()
     event_level: RealArray | None = None
+    arcing: RealArray | None = None
+    loaded: RealArray | None = None
 
     def select(self, mask: NDArray[np.bool_]) -> "RecordSamples":
         """Samples inside a mask."""
@@ -52,7 +56,8 @@ class RecordSamples:
         return replace(self, **{name: value[..., mask] for name, value in parts.items() if value is not None})
 
 
-_SAMPLED = ("force", "time", "speed", "position", "contact_height", "uplift", "event_level")
+_WITH_GAPS = ("uplift", "event_level", "arcing", "loaded")
+_SAMPLED = ("force", "time", "speed", "position", "contact_height", "uplift", "event_level", "arcing", "loaded")
 
 
 def complete_samples(samples: RecordSamples, sidecar: RecordSidecar) -> tuple[RealArray, RealArray]:
@@ -141,7 +146,7 @@ def build_record(
     """
     for name in _SAMPLED:
         value = getattr(samples, name)
-        if name not in ("uplift", "event_level") and value is not None and not np.isfinite(value).all():
+        if name not in _WITH_GAPS and value is not None and not np.isfinite(value).all():
             bad = np.argwhere(~np.isfinite(value.T))[:, 0]
             raise RecordInvalid(name, f"{bad.size} values are not finite, the first at sample {bad[0] + 1}")
     time, position = complete_samples(samples, sidecar)

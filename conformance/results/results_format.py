@@ -12,6 +12,7 @@ from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.sourced_table import is_absent
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.results.administration import Administration
+from pantocheck.conformance.results.contact_loss_list import ContactLossFacts
 from pantocheck.conformance.results.criterion_format import CaseVerification, ComponentName, Criterion
 from pantocheck.conformance.results.event_format import EventFacts
 from pantocheck.conformance.results.figure_data import Chart, ExtremePlace, TextTable, Traces, UpliftTrace
@@ -208,6 +209,13 @@ class CaseResult(ResultsPart):
     events: Annotated[
         list[EventFacts] | None,
         Field(exclude_if=is_absent, description="events of the line in the analysis section; missing: none is stated"),
+    ] = None
+    contact_losses: Annotated[
+        dict[Owner, list[ContactLossFacts]] | None,
+        Field(
+            exclude_if=is_absent,
+            description="contact losses of each pantograph, the longest 200; missing: none, or the force was filtered",
+        ),
     ] = None
     comparison: Annotated[
         MeasuredRun | None,

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from jsonschema import validate
 
-from pantocheck.conformance.cases.profile_file import ExclusionRule
+from pantocheck.conformance.cases.profile_file import ExclusionRule, Profile, load_profile
 from pantocheck.conformance.input_files.table_formats import TABLE_FORMATS
 from pantocheck.conformance.input_files.text_settings import TextSettings
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
@@ -31,11 +31,17 @@ def test_layout_of_the_page_is_valid() -> None:
 
 
 def test_exclusion_of_the_page_is_valid() -> None:
-    rule = ExclusionRule.model_validate(tomllib.loads(SIDECARS[-1])["exclusion"])
+    rule = ExclusionRule.model_validate(tomllib.loads(SIDECARS[-3])["exclusion"])
     assert rule.kinds == ("overlap", "tunnel")
 
 
-@pytest.mark.parametrize("text", SIDECARS[1:-1])
+@pytest.mark.parametrize("text", [*SIDECARS[1:-3], SIDECARS[-2]])
 def test_sidecars_of_the_page_are_valid_and_follow_their_schema(text: str) -> None:
     RecordSidecar.model_validate(tomllib.loads(text))
     validate(tomllib.loads(text), build_schema("record"))
+
+
+def test_profile_of_the_page_is_valid() -> None:
+    part = tomllib.loads(SIDECARS[-1])
+    base = load_profile("acceptance-ac").model_dump(mode="json", by_alias=True)
+    assert Profile.model_validate({**base, **part}).shortest_contact_loss_s == 0.005

@@ -69,14 +69,14 @@ from pantocheck.conformance.grading import (
 from pantocheck.conformance.procedure import compared_sides
 from pantocheck.conformance.quantities import bands, filters, limit_text, signals
 from pantocheck.conformance.records import events, record
-from pantocheck.conformance.records.logger import track_position
+from pantocheck.conformance.records.logger import arc_tables, track_position
 from pantocheck.conformance.records.measured import (
     block_bootstrap,
     force_checks,
     record_preparation,
     usable_sections,
 )
-from pantocheck.conformance.results import results_part, results_reading, traces
+from pantocheck.conformance.results import contact_loss_list, results_part, results_reading, traces
 
 ROOT = Path(__file__).parents[2]
 ROWS = re.findall(
@@ -85,7 +85,7 @@ ROWS = re.findall(
     re.MULTILINE,
 )
 MODULES: list[ModuleType] = [
-    track_position, record_preparation, events,
+    track_position, record_preparation, events, arc_tables, contact_loss_list,
     certificate_reading, page_check, pdf_comparison, pdf_structure, record_check, reported_numbers, rerun_check,
     text_differences, trace_check,
     force_content, force_copy, force_dynamics, implied_force, mean_force, roll_off,

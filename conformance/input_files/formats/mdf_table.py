@@ -23,6 +23,7 @@ from pantocheck.conformance.input_files.measured_table import (
     stack_channels,
 )
 
+SPARE_BYTES = 2**20  # of a group beside its numbers
 SAME_TIME = 1e-6  # tolerance between the times of two channels [s]; a hundredth of an interval at 10 kHz
 
 
@@ -56,6 +57,7 @@ def read_mdf_table(path: Path, names: ChannelNames, largest: int) -> list[Measur
         stated = sum(file.groups[group].channel_group.cycles_nr for group, _ in places)
         if stated > largest:
             raise InputError(where, f"states {stated} samples", f"At most {largest} samples are accepted.")
+        _check_sizes(file, {group for group, _ in places}, largest, where)
         signals = [file.get(name) for name in names]
     values = stack_channels([np.asarray(signal.samples, dtype=np.float64) for signal in signals], where, largest)
     time = np.asarray(signals[0].timestamps, dtype=np.float64)
@@ -71,6 +73,7 @@ def _list_channels(file: Any, largest: int, where: str) -> tuple[str, ...]:
     samples, number = max(groups, default=(0, 0))
     if not samples:
         raise InputError(where, "holds no samples", "Export the record again.")
+    _check_sizes(file, {number}, largest, where)
     channels = file.groups[number].channels
     if samples * len(channels) > largest:
         raise InputError(where, f"states {samples * len(channels)} samples", f"At most {largest} samples are accepted.")
@@ -80,6 +83,16 @@ def _list_channels(file: Any, largest: int, where: str) -> tuple[str, ...]:
         for index, channel in enumerate(channels)
         if index not in masters and np.asarray(file.get(group=number, index=index).samples).dtype.kind in "fiu"
     )
+
+
+def _check_sizes(file: Any, groups: set[int], largest: int, where: str) -> None:
+    """Refuse groups whose records hold more bytes than the accepted numbers; the library allocates what they state."""
+    for number in groups:
+        group = file.groups[number].channel_group
+        record = int(group.samples_byte_nr) + int(group.invalidation_bytes_nr)
+        if record * int(group.cycles_nr) > 8 * largest + SPARE_BYTES:
+            found = f"states {group.cycles_nr} records of {record} bytes"
+            raise InputError(where, found, f"At most {8 * largest + SPARE_BYTES} bytes are accepted.")
 
 
 @contextmanager

@@ -5,6 +5,7 @@ import numpy as np
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.measured_table import MeasuredTable
+from pantocheck.conformance.records.logger.arc_tables import LOADED_SHARE, ArcTable
 from pantocheck.conformance.records.logger.column_values import TIME_COLUMN, FileColumns
 from pantocheck.conformance.records.logger.mapped_rows import list_used_columns
 from pantocheck.conformance.records.logger.track_position import (
@@ -22,14 +23,18 @@ from pantocheck.conformance.records.logger.track_tables import (
 from pantocheck.conformance.records.record_channels import ChannelRows
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 
-EVENTS = "event_level"
-"""Name of the channels of events among the rows."""
+EVENTS, ARCING, LOADED = "event_level", "arcing", "loaded"
+"""Names of the channels of events, arcs and time under load among the rows."""
+
+MARKS = frozenset({EVENTS, ARCING, LOADED})
 
 
 def list_further_columns(sidecar: RecordSidecar) -> tuple[str, ...]:
-    """Columns of distance pulses and of events, if the sidecar names them."""
+    """Columns of distance pulses, events, arcs and currents, if the sidecar names them."""
     pulses = () if sidecar.position is None or sidecar.position.kind == "marks" else (sidecar.position.column,)
-    return (*pulses, *(channel.column for channel in sidecar.event_channel))
+    currents = (arc.current.column for arc in sidecar.arc if arc.current is not None)
+    events = (channel.column for channel in sidecar.event_channel)
+    return (*pulses, *events, *(arc.detector for arc in sidecar.arc), *currents)
 
 
 def list_used_channels(sidecar: RecordSidecar) -> tuple[str, ...]:
@@ -67,10 +72,24 @@ def place_rows(rows: ChannelRows, table: MeasuredTable, sidecar: RecordSidecar, 
         file = FileColumns(table, where)
         indices = [file.find(channel.column, "event_channel.column") for channel in sidecar.event_channel]
         rows[EVENTS] = {number: table.values[:, index] for number, index in enumerate(indices, 1)}
+    for arc in sidecar.arc:
+        rows.setdefault(ARCING, {})[arc.pantograph], rows.setdefault(LOADED, {})[arc.pantograph] = _read_arc(
+            arc, FileColumns(table, where)
+        )
     if sidecar.position is None and sidecar.track is not None and "position" in rows:
         zero = 1000 * sidecar.track.zero_km
         for number, values in rows["position"].items():
             rows["position"][number] = sidecar.track.direction * (values - zero)
+
+
+def _read_arc(arc: ArcTable, file: FileColumns) -> tuple[RealArray, RealArray]:
+    """Arcs, and time under load, as 1, 0 or NaN for a missing value."""
+    level = file.table.values[:, file.find(arc.detector, "arc.detector")]
+    arcing = np.where(np.isfinite(level), level > arc.above, np.nan)
+    if arc.current is None or arc.nominal_current_A is None:
+        return arcing, np.full(level.size, np.nan)
+    current = np.abs(file.read(arc.current, "A", "arc.current"))
+    return arcing, np.where(np.isfinite(current), current > LOADED_SHARE * arc.nominal_current_A, np.nan)
 
 
 def _find_position(

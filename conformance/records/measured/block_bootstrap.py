@@ -16,6 +16,7 @@ from pantocheck.conformance.quantities.bands import Band
 from pantocheck.conformance.quantities.force_quantities import PANTOGRAPH_QUANTITIES
 from pantocheck.conformance.quantities.sampling import Sampling
 from pantocheck.conformance.quantities.signals import ForceSignals, PantographSignals
+from pantocheck.conformance.quantities.stated_quantities import list_stated
 from pantocheck.conformance.quantities.stretch_quantities import SignalsOutside
 from pantocheck.conformance.quantities.unavailable import ChannelMissing, QuantityUnavailable, SectionNotCovered
 
@@ -112,7 +113,7 @@ def bootstrap_uncertainties(
     blocks = replicates.starts.shape[1]
     wider = NORMAL_QUANTILE * np.sqrt(blocks / (blocks - 1))
     uncertainties = {}
-    for quantity in PANTOGRAPH_QUANTITIES:
+    for quantity in (*PANTOGRAPH_QUANTITIES, *list_stated(signals)):
         try:
             uncertainties[quantity.name] = float(wider * quantity.compute(signals, replicates).std())
         except QuantityUnavailable:

@@ -203,14 +203,22 @@ def _prepare_pantograph(placed: PlacedSamples, row: int, settings: _Settings) ->
             f"the record of {name} has {len(parts)} usable parts between gaps; that from {position[indices[0]]:.1f} m "
             f"to {position[indices[-1]]:.1f} m is evaluated"
         )
-    channels = UsableSection(position[indices], force[indices], None if heights is None else heights[row][indices])
+    height = None if heights is None else heights[row][indices]
+    channels = UsableSection(position[indices], force[indices], height, _select_arcs(placed.samples, row, indices))
     part = resample_section(placed.time[indices], channels, settings.rate)
     channel = ForceChannel(part.force, settings.rate, settings.low_pass, settings.filter_applied_Hz)
-    signals = PantographSignals(part.position, channel, settings.section, part.height)
+    signals = PantographSignals(part.position, channel, settings.section, part.height, part.arcs)
     if _duration(signals):
         signals, remarks = detect_filtered(signals, name)
         warnings += remarks
     return signals, warnings
+
+
+def _select_arcs(samples: RecordSamples, row: int, indices: NDArray[np.intp]) -> RealArray | None:
+    """Arcs and time under load of a pantograph, (2, n); None without an arc detector."""
+    if samples.arcing is None or samples.loaded is None or not np.isfinite(samples.arcing[row]).any():
+        return None
+    return np.vstack([samples.arcing[row][indices], samples.loaded[row][indices]])
 
 
 def _overlap(position: RealArray, section: tuple[float, float]) -> float:

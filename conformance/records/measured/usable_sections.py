@@ -34,11 +34,14 @@ class UsableSection:
         Contact force [N].
     height : (n,) ndarray or None
         Height of the contact point [m], or None.
+    arcs : (2, n) ndarray or None
+        Arcs, and time under load, as 1, 0 or NaN; None without an arc detector.
     """
 
     position: RealArray
     force: RealArray
     height: RealArray | None
+    arcs: RealArray | None = None
 
 
 def local_speed(time: RealArray, position: RealArray) -> RealArray:
@@ -98,13 +101,17 @@ def resample_section(time: RealArray, section: UsableSection, rate: float) -> Us
         height = None
     uniform = np.linspace(time[0], time[-1], time.size)
     if np.abs(time - uniform).max() <= 0.01 / rate and abs((time.size - 1) / (time[-1] - time[0]) / rate - 1) < 1e-3:
-        return UsableSection(section.position, section.force, height)
+        return UsableSection(section.position, section.force, height, section.arcs)
     even = time[0] + np.arange(int(np.floor((time[-1] - time[0]) * rate * (1 + 1e-12))) + 1) / rate
     even[-1] = min(even[-1], time[-1])
 
     def interpolate(values: RealArray) -> RealArray:
         return np.asarray(PchipInterpolator(time, values)(even))
 
+    nearest = np.clip(np.searchsorted((time[1:] + time[:-1]) / 2, even), 0, time.size - 1)
     return UsableSection(
-        interpolate(section.position), interpolate(section.force), None if height is None else interpolate(height)
+        interpolate(section.position),
+        interpolate(section.force),
+        None if height is None else interpolate(height),
+        None if section.arcs is None else section.arcs[:, nearest],
     )

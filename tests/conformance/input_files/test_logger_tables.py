@@ -8,6 +8,7 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.measured_table import EVERY_CHANNEL
 from pantocheck.conformance.input_files.table_formats import read_tables
 
 SAMPLES = np.random.default_rng(8).standard_normal((40, 2))
@@ -101,3 +102,15 @@ def test_mdf_names_the_missing_channel_and_needs_a_sidecar(tmp_path: Path) -> No
         read_tables(path, ("a", "b", "c"), 1000)
     with pytest.raises(InputError, match="has no sidecar"):
         read_tables(path, (), 1000)
+
+
+def test_mdf_states_the_bytes_of_its_records_before_they_are_read(tmp_path: Path) -> None:
+    """The library allocates as many bytes as a damaged group states."""
+    path = write_mdf(tmp_path / "r.mf4", {"a": (SAMPLES[:, 0], np.arange(40) / 50, "g")})
+    content = bytearray(path.read_bytes())
+    place = content.index(b"##CG") + 96  # bytes of a record, after the links, the id, the cycles and the flags
+    content[place : place + 4] = (2**31).to_bytes(4, "little")
+    path.write_bytes(content)
+    for names in (("a",), EVERY_CHANNEL):
+        with pytest.raises(InputError, match="states 40 records of 2147483648 bytes"):
+            read_tables(path, names, 1000)

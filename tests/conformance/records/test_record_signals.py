@@ -58,6 +58,8 @@ def test_every_quantity_of_a_known_force() -> None:
         "statistical_max_N": 100 + 3 * sigma,
         "statistical_min_N": 100 - 3 * sigma,
         "contact_loss_pct": 0.0,
+        "longest_contact_loss_s": 0.0,
+        "contact_loss_events": 0.0,
         "contact_height_range_mm": 40.0,
     }
     for name, number in expected.items():
@@ -105,6 +107,8 @@ def test_force_filtered_at_20_hz_has_no_values_above_and_no_contact_loss() -> No
         "cov_50",
         "rms_20_50_N",
         "contact_loss_pct",
+        "longest_contact_loss_s",
+        "contact_loss_events",
         "contact_height_range_mm",
     }
     assert "filtered at 20 Hz" in evaluation.skipped[1]["rms_20_50_N"]
