@@ -43,7 +43,7 @@ INERTIA_ERROR = 0.05
 """Share of the inertia force of the head that the correction of the measuring chain leaves."""
 FIRST_POSITION_M = 180.0
 """Position of the first pantograph at the first stored sample [m]."""
-STATIC_FORCE_N, STATIC_POSITIONS_M = 100.0, np.arange(100.0, 501.0, 5.0)
+STATIC_FORCE_N, STATIC_POSITIONS_M = 100.0, np.arange(100.0, 500.0, 5.0)
 """Force of the measured elasticity, and measured positions."""
 ELASTICITY_NOISE, STATIC_HEIGHT_NOISE_M = 0.01, 1.5e-3
 """Relative standard deviation of the elasticities, and standard deviation of the heights."""

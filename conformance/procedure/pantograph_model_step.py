@@ -40,7 +40,7 @@ def check_pantographs(dossier: Dossier) -> StepResult:
     for number, entry in enumerate(entries, 1):
         if not entry.responses:
             reason = f"pantograph {entry.name!r} has no measured response (key pantograph[{number}].responses)"
-            criteria.append(_skip("frequency_response", number, dossier.file.trust, reason))
+            criteria.append(_skip("complex_deviation_pct", number, dossier.file.trust, reason))
             continue
         try:
             responses.append(_compare(dossier, entry))
@@ -65,9 +65,9 @@ def _compare(dossier: Dossier, entry: PantographEntry) -> ResponseComparison:
 
 def _convert(row: ResponseCriterion, entry: PantographEntry, number: int, trust: Trust) -> Criterion:
     low, high = row.band_Hz
-    height = "" if row.height_m is None else f"_{row.height_m:g}_m"
+    height = "" if row.height_m is None else f", {row.height_m:g} m"
     requirement = Requirement(
-        f"{row.quantity}_{low:g}_{high:g}_Hz_{row.static_force_N:g}_N{height}",
+        f"{row.quantity}, {low:g} to {high:g} Hz, {row.static_force_N:g} N{height}",
         number,
         None,
         None,
@@ -86,7 +86,7 @@ def _skip_unlimited(dossier: Dossier, entry: PantographEntry, number: int) -> It
     limited = {limit.band_Hz for limit in entry.limit}
     for low, high in RESPONSE_BANDS:
         if (low, high) not in limited and high <= dossier.file.line_test.filter.cutoff_Hz:
-            name = f"frequency_response_{low:g}_{high:g}_Hz"
+            name = f"complex_deviation_pct, {low:g} to {high:g} Hz"
             yield _skip(name, number, dossier.file.trust, "the dossier states no limit of this band")
 
 

@@ -8,15 +8,16 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.profile_file import Profile
 from pantocheck.conformance.cases.start_and_section import span_length
 from pantocheck.conformance.comparison.measured_run import list_run_supports
-from pantocheck.conformance.grading.assessed_record import load_assessed_record
+from pantocheck.conformance.grading.assessed_record import AssessedRecord, load_assessed_record
 from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
-from pantocheck.conformance.grading.uncertainty import Uncertainty
+from pantocheck.conformance.grading.uncertainty import Component, Uncertainty
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.procedure.compared_sides import RunSide, measure_spacing
 from pantocheck.conformance.procedure.dossier import Dossier
 from pantocheck.conformance.procedure.run_pair import RecordRun
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.records.sidecar_tables import LineTable
+from pantocheck.conformance.results.criterion_format import ComponentName
 from pantocheck.conformance.results.outcome import Delivered, missing_record_reason
 from pantocheck.conformance.systems.system import System
 
@@ -89,7 +90,7 @@ def make_run(case: Case, direction: str, system: System, dossier: Dossier, profi
         further=_further_keys(case, outcome, spacing),
     )
     record = load_assessed_record(path, profile, LineTable())
-    components = {**record.uncertainty.components, **evaluation.uncertainty.components}
+    components = {**record.uncertainty.components, **_select_components(evaluation, record)}
     return RunSide(
         replace(record, uncertainty=Uncertainty(components)),
         dossier.name_line(case.line),
@@ -100,6 +101,21 @@ def make_run(case: Case, direction: str, system: System, dossier: Dossier, profi
         tuple(case.line.geometry.span_limits),
         evaluation.record_facts,
     )
+
+
+def _select_components(evaluation: CaseEvaluation, record: AssessedRecord) -> dict[ComponentName, Component]:
+    """Uncertainty from other meshes and starts, for the quantities of the record."""
+    values = record.values.values
+    return {
+        name: replace(
+            component,
+            half_widths={
+                owner: {quantity: width for quantity, width in widths.items() if quantity in values.get(owner, {})}
+                for owner, widths in component.half_widths.items()
+            },
+        )
+        for name, component in evaluation.uncertainty.components.items()
+    }
 
 
 def _further_keys(case: Case, outcome: Delivered, spacing: tuple[float, ...]) -> Mapping[str, object]:

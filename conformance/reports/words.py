@@ -17,10 +17,14 @@ def read_words() -> dict[str, Any]:
 
 
 def quantity_label(quantity: str) -> str:
-    """Label of a quantity, or of a value of the procedure; a name that the suite does not know remains."""
+    """Label of a quantity, or of a value of the procedure; a name that the suite does not know remains.
+
+    A value of the procedure may have conditions behind its name, such as `complex_deviation_pct, 5 to 20 Hz`.
+    """
     if quantity in QUANTITIES:
         return QUANTITIES[quantity].label
-    return str(read_words()["label"].get(quantity, quantity))
+    name, comma, conditions = quantity.partition(", ")
+    return f"{read_words()['label'].get(name, name)}{comma}{conditions}"
 
 
 def quantity_unit(quantity: str) -> str:

@@ -84,7 +84,7 @@ def build_dated_certificate(results: dict[str, Any], date: int) -> doc.Document:
             *_build_scope(prepared, anchors),
             *build_findings_section(prepared),
             doc.Section("Reasons", reasons, anchor="reasons"),
-            doc.Section("Cases", (_case_index(cases, anchors),), anchor="cases"),
+            *_build_index(prepared, anchors),
             *_build_case_sections(prepared, anchors),
             doc.Section(
                 "Reproducibility",
@@ -105,15 +105,25 @@ def _build_scope(results: dict[str, Any], anchors: list[str]) -> tuple[doc.Secti
     return (*build_verdict_section(results), *build_scope_section(results, links))
 
 
+def _build_index(results: dict[str, Any], anchors: list[str]) -> tuple[doc.Section, ...]:
+    """List of the cases; with a procedure, each step lists its own."""
+    if "procedure" in results:
+        return ()
+    return (doc.Section("Cases", (_case_index(results["cases"], anchors),), anchor="cases"),)
+
+
 def _build_case_sections(results: dict[str, Any], anchors: list[str]) -> tuple[doc.Section, ...]:
     """Sections of the cases; with a procedure, behind the section of their step."""
     numbered = enumerate(zip(results["cases"], anchors, strict=True))
     sections = {case["id"]: _case_section(number, case, anchor) for number, (case, anchor) in numbered}
+    by_id = {case["id"]: (case, anchor) for case, anchor in zip(results["cases"], anchors, strict=True)}
     if "procedure" not in results:
         return tuple(sections.values())
     ordered: list[doc.Section] = []
     for number, step in enumerate(results["procedure"]["steps"], 1):
-        ordered += [build_step_section(number, step, results), *(sections[name] for name in step["cases"])]
+        listed = [by_id[name] for name in step["cases"]]
+        index = (_case_index([case for case, _ in listed], [anchor for _, anchor in listed]),) if listed else ()
+        ordered += [build_step_section(number, step, results, index), *(sections[name] for name in step["cases"])]
     return tuple(ordered)
 
 

@@ -51,7 +51,7 @@ def describe_criterion(criterion: dict[str, Any]) -> CriterionTexts:
         limits=limits,
         margin="–" if margin is None else replace_minus(format_margin(margin)),
         trust="" if lower is None and upper is None else criterion["trust"],
-        remarks=tuple(filter(None, (criterion["reason"], *close, remark_shift(criterion)))),
+        remarks=tuple(filter(None, (criterion["reason"], *close, remark_shift(criterion), _remark_limit(criterion)))),
     )
 
 
@@ -150,6 +150,14 @@ def criterion_title(criterion: dict[str, Any]) -> str:
 def is_close(criterion: dict[str, Any]) -> bool:
     """Whether a counted value is closer to a limit than its uncertainty, so that its verdict could be reversed."""
     return bool(criterion["close"]) and criterion["verdict"] in ("pass", "fail")
+
+
+def _remark_limit(criterion: dict[str, Any]) -> str | None:
+    """A remark on the uncertainty of the measurement behind a limit, if it is known."""
+    if not criterion["limit_uncertainty"]:
+        return None
+    width = f"{format_value(criterion['limit_uncertainty'], 2)} {criterion['unit']}".rstrip()
+    return f"uncertainty of the measurement ± {width}"
 
 
 def remark_shift(criterion: dict[str, Any]) -> str | None:

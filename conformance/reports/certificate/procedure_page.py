@@ -61,9 +61,11 @@ def build_procedure_section(results: dict[str, Any]) -> doc.Section:
         doc.Column("Smallest margin of, or reason", share=4),
     )
     rows = tuple(_build_row(number, step) for number, step in enumerate(results["procedure"]["steps"], 1))
-    return doc.Section(
-        "Steps of the procedure", (doc.Table(columns, rows), doc.SmallPrint(PROCEDURE_KEY)), anchor="procedure"
-    )
+    facts = [("Digest of the dossier", str(results["procedure"]["digest"]))]
+    if note := results["procedure"]["note"]:
+        facts.append(("Note", note))
+    blocks = (doc.Table(columns, rows), doc.SmallPrint(PROCEDURE_KEY), doc.Facts(tuple(facts)))
+    return doc.Section("Steps of the procedure", blocks, anchor="procedure")
 
 
 def list_step_reasons(results: dict[str, Any]) -> tuple[doc.Section, ...]:

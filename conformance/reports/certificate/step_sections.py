@@ -15,13 +15,21 @@ from pantocheck.conformance.reports.figures.study_chart import draw_chart
 from pantocheck.conformance.reports.page_text import format_plain, format_value, replace_minus
 from pantocheck.conformance.reports.words import name_pantograph, quantity_label, quantity_unit, read_words
 
+SHORT_STEPS = ("simulation_parameters", "limits_of_validity")
+"""Steps that need no page of their own."""
+
+MOST_NUMBERED = 12
+"""Largest number of runs that are all numbered along an axis."""
+
 SPREAD_QUANTITY = "std_force_N"
 """Quantity of the figure that joins the line tests."""
 
 ClaimTexts = tuple[doc.RichText, ...]
 
 
-def build_step_section(number: int, step: dict[str, Any], results: dict[str, Any]) -> doc.Section:
+def build_step_section(
+    number: int, step: dict[str, Any], results: dict[str, Any], index: tuple[doc.Table, ...]
+) -> doc.Section:
     """Section of one step; the sections of its cases follow it.
 
     Parameters
@@ -32,16 +40,22 @@ def build_step_section(number: int, step: dict[str, Any], results: dict[str, Any
         Step of results.json.
     results : dict
         Prepared results with the procedure.
+    index : tuple of Table
+        List of the cases of the step; empty if it has none.
     """
     word = f"\N{EN SPACE}{step['reason'] or step['unverified'] or ''}"
     blocks: list[doc.Block] = [doc.Paragraph((doc.VerdictMark(step["verdict"]), word))]
     if step["criteria"]:
         anchor = anchor_step(step)
         blocks.append(doc.Section("Criteria", criteria_blocks(step | {"places": {}}, anchor, f"{anchor}-source")))
-    blocks += BUILDERS[step["step"]](results)
+    blocks += index
+    if step["step"] in BUILDERS:
+        blocks += BUILDERS[step["step"]](results)
     if step["notes"]:
         blocks.append(doc.BulletList(tuple(step["notes"])))
-    return doc.Section(f"{number} {name_step(step)}", tuple(blocks), anchor=anchor_step(step), new_page=True)
+    return doc.Section(
+        f"{number} {name_step(step)}", tuple(blocks), anchor=anchor_step(step), new_page=step["step"] not in SHORT_STEPS
+    )
 
 
 def _pantograph_blocks(results: dict[str, Any]) -> tuple[doc.Block, ...]:
@@ -82,27 +96,36 @@ def _parameter_blocks(results: dict[str, Any]) -> tuple[doc.Block, ...]:
 
 
 def _reference_blocks(results: dict[str, Any]) -> tuple[doc.Block, ...]:
-    text = "The system ran the cases of this step, whose sections follow."
-    return (doc.Paragraph(text),) if _find_step(results, "reference_models")["cases"] else ()
+    """Margins of all counted criteria, case by case."""
+    listed = _find_step(results, "reference_models")["cases"]
+    cases = [case for case in results["cases"] if case["id"] in listed]
+    points = [
+        (place, row["margin"])
+        for place, case in enumerate(cases)
+        for row in case["criteria"]
+        if row["verdict"] in ("pass", "fail") and row["margin"] is not None and row["lower"] != row["upper"]
+    ]
+    if not points:
+        return ()
+    caption = "Margins of the counted criteria by case, in the order of the list: 1 in the middle, 0 on a limit."
+    series = {
+        "label": "criterion", "style": "points", "error": None, "x": [x for x, _ in points],
+        "y": [margin for _, margin in points],
+    }  # fmt: skip
+    limit = {"label": "limit", "axis": "y", "low": 0.0, "high": None}
+    chart = _chart(caption, ("case", "margin [-]"), _number(len(cases))) | {"series": [series], "marks": [limit]}
+    return (doc.Figures((doc.Figure(draw_chart(chart), f"{caption} The tables have the values.", caption),)),)
 
 
 def _line_test_blocks(results: dict[str, Any]) -> tuple[doc.Block, ...]:
     blocks: list[doc.Block] = []
     cases = [case for case in results["cases"] if case["id"] in _find_step(results, "line_test")["cases"]]
     compared = [case for case in cases if case.get("comparison")]
-    if cases:
-        blocks.append(_build_pair_table(cases))
     if compared:
         blocks.append(doc.Figures((_draw_pairs(compared),)))
     if joined := results["procedure"]["joined"]:
         blocks.append(doc.Section("Joined over the pairs", (_build_joined_table(joined),)))
     return tuple(blocks)
-
-
-def _build_pair_table(cases: list[dict[str, Any]]) -> doc.Table:
-    columns = (doc.Column("Pair", 2), doc.Column("Verdict"), doc.Column("Passage or reason", 4))
-    rows = tuple((case["id"], doc.VerdictMark(case["verdict"]), case["reason"] or case["title"]) for case in cases)
-    return doc.Table(columns, rows)
 
 
 def _draw_pairs(cases: list[dict[str, Any]]) -> doc.Figure:
@@ -122,9 +145,16 @@ def _draw_pairs(cases: list[dict[str, Any]]) -> doc.Figure:
                 "error": [error for _, _, error in points],
             }
         )  # fmt: skip
-    caption = f"{quantity_label(SPREAD_QUANTITY)}, in all pairs, with the uncertainties of both runs."
-    chart = _chart(caption, ("pair", "standard deviation [N]"), [case["id"].removeprefix("pair/") for case in cases])
+    caption = (
+        f"{quantity_label(SPREAD_QUANTITY)} in all compared pairs, in the order of the list, with both uncertainties."
+    )
+    chart = _chart(caption, ("pair", "standard deviation [N]"), _number(len(cases)))
     return doc.Figure(draw_chart(chart | {"series": series}), f"{caption} The table has the differences.", caption)
+
+
+def _number(count: int) -> list[str]:
+    """Numbers along an axis; of many, every fifth."""
+    return [str(n) if count <= MOST_NUMBERED or n % 5 == 0 else "" for n in range(1, count + 1)]
 
 
 def _chart(caption: str, labels: tuple[str, str], ticks: list[str]) -> dict[str, Any]:
@@ -194,16 +224,15 @@ def _format_range(limits: list[float] | None, unit: str) -> str:
 
 
 def _draw_evidence(claims: list[dict[str, Any]], evidence: list[dict[str, Any]]) -> doc.Figure:
-    """Speeds of all runs by line, with the claimed range."""
-    lines = list(dict.fromkeys(item["line"] for item in evidence))
-    groups = (("passed", True), ("not passed", False))
+    """Speeds of all runs, with the claimed range."""
+    numbered = list(enumerate(evidence))
     series = [
         {
             "label": label, "style": "points", "error": None,
-            "x": [lines.index(item["line"]) for item in evidence if item["passed"] == passed],
+            "x": [place for place, item in numbered if item["passed"] == passed],
             "y": [item["speed_km_h"] for item in evidence if item["passed"] == passed],
         }
-        for label, passed in groups
+        for label, passed in (("passed", True), ("not passed", False))
         if any(item["passed"] == passed for item in evidence)
     ]  # fmt: skip
     marks = [
@@ -211,24 +240,36 @@ def _draw_evidence(claims: list[dict[str, Any]], evidence: list[dict[str, Any]])
         for claim in claims
         if claim["kind"] == "speed"
     ]
-    caption = "Speeds of the runs by line, and the claimed range."
-    chart = _chart(caption, ("line", "speed [km/h]"), lines) | {"series": series, "marks": marks}
+    caption = "Speeds of the runs, numbered as in the table, and the claimed range."
+    chart = _chart(caption, ("run", "speed [km/h]"), _number(len(evidence))) | {"series": series, "marks": marks}
     return doc.Figure(draw_chart(chart), f"{caption} The table has the values.", caption)
 
 
 def _build_evidence_table(evidence: list[dict[str, Any]]) -> doc.Table:
-    cells: dict[str, Callable[[Any], str]] = {
-        "Run": lambda item: item["id"],
-        "Passed": lambda item: "yes" if item["passed"] else "no",
-        "Speed [km/h]": lambda item: format_plain(item["speed_km_h"]),
-        "Spacing [m]": lambda item: ", ".join(map(format_plain, item["spacing_m"])) or "–",
-        "Line": lambda item: item["line"],
-        "Inputs": lambda item: (
-            ", ".join(f"{key} = {format_plain(value)}" for key, value in item["inputs"].items()) or "–"
-        ),
-        "Pantographs": lambda item: ", ".join(item["pantographs"]),
-    }
-    return doc.make_grid("Conditions of the runs", evidence, cells)
+    columns = (
+        doc.Column("No.", number=True),
+        doc.Column("Run", 2),
+        doc.Column("Passed"),
+        doc.Column("Speed [km/h]", number=True),
+        doc.Column("Spacing [m]", number=True),
+        doc.Column("Line", 2),
+        doc.Column("Pantographs", 2),
+        doc.Column("Inputs", 2),
+    )
+    rows: tuple[tuple[doc.RichText, ...], ...] = tuple(
+        (
+            str(number),
+            item["id"],
+            "yes" if item["passed"] else "no",
+            format_plain(item["speed_km_h"]),
+            ", ".join(map(format_plain, item["spacing_m"])) or "–",
+            item["line"],
+            ", ".join(item["pantographs"]),
+            ", ".join(f"{key}: {format_plain(value)}" for key, value in item["inputs"].items()) or "–",
+        )
+        for number, item in enumerate(evidence, 1)
+    )
+    return doc.Table(columns, rows, "Conditions of the runs")
 
 
 def _find_step(results: dict[str, Any], name: str) -> dict[str, Any]:
@@ -243,4 +284,4 @@ BUILDERS: dict[str, Callable[[dict[str, Any]], tuple[doc.Block, ...]]] = {
     "line_test": _line_test_blocks,
     "limits_of_validity": _validity_blocks,
 }
-"""Builder of the blocks of each step, below its criteria."""
+"""Builder of the blocks of a step, below its criteria and cases."""

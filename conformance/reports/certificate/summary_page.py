@@ -7,6 +7,11 @@ from pantocheck.conformance.reports.certificate.certificate_page import build_he
 from pantocheck.conformance.reports.certificate.criteria_table import describe_criterion, error_name
 from pantocheck.conformance.reports.certificate.document_facts import list_administration
 from pantocheck.conformance.reports.certificate.findings_table import build_findings_section
+from pantocheck.conformance.reports.certificate.procedure_page import (
+    build_procedure_section,
+    list_step_reasons,
+    name_step,
+)
 from pantocheck.conformance.reports.certificate.scope_page import (
     build_scope_section,
     list_identity_warnings,
@@ -22,10 +27,19 @@ def build_summary(results: dict[str, Any]) -> doc.Document:
     results = prepare_results(results)
     header = build_header(results)
     warnings = list_identity_warnings(results)
-    scope = (*build_verdict_section(results), *build_scope_section(results, {}), *build_findings_section(results))
+    scope = (*_build_scope(results), *build_findings_section(results))
     stated = (doc.Facts(list_administration(results)),) if results["administration"] else ()
     first = (*stated, *((doc.WarningBox(warnings),) if warnings else ()), *scope, *list_reasons(results))
     return doc.Document(header.heading, header, (*first, *map(_case_section, results["cases"])))
+
+
+def _build_scope(results: dict[str, Any]) -> tuple[doc.Section, ...]:
+    """Steps of the procedure of a dossier with their own criteria, or the verdicts and the scope of a run."""
+    if "procedure" not in results:
+        return (*build_verdict_section(results), *build_scope_section(results, {}))
+    graded = (step for step in results["procedure"]["steps"] if step["criteria"])
+    sections = (doc.Section(name_step(step), (_criteria(step),)) for step in graded)
+    return (build_procedure_section(results), *list_step_reasons(results), *sections)
 
 
 def _case_section(case: dict[str, Any]) -> doc.Section:

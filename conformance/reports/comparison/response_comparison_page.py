@@ -5,6 +5,7 @@ from typing import Any
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.figures.response_figure import draw_response
 from pantocheck.conformance.reports.page_text import clean_tree, format_beside_limits, format_plain, format_value
+from pantocheck.conformance.reports.words import quantity_label
 
 RESPONSE_STATEMENT = "self-declared comparison with measured frequency responses"
 
@@ -13,13 +14,6 @@ RESPONSE_HEADLINES = {
     "fail": "A deviation of the pantograph model exceeds a limit of the user.",
     "skip": "The responses do not contain all data that the limits need.",
     "info": "No limit was given: the deviations are shown and not graded.",
-}
-DEVIATION_NAMES = {
-    "modulus_deviation_pct": "RMS deviation of the modulus",
-    "phase_deviation_deg": "RMS deviation of the phase",
-    "complex_deviation_pct": "RMS complex deviation",
-    "largest_modulus_deviation_pct": "Largest deviation of the modulus",
-    "largest_phase_deviation_deg": "Largest deviation of the phase",
 }
 RESPONSE_SCOPE = (
     "Response of the pantograph model at the centre of its head, with a fixed base, beside measured responses. The "
@@ -76,7 +70,7 @@ def name_response_criterion(item: dict[str, Any]) -> str:
     """Criterion in words: deviation, band, static force and height."""
     height = "" if item["height_m"] is None else f", {format_plain(item['height_m'])} m"
     return (
-        f"{DEVIATION_NAMES[item['quantity']]}, {_format_band(item['band_Hz'])} Hz, "
+        f"{quantity_label(item['quantity'])}, {_format_band(item['band_Hz'])} Hz, "
         f"{format_plain(item['static_force_N'])} N{height} [{item['unit']}]"
     )
 

@@ -22,11 +22,6 @@ NOT_VERIFIED = {"limits_of_validity": "skip"}
 Spoil = Callable[[Path], object]
 
 
-@pytest.fixture(scope="module")
-def system() -> CachedSimulator:
-    return CachedSimulator()
-
-
 def edit_column(name: str, column: str, change: Callable[[float], float]) -> Spoil:
     """Change the values of one column of a measured table."""
 

@@ -1,0 +1,111 @@
+"""Verdicts of the procedure: claims need runs under their conditions, and missing steps never pass."""
+
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pantocheck.conformance.grading.procedure_verdict import decide_procedure, judge_claim, judge_procedure
+from pantocheck.conformance.results.procedure_format import (
+    STEP_NAMES,
+    Evidence,
+    Procedure,
+    ProcedureStep,
+    ValidityClaim,
+)
+
+
+def run(number: int, speed: float, line: str = "A", pantograph: str = "P", **changes: Any) -> Evidence:
+    keys = {"passed": True, "spacing_m": [], "inputs": {}} | changes
+    return Evidence(id=f"pair/{number}", line=line, pantographs=[pantograph], speed_km_h=speed, **keys)
+
+
+def claim(kind: Any, name: str = "", claimed: tuple[float, float] | None = None) -> ValidityClaim:
+    return ValidityClaim(kind=kind, name=name, unit="", claimed=claimed)
+
+
+SPEEDS = claim("speed", claimed=(160.0, 200.0))
+
+
+@pytest.mark.parametrize(
+    ("evidence", "verified"),
+    [
+        ([run(1, 160), run(2, 200)], (160.0, 200.0)),
+        ([run(1, 150), run(2, 210)], (150.0, 210.0)),
+        ([run(1, 160), run(2, 190)], None),
+        ([run(1, 200)], None),
+        ([run(1, 160), run(2, 200, passed=False)], None),
+        ([], None),
+    ],
+)
+def test_speeds_between_the_passed_runs_are_verified(
+    evidence: list[Evidence], verified: tuple[float, float] | None
+) -> None:
+    judged = judge_claim(SPEEDS, [SPEEDS], evidence)
+    assert judged.verdict == ("skip" if verified is None else "pass")
+    assert (judged.reason is None) == (verified is not None)
+    if verified is not None:
+        assert judged.verified == verified
+
+
+def test_every_claimed_line_and_pantograph_needs_the_speeds() -> None:
+    """Line B was tested at 160 km/h only, so that 160 to 200 km/h is not verified for both lines."""
+    claims = [claim("line", "A"), claim("line", "B"), SPEEDS]
+    evidence = [run(1, 160), run(2, 200), run(3, 160, "B")]
+    assert judge_claim(SPEEDS, claims, evidence).verdict == "skip"
+    assert judge_claim(SPEEDS, claims, [*evidence, run(4, 200, "B")]).verdict == "pass"
+    both = [*claims, claim("pantograph", "Q")]
+    assert judge_claim(SPEEDS, both, [*evidence, run(4, 200, "B")]).verdict == "skip"
+
+
+def test_runs_on_other_lines_do_not_verify_a_line() -> None:
+    line = claim("line", "A")
+    assert judge_claim(line, [line], [run(1, 160, "B")]).verdict == "skip"
+    assert judge_claim(line, [line], [run(1, 160, "A")]).evidence == ["pair/1"]
+
+
+def test_spacing_and_changed_inputs_need_runs_that_have_them() -> None:
+    spacing = claim("spacing", claimed=(85.0, 200.0))
+    single = [run(1, 160)]
+    assert judge_claim(spacing, [spacing], single).verdict == "skip"
+    pairs = [run(2, 160, spacing_m=[85.0]), run(3, 160, spacing_m=[200.0, 100.0])]
+    assert judge_claim(spacing, [spacing], pairs).verified == (85.0, 200.0)
+    change = claim("change", "line.contact_wire.tension_N", (18e3, 20e3))
+    stated = [run(4, 160, inputs={change.name: tension}) for tension in (18e3, 20e3)]
+    assert judge_claim(change, [change], single).verdict == "skip"
+    assert judge_claim(change, [change], stated).verdict == "pass"
+
+
+@given(st.lists(st.tuples(st.floats(100, 300), st.sampled_from("AB"), st.booleans()), max_size=6), st.data())
+def test_a_removed_run_never_verifies_a_claim(conditions: list[tuple[float, str, bool]], data: st.DataObject) -> None:
+    claims = [claim("line", "A"), SPEEDS]
+    evidence = [run(n, speed, line, passed=passed) for n, (speed, line, passed) in enumerate(conditions)]
+    kept = data.draw(st.lists(st.sampled_from(evidence), unique_by=id)) if evidence else []
+    for item in claims:
+        if judge_claim(item, claims, evidence).verdict != "pass":
+            assert judge_claim(item, claims, kept).verdict != "pass"
+
+
+def build_procedure(**states: str) -> Procedure:
+    steps = [
+        ProcedureStep(step=name, required=name != "line_test", state=states.get(name, "done")) for name in STEP_NAMES
+    ]
+    return Procedure(title="Test", digest="sha256:0", steps=steps)
+
+
+def test_a_required_step_that_is_missing_prevents_a_pass() -> None:
+    """A step without criteria is `info`, one that was not done `skip`; `error` if its data could not be used."""
+    for state, verdict in (("done", "info"), ("not done", "skip"), ("error", "error")):
+        decided = decide_procedure(build_procedure(static_check=state), [], accepted=False)
+        assert decided.steps[1].verdict == verdict
+        assert judge_procedure(decided.steps) == verdict
+
+
+def test_a_step_for_information_decides_nothing() -> None:
+    steps = [
+        ProcedureStep(step="line_test", required=False, state="error", verdict="error"),
+        ProcedureStep(step="static_check", required=True, state="done", verdict="pass"),
+    ]
+    assert judge_procedure(steps) == "pass"
+    assert judge_procedure(steps[:1]) == "info"

@@ -1,0 +1,118 @@
+"""Certificate of a dossier: order of the procedure, statement, JUnit, badge, summary, and detection of changes."""
+
+import copy
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+
+from helpers.toml_edit import change_keys
+from pantocheck.conformance.authenticity.recomputation import find_discrepancies
+from pantocheck.conformance.reports import document as doc
+from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
+from pantocheck.conformance.reports.certificate.procedure_page import build_procedure_headline
+from pantocheck.conformance.reports.certificate.summary_page import build_summary
+from pantocheck.conformance.reports.formats.badge import render_badge
+from pantocheck.conformance.reports.formats.junit import render_junit
+from pantocheck.conformance.reports.formats.markdown import render_markdown
+from pantocheck.conformance.results.results_format import Results
+
+STEPS = [
+    "1 Pantograph model",
+    "2 Static check of the line model",
+    "3 Simulation parameters",
+    "4 Reference models",
+    "5 Line tests",
+    "6 Limits of validity",
+]
+
+
+@pytest.fixture(scope="module")
+def content(results: Results) -> dict[str, Any]:
+    return results.to_dict()
+
+
+def list_sections(blocks: tuple[doc.Block, ...]) -> list[doc.Section]:
+    """Sections at all levels."""
+    found = []
+    for block in blocks:
+        if isinstance(block, doc.Section):
+            found += [block, *list_sections(block.blocks)]
+    return found
+
+
+def count_figures(section: doc.Section) -> int:
+    return sum(
+        len(block.figures)
+        for part in list_sections((section,))
+        for block in part.blocks
+        if isinstance(block, doc.Figures)
+    )
+
+
+def test_certificate_follows_the_procedure(content: dict[str, Any]) -> None:
+    """Each step has its section in order, the sections of its cases behind it, and a figure or a drawing."""
+    document = build_certificate(content)
+    headings = [block.heading for block in document.blocks if isinstance(block, doc.Section)]
+    assert [heading for heading in headings if heading in STEPS] == STEPS
+    assert headings.index("EN 50318:2002 reference model, 250 km/h") == headings.index(STEPS[3]) + 1
+    assert headings[headings.index(STEPS[4]) + 1].startswith("Line test 160-up: example line, 160 km/h")
+    steps = {block.heading: block for block in document.blocks if isinstance(block, doc.Section)}
+    for heading in STEPS[:2] + STEPS[3:]:
+        assert count_figures(steps[heading]) >= 1
+    assert isinstance(document.header, doc.VerdictHeader)
+    assert document.header.statement == "self-declared conformance report, in the style of EN 50318"
+    assert "certified" not in render_markdown(document).lower()
+
+
+def test_headline_names_steps_that_are_missing_or_for_information(content: dict[str, Any]) -> None:
+    assert build_procedure_headline(content) == "6 of 6 required steps pass."
+    changed = copy.deepcopy(content)
+    steps = changed["procedure"]["steps"]
+    change_keys(steps, {"0.state": "not done", "0.verdict": "skip", "4.verdict": "fail", "5.required": False})
+    changed["accepted_unverified"] = [changed["system"]["name"]]
+    assert build_procedure_headline(changed) == (
+        "3 of 5 required steps pass. Pantograph model: not done. Line tests: FAIL. Not required, for information: "
+        "Limits of validity (PASS). Accepted by the user: unverified records of Pantocheck reference simulator."
+    )
+
+
+def test_junit_has_a_suite_for_every_step_and_case(content: dict[str, Any]) -> None:
+    root = ElementTree.fromstring(render_junit(content))
+    names = [suite.attrib["name"] for suite in root]
+    assert names[:2] == ["step/pantograph_model", "step/static_check"]
+    assert names[6:] == ["en50318-2002/250", "pair/160-up", "pair/200-up", "pair/200-up-two"]
+    assert (root.attrib["failures"], root.attrib["errors"]) == ("0", "0")
+    changed = copy.deepcopy(content)
+    change_keys(changed["procedure"], {"steps.1.verdict": "fail", "steps.2.required": False, "steps.2.verdict": "fail"})
+    suites = {suite.attrib["name"]: suite for suite in ElementTree.fromstring(render_junit(changed))}
+    assert suites["step/static_check"].attrib["failures"] == "1"
+    assert suites["step/simulation_parameters"].attrib["failures"] == "0"
+    assert len(suites["step/limits_of_validity"]) == 1 + len(content["procedure"]["claims"])
+
+
+def test_badge_and_summary_state_the_steps(content: dict[str, Any]) -> None:
+    assert "pass 6/6 steps" in render_badge(content)
+    text = render_markdown(build_summary(content))
+    assert text.startswith("# PASS: 6 of 6 required steps pass")
+    assert "| 5 Line tests | done | PASS |" in text.replace("&#8203;", "")
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "found"),
+    [
+        ("procedure.steps.0.verdict", "fail", "step pantograph_model"),
+        ("procedure.steps.1.margin", 0.9, "step static_check"),
+        ("procedure.steps.1.criteria.0.value", 50.0, "step static_check"),
+        ("procedure.steps.5.state", "not done", "step limits_of_validity"),
+        ("procedure.claims.2.claimed", [100.0, 300.0], "claim on speed"),
+        ("procedure.evidence.1.passed", False, "passed runs"),
+        ("procedure.evidence.1.speed_km_h", 300.0, "claim on speed"),
+        ("procedure.steps.4.cases", [], "belongs to 0 steps"),
+        ("cases.1.criteria.0.upper", 80.0, "pair/160-up"),
+    ],
+)
+def test_changed_number_is_found(content: dict[str, Any], key: str, value: Any, found: str) -> None:
+    changed = copy.deepcopy(content)
+    change_keys(changed, {key: value})
+    assert any(found in text for text in find_discrepancies(changed)), key
