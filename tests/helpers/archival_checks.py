@@ -20,6 +20,7 @@ def find_violations(content: bytes) -> list[str]:
     objects = list(_list_objects(reader))
     checks = {
         "header": content[:8] == b"%PDF-1.7" and all(byte > 127 for byte in content.splitlines()[1][1:5]),
+        "version": root.get("/Version", "/1.7") == "/1.7" and "/Extensions" not in root,
         "no encryption": "/Encrypt" not in reader.trailer,
         "identifier": len(reader.trailer.get("/ID", [])) == 2,
         "identification": _is_identified(reader),

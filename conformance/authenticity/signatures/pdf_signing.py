@@ -71,7 +71,7 @@ def sign_pdf(content: bytes, signer: Signer, place: str | None, where: str) -> b
 
 
 def _open_writer(content: bytes, where: str) -> Any:
-    """Writer of an incremental update that leaves the metadata as they are: XMP and PDF/A identification must agree."""
+    """Writer of an update that keeps metadata and version: PDF/A-3 is PDF 1.7 and identifies itself in its metadata."""
     from pyhanko.pdf_utils.incremental_writer import IncrementalPdfFileWriter
 
     class Writer(IncrementalPdfFileWriter):  # type: ignore[misc]  # the base class is known only when installed
@@ -79,6 +79,12 @@ def _open_writer(content: bytes, where: str) -> Any:
 
         def _update_meta(self) -> None:
             pass
+
+        def ensure_output_version(self, version: Any) -> None:
+            """Keep the version; pyHanko would raise it to 2.0 for elliptic curves."""
+
+        def register_extension(self, extension: Any) -> None:
+            """Declare no extension of the version: readers know the algorithms from the signature."""
 
     writer = Writer(BytesIO(content))
     if writer.prev.encrypted:

@@ -90,6 +90,7 @@ def unmark(writer: PdfWriter) -> None:
 SCRIPT = DictionaryObject({NameObject("/S"): NameObject("/JavaScript"), NameObject("/JS"): TextStringObject("0")})
 
 SPOILED: dict[str, Callable[[PdfWriter], None]] = {
+    "version": spoil_catalog("/Version", NameObject("/2.0")),
     "identification": lambda writer: writer.xmp_metadata.stream.set_data(b"<x:xmpmeta/>"),
     "metadata": lambda writer: writer.add_metadata({"/Title": "PASS"}),
     "fonts": add_font,
