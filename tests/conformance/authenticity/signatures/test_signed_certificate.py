@@ -169,3 +169,56 @@ def test_signed_copy_shows_the_same_pages(passing_certificate: Path, signers: Si
     assert [page.extract_text() for page in before.pages] == [page.extract_text() for page in after.pages]
     assert before.attachments["results.json"] == after.attachments["results.json"]
     assert before.metadata == after.metadata
+
+
+@pytest.mark.parametrize("name", ["certificate.html", "results.json"])
+def test_signature_beside_a_document(
+    accepted_wave: Results, signers: Signers, roots_file: Path, tmp_path: Path, name: str
+) -> None:
+    """`verify` finds the signature file by its name; a changed document contradicts it."""
+    document = tmp_path / name
+    document.write_bytes(render_document(accepted_wave.to_dict(), name))
+    key = signers.author.write_pkcs12(tmp_path / "author.p12", b"secret")
+    assert invoke("sign", document, "--key", key).stdout == f"Signed by Ada Author as author: {document}.p7s\n"
+    assert invoke("verify", document, "--trust-roots", roots_file).stdout.startswith("authentic: ")
+    document.write_bytes(document.read_bytes() + b"\n")
+    changed = invoke("verify", document, "--trust-roots", roots_file)
+    assert changed.exit_code == 1
+    assert "the content was changed after signing" in one_line(changed.stdout)
+
+
+def invent(results: dict[str, Any]) -> dict[str, Any]:
+    """Results of another system, without a contradiction: no check of numbers can find this."""
+    return results | {"system": results["system"] | {"name": "my simulator"}}
+
+
+@pytest.mark.parametrize("name", ["certificate.pdf", "certificate.html", "results.json"])
+@pytest.mark.parametrize("signature", ["removed", "kept", "of the forger"])
+def test_invented_results_are_detected_by_the_signature(
+    wave_results: Results, signers: Signers, roots_file: Path, tmp_path: Path, name: str, signature: str
+) -> None:
+    """A document made anew from invented results is consistent, and whoever demands a trusted signature refuses it."""
+    from helpers.authorities import issue, request
+
+    document = tmp_path / name
+    document.write_bytes(render_document(wave_results.to_dict(), name))
+    genuine = sign(document, signers.author)
+    forged = render_document(invent(wave_results.to_dict()), name)
+    if signature == "of the forger":
+        (tmp_path / "forged").mkdir()
+        document = tmp_path / "forged" / name
+        document.write_bytes(forged)
+        path = sign(document, issue(request("Ada Author")))
+        document = path if name.endswith("pdf") else document
+    elif signature == "removed":
+        document.write_bytes(forged)
+        genuine.unlink()
+    elif name.endswith("pdf"):
+        update = genuine.read_bytes()[len(document.read_bytes()) :]
+        document = genuine
+        document.write_bytes(forged + update)
+    else:
+        document.write_bytes(forged)
+    report = check_signatures(document, roots_file)
+    assert not report.authentic
+    assert report.contradictions
