@@ -36,6 +36,19 @@ def guess_channels(facts: Sequence[ChannelFacts]) -> dict[str, list[ChannelFacts
     return found
 
 
+def list_force_signals(facts: Sequence[ChannelFacts]) -> list[ChannelFacts]:
+    """Columns with the name of a force and the unit of another quantity, such as the volts of a force sensor."""
+    units = find_key_units("N")
+    return [
+        fact
+        for fact in facts
+        if fact.missing < 1
+        and fact.unit is not None
+        and re.search(_WORDS["force"], strip_group(fact.column), re.IGNORECASE)
+        and find_factor(fact.unit, units) is None
+    ]
+
+
 def is_acceleration(fact: ChannelFacts) -> bool:
     """Whether a column probably holds the acceleration of a mass drop."""
     if fact.unit is not None:

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 
 from pantocheck.conformance.input_files.text_settings import TextSettings
 from pantocheck.conformance.own_files.channel_facts import ChannelFacts, TimeFacts
-from pantocheck.conformance.own_files.channel_guess import guess_channels
+from pantocheck.conformance.own_files.channel_guess import guess_channels, list_force_signals
 from pantocheck.conformance.records.record_channels import CHANNELS, find_column
 
 TO_DO = "COMPLETE:"
@@ -77,7 +77,14 @@ def _list_columns(
             name = CHANNELS[channel].column(number)
             remark = f"   # {TO_DO} support_position_m above" if several else ""
             yield f"{'# ' if several else ''}{_column_line(name, fact, None)}{remark}"
-    if "force" not in guesses:
+    signals = list_force_signals(facts)
+    used |= {id(fact) for fact in signals}
+    for number, fact in enumerate(signals, 1):
+        column = json.dumps(fact.column.label, ensure_ascii=False)
+        yield f'# force_{number}_N = {{ column = {column}, unit = "N", scale = 1.0 }}   # {TO_DO} N per {fact.unit}'
+    if len(signals) > 1:
+        yield "# or the sum of several sensors of one pantograph: docs/logger-files.md, [columns.force_1_N] with sum"
+    if "force" not in guesses and not signals:
         yield f'# force_1_N = {{ column = "...", unit = "N" }}   # {TO_DO} column of the contact force'
     unused = [fact.column.label for fact in facts if id(fact) not in used and fact.column.label]
     if unused:

@@ -119,6 +119,15 @@ def test_force_record_of_every_format_is_described(name: str, tmp_path: Path) ->
     assert re.search(r'force_2_N = \{ column = "(daq/)?Kraft_2" \}   # COMPLETE: unit', draft)
 
 
+def test_force_sensors_in_volts_are_proposed_with_a_scale(tmp_path: Path) -> None:
+    rows = "\n".join(f"{t:.3f};{a:.4f};{a / 2:.4f}" for t, a in zip(TIME, 2 + np.sin(PLACE), strict=True))
+    (tmp_path / "a.csv").write_text("Zeit;Kraft links;Kraft rechts\ns;V;V\n" + rows)
+    describe(tmp_path / "a.csv", "--sidecar", tmp_path / "a.toml")
+    draft = (tmp_path / "a.toml").read_text()
+    assert '# force_2_N = { column = "Kraft rechts", unit = "N", scale = 1.0 }   # COMPLETE: N per V' in draft
+    assert "the sum of several sensors" in draft
+
+
 def test_suspicious_contents_are_named() -> None:
     values = np.column_stack(
         [np.sin(PLACE), np.sin(PLACE), np.clip(np.sin(PLACE), -0.5, 0.5), np.floor(TIME), 0 * TIME]
