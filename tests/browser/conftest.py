@@ -20,8 +20,6 @@ from pantocheck.conformance.reports.figures.study_chart import draw_chart
 from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.reports.mass_drop.identification_report import build_identification_document
 
-sync_api = pytest.importorskip("playwright.sync_api", reason="the package playwright is not installed")
-
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 """Programs that Playwright can drive without a browser of its own."""
 
@@ -37,6 +35,7 @@ WIDE, NARROW = 1280, 390
 @pytest.fixture(scope="session")
 def browser() -> Iterator[Any]:
     """One browser for all tests of a process."""
+    sync_api = pytest.importorskip("playwright.sync_api", reason="the package playwright is not installed")
     program = next(filter(None, map(shutil.which, NAMES)), None)
     if program is None:
         pytest.skip(f"no browser: none of {', '.join(NAMES)} is installed")

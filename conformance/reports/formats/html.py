@@ -28,6 +28,7 @@ def render_html(document: Document) -> str:
         styles=tuple(map(Markup, code.styles)),
         scripts=tuple(map(Markup, code.scripts)),
         policy=Markup(code.policy),
+        notice=Markup(code.notice),
         results=block,
         date="" if document.results is None else format_date(document.date),
         results_id=BLOCK_ID,

@@ -12,6 +12,8 @@ PAGE_STYLE, PLOT_STYLE = "page.css", "uplot/uPlot.min.css"
 PLOT_LIBRARY = "uplot/uPlot.iife.min.js"
 """Unmodified file of the release 1.6.32 of uPlot, from its package of the npm registry; licence in the same folder."""
 
+PLOT_LICENCE = "uplot/LICENSE"
+
 TABLE_SCRIPTS = ("elements", "folding", "tables")
 """Parts of the script of every page."""
 
@@ -29,6 +31,8 @@ class PageCode:
 
     styles: tuple[str, ...]
     scripts: tuple[str, ...]
+    notice: str = ""
+    """Licence of the scripts of others, which has to stand in every copy of them."""
 
     @property
     def policy(self) -> str:
@@ -48,7 +52,7 @@ def read_plain_code() -> PageCode:
 def read_results_code() -> PageCode:
     """Styles and scripts of a page with results, whose curves the library for plots draws."""
     scripts = (_read(PLOT_LIBRARY), _join_parts((*TABLE_SCRIPTS, *CURVE_SCRIPTS)))
-    return PageCode((_read(PLOT_STYLE), _read(PAGE_STYLE)), scripts)
+    return PageCode((_read(PLOT_STYLE), _read(PAGE_STYLE)), scripts, f"uPlot: {_read(PLOT_LICENCE)}")
 
 
 def _read(name: str) -> str:

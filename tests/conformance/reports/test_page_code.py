@@ -5,6 +5,8 @@ import re
 import tomllib
 from pathlib import Path
 
+from pantocheck.conformance.reports.document import Document, PlainHeader
+from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.reports.formats.page_code import (
     CURVE_SCRIPTS,
     TABLE_SCRIPTS,
@@ -24,6 +26,14 @@ def test_library_for_plots_is_the_released_one() -> None:
     script = (LIBRARY / "uPlot.iife.min.js").read_text("utf-8")
     assert script.startswith(f"/*! https://github.com/leeoniya/uPlot (v{release['version']}) */")
     assert script in read_results_code().scripts
+
+
+def test_page_with_the_library_holds_its_licence(page_text: str) -> None:
+    """The licence has to stand in every copy, and every page is a copy; a comment must not end inside of it."""
+    licence = (LIBRARY / "LICENSE").read_text("utf-8")
+    assert "--" not in licence
+    assert page_text.count(f"<!-- uPlot: {licence}-->") == 1
+    assert "Leon Sorokin" not in render_html(Document("Title", PlainHeader("Heading", "Headline"), ()))
 
 
 def test_every_part_of_the_script_is_used_once() -> None:
