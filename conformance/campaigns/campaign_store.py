@@ -93,6 +93,10 @@ class CampaignStore:
             run = PlannedRun(number, design, case_id, system, json.loads(inputs))
             yield RunRow(run, json.loads(verdicts), reason, json.loads(quantities), wall_s, json.loads(widths))
 
+    def outcomes(self) -> Iterator[tuple[str, str | None]]:
+        """Verdict and reason of the finished runs by their numbers, without their values."""
+        yield from self._connection.execute("SELECT verdict, reason FROM run ORDER BY number")
+
     def check_identity(self, identity: Mapping[str, Any], folder: Path) -> None:
         """Compare the campaign of the store with this one, or write its identity into a new store.
 

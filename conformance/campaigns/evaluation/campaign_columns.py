@@ -151,12 +151,18 @@ SEARCHED_RUNS = 1000
 """Number of runs whose quantities are looked at: all runs of a case deliver the same quantities."""
 
 
+SMALLEST_SPREAD = 1e-4
+"""Smallest spread of a drawn value relative to its size: a tuned mean force differs by less between the runs."""
+
+
 def drop_constant(values: Sequence[EvaluatedValue], columns: CampaignColumns) -> list[EvaluatedValue]:
     """Values that have a limit or differ between the runs: a constant value needs no chart."""
-    spreads = {
-        name: np.nanmax(numbers) - np.nanmin(numbers) for name, numbers in columns.values.items() if numbers.size
+    differing = {
+        name
+        for name, numbers in columns.values.items()
+        if numbers.size and np.nanmax(numbers) - np.nanmin(numbers) > SMALLEST_SPREAD * np.nanmax(np.abs(numbers))
     }
-    return [value for value in values if value.limit is not None or spreads.get(value.column, 0.0) > 0]
+    return [value for value in values if value.limit is not None or value.column in differing]
 
 
 def read_columns(store: CampaignStore, values: Sequence[EvaluatedValue], keys: Sequence[str]) -> CampaignColumns:
@@ -187,10 +193,10 @@ def read_columns(store: CampaignStore, values: Sequence[EvaluatedValue], keys: S
 def count_reasons(store: CampaignStore) -> tuple[dict[str, int], dict[str, int]]:
     """Number of runs by verdict, and the most frequent reasons of runs without a result."""
     verdicts, reasons = Counter[str](), Counter[str]()
-    for row in store.rows():
-        verdicts[str(row.verdicts["verdict"])] += 1
-        if row.reason and (row.reason in reasons or len(reasons) < MOST_REASONS):
-            reasons[row.reason] += 1
+    for verdict, reason in store.outcomes():
+        verdicts[verdict] += 1
+        if reason and (reason in reasons or len(reasons) < MOST_REASONS):
+            reasons[reason] += 1
     return dict(verdicts.most_common()), dict(reasons.most_common(SHOWN_REASONS))
 
 

@@ -69,11 +69,21 @@ def _list_facts(results: dict[str, Any]) -> tuple[tuple[str, str], ...]:
         "Systems": ", ".join(results["systems"]),
         "Verdicts of the runs": verdicts,
         **results["inputs"],
-        **{f"Source of {keys}": text for keys, text in results["sources"].items()},
+        **_join_sources(results["sources"]),
         "Suite": f"Pantocheck {results['suite']['version']}",
         "Digest of the suite": results["suite"]["digest"] or "not known",
     }
     return tuple((name, text) for name, text in facts.items() if text)
+
+
+def _join_sources(sources: dict[str, str]) -> dict[str, str]:
+    """Facts on the sources of the varied inputs; inputs with one source share it."""
+    keys: dict[str, list[str]] = {}
+    for key, text in sources.items():
+        keys.setdefault(text, []).append(key)
+    if len(keys) == 1:
+        return {"Source of the varied inputs": next(iter(keys))}
+    return {f"Source {i}": f"{text}: {', '.join(names)}" for i, (text, names) in enumerate(keys.items(), 1)}
 
 
 def _list_reasons(reasons: dict[str, int]) -> list[doc.Block]:

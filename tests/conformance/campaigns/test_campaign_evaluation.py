@@ -20,7 +20,7 @@ from pantocheck.conformance.campaigns.evaluation.campaign_evaluation import eval
 from pantocheck.conformance.campaigns.evaluation.input_charts import build_input_charts, build_maps
 from pantocheck.conformance.campaigns.evaluation.sample_evaluation import build_sample_charts, build_statistics
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.reports.campaign.campaign_page import build_campaign_report
+from pantocheck.conformance.reports.campaign.campaign_page import _join_sources, build_campaign_report
 from pantocheck.conformance.reports.figures.tornado_chart import draw_tornado
 from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.results.campaign_format import CampaignResults
@@ -133,7 +133,15 @@ def test_map_has_a_cell_per_run(columns: CampaignColumns) -> None:
 def test_constant_values_without_a_limit_are_not_drawn(columns: CampaignColumns) -> None:
     loss = EvaluatedValue("1.contact_loss_pct")
     columns.values[loss.column] = np.zeros(9)
-    assert drop_constant([FRONT, loss], columns) == [FRONT]
+    tuned = EvaluatedValue("1.mean_force_N")
+    columns.values[tuned.column] = 144 + np.linspace(-0.002, 0.002, 9)  # a tuned force differs by its tolerance
+    assert drop_constant([FRONT, loss, tuned], columns) == [FRONT]
+
+
+def test_inputs_with_one_source_share_it() -> None:
+    facts = {"a": "book (secondary)", "b": "assumed (provisional)", "c": "book (secondary)"}
+    assert _join_sources(facts) == {"Source 1": "book (secondary): a, c", "Source 2": "assumed (provisional): b"}
+    assert _join_sources({"a": "book"}) == {"Source of the varied inputs": "book"}
 
 
 def test_statistics_of_random_designs_are_those_of_each_point_of_the_grid() -> None:
