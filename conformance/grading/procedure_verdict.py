@@ -40,7 +40,8 @@ def decide_procedure(procedure: Procedure, cases: Sequence[CaseResult], accepted
         The same procedure with its verdicts, margins and uncertainties.
     """
     by_id = {case.id: case for case in cases}
-    verdicts = {case.id: "pass" if accepted and case.verdict == "unverified" else case.verdict for case in cases}
+    references = {name for step in procedure.steps if step.step == "reference_models" for name in step.cases}
+    verdicts = {case.id: _judge_case(case, case.id in references, accepted) for case in cases}
     evidence = [item.model_copy(update={"passed": verdicts.get(item.id) == "pass"}) for item in procedure.evidence]
     claims = [judge_claim(claim, procedure.claims, evidence) for claim in procedure.claims]
     steps = []
@@ -48,6 +49,8 @@ def decide_procedure(procedure: Procedure, cases: Sequence[CaseResult], accepted
         named = [by_id[name] for name in step.cases if name in by_id]
         parts = [verdicts[case.id] for case in named]
         parts += [claim.verdict for claim in claims] if step.step == "limits_of_validity" else []
+        if step.step == "reference_models" and not any("reference_models" in case.steps for case in named):
+            parts.append("info")
         verdict = judge_step(step, parts, accepted)
         closest = describe_closest([*((None, row) for row in step.criteria), *_list_criteria(named)])
         steps.append(step.model_copy(update={"verdict": verdict, **closest}))
@@ -135,6 +138,17 @@ def judge_claim(claim: ValidityClaim, claims: Sequence[ValidityClaim], evidence:
     shown = verified if verified[0] <= verified[1] else None
     verdict: Verdict = "pass" if inside else "skip"
     return claim.model_copy(update={"verified": shown, "evidence": found, "verdict": verdict, "reason": reason})
+
+
+def is_reference(case: CaseResult) -> bool:
+    """Whether a case is an unchanged case of the library; limits of the user do not change it."""
+    return case.library == "identical"
+
+
+def _judge_case(case: CaseResult, as_reference: bool, accepted: bool) -> Verdict:
+    """Verdict of a case in its step: an own or changed case is no reference model, so that its pass is information."""
+    verdict: Verdict = "pass" if accepted and case.verdict == "unverified" else case.verdict
+    return worst_verdict([verdict, "info"]) if as_reference and not is_reference(case) else verdict
 
 
 def _list_criteria(cases: Iterable[CaseResult]) -> Iterator[tuple[str | None, Criterion]]:

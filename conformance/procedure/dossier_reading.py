@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.force_rules import resolve_rule
-from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.cases.library import overlay_limits, read_limits, select_cases
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.pantograph_file import PantographFile
@@ -47,10 +47,9 @@ def read_dossier(path: Path) -> Dossier:
         for i, pair in enumerate(file.pair, 1)
         if isinstance(pair.simulated, CaseRun)
     }
-    cases = reader.attempt(
-        "reference.cases",
-        lambda: select_cases(place_cases(file.reference.cases, path.parent)) if file.reference.cases else [],
-    )
+    cases = reader.attempt("reference.cases", lambda: select_cases(place_cases(file.reference.cases, path.parent)))
+    if (limits := file.reference.limits) is not None:
+        cases = reader.attempt("reference.limits", partial(_overlay, cases or [], path.parent / limits))
     dossier = Dossier(
         file,
         path.parent,
@@ -122,6 +121,10 @@ def _read_line(path: Path) -> LineFile:
 
 def _read_pantograph(path: Path) -> PantographFile:
     return resolve_rule(read_model(path, PantographFile, "pantograph"), f"pantograph '{path.name}'")
+
+
+def _overlay(cases: list[Case], path: Path) -> list[Case]:
+    return overlay_limits(cases, read_limits(path))
 
 
 def _select_run(name: str, folder: Path) -> Case:

@@ -99,6 +99,9 @@ class ReferenceTable(InputTable):
     cases: Annotated[
         tuple[EntryName, ...], Field(strict=False, max_length=1000, description="ids, globs or paths of cases")
     ] = ()
+    limits: Annotated[
+        NamedFile | None, Field(description="file of limits that replace or extend those of the cases, as for `run`")
+    ] = None
     verdicts: Annotated[
         Literal["criteria", "both"] | None,
         Field(description="verdicts that decide; default: criteria for the builtin system, both for any other"),

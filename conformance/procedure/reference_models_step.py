@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.grading.case_verdict import Participation
+from pantocheck.conformance.grading.procedure_verdict import is_reference
 from pantocheck.conformance.procedure.dossier import Dossier
 from pantocheck.conformance.procedure.run_conditions import describe_conditions
 from pantocheck.conformance.procedure.step_result import StepInterrupted, StepResult
@@ -48,6 +49,10 @@ def run_reference_models(
 def _build_result(dossier: Dossier, results: Sequence[CaseResult]) -> StepResult:
     by_id: dict[str, Case] = {case.id: case for case in dossier.cases}
     evidence = [describe_conditions(case.id, by_id[case.id], dossier) for case in results]
+    others = [case.id for case in results if not is_reference(case)]
     return StepResult(
-        "reference_models", cases=tuple(results), evidence=tuple(item for item in evidence if item is not None)
+        "reference_models",
+        cases=tuple(results),
+        evidence=tuple(item for item in evidence if item is not None),
+        notes=(f"No reference model of the library, for information: {', '.join(others)}.",) if others else (),
     )

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from helpers.example_dossier import CachedSimulator, copy_example, list_verdicts, validate_example
-from helpers.toml_edit import edit_toml
+from helpers.toml_edit import edit_toml, write_toml
 from pantocheck.conformance.authenticity.recomputation import find_discrepancies
 from pantocheck.conformance.results.procedure_format import STEP_NAMES
 
@@ -107,6 +107,19 @@ ONE_PAIR: dict[str, Any] = {
 OTHER_PANTOGRAPH = {"name": "other", "file": "en50318-2002/pantograph.toml"}
 
 
+def add_passing_case(folder: Path) -> None:
+    """Write an own case whose limit its run meets."""
+    add_failing_case(folder)
+    (folder / "failing.toml").rename(folder / "own.toml")
+    edit_toml(folder / "own.toml", {"limit.0.upper": 500.0})
+
+
+def add_limits(folder: Path) -> None:
+    """Write a file of limits that the reference model exceeds."""
+    limit = {"case": "*/250", "quantity": "std_force_N", "pantograph": 1, "upper": 20.0, "trust": "secondary"}
+    write_toml(folder / "limits.toml", {"limit": [limit | {"source": "test"}]})
+
+
 @dataclass(frozen=True)
 class Variant:
     """Changed keys of the dossier, changed files, and the steps that then do not pass."""
@@ -149,6 +162,15 @@ VARIANTS = {
     "mesh declared in words": Variant({"parameters.element_m": "fine"}, {"simulation_parameters": "unverified"}),
     "no reference model": Variant({"reference": None}, {"reference_models": "skip"}),
     "reference model without limits": Variant({"reference.cases": ["run-160.toml"]}, {"reference_models": "info"}),
+    "own case with limits as reference model": Variant(
+        {"reference.cases": ["own.toml"]}, {"reference_models": "info"}, add_passing_case
+    ),
+    "line at rest as reference model": Variant(
+        {"reference.cases": ["en50318-2018/ac-simple/static"]}, {"reference_models": "info"}
+    ),
+    "own limits of a reference model": Variant(
+        {"reference.limits": "limits.toml"}, {"reference_models": "fail"}, add_limits
+    ),
     "reference model beyond its limit": Variant(
         {"reference.cases": ["failing.toml"]}, {"reference_models": "fail"}, add_failing_case
     ),
