@@ -54,8 +54,8 @@ def spring_force(pantograph: Pantograph, record: Record, row: int) -> np.ndarray
 def test_head_inertia_recovers_the_contact_force_up_to_20_hz(tmp_path: Path, case_250: Case) -> None:
     """Two pantographs: four sensors with unequal shares, and two accelerometers, one of which is mounted upside down.
 
-    The recovered force is within 2 % of the mean force at every sample, and its standard deviation within 2 %. Sums of
-    the sensors alone differ by more than 5 %: the correction is needed.
+    The recovered force is within 2 % of the mean force at every sample, and its standard deviation within 2 %. The
+    standard deviation of the sensors alone is more than 30 % too small: the correction is needed.
     """
     case = shorten_case(case_250, 250.0, 0.5, 2)
     steps = case.file.discretisation.model_copy(update={"time_step_s": 0.002})
@@ -96,4 +96,4 @@ def test_head_inertia_recovers_the_contact_force_up_to_20_hz(tmp_path: Path, cas
         )
         assert np.abs(found - true).max() < 0.02 * true.mean()
         assert found.std() == pytest.approx(true.std(), rel=0.02)
-        assert abs(bare.std() / true.std() - 1) > 0.05
+        assert bare.std() < 0.7 * true.std()
