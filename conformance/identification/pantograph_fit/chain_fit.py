@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from pantocheck.conformance.array_types import RealArray
@@ -72,16 +73,33 @@ def fit_chain(data: MeasuredStiffness, fixed: RealArray) -> ChainFit:
     ChainFit
         Best fit of all starts.
     """
-    rows = np.argsort(data.frequency, kind="stable")
-    thinned = rows[np.unique(np.linspace(0, rows.size - 1, START_ROWS).astype(np.int64))]
-    coarse = ChainProblem(data.select_rows(thinned), fixed)
-    trials = [_solve(coarse, start, START_EVALUATIONS) for start in choose_starts(coarse)]
+    coarse = ChainProblem(data.select_rows(_thin_rows(data.frequency)), fixed)
+    trials = _try_starts(coarse)
     costs = np.array([cost for _, cost in trials])
     problem = ChainProblem(data, fixed)
     parameters, cost = _solve(problem, trials[int(np.argmin(costs))][0], EVALUATIONS)
     return ChainFit(
         problem, problem.unpack(parameters), cost, len(trials), int((costs <= SAME_COST * costs.min()).sum())
     )
+
+
+def _try_starts(problem: ChainProblem) -> list[tuple[RealArray, float]]:
+    """Free parameters and sum of squares that each start reaches; a fit with one mass less gives starts."""
+    masses = problem.fixed.shape[1]
+    smaller = []
+    if masses > 1:
+        reduced = ChainProblem(problem.data, np.full((3, masses - 1), np.nan))
+        smaller = [reduced.unpack(min(_try_starts(reduced), key=lambda trial: trial[1])[0])]
+    return [_solve(problem, start, START_EVALUATIONS) for start in choose_starts(problem, smaller)]
+
+
+def _thin_rows(frequency: RealArray) -> NDArray[np.int64]:
+    """Rows with which starts are compared, by increasing frequency, evenly spread over its logarithm."""
+    rows = np.argsort(frequency, kind="stable")
+    if rows.size <= START_ROWS:
+        return rows
+    grid = np.geomspace(frequency.min(), frequency.max(), START_ROWS)
+    return np.asarray(rows[np.unique(np.searchsorted(frequency[rows], grid).clip(max=rows.size - 1))])
 
 
 def _solve(problem: ChainProblem, start: RealArray, evaluations: int) -> tuple[RealArray, float]:

@@ -1,6 +1,6 @@
-"""Starts of the fit of a chain: from a rational function through the response, and random ones; all deterministic."""
+"""Starts of the fit of a chain: from a rational function, from a smaller chain, and random ones; all deterministic."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -15,13 +15,25 @@ ELEMENT_DAMPING = (0.1, 0.01)
 BASE_ROWS = 6
 """Rows at the lowest frequencies whose imaginary part gives the base damper: the masses move together there."""
 
+SPLIT_SHARES = (0.3, 0.6)
+"""Upper shares of a mass that is split in two."""
+
+SPLIT_FREQUENCIES = 12
+"""Natural frequencies of a split mass, from the lowest to the highest measured frequency."""
+
+SPLIT_DAMPING = 0.02
+"""Damping ratio of a split mass."""
+
+SPLIT_STARTS = 6
+"""Starts from a smaller chain: a weak mode is one of the masses that vibrates in itself."""
+
 START_SEED = 20_150_817
 """Seed of the random starts."""
 
-RANDOM_CHAINS = 400
+RANDOM_CHAINS = 200
 """Random chains of which the best ones are starts."""
 
-RANDOM_STARTS = 8
+RANDOM_STARTS = 4
 """Random starts of a fit, for responses whose rational function is not that of a chain."""
 
 MASS_RANGE = (0.1, 2.0)
@@ -34,13 +46,15 @@ DAMPING_RANGE = (0.005, 1.0)
 """Random damping ratios of the elements."""
 
 
-def choose_starts(problem: ChainProblem) -> list[RealArray]:
+def choose_starts(problem: ChainProblem, smaller: Sequence[RealArray]) -> list[RealArray]:
     """Choose starts of a fit.
 
     Parameters
     ----------
     problem : ChainProblem
         Fit of a chain; its frequencies ascend.
+    smaller : sequence of (3, n - 1) ndarray
+        Fitted chains with one mass less.
 
     Returns
     -------
@@ -48,7 +62,8 @@ def choose_starts(problem: ChainProblem) -> list[RealArray]:
         Free parameters of each start.
     """
     lower, upper = problem.bounds
-    chains = [*_rational_chains(problem), *_random_chains(problem)]
+    split = _select_best(problem, [chain for each in smaller for chain in _split_masses(each, problem)], SPLIT_STARTS)
+    chains = [*_rational_chains(problem), *split, *_random_chains(problem)]
     return [np.clip(problem.pack(chain), lower, upper) for chain in chains]
 
 
@@ -79,8 +94,26 @@ def _random_chains(problem: ChainProblem) -> list[RealArray]:
     omega = 2 * np.pi * _draw(random, low, high, size)
     dampings = 2 * _draw(random, *DAMPING_RANGE, size) * masses * omega
     chains = list(np.stack([masses, masses * omega**2, dampings], axis=1))
+    return _select_best(problem, chains, RANDOM_STARTS)
+
+
+def _split_masses(smaller: RealArray, problem: ChainProblem) -> Iterator[RealArray]:
+    """Chains in which one mass of a smaller chain is split in two that vibrate against each other."""
+    frequency = problem.data.frequency
+    for mass in range(smaller.shape[1]):
+        for share in SPLIT_SHARES:
+            for split in np.geomspace(frequency[0], frequency[-1], SPLIT_FREQUENCIES):
+                omega, reduced = 2 * np.pi * split, share * (1 - share) * smaller[0, mass]
+                upper = [share * smaller[0, mass], reduced * omega**2, 2 * SPLIT_DAMPING * reduced * omega]
+                chain = np.insert(smaller, mass + 1, upper, axis=1)
+                chain[0, mass] *= 1 - share
+                yield chain
+
+
+def _select_best(problem: ChainProblem, chains: Sequence[RealArray], count: int) -> list[RealArray]:
+    """Chains with the lowest sums of squares."""
     costs = [float(np.sum(problem.residuals(problem.pack(chain)) ** 2)) for chain in chains]
-    return [chains[i] for i in np.argsort(costs, kind="stable")[:RANDOM_STARTS]]
+    return [chains[i] for i in np.argsort(costs, kind="stable")[:count]]
 
 
 def _draw(random: np.random.Generator, low: float, high: float, size: tuple[int, int]) -> RealArray:

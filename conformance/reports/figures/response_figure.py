@@ -18,6 +18,9 @@ from pantocheck.conformance.reports.figures.figure_style import (
     render_svg,
 )
 
+DRAWN_ROWS = 400
+"""Largest number of drawn rows, two per millimetre of a figure; the numbers contain all rows."""
+
 FREQUENCY_TICKS = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200)
 
 
@@ -35,14 +38,14 @@ def draw_response(response: dict[str, Any], limits: list[dict[str, Any]]) -> Fig
     figure = Figure(figsize=(FULL, 4.6))
     modulus, phase, deviation = figure.subplots(3, 1, sharex=True, height_ratios=(3, 2, 2))
     measured, model = response["measured"], response["model"]
-    frequency = measured["frequency_Hz"]
+    rows = select_drawn_rows(measured["frequency_Hz"])
     for axes, key in ((modulus, "modulus"), (phase, "phase_deg")):
         axes.plot(model["frequency_Hz"], model[key], color=SHADES[1], linewidth=1.1, label="model")
         axes.errorbar(
-            frequency, measured[key], _error_bar(response, key), fmt="o", color=INK, markersize=2.2, elinewidth=0.6,
-            label="measured",
+            np.array(measured["frequency_Hz"])[rows], np.array(measured[key])[rows], _error_bar(response, key, rows),
+            fmt="o", color=INK, markersize=2.2, elinewidth=0.6, label="measured",
         )  # fmt: skip
-    _draw_deviations(deviation, response, limits)
+    _draw_deviations(deviation, response, limits, rows)
     _label_moduli(modulus)
     modulus.set_ylabel(f"{response['kind'].replace('_', ' ')} [{response['unit']}]")
     phase.set_ylabel("phase [°]")
@@ -52,20 +55,29 @@ def draw_response(response: dict[str, Any], limits: list[dict[str, Any]]) -> Fig
     return figure
 
 
-def _error_bar(response: dict[str, Any], key: str) -> Any:
+def select_drawn_rows(frequency: list[float]) -> list[int]:
+    """Rows of a figure: the first one in each of `DRAWN_ROWS` equal parts of the logarithmic frequency axis."""
+    log = np.log(frequency)
+    parts = np.floor((log - log[0]) / max(log[-1] - log[0], 1e-12) * DRAWN_ROWS)
+    return list(map(int, np.unique(parts, return_index=True)[1]))
+
+
+def _error_bar(response: dict[str, Any], key: str, rows: list[int]) -> Any:
     """Half-widths of the error bars; None where the record states no uncertainty."""
     if not response["modulus_uncertainty_pct"]:
         return None
     if key == "phase_deg":
-        return response["phase_uncertainty_deg"]
-    return np.array(response["measured"]["modulus"]) * np.array(response["modulus_uncertainty_pct"]) / 100
+        return np.array(response["phase_uncertainty_deg"])[rows]
+    return (np.array(response["measured"]["modulus"]) * np.array(response["modulus_uncertainty_pct"]) / 100)[rows]
 
 
-def _draw_deviations(axes: Axes, response: dict[str, Any], limits: list[dict[str, Any]]) -> None:
-    """Deviation of the modulus at each row, complex deviation of each band as a step, limits as dashed lines."""
-    rows = response["measured"]["frequency_Hz"], response["modulus_deviation_pct"]
+def _draw_deviations(axes: Axes, response: dict[str, Any], limits: list[dict[str, Any]], rows: list[int]) -> None:
+    """Deviation of the modulus at the rows, complex deviation of each band as a step, limits as dashed lines."""
+    points = (
+        np.array(series)[rows] for series in (response["measured"]["frequency_Hz"], response["modulus_deviation_pct"])
+    )
     axes.axhline(0.0, color=GREY, linewidth=0.6)
-    axes.plot(*rows, "o", color=GREY, markersize=1.8, label="modulus, each row")
+    axes.plot(*points, "o", color=GREY, markersize=1.8, label="modulus, each row")
     label = "complex, RMS of band"
     for band in response["bands"]:
         if band["deviations"]:

@@ -123,15 +123,29 @@ def test_exact_response_gives_its_chain(path: str) -> None:
     assert fit.values == pytest.approx(truth, rel=1e-5, abs=1e-3)
 
 
+@pytest.mark.parametrize(
+    ("frequency", "noise"),
+    [(np.geomspace(0.5, 20, 40), 0.03), (np.arange(0.5, 50.01, 0.25), 0.03), (np.arange(0.5, 50, 0.02), 0.01)],
+)
+def test_weak_mode_is_found_in_noise_and_between_linear_rows(frequency: NDArray[np.float64], noise: float) -> None:
+    """The third mode moves the head little: the best minimum has a variance ratio of 1, that of two masses 1.9 to 6."""
+    pantograph = read_pantograph()
+    weight = np.array([[1 / noise], [1 / np.radians(50 * noise)]]) * np.ones(frequency.size)
+    measured = add_noise(chain_stiffness(pantograph, frequency), 2, noise, 50 * noise)
+    fit = fit_chain(MeasuredStiffness(frequency, measured, weight), free(3))
+    assert fit.variance_ratio < 1.2
+    assert fit.values[0] == pytest.approx(chain_values(pantograph)[0], rel=0.35)
+
+
 def test_intervals_contain_the_truth() -> None:
-    """Three masses, 20 measurements of 60 rows: at least 90 % of the 180 values (benchmarks/pantograph_fit.py: 200)."""
+    """Three masses, 8 measurements of 60 rows: at least 85 % of the 72 values (97 % of 1800 in the benchmark)."""
     pantograph = read_pantograph()
     truth, frequency = chain_values(pantograph), np.geomspace(0.5, 50, 60)
     inside = []
-    for seed in range(20):
+    for seed in range(8):
         fit = fit_chain(measure(pantograph, seed, frequency), free(3))
         inside.append(np.abs(fit.values - truth) <= compute_intervals(fit, True).half_width)
-    assert np.mean(inside) >= 0.9
+    assert np.mean(inside) >= 0.85
 
 
 @pytest.fixture(scope="module")

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -11,7 +12,7 @@ from pantocheck.conformance.reports.comparison.response_comparison_page import (
     RESPONSE_HEADLINES,
     build_response_comparison,
 )
-from pantocheck.conformance.reports.figures.response_figure import draw_response
+from pantocheck.conformance.reports.figures.response_figure import draw_response, select_drawn_rows
 from pantocheck.conformance.reports.formats.html import render_html
 
 FREQUENCY = [1.0, 10.0, 40.0]
@@ -128,3 +129,13 @@ def test_figure_shows_error_bars_curve_bands_and_limits() -> None:
 def test_figure_without_uncertainty_has_no_error_bars() -> None:
     modulus, _, _ = paint(build_response(modulus_uncertainty_pct=[], phase_uncertainty_deg=[]), [])
     assert modulus.containers[0].has_yerr is False
+
+
+def test_figure_of_a_long_table_shows_some_of_its_rows() -> None:
+    """20,000 linear rows: at most one of each 400 parts of the logarithmic axis, the first row included."""
+    frequency = np.arange(0.5, 50, 0.0025)
+    rows = select_drawn_rows(list(frequency))
+    assert (rows[0], len(rows) <= 401) == (0, True)
+    assert np.diff(np.log(frequency[rows])).max() < 0.024
+    assert select_drawn_rows([1.0, 10.0, 40.0]) == [0, 1, 2]
+    assert select_drawn_rows([2.0]) == [0]
