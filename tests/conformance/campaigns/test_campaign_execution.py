@@ -65,7 +65,7 @@ def test_killed_campaign_resumes_to_the_table_of_an_undisturbed_one(tmp_path: Pa
     with start_driver(killed) as driver:
         wait_for_runs(killed, driver, 10)
         os.kill(list_children(driver.pid)[-1], signal.SIGKILL)
-        assert driver.wait(timeout=60) == 0
+        assert driver.wait(timeout=600) == 0
     assert (killed / "campaign.csv").read_bytes() == build_undisturbed_table(tmp_path / "undisturbed")
 
 
