@@ -18,6 +18,10 @@ SIGNING_USAGES = frozenset({"digital_signature", "non_repudiation"})
 """Key usages of which a certificate for signatures needs one (RFC 5280, section 4.2.1.3)."""
 
 
+OTHER_PURPOSES = frozenset({"server_auth", "code_signing", "time_stamping", "ocsp_signing"})
+"""Purposes (extended key usages) of servers and programs; a certificate with these alone does not name a person."""
+
+
 def read_certificates(path: Path, where: str) -> list[Any]:
     """Read all certificates of a PEM file, or the certificate of a DER file.
 
@@ -83,7 +87,15 @@ def find_usage_problem(certificate: Any) -> str:
     usage = certificate.key_usage_value
     if usage is not None and not SIGNING_USAGES & set(usage.native):
         return "lacks the key usage 'digital signature' or 'non repudiation'"
+    purposes = certificate.extended_key_usage_value
+    if purposes is not None and OTHER_PURPOSES.issuperset(purposes.native):
+        return f"is for other purposes ({', '.join(purposes.native).replace('_', ' ')})"
     return ""
+
+
+def describe_failure(error: Exception) -> str:
+    """Text of an exception of a parser on one short line; its name if it has no text."""
+    return clean_text(str(error))[:LONGEST_HOLDER_NAME] or type(error).__name__
 
 
 def format_moment(moment: datetime) -> str:

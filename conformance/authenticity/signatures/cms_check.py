@@ -6,6 +6,7 @@ from typing import Any
 from urllib.parse import unquote
 
 from pantocheck.conformance.authenticity.signatures.certificates import (
+    describe_failure,
     find_usage_problem,
     find_validity_problem,
     read_name,
@@ -45,7 +46,7 @@ def check_cms(
         if stamped:
             status = _validate(content, signed_data, roots or [], moment)
     except Exception as error:  # the packages raise exceptions without a common base for a damaged signature
-        return _build_damaged(clean_text(str(error)) or type(error).__name__, now)
+        return _build_damaged(describe_failure(error), now)
     certificate = status.signing_cert
     damage = "" if status.intact and status.valid else "the content was changed after signing"
     distrust = NO_ROOT if roots is None else _find_distrust(status, moment)

@@ -4,11 +4,11 @@ from collections.abc import Iterator
 from io import BytesIO
 from typing import Any
 
+from pantocheck.conformance.authenticity.signatures.certificates import describe_failure
 from pantocheck.conformance.authenticity.signatures.cms_check import check_cms
 from pantocheck.conformance.authenticity.signatures.detached_file import MOST_SIGNATURES
 from pantocheck.conformance.authenticity.signatures.pdf_revisions import find_changes
 from pantocheck.conformance.authenticity.signatures.signature_facts import SignatureFacts
-from pantocheck.conformance.reports.page_text import clean_text
 
 SIGNATURE_KEY = b"/ByteRange"
 """Key that every signed PDF contains in plain text, because the signature is written into the finished file."""
@@ -48,7 +48,7 @@ def check_pdf(content: bytes, roots: list[Any] | None) -> tuple[tuple[SignatureF
     except RecursionError:
         return (), ("its signatures cannot be analysed (too deeply nested)",)
     except Exception as error:  # the exceptions of the parser have no common base
-        reason = clean_text(str(error)) or type(error).__name__
+        reason = describe_failure(error)
         return (), (f"its signatures cannot be analysed ({reason})",)
     return tuple(facts), tuple(changes)
 

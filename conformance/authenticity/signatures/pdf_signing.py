@@ -6,7 +6,7 @@ from datetime import UTC, datetime
 from io import BytesIO
 from typing import Any
 
-from pantocheck.conformance.authenticity.signatures.certificates import format_moment
+from pantocheck.conformance.authenticity.signatures.certificates import describe_failure, format_moment
 from pantocheck.conformance.authenticity.signatures.cms_signing import (
     Signer,
     build_role_attributes,
@@ -16,7 +16,6 @@ from pantocheck.conformance.authenticity.signatures.cms_signing import (
 from pantocheck.conformance.authenticity.signatures.signature_box import BOXES, find_place
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.reports.formats.signature_box_page import render_signature_box
-from pantocheck.conformance.reports.page_text import clean_text
 
 
 def sign_pdf(content: bytes, signer: Signer, place: str | None, where: str) -> bytes:
@@ -134,5 +133,5 @@ def _convert_damage(where: str) -> Iterator[None]:
     except (InputError, ModuleNotFoundError):
         raise
     except Exception as error:
-        reason = clean_text(str(error)) or type(error).__name__
+        reason = describe_failure(error)
         raise InputError(where, f"cannot be signed ({reason})", "Sign a PDF that 'pantocheck run' wrote.") from None

@@ -81,6 +81,7 @@ def test_every_damage_is_reported(document: Path, signers: Signers, roots_file: 
             report = check_signatures(document, roots_file)
         except InputError:
             continue
+        assert all(len(facts.damage) < 200 for facts in report.signatures)  # parsers may print numbers without end
         if report.authentic:  # a certificate of the chain that is not needed, or the order of a list
             (facts,) = report.signatures
             assert (facts.signer, facts.role, facts.stated_time) == (genuine.signer, genuine.role, genuine.stated_time)

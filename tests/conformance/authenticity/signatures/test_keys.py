@@ -50,6 +50,12 @@ def write_text(path: Path, content: bytes) -> Path:
     return path
 
 
+def server_purpose() -> Any:
+    from cryptography.x509.oid import ExtendedKeyUsageOID
+
+    return ExtendedKeyUsageOID.SERVER_AUTH
+
+
 def small_rsa(signers: Signers, folder: Path) -> Path:
     from cryptography.hazmat.primitives.asymmetric import rsa
 
@@ -83,6 +89,10 @@ FAULTS: dict[str, tuple[Callable[[Signers, Path], Path], str]] = {
     "for encryption": (
         lambda s, f: s.issue("Box", usages=("key_encipherment",)).write_pkcs12(f / "key", b"secret"),
         "lacks the key usage 'digital signature' or 'non repudiation'",
+    ),
+    "of a server": (
+        lambda s, f: s.issue("Host", purpose=server_purpose()).write_pkcs12(f / "key", b"secret"),
+        r"is for other purposes \(server auth\)",
     ),
     "small RSA key": (small_rsa, "an RSA key of 1024 bits"),
 }

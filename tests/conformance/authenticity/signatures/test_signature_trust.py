@@ -87,6 +87,16 @@ def test_unusable_certificate(
 
 
 @pytest.mark.usefixtures("any_key")
+def test_certificate_of_a_server(signers: Signers, document: Path, roots_file: Path) -> None:
+    """The authority of a company certifies servers as well; none of them signs reports."""
+    from cryptography.x509.oid import ExtendedKeyUsageOID
+
+    sign(document, signers.issue("www.example.org", purpose=ExtendedKeyUsageOID.SERVER_AUTH))
+    (facts,) = check_signatures(document, roots_file).signatures
+    assert facts.distrust == "the signing certificate is for other purposes (server auth)"
+
+
+@pytest.mark.usefixtures("any_key")
 def test_expired_authority(signers: Signers, document: Path, roots_file: Path) -> None:
     from helpers.authorities import issue, request
 
