@@ -1,5 +1,6 @@
 """`pantocheck validate`: the EN 50318 procedure for a dossier, with one certificate."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
@@ -15,10 +16,11 @@ from pantocheck.conformance.command_line.options import (
     state_administration,
 )
 from pantocheck.conformance.command_line.results_output import EXIT_CODES, report_progress
+from pantocheck.conformance.grading.criterion_grading import criterion_name
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.procedure.dossier_reading import read_dossier
 from pantocheck.conformance.procedure.validation import Validation
-from pantocheck.conformance.reports.certificate.procedure_page import name_state
+from pantocheck.conformance.reports.certificate.procedure_page import describe_steps, name_state
 from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline
 from pantocheck.conformance.reports.formats.report_writers import check_formats, write_all
 from pantocheck.conformance.reports.words import read_words
@@ -74,14 +76,14 @@ def _print_steps(results: Results) -> None:
         numbers = (format_number(step["margin"], 3), format_number(step["uncertainty"], 2))
         table.add_row(name, name_state(step), style_verdict(step["verdict"]), *numbers)
     output.print(table)
-    for step in content["procedure"]["steps"]:
-        for reason in filter(None, (step["reason"], step["unverified"])):
-            output.print(escape_text(f"  {read_words()['procedure'][step['step']]}: {reason}"))
+    for sentence in (*describe_steps(content), *_describe_cases(results)):
+        output.print(escape_text(f"  {sentence}"))
+
+
+def _describe_cases(results: Results) -> Iterator[str]:
+    """Cases and pairs that do not pass, with their reasons."""
     for case in results.cases:
-        if case.verdict != "pass":
-            reason = case.reason or "see the certificate"
-            output.print(escape_text(f"  {case.id}: "), style_verdict(case.verdict), escape_text(f" {reason}"))
-    for claim in results.procedure.claims if results.procedure is not None else ():
-        if claim.reason is not None:
-            subject = " ".join(filter(None, (claim.kind, claim.name)))
-            output.print(escape_text(f"  claim on {subject} not verified: {claim.reason}"))
+        rows = [row for row in case.criteria if row.verdict in ("fail", "skip", "error")]
+        reasons = [case.reason] if case.reason else [f"{criterion_name(row)}: {row.reason}" for row in rows]
+        if case.verdict not in ("pass", "info"):
+            yield from (f"{case.id}: {reason}" for reason in reasons or [f"verdict {case.verdict}"])

@@ -1,9 +1,11 @@
 """Procedure on page 1 of a certificate: its steps with verdict, margin and uncertainty, and the headline."""
 
+from collections.abc import Iterator
 from typing import Any
 
 from pantocheck.conformance.quantities.limit_text import format_margin
 from pantocheck.conformance.reports import document as doc
+from pantocheck.conformance.reports.certificate.criteria_table import criterion_title, is_close
 from pantocheck.conformance.reports.page_text import format_value, replace_minus
 from pantocheck.conformance.reports.words import read_words
 
@@ -69,14 +71,27 @@ def build_procedure_section(results: dict[str, Any]) -> doc.Section:
 
 
 def list_step_reasons(results: dict[str, Any]) -> tuple[doc.Section, ...]:
-    """Steps that were not done or are not verified, with their reasons."""
-    sentences = [
-        f"{name_step(step)}: {reason}"
-        for step in results["procedure"]["steps"]
-        for reason in (step["reason"], step["unverified"])
-        if reason
-    ]
-    return (doc.Section("Steps", (doc.BulletList(tuple(sentences)),)),) if sentences else ()
+    """Section on the steps that do not pass or are close to a limit; none if there are no such steps."""
+    sentences = tuple(describe_steps(results))
+    return (doc.Section("Steps", (doc.BulletList(sentences),)),) if sentences else ()
+
+
+def describe_steps(results: dict[str, Any]) -> Iterator[str]:
+    """Steps and their own criteria that do not pass or are close to a limit, and claims that are not verified."""
+    for step in results["procedure"]["steps"]:
+        yield from _describe_step(step)
+    for claim in results["procedure"]["claims"]:
+        if claim["reason"]:
+            subject = f"{read_words()['claim'][claim['kind']]} {claim['name']}".strip()
+            yield f"Claim not verified: {subject}: {claim['reason']}"
+
+
+def _describe_step(step: dict[str, Any]) -> Iterator[str]:
+    yield from (f"{name_step(step)}: {reason}" for reason in (step["reason"], step["unverified"]) if reason)
+    for row in step["criteria"]:
+        remarks = [] if row["reason"] is None else [row["reason"]]
+        for text in (*remarks, *(row["close"] if is_close(row) else ())):
+            yield f"{name_step(step)}, {criterion_title(row)}: {text}"
 
 
 def _build_row(number: int, step: dict[str, Any]) -> tuple[doc.RichText, ...]:

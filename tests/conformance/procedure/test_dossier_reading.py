@@ -96,6 +96,9 @@ def test_exit_code_and_files(tmp_path: Path, changes: dict[str, Any], exit_code:
     result = validate(path, "--out", tmp_path / "out", "--formats", "json,md,badge,junit", "--report-number", "R 1")
     assert (result.exit_code, result.stderr) == (exit_code, "")
     assert result.stdout.startswith(word)
+    if word == "FAIL":
+        assert "contact wire height" in result.stdout
+        assert "above the upper limit" in result.stdout
     names = sorted(file.name for file in (tmp_path / "out").iterdir())
     assert names == ["badge.svg", "junit.xml", "results.json", "summary.md"]
     assert '"report_number": "R 1"' in (tmp_path / "out" / "results.json").read_text(encoding="utf-8")

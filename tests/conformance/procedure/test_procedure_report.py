@@ -10,7 +10,7 @@ from helpers.toml_edit import change_keys
 from pantocheck.conformance.authenticity.recomputation import find_discrepancies
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
-from pantocheck.conformance.reports.certificate.procedure_page import build_procedure_headline
+from pantocheck.conformance.reports.certificate.procedure_page import build_procedure_headline, list_step_reasons
 from pantocheck.conformance.reports.certificate.summary_page import build_summary
 from pantocheck.conformance.reports.formats.badge import render_badge
 from pantocheck.conformance.reports.formats.junit import render_junit
@@ -74,6 +74,30 @@ def test_headline_names_steps_that_are_missing_or_for_information(content: dict[
     assert build_procedure_headline(changed) == (
         "3 of 5 required steps pass. Pantograph model: not done. Line tests: FAIL. Not required, for information: "
         "Limits of validity (PASS). Accepted by the user: unverified records of Pantocheck reference simulator."
+    )
+
+
+def test_reasons_name_criteria_and_claims_that_do_not_pass(content: dict[str, Any]) -> None:
+    assert list_step_reasons(content) == ()
+    changed = copy.deepcopy(content)
+    change_keys(
+        changed["procedure"],
+        {
+            "steps.1.criteria.0.reason": "2 % above the upper limit",
+            "steps.2.unverified": "not confirmed by every run: start",
+            "steps.4.reason": "the run was interrupted",
+            "claims.2.reason": "the runs that passed cover 160 to 180 km/h",
+        },
+    )
+    (section,) = list_step_reasons(changed)
+    (block,) = section.blocks
+    assert isinstance(block, doc.BulletList)
+    assert block.items == (
+        "Static check of the line model, Largest difference of the elasticity, relative to the measured one: 2 % above "
+        "the upper limit",
+        "Simulation parameters: not confirmed by every run: start",
+        "Line tests: the run was interrupted",
+        "Claim not verified: Speed: the runs that passed cover 160 to 180 km/h",
     )
 
 
