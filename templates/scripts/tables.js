@@ -56,10 +56,15 @@ function addSorting(table, rows) {
   });
 }
 
+/** Verdicts in the cells of a row with their words: a row of a matrix has several. */
+function verdictsOfRow(row) {
+  const cells = [...row.cells].filter((cell) => verdictOf(cell));
+  return new Map(cells.map((cell) => [verdictOf(cell), cell.querySelector(".verdict").lastChild.textContent.trim()]));
+}
+
 /** Selection of a verdict; null for a table whose rows do not differ in it. */
 function verdictSelection(rows, label) {
-  const marks = new Map(rows.map((row) => [verdictOf(row), row.querySelector(".verdict")?.lastChild.textContent.trim()]));
-  marks.delete(undefined);
+  const marks = new Map(rows.flatMap((row) => [...verdictsOfRow(row)]));
   if (marks.size < 2) return null;
   const options = [...marks].map(([verdict, word]) => element("option", { value: verdict }, word));
   return element("select", { "aria-label": `Verdict, ${label}` }, element("option", { value: "" }, "all verdicts"), ...options);
@@ -75,7 +80,7 @@ function addFilter(table, rows) {
     const words = field.value.toLowerCase().split(/\s+/);
     const left = rows.filter((row) => {
       const text = row.textContent.toLowerCase();
-      const fits = words.every((word) => text.includes(word)) && (!selection?.value || verdictOf(row) === selection.value);
+      const fits = words.every((word) => text.includes(word)) && (!selection?.value || verdictsOfRow(row).has(selection.value));
       row.classList.toggle("filtered", !fits);
       return fits;
     });

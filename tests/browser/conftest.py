@@ -19,6 +19,8 @@ from pantocheck.conformance.reports.document import Document, Figure, Figures, P
 from pantocheck.conformance.reports.figures.study_chart import draw_chart
 from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.reports.mass_drop.identification_report import build_identification_document
+from pantocheck.conformance.reports.site.published_results import publish_results
+from pantocheck.conformance.reports.site.site_index import build_site_index
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 """Programs that Playwright can drive without a browser of its own."""
@@ -55,6 +57,18 @@ def build_plain_document() -> Document:
     return Document("Identification", PlainHeader("Identification", "13 modes"), blocks)
 
 
+def build_site_page() -> Document:
+    """First page of a site: two systems on twelve cases; the second system passes every third of them."""
+    contents = []
+    for system, verdicts in (("first", ["pass"] * 12), ("second", ["pass", "fail", "skip"] * 4)):
+        cases = [{"id": f"case/{i}", "verdict": verdict, "library": "own"} for i, verdict in enumerate(verdicts, 1)]
+        identity = {"name": system, "version": "1"}
+        results = {"system": identity, "suite": {"version": "1"}, "started": "2026-01-01", "verdict": "fail"}
+        contents.append((results | {"cases": cases}, ()))
+    pages = {f"case/{i}": f"cases/{i}.html" for i in range(1, 13)}
+    return build_site_index("Site", publish_results(contents), pages)
+
+
 @pytest.fixture(scope="session")
 def page_files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     """Pages by name: certificates, one of them with hostile texts, a mass-drop report, and a page without results."""
@@ -64,6 +78,7 @@ def page_files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
         "hostile": build_certificate(with_hostile_text()),
         "identification": build_identification_document([build_example_line()]),
         "plain": build_plain_document(),
+        "site": build_site_page(),
     }
     folder = tmp_path_factory.mktemp("pages")
     for name, document in documents.items():

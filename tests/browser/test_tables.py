@@ -66,6 +66,15 @@ def test_selection_of_a_verdict_leaves_its_rows(open_page: Any) -> None:
     assert page.locator(CRITERIA).nth(1).locator(ROWS).count() == len(failed)
 
 
+def test_matrix_of_a_site_is_filtered_by_every_verdict_in_a_row(open_page: Any) -> None:
+    """Every row has a pass of the first system; a third of the rows has a failure of the second."""
+    page = open_page("site")
+    rows = page.locator("table").first.locator(ROWS)
+    for verdict, count in (("fail", 4), ("pass", 12), ("skip", 4)):
+        page.get_by_role("combobox").first.select_option(verdict)
+        assert rows.count() == count
+
+
 def test_long_table_of_another_report_is_sorted_by_number(open_page: Any) -> None:
     page = open_page("plain")
     page.get_by_role("button", name="f [Hz]").click()
