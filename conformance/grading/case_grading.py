@@ -17,6 +17,7 @@ from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.results.contact_loss_list import build_contact_losses
 from pantocheck.conformance.results.extreme_places import find_force_places, find_uplift_place
 from pantocheck.conformance.results.figure_data import ExtremePlace
+from pantocheck.conformance.results.input_values import list_input_values
 from pantocheck.conformance.results.lift_force_facts import list_law_forces
 from pantocheck.conformance.results.outcome import Delivered, Errored, Outcome, Skipped
 from pantocheck.conformance.results.results_building import describe_uncertainty, key_by_owner, select_finite
@@ -129,14 +130,13 @@ def build_ungraded(case: Case, verdict: Verdict, reason: str, delivered: Deliver
 
 def _build_result(case: Case, delivered: Delivered, notes: Sequence[str], **parts: object) -> CaseResult:
     file, record, library = case.file, delivered.record, compare_with_library(case)
-    inputs = [InputGroup(group=i.group, trust=i.trust, source=source_text(i.source)) for i in case.inputs]
     return CaseResult.model_validate(
         {
             "id": case.id,
             "title": file.title,
             "notes": [*case.notes, *delivered.notes, *notes],
             "model_uncertainty": list(delivered.model_uncertainty),
-            "inputs": inputs,
+            "inputs": _list_inputs(case),
             "input_digest": case.digest,
             "changes": list(case.changes),
             "limits_digest": limits_digest(case.limits),
@@ -158,6 +158,20 @@ def _build_result(case: Case, delivered: Delivered, notes: Sequence[str], **part
             **parts,
         }
     )
+
+
+def _list_inputs(case: Case) -> list[InputGroup]:
+    """Groups of inputs with their values; a single provisional key has no values, because its group has them."""
+    tables = case.sourced_tables
+    return [
+        InputGroup(
+            group=group.group,
+            trust=group.trust,
+            source=source_text(group.source),
+            values=list_input_values(tables[group.group], set(tables), group.group) if group.group in tables else {},
+        )
+        for group in case.inputs
+    ]
 
 
 def _list_steps(case: Case, library: LibraryIdentity) -> list[Step]:

@@ -182,7 +182,8 @@ class Section:
     heading: str
     blocks: "tuple[Block, ...]"
     anchor: str = ""
-    new_page: bool = False
+    ruled: bool = False
+    """Whether a rule stands above the heading: the section of a case."""
     folded: bool = False
     """Whether the blocks are hidden on a screen until the reader opens the section; on paper they always stand."""
 

@@ -15,8 +15,9 @@ MARGIN_KEY = (
     "Margin: distance to the nearer limit, divided by half the distance between the limits. It is 1 in the middle, "
     "0 on a limit and negative outside. Bars: the grey band shows the range between the limits. A disc is a value "
     "inside, a cross a value outside, an open ring a value that does not count, an arrow a value beyond the drawing. "
-    "The whisker is the "
+    "The whisker is the uncertainty of the value, or its discretisation error where no uncertainty is known."
 )
+"""Meaning of the margins and bars of all tables of criteria."""
 SHORT_NAMES = {"Discretisation error": "Discr.\nerror", "Uncertainty (95 %)": "Uncer-\ntainty"}
 """Headings of the errors on paper."""
 
@@ -56,7 +57,7 @@ def describe_criterion(criterion: dict[str, Any]) -> CriterionTexts:
 
 
 def criteria_blocks(case: dict[str, Any], anchor: str, source_anchor: str) -> tuple[doc.Block, ...]:
-    """The table of criteria of a case, its key and the sources of the limits.
+    """The table of criteria of a case and the sources of the limits.
 
     Parameters
     ----------
@@ -81,9 +82,8 @@ def criteria_blocks(case: dict[str, Any], anchor: str, source_anchor: str) -> tu
         _row(criterion, sources, source_anchor, _link_place(case, criterion, anchor)) for criterion in case["criteria"]
     )
     table = insert_reference(case, doc.Table(columns, rows, layout="cards"), case["criteria"])
-    key = doc.SmallPrint(f"{MARGIN_KEY}{error.lower()}.")
     listed = (doc.NumberedList("Sources of the limits", tuple(sources), source_anchor),) if sources else ()
-    return (table, key, *listed)
+    return (table, *listed)
 
 
 def _link_place(case: dict[str, Any], criterion: dict[str, Any], anchor: str) -> tuple[doc.Inline, ...]:

@@ -18,13 +18,13 @@ def build_findings_section(results: dict[str, Any]) -> tuple[doc.Section, ...]:
     if not rows:
         return ()
     columns = (
-        doc.Column("Section", share=0.8),
-        doc.Column("Finding", share=4),
-        doc.Column("Printed", share=1),
+        doc.Column("Section", share=1),
+        doc.Column("Finding", share=6.5),
+        doc.Column("Printed", share=1.2),
         doc.Column("Computed", number=True),
         doc.Column("Bounds", number=True),
         doc.Column("Trust"),
-        doc.Column("Outcome", share=1),
+        doc.Column("Outcome", share=1.3),
     )
     counts = doc.Paragraph(" ".join(count_sentences(results)))
     table = doc.Table(columns, rows, layout="cards")
@@ -48,10 +48,11 @@ def count_sentences(results: dict[str, Any]) -> list[str]:
 
 def _build_row(case: dict[str, Any], row: dict[str, Any]) -> tuple[doc.RichText, ...]:
     finding, texts = row["finding"], describe_criterion(row)
-    remarks = [finding["tolerance"], *([finding["sensitivity"]] if finding["outcome"] == "not_reproduced" else [])]
+    remarks = [finding["tolerance"], finding["sensitivity"] if finding["outcome"] == "not_reproduced" else ""]
+    remark = doc.Remark(" ".join(filter(None, (f"{case['id']}:", *remarks))))
     return (
         finding["section"],
-        (f"{finding['sentence']} ", doc.Code(case["id"]), *map(doc.Remark, filter(None, remarks))),
+        (finding["sentence"], remark),
         finding["printed"],
         texts.value,
         texts.limits,

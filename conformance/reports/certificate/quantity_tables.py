@@ -7,7 +7,8 @@ from typing import Any
 from pantocheck.conformance.quantities.registry import QUANTITIES, table_quantities
 from pantocheck.conformance.reports.certificate.reference_values import has_reference
 from pantocheck.conformance.reports.certificate.two_verdicts import list_criteria
-from pantocheck.conformance.reports.document import Code, Column, RichText, Table
+from pantocheck.conformance.reports.document import Code, Column, Drawing, RichText, Table
+from pantocheck.conformance.reports.figures.spark_line import draw_spark_line
 from pantocheck.conformance.reports.page_text import format_value
 from pantocheck.conformance.reports.words import name_pantograph, quantity_label, quantity_unit, read_words
 
@@ -16,8 +17,8 @@ BAND_CAPTION = (
     "criteria, and by verification where the converged solution limits it."
 )
 
-LONGEST_PRINTED_LIST = 30
-"""Longest list that is printed in full: 24 positions of a span are."""
+LONGEST_PRINTED_LIST = 10
+"""Longest list that is printed in full; a longer one is drawn, and results.json has its values."""
 
 
 def list_owners(case: dict[str, Any]) -> list[str]:
@@ -27,7 +28,7 @@ def list_owners(case: dict[str, Any]) -> list[str]:
 
 
 def build_band_table(case: dict[str, Any]) -> Table:
-    """Quantities of the bands up to 50 Hz, each with its verdicts, or the reason why it has none."""
+    """Quantities of the bands up to 50 Hz with their verdicts; empty if none of them is graded."""
 
     def cell(quantity: str, key: str) -> str:
         value = case["quantities"].get(key, {}).get(quantity)
@@ -35,8 +36,12 @@ def build_band_table(case: dict[str, Any]) -> Table:
             return "not available"
         return f"{format_value(value)} ({'; '.join(_list_verdicts(case, quantity, key))})"
 
-    pantographs = [key for key in list_owners(case) if key != "0"]
-    cells = {name_pantograph(key).capitalize(): partial(cell, key=key) for key in pantographs}
+    rows = (*case["criteria"], *list_criteria(case, "verification"))
+    graded = any(row["quantity"] in table_quantities("bands") for row in rows)
+    pantographs = [key for key in list_owners(case) if key != "0" and graded]
+    cells: dict[str, Callable[[str], RichText]] = {
+        name_pantograph(key).capitalize(): partial(cell, key=key) for key in pantographs
+    }
     return _table(table_quantities("bands") if pantographs else (), cells, BAND_CAPTION)
 
 
@@ -59,15 +64,17 @@ def build_quantity_table(case: dict[str, Any]) -> Table:
     names = {name for key in keys for name in (*case["quantities"].get(key, {}), *case["skipped"].get(key, {}))}
     ordered = sorted(names, key=lambda name: (order.index(name) if name in order else len(order), name))
 
-    def cell(quantity: str, key: str, values: dict[str, Any]) -> str:
+    def cell(quantity: str, key: str, values: dict[str, Any]) -> RichText:
         value = values["quantities"].get(key, {}).get(quantity)
         if value is None:
             return "skipped" if quantity in values.get("skipped", {}).get(key, {}) else "–"
         error = values["uncertainty"].get(key, {}).get(quantity)
-        text = _format_list(value) if isinstance(value, list) else format_value(value, 5)
+        if isinstance(value, list):
+            return _format_list(value)
+        text = format_value(value, 5)
         return text if error is None or isinstance(error, list) else f"{text} ± {format_value(error, 2)}"
 
-    cells: dict[str, Callable[[str], str]] = {}
+    cells: dict[str, Callable[[str], RichText]] = {}
     for key in keys:
         name = name_pantograph(key)
         cells[name.capitalize()] = partial(cell, key=key, values=case)
@@ -76,17 +83,17 @@ def build_quantity_table(case: dict[str, Any]) -> Table:
     return _table(ordered, cells)
 
 
-def _format_list(values: list[float]) -> str:
-    """Values separated by commas; of a long list the first and the last ones."""
-    texts = [format_value(number, 5) for number in values]
-    if len(texts) > LONGEST_PRINTED_LIST:
-        texts = [*texts[:3], f"... {len(texts)} values in results.json ...", *texts[-3:]]
-    return ", ".join(texts)
+def _format_list(values: list[float]) -> RichText:
+    """Values separated by commas; of a long list a drawing with its range."""
+    if len(values) <= LONGEST_PRINTED_LIST:
+        return ", ".join(format_value(number, 5) for number in values)
+    text = f"{len(values)} values, {format_value(min(values), 5)} to {format_value(max(values), 5)}"
+    return Drawing(draw_spark_line(values), text), f" {text}"
 
 
-def list_definitions(case: dict[str, Any]) -> tuple[RichText, ...]:
+def list_definitions(cases: Iterable[dict[str, Any]]) -> tuple[RichText, ...]:
     """Definitions that depend on a choice of filter or band, with the change of the value by another choice."""
-    shown = {name for values in case["quantities"].values() for name in values}
+    shown = {name for case in cases for values in case["quantities"].values() for name in values}
     return tuple(
         (Code(name), f": {quantity.definition}; {quantity.other_definition}.")
         for name, quantity in QUANTITIES.items()
@@ -103,9 +110,10 @@ def list_skipped(case: dict[str, Any]) -> tuple[str, ...]:
     )
 
 
-def _table(quantities: Iterable[str], cells: Mapping[str, Callable[[str], str]], caption: str = "") -> Table:
+def _table(quantities: Iterable[str], cells: Mapping[str, Callable[[str], RichText]], caption: str = "") -> Table:
     """One row per quantity; one column per heading, with the function of its values."""
-    columns = (Column(heading, share=1, number=True) for heading in cells)
+    share = 1 if len(cells) > 1 else 2
+    columns = (Column(heading, share=share, number=True) for heading in cells)
     rows: list[tuple[RichText, ...]] = []
     for name in quantities:
         label = (f"{quantity_label(name)} ", Code(name))

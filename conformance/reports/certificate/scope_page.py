@@ -1,11 +1,17 @@
 """Identity and scope of a run on page 1: origin of the cases, weakened limits, steps of the procedure."""
 
+from collections.abc import Iterator
 from typing import Any
 
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.page_text import clean_tree
 from pantocheck.conformance.reports.words import read_words
 from pantocheck.conformance.results.results_format import name_case
+
+SCOPE_HEADING = "Scope: steps of the EN 50318 procedure"
+
+CASES_SHOWN = 10
+"""Number of cases outside the steps that page 1 names; the table of cases has all."""
 
 CHANGES_SHOWN = 5
 """Number of weakened limits of a case on page 1; the section of the case shows all."""
@@ -99,25 +105,33 @@ def build_scope_section(results: dict[str, Any], anchors: dict[str, str]) -> tup
     if not results["scope"]:
         return ()
     verdicts = {case["id"]: case["criteria_verdict"] or case["verdict"] for case in results["cases"]}
-    words = read_words()
-    rows: list[tuple[doc.RichText, ...]] = []
-    for step in results["scope"]:
-        cases: list[doc.Inline] = []
-        for name in step["cases"]:
-            label = doc.Link(name, anchors[name]) if name in anchors else name
-            cases += [", " if cases else "", label]
-            if step["state"] != "informative":  # a verdict belongs to other steps of the case, or to a modified copy
-                cases += [" ", doc.VerdictMark(verdicts[name])]
-        rows.append((words["step"][step["step"]], step["state"], tuple(cases) or "–"))
-    listed = {name for step in results["scope"] for name in step["cases"]}
-    outside = [name for name in verdicts if name not in listed]
-    states = " ".join(f"{name.capitalize()}: {meaning}." for name, meaning in words["state"].items())
-    rest = f" Cases outside these steps: {', '.join(outside)}." if outside else ""
+    steps = [step for step in results["scope"] if step["state"] != "not done"]
+    rows = tuple(_step_row(step, verdicts, anchors) for step in steps)
     columns = (doc.Column("Step", share=2), doc.Column("State"), doc.Column("Cases", share=3))
-    return (
-        doc.Section(
-            "Scope: steps of the EN 50318 procedure",
-            (doc.Table(columns, tuple(rows)), doc.SmallPrint(states + rest)),
-            anchor="scope",
-        ),
-    )
+    table = (doc.Table(columns, rows),) if rows else ()
+    sentences = _describe_rest(results, list(verdicts), {step["state"] for step in steps})
+    return (doc.Section(SCOPE_HEADING, (*table, doc.SmallPrint(" ".join(sentences))), anchor="scope"),)
+
+
+def _step_row(step: dict[str, Any], verdicts: dict[str, str], anchors: dict[str, str]) -> tuple[doc.RichText, ...]:
+    """Step of the procedure, its state, and its cases with their verdicts."""
+    cases: list[doc.Inline] = []
+    for name in step["cases"]:
+        label = doc.Link(name, anchors[name]) if name in anchors else name
+        cases += [", " if cases else "", label]
+        if step["state"] != "informative":  # a verdict belongs to other steps of the case, or to a modified copy
+            cases += [" ", doc.VerdictMark(verdicts[name])]
+    return read_words()["step"][step["step"]], step["state"], tuple(cases) or "–"
+
+
+def _describe_rest(results: dict[str, Any], cases: list[str], states: set[str]) -> Iterator[str]:
+    """Sentences on the steps that were not done, on cases outside the steps, and on the states in the table."""
+    words = read_words()
+    missing = [words["step"][step["step"]].lower() for step in results["scope"] if step["state"] == "not done"]
+    if missing:
+        yield f"Not done ({words['state']['not done']}): {', '.join(missing)}."
+    listed = {name for step in results["scope"] for name in step["cases"]}
+    if outside := [name for name in cases if name not in listed]:
+        shown, more = outside[:CASES_SHOWN], len(outside) - CASES_SHOWN
+        yield f"Cases outside these steps: {', '.join(shown)}{f' and {more} more' if more > 0 else ''}."
+    yield from (f"{name.capitalize()}: {meaning}." for name, meaning in words["state"].items() if name in states)

@@ -54,7 +54,7 @@ def build_step_section(
     if step["notes"]:
         blocks.append(doc.BulletList(tuple(step["notes"])))
     return doc.Section(
-        f"{number} {name_step(step)}", tuple(blocks), anchor=anchor_step(step), new_page=step["step"] not in SHORT_STEPS
+        f"{number} {name_step(step)}", tuple(blocks), anchor=anchor_step(step), ruled=step["step"] not in SHORT_STEPS
     )
 
 

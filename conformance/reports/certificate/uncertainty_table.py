@@ -8,11 +8,12 @@ from pantocheck.conformance.reports.certificate.quantity_tables import list_owne
 from pantocheck.conformance.reports.page_text import format_value
 from pantocheck.conformance.reports.words import name_pantograph, quantity_label, quantity_unit
 
-KEY = (
-    "Half-widths of 95 % intervals. The combined one is the root of the sum of the squares of the components. A dash: "
-    "the component does not apply to the quantity, or is not known. A quantity with several values has the largest of "
-    "its half-widths."
+UNCERTAINTY_KEY = (
+    "Uncertainties are half-widths of 95 % intervals. The combined one is the root of the sum of the squares of the "
+    "components. A dash: the component does not apply to the quantity, or is not known. A quantity with several values "
+    "has the largest of its half-widths."
 )
+"""Meaning of the uncertainties by component of all cases."""
 
 
 def uncertainty_blocks(case: dict[str, Any]) -> tuple[doc.Block, ...]:
@@ -22,7 +23,7 @@ def uncertainty_blocks(case: dict[str, Any]) -> tuple[doc.Block, ...]:
     basis += tuple(f"Model, not part of the combined width: {sentence}" for sentence in case["model_uncertainty"])
     rows = tuple(_row(case, key, name, names) for key in list_owners(case) for name in _quantities(case, key))
     if not rows:
-        return (doc.BulletList(basis),)
+        return (doc.SmallPrint(" ".join(basis)),)
     numbers = ("Combined", *(name.capitalize() for name in names))
     columns = (
         doc.Column("Quantity", share=1),
@@ -30,7 +31,7 @@ def uncertainty_blocks(case: dict[str, Any]) -> tuple[doc.Block, ...]:
         doc.Column("Unit"),
         *(doc.Column(heading, number=True, short=SHORT_COMPONENTS.get(heading, "")) for heading in numbers),
     )
-    return (doc.BulletList(basis), doc.Table(columns, rows), doc.SmallPrint(KEY))
+    return (doc.BulletList(basis), doc.Table(columns, rows))
 
 
 SHORT_COMPONENTS = {"Discretisation": "Discr."}

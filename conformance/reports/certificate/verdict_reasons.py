@@ -124,9 +124,12 @@ def _select(results: dict[str, Any], verdict: str) -> list[CaseCriterion]:
 
 
 def _case_reasons(results: dict[str, Any], verdict: str) -> list[str]:
-    return [
-        f"{case['id']}: {case['reason']}" for case in results["cases"] if case["verdict"] == verdict and case["reason"]
-    ]
+    """Reasons of cases; cases with the same reason share a sentence."""
+    cases: dict[str, list[str]] = {}
+    for case in results["cases"]:
+        if case["verdict"] == verdict and case["reason"]:
+            cases.setdefault(case["reason"], []).append(case["id"])
+    return [f"{', '.join(ids)}: {reason}" for reason, ids in cases.items()]
 
 
 def _record_reasons(results: dict[str, Any]) -> list[str]:

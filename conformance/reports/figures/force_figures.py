@@ -47,7 +47,7 @@ def draw_force(trace: dict[str, Any], limited: list[dict[str, Any]], reference: 
     reference : list of float
         Filtered force of the reference simulator at the same positions, drawn behind it; empty: none.
     """
-    figure = Figure(figsize=(FULL, 2.6))
+    figure = Figure(figsize=(FULL, 2.25))
     if limited:
         left, right = figure.subplots(1, 2, sharey=True, width_ratios=(1, 0.062 * (len(limited) + 1)))
         _draw_limits(right, limited)
@@ -103,7 +103,7 @@ def _draw_limits(axes: Axes, rows: list[dict[str, Any]]) -> None:
 def draw_spectrum(trace: dict[str, Any], quantities: dict[str, Any]) -> Figure:
     """Single-sided amplitude spectrum of the unfiltered force with the three bands and their RMS."""
     frequency, amplitude = trace["spectrum"]["frequency_Hz"], trace["spectrum"]["amplitude_N"]
-    figure = Figure(figsize=(HALF, 2.3))
+    figure = Figure(figsize=(HALF, 2.0))
     axes = figure.subplots()
     axes.plot(frequency, amplitude, color=INK, linewidth=0.9)
     above: dict[str, Any] = {"va": "bottom", "fontsize": 7}
@@ -123,7 +123,7 @@ def draw_spectrum(trace: dict[str, Any], quantities: dict[str, Any]) -> Figure:
 def draw_histogram(trace: dict[str, Any]) -> Figure:
     """Histogram of the 20 Hz force with its mean and mean plus and minus three standard deviations."""
     edges, share = trace["histogram"]["edges_N"], trace["histogram"]["share_pct"]
-    figure = Figure(figsize=(HALF, 2.3))
+    figure = Figure(figsize=(HALF, 2.0))
     axes = figure.subplots()
     axes.set_ylim(0, 1.08 * max(share))
     axes.stairs(share, edges, fill=True, facecolor=SHADES[3], edgecolor=INK, linewidth=0.6)

@@ -43,7 +43,7 @@ def find_common_range(charts: Iterable[dict[str, Any]]) -> tuple[float, float]:
 @render_svg
 def draw_chart(data: dict[str, Any], y_range: tuple[float, float] | None = None) -> Figure:
     """A chart of a study: one entry of a case's `charts`; `y_range` is the scale that it shares with others."""
-    figure = Figure(figsize=(FULL, 2.9) if data["wide"] else (HALF, 2.4))
+    figure = Figure(figsize=(FULL, 2.3) if data["wide"] else (HALF, 2.1))
     axes = figure.subplots()
     axes.set(xscale=data["x_scale"], yscale=data["y_scale"], xlabel=data["x_label"], ylabel=data["y_label"])
     for axis, scale in ((axes.xaxis, data["x_scale"]), (axes.yaxis, data["y_scale"])):
