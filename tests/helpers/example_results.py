@@ -355,7 +355,9 @@ def with_hostile_text() -> dict[str, Any]:
         case["warnings"] = list(HOSTILE)
         for row in case["criteria"][-1:]:
             row["quantity"] = "a|b<i>"
-        case["inputs"] = [{"group": text, "trust": "secondary", "source": text} for text in HOSTILE]
+        case["inputs"] = [
+            {"group": text, "trust": "secondary", "source": text, "values": {text: text}} for text in HOSTILE
+        ]
         case["charts"] = [chart(*HOSTILE[:2])]
         for i, row in enumerate(case["criteria"]):
             row["source"] = HOSTILE[i % len(HOSTILE)]

@@ -53,7 +53,7 @@ def test_criterion_shows_all_its_values(passing: dict[str, Any]) -> None:
     texts = describe_criterion(row)
     assert (texts.value, texts.error, texts.limits) == ("118.2 N", "± 0.12", "110 to 120")
     assert (texts.margin, texts.pantograph) == ("+0.36", "1")
-    table, _, sources = criteria_blocks(case, "case-1", "case-1-source")
+    table, sources = criteria_blocks(case, "case-1", "case-1-source")
     assert isinstance(table, Table)
     assert table.rows[1][-3:] == (VerdictMark("pass"), TrustMark("secondary"), Link("[2]", "case-1-source-2"))
     assert sources == NumberedList("Sources of the limits", ("another", row["source"]), "case-1-source")
@@ -105,13 +105,13 @@ def test_band_table_shows_verdicts_or_why_there_are_none(results: dict[str, Any]
 def test_definitions_state_the_worth_of_filter_and_band(results: dict[str, Any]) -> None:
     """Of the shown quantities only."""
     case = results["cases"][0]
-    texts = {name.text: text for name, text in list_definitions(case)}
+    texts = {name.text: text for name, text in list_definitions([case])}
     assert texts["min_force_N"] == (
         ": smallest contact force, 0-20 Hz; a causal filter of the same order changes it by up to 15 %."
     )
     assert "mean_force_N" not in texts
     without = {"quantities": {"1": {"mean_force_N": 118.0}}}
-    assert list_definitions(without) == ()
+    assert list_definitions([without]) == ()
 
 
 def test_case_facts_show_wall_time_and_filter(passing: dict[str, Any]) -> None:

@@ -7,13 +7,14 @@ from pantocheck.conformance.reports.certificate.certificate_page import build_ce
 from pantocheck.conformance.reports.certificate.quantity_tables import build_quantity_table
 from pantocheck.conformance.reports.certificate.uncertainty_table import uncertainty_blocks
 from pantocheck.conformance.reports.document import BulletList, Code, Section, Table
+from pantocheck.conformance.reports.figures.spark_line import draw_spark_line
 from pantocheck.conformance.reports.page_text import format_value
 
 
 def test_table_has_every_component_of_every_quantity(passing: dict[str, Any]) -> None:
     """Both pantographs; an unknown component is a dash, and its reason stands above the table."""
     case = passing["cases"][0]
-    basis, table, _ = uncertainty_blocks(case)
+    basis, table = uncertainty_blocks(case)
     assert isinstance(table, Table)
     assert isinstance(basis, BulletList)
     assert basis.items[1].startswith("Start: 7 runs with other starts and ramps")
@@ -30,9 +31,9 @@ def test_table_has_every_component_of_every_quantity(passing: dict[str, Any]) ->
 
 def test_model_uncertainty_stands_below_the_components_and_changes_no_width(passing: dict[str, Any]) -> None:
     case = passing["cases"][0]
-    _, table, _ = uncertainty_blocks(case)
+    _, table = uncertainty_blocks(case)
     case["model_uncertainty"] = ["Constant tension. Maximum of the 20 Hz force: 0.8 %."]
-    basis, same, _ = uncertainty_blocks(case)
+    basis, same = uncertainty_blocks(case)
     assert isinstance(basis, BulletList)
     assert len(basis.items) == 5
     assert basis.items[4] == (
@@ -46,23 +47,25 @@ def test_several_values_have_the_largest_of_their_half_widths(passing: dict[str,
     case["quantities"]["0"]["presag_mm"] = [20.0, 55.0]
     case["uncertainty"]["0"] = {"presag_mm": [0.5, 0.25]}
     case["uncertainty_components"]["0"] = {"presag_mm": {"discretisation": [0.5, 0.25]}}
-    _, table, _ = uncertainty_blocks(case)
+    _, table = uncertainty_blocks(case)
     assert isinstance(table, Table)
     assert table.rows[-1][1:] == ("line", "mm", "0.50", "0.50", "–", "–", "–")
     cells = {row[0][1]: row for row in build_quantity_table(case).rows}
     assert cells[Code("presag_mm")][-1] == "20.000, 55.000"
 
 
-def test_long_list_shows_its_ends(passing: dict[str, Any]) -> None:
-    """24 positions of a span are printed, 48 positions along a line are not."""
+def test_long_list_is_drawn_with_its_range(passing: dict[str, Any]) -> None:
+    """The curve of 3 points spans the height of the drawing inside its margins of 2; equal values lie at one height."""
+    assert 'points="2.00,16.00 50.00,2.00 98.00,9.00"' in draw_spark_line([1.0, 3.0, 2.0])
+    assert 'points="2.00,16.00 98.00,16.00"' in draw_spark_line([1.0, 1.0])
     case = passing["cases"][0]
-    case["quantities"]["0"] = {"elasticity_along_span_mm_N": [0.5] * 24, "elasticity_along_line_mm_N": [0.5] * 48}
+    case["quantities"]["0"] = {"presag_mm": [0.5] * 10, "elasticity_along_span_mm_N": [0.25, *[0.5] * 23]}
     case["uncertainty"]["0"] = {}
     cells = {row[0][1]: row[-1] for row in build_quantity_table(case).rows}
-    assert cells[Code("elasticity_along_span_mm_N")].count("0.50000") == 24
-    assert cells[Code("elasticity_along_line_mm_N")] == (
-        "0.50000, 0.50000, 0.50000, ... 48 values in results.json ..., 0.50000, 0.50000, 0.50000"
-    )
+    assert cells[Code("presag_mm")].count("0.50000") == 10
+    drawing, text = cells[Code("elasticity_along_span_mm_N")]
+    assert drawing.svg == draw_spark_line([0.25, *[0.5] * 23])
+    assert drawing.alternative == text.strip() == "24 values, 0.25000 to 0.50000"
 
 
 def test_certificate_shows_the_components_only_where_there_are_results(results: dict[str, Any]) -> None:
