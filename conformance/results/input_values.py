@@ -7,7 +7,7 @@ from pydantic import Field
 from pantocheck.conformance.input_files.sourced_table import PROVENANCE, SourcedTable
 from pantocheck.conformance.results.results_part import FiniteNumber, ResultsPart
 
-NAMES = frozenset({"id", "title", "line", "model", "requires", "edition", "superseded_by", "on_request"})
+NAME_KEYS = frozenset({"id", "title", "line", "model", "requires", "edition", "superseded_by", "on_request"})
 """Keys that name a case or its files, and are no inputs."""
 
 OTHER_PARTS = frozenset({"limit", "pantograph", "mass_drop", "study", "damping"})
@@ -17,7 +17,7 @@ MOST_LISTED = 12
 """Longest list whose values are all stored; of a longer one, number and range are: a line may have 500 spans."""
 
 
-class ValueRange(ResultsPart):
+class StoredRange(ResultsPart):
     """Number of the values of a long list, and their range."""
 
     count: int
@@ -25,17 +25,17 @@ class ValueRange(ResultsPart):
     highest: FiniteNumber
 
 
-InputValue = bool | FiniteNumber | str | list[FiniteNumber | str] | ValueRange
+StoredValue = bool | FiniteNumber | str | list[FiniteNumber | str] | StoredRange
 
-InputValues = Annotated[
-    dict[str, InputValue],
+StoredValues = Annotated[
+    dict[str, StoredValue],
     Field(
         description="values by dotted key, with the unit at its end; of a list of tables, the values of a key in order"
     ),
 ]
 
 
-def list_input_values(table: SourcedTable, groups: set[str], group: str) -> dict[str, InputValue]:
+def list_input_values(table: SourcedTable, groups: set[str], group: str) -> dict[str, StoredValue]:
     """Values that the file of a table states.
 
     Parameters
@@ -48,7 +48,7 @@ def list_input_values(table: SourcedTable, groups: set[str], group: str) -> dict
         Name of the group of the table.
     """
     excluded = {key for key in type(table).model_fields if f"{group}.{key}" in groups}
-    excluded |= PROVENANCE | NAMES | (OTHER_PARTS if group == "case" else {"point_mass"})
+    excluded |= PROVENANCE | NAME_KEYS | (OTHER_PARTS if group == "case" else {"point_mass"})
     tree = table.model_dump(mode="json", exclude=excluded, exclude_unset=True, exclude_none=True)
     columns: dict[str, list[object]] = {}
     for key, value in tree.items():
@@ -69,14 +69,14 @@ def _collect(key: str, value: object, columns: dict[str, list[object]]) -> None:
         columns.setdefault(key, []).append(value)
 
 
-def _summarise(values: list[object]) -> InputValue:
+def _summarise(values: list[object]) -> StoredValue:
     """One value as it is, a short list as a list, a long one as number and range, or as its different texts."""
     numbers = [float(value) for value in values if isinstance(value, int | float) and not isinstance(value, bool)]
     if len(values) == 1:
         [value] = values
         return value if isinstance(value, bool | str) else numbers[0]
     if len(numbers) == len(values) > MOST_LISTED:
-        return ValueRange(count=len(numbers), lowest=min(numbers), highest=max(numbers))
+        return StoredRange(count=len(numbers), lowest=min(numbers), highest=max(numbers))
     if len(numbers) == len(values):
         return list(numbers)
     texts = [

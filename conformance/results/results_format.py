@@ -17,7 +17,7 @@ from pantocheck.conformance.results.criterion_format import CaseVerification, Co
 from pantocheck.conformance.results.event_format import EventFacts
 from pantocheck.conformance.results.figure_data import Chart, ExtremePlace, TextTable, Traces, UpliftTrace
 from pantocheck.conformance.results.finding_format import FindingCounts
-from pantocheck.conformance.results.input_values import InputValues
+from pantocheck.conformance.results.input_values import StoredValues
 from pantocheck.conformance.results.lift_force_facts import LawForces
 from pantocheck.conformance.results.measured_run_format import MeasuredRun
 from pantocheck.conformance.results.procedure_format import Procedure
@@ -71,7 +71,7 @@ class InputGroup(ResultsPart):
     group: str
     trust: Trust
     source: str
-    values: InputValues = {}
+    values: StoredValues = {}
 
 
 class FilterFacts(ResultsPart):

@@ -23,7 +23,7 @@ from pantocheck.conformance.reports.certificate.two_verdicts import verification
 from pantocheck.conformance.reports.certificate.uncertainty_table import uncertainty_blocks
 from pantocheck.conformance.reports.certificate.verdict_reasons import describe_record, summarise_case
 
-CONTENT = ("criteria", "quantities", "traces", "charts", "tables", "uplift")
+SHOWN_KEYS = ("criteria", "quantities", "traces", "charts", "tables", "uplift")
 """Keys of a case that its section shows."""
 
 
@@ -53,7 +53,7 @@ def list_shown_cases(cases: list[dict[str, Any]]) -> list[ShownCase]:
     """Cases with a section of their own: all but those that were skipped without any value."""
     shown: list[ShownCase] = []
     for number, case in enumerate(cases):
-        if case["verdict"] != "skip" or any(case[key] for key in CONTENT):
+        if case["verdict"] != "skip" or any(case[key] for key in SHOWN_KEYS):
             earlier = tuple(other.case for other in shown)
             shown.append(ShownCase(case, number, f"case-{number + 1}", earlier))
     return shown

@@ -7,7 +7,7 @@ from pantocheck.conformance.input_files.units import UNIT_FAMILIES, find_unit, k
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.page_text import format_plain
 
-COLUMNS = (
+INPUT_COLUMNS = (
     doc.Column("Group", share=1.5),
     doc.Column("Values", share=5),
     doc.Column("Trust"),
@@ -18,7 +18,7 @@ PROVISIONAL = "○"
 
 PROVISIONAL_KEY = f"{PROVISIONAL}: value not traced to a printed source."
 
-UNITS = {"1_s": "1/s", "1_m": "1/m", "pct": "%", "C": "°C", "K": "K", "1_K": "1/K", "m3": "m3", "deg": "°"} | {
+KEY_UNITS = {"1_s": "1/s", "1_m": "1/m", "pct": "%", "C": "°C", "K": "K", "1_K": "1/K", "m3": "m3", "deg": "°"} | {
     key_suffix(symbol): symbol for family in UNIT_FAMILIES for symbol in family.factors
 }
 """Units by the end of a key."""
@@ -50,7 +50,7 @@ def input_blocks(case: dict[str, Any], earlier: tuple[dict[str, Any], ...], anch
     marked = PROVISIONAL_KEY if any(PROVISIONAL in str(row[1]) for row in rows) else ""
     texts = [*filter(None, [marked]), *(f"As in {name}: {', '.join(names)}." for name, names in repeated.items())]
     return (
-        *((doc.Table(COLUMNS, rows),) if rows else ()),
+        *((doc.Table(INPUT_COLUMNS, rows),) if rows else ()),
         *((doc.NumberedList("Sources of the inputs", tuple(sources), anchor),) if sources else ()),
         *((doc.SmallPrint(" ".join(texts)),) if texts else ()),
     )
@@ -85,9 +85,9 @@ def _is_single(group: str, key: str, single: set[str]) -> bool:
 def _describe_value(key: str, value: Any) -> str:
     """Name, value and unit of an input: `tension 20000 N`."""
     suffix = next((unit for unit in ("1_s", "1_m", "1_K") if key.endswith(f"_{unit}")), None) or find_unit(key)
-    suffix = suffix or next((unit for unit in UNITS if key.endswith(f"_{unit}")), None)
+    suffix = suffix or next((unit for unit in KEY_UNITS if key.endswith(f"_{unit}")), None)
     name = key.removesuffix(f"_{suffix}").replace("_", " ").replace(".", ", ")
-    return f"{name} {_format_input(value)} {UNITS[suffix] if suffix else ''}".rstrip()
+    return f"{name} {_format_input(value)} {KEY_UNITS[suffix] if suffix else ''}".rstrip()
 
 
 def _format_input(value: Any) -> str:

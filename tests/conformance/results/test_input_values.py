@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 from pantocheck.conformance.cases.library import load_case, select_cases
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.grading.case_grading import build_ungraded
-from pantocheck.conformance.results.input_values import ValueRange
+from pantocheck.conformance.results.input_values import StoredRange
 
 
 def test_library_case_has_the_values_of_its_files() -> None:
@@ -35,4 +35,4 @@ def test_spans_are_listed_up_to_twelve_and_summarised_beyond(tmp_path: Path, mon
     [geometry] = [
         g.values for g in build_ungraded(load_case(Path("case.toml")), "skip", "").inputs if g.group == "line.geometry"
     ]
-    assert geometry["span_list.length_m"] == ValueRange(count=13, lowest=54, highest=65)
+    assert geometry["span_list.length_m"] == StoredRange(count=13, lowest=54, highest=65)
