@@ -76,7 +76,7 @@ from pantocheck.conformance.records.measured import (
     record_preparation,
     usable_sections,
 )
-from pantocheck.conformance.results import contact_loss_list, results_part, results_reading, traces
+from pantocheck.conformance.results import contact_loss_list, input_values, results_part, results_reading, traces
 
 ROOT = Path(__file__).parents[2]
 ROWS = re.findall(
@@ -85,7 +85,7 @@ ROWS = re.findall(
     re.MULTILINE,
 )
 MODULES: list[ModuleType] = [
-    track_position, record_preparation, events, arc_tables, contact_loss_list,
+    input_values, track_position, record_preparation, events, arc_tables, contact_loss_list,
     certificate_reading, page_check, pdf_comparison, pdf_structure, record_check, reported_numbers, rerun_check,
     text_differences, trace_check,
     force_content, force_copy, force_dynamics, implied_force, mean_force, roll_off,
