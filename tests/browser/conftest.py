@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from helpers.example_identification import build_example_line
-from helpers.example_results import chart, example, with_hostile_text, with_measured_run
+from helpers.example_results import chart, example, with_hostile_text, with_measured_run, with_reference
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
 from pantocheck.conformance.reports.document import Document, Figure, Figures, PlainHeader, Section, make_grid
 from pantocheck.conformance.reports.figures.study_chart import draw_chart
@@ -75,6 +75,7 @@ def page_files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     documents = {
         "certificate": build_certificate(example()),
         "measured": build_certificate(with_measured_run()),
+        "reference": build_certificate(with_reference()),
         "hostile": build_certificate(with_hostile_text()),
         "identification": build_identification_document([build_example_line()]),
         "plain": build_plain_document(),

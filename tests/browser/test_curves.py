@@ -242,6 +242,17 @@ def test_simulated_and_measured_force_stand_in_one_plot(open_page: Any) -> None:
     assert len(rows) == len(example()["cases"][1]["traces"]["1"]["position_m"])
 
 
+def test_force_of_the_reference_is_drawn_and_saved_beside_that_of_the_system(open_page: Any) -> None:
+    """The reference of the example is 2 N higher everywhere."""
+    page = open_page("reference")
+    figure = page.locator(FIGURE)
+    figure.scroll_into_view_if_needed()
+    assert figure.get_by_role("checkbox", name="reference, 0–20 Hz").count() == 1
+    _, (headings, *rows) = read_file(page, figure, "Curves as CSV")
+    assert headings == ["position_m", "force_N", "force_20_N", "reference_force_20_N"]
+    assert all(float(row[3]) - float(row[2]) == pytest.approx(2, abs=1e-3) for row in rows)
+
+
 def read_file(page: Any, scope: Any, name: str) -> tuple[str, list[list[str]]]:
     """Name and rows of the file that a button saves."""
     with page.expect_download() as download:

@@ -386,3 +386,15 @@ def hostile_text() -> str:
 def certificate() -> bytes:
     """The example as PDF."""
     return render_pdf(build_certificate(example()))
+
+
+def with_reference() -> dict[str, Any]:
+    """Example whose first case has a reference with 2 N more everywhere."""
+    results = example()
+    case = results["cases"][0]
+    forces = {owner: [force + 2 for force in curves["force_20_N"]] for owner, curves in case["traces"].items()}
+    case["reference"] = {
+        "name": "Reference", "version": "3", "reason": None, "quantities": case["quantities"], "uncertainty": {},
+        "force_20_N": forces,
+    }  # fmt: skip
+    return Results.model_validate(results).to_dict()
