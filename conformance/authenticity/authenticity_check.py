@@ -1,6 +1,6 @@
 """Result of one check of a document."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -12,6 +12,10 @@ CheckOutcome = Literal["proved", "contradicted", "incomplete", "open"]
 `incomplete`: another version wrote the document, so that a part of it could not be compared. This is no contradiction,
 but such a document is never accepted: otherwise a changed version number would hide changed pages.
 """
+
+
+MOST_DETAILS = 12
+"""Largest number of listed differences: the first ones show the change."""
 
 
 @dataclass(frozen=True)
@@ -31,6 +35,12 @@ class DocumentCheck:
     outcome: CheckOutcome
     statement: str
     details: tuple[str, ...] = ()
+
+
+def shorten_details(details: Sequence[str]) -> tuple[str, ...]:
+    """First details of a list; the last line counts the others."""
+    rest = len(details) - MOST_DETAILS
+    return (*details[:MOST_DETAILS], *([f"and {rest} more"] if rest > 0 else []))
 
 
 def judge_details(proved: str, contradicted: str, details: Iterable[str]) -> DocumentCheck:

@@ -35,10 +35,29 @@ def find_gaps(results: Results) -> list[str]:
 def _find_case_gaps(case: CaseResult) -> Iterator[str]:
     keys = [key for key in STATED_BY_EVERY_CASE if not (case.profile and key == "criteria_verdict")]
     yield from (f"{key} is missing" for key in keys if _is_absent(getattr(case, key)))
+    yield from _find_record_gap(case)
+    yield from _find_start_gap(case)
     if case.quantities:
         yield from _find_uncertainty_gaps(case)
     if case.run.rate_Hz is not None and case.run.evaluated_m is not None:
         yield from _find_trace_gaps(case)
+
+
+def _find_record_gap(case: CaseResult) -> Iterator[str]:
+    """A graded passage states whether its record was verified."""
+    ungraded = not case.criteria and case.reason and case.verdict in ("skip", "error")
+    if case.record is None and case.run.evaluated_m is not None and not ungraded:
+        yield "the state of the record is missing"
+
+
+def _find_start_gap(case: CaseResult) -> Iterator[str]:
+    """A start that differs from that of the case is a warning, one that is not stated a note."""
+    record = case.record
+    if record is None or record.start_text is None or case.reason:
+        return
+    texts = case.warnings if record.start == "differs" else case.notes
+    if record.start != "as in the case" and record.start_text not in texts:
+        yield "the remark on the start of the record is missing"
 
 
 def _find_trace_gaps(case: CaseResult) -> Iterator[str]:

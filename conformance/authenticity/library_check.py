@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from pantocheck.conformance.authenticity.authenticity_check import DocumentCheck, judge_details
+from pantocheck.conformance.authenticity.authenticity_check import DocumentCheck, judge_details, shorten_details
 from pantocheck.conformance.authenticity.limit_comparison import (
     compare_limits,
     compare_verification_limits,
@@ -15,6 +15,7 @@ from pantocheck.conformance.cases.library import list_library, load_case
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.profile_file import list_profiles, load_profile
 from pantocheck.conformance.grading.case_grading import build_ungraded
+from pantocheck.conformance.grading.extended_band import find_unvalidated
 from pantocheck.conformance.grading.validity_warnings import validity_warnings
 from pantocheck.conformance.quantities.evaluation import Evaluation, Value
 from pantocheck.conformance.results.results_format import CaseResult, Results
@@ -49,7 +50,9 @@ def check_library(results: Results) -> list[DocumentCheck]:
     checks = []
     if differences and list_suite_differences(results):
         checks.append(
-            DocumentCheck("incomplete", "The installed library has other cases or limits.", tuple(differences))
+            DocumentCheck(
+                "incomplete", "The installed library has other cases or limits.", shorten_details(differences)
+            )
         )
     elif differences or any(case.library not in {"own", "modified"} for case in results.cases):
         proved = "Inputs, limits and texts of the library cases are those of the installed library."
@@ -98,13 +101,14 @@ def _compare_with(case: Case, result: CaseResult) -> Iterator[str]:
 
 def _compare_warnings(case: Case, result: CaseResult) -> Iterator[str]:
     """Warnings on the limits of validity that follow from the case and the stated quantities."""
-    if not result.quantities or (result.reason and result.verdict == "skip"):
+    if not result.quantities or result.reason:
         return
     values: dict[int, dict[str, Value]] = {
         int(owner): {name: tuple(value) if isinstance(value, list) else value for name, value in quantities.items()}
         for owner, quantities in result.quantities.items()
     }
-    for warning in validity_warnings(case, Evaluation(values, {})):
+    evaluation = Evaluation(values, {})
+    for warning in (*validity_warnings(case, evaluation), *find_unvalidated(evaluation)):
         if warning not in result.warnings:
             yield f"the warning '{warning.split(':')[0]}' is missing"
 

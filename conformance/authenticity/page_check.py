@@ -4,12 +4,12 @@ The pages follow from the results, the versions of the software and the date. Wh
 is a contradiction. Where they do not, the texts are compared, and the check stays incomplete.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import assert_never
 
 from pantocheck.conformance.authenticity.attachment import PdfCertificate
-from pantocheck.conformance.authenticity.authenticity_check import DocumentCheck, judge_details
+from pantocheck.conformance.authenticity.authenticity_check import DocumentCheck, judge_details, shorten_details
 from pantocheck.conformance.authenticity.certificate_reading import Certificate, ResultsFile
 from pantocheck.conformance.authenticity.html_certificate import HtmlCertificate
 from pantocheck.conformance.authenticity.html_comparison import (
@@ -28,13 +28,11 @@ from pantocheck.conformance.authenticity.pdf_comparison import (
 from pantocheck.conformance.authenticity.pdf_structure import list_foreign_parts
 from pantocheck.conformance.authenticity.text_differences import quote
 from pantocheck.conformance.authenticity.version_differences import list_version_differences
+from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.reports.certificate.certificate_page import HEADING, build_dated_certificate
 from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.reports.formats.pdf import render_pdf
 from pantocheck.conformance.reports.words import read_words
-
-MOST_DETAILS = 12
-"""Largest number of listed differences: the first ones show the change."""
 
 
 @dataclass(frozen=True)
@@ -66,20 +64,31 @@ def check_pages(document: Certificate) -> DocumentCheck:
     ----------
     document : Certificate
         Document with its results.
+
+    Raises
+    ------
+    InputError
+        The date of a PDF cannot be read.
     """
-    found = _compare(document)
     proved, contradicted = _statements(document)
+    try:
+        found = _compare(document)
+    except (KeyError, IndexError, ValueError, TypeError) as error:
+        if isinstance(error, InputError):
+            raise
+        text = f"no page can be made from the embedded results, which contradict themselves ({type(error).__name__})"
+        return DocumentCheck("contradicted", contradicted, (text,))
     if found.same:
         return DocumentCheck("proved", proved)
     if not list_version_differences(document.results):
-        return judge_details(proved, contradicted, _shorten(found.all))
+        return judge_details(proved, contradicted, shorten_details(found.all))
     if wrong := [*found.foreign, *_find_other_verdict(document)]:
         return judge_details(proved, "The document shows something else than its embedded results.", wrong)
     if isinstance(document, ResultsFile):
         return DocumentCheck("incomplete", "The layout of the file was not compared.")
     if found.texts:
         return DocumentCheck(
-            "incomplete", "The texts are not those of the installed version.", tuple(_shorten(found.texts))
+            "incomplete", "The texts are not those of the installed version.", shorten_details(found.texts)
         )
     return DocumentCheck(
         "incomplete", "All texts are those of the installed version. Figures and layout were not compared."
@@ -147,8 +156,3 @@ def _statements(document: Certificate) -> tuple[str, str]:
         "Texts, figures and metadata are those that the embedded results give, byte for byte.",
         "The document is not the one that its embedded results give.",
     )
-
-
-def _shorten(details: Sequence[str]) -> list[str]:
-    rest = len(details) - MOST_DETAILS
-    return list(details[:MOST_DETAILS]) + ([f"{rest} more differences"] if rest > 0 else [])

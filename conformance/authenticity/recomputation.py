@@ -12,11 +12,12 @@ from pantocheck.conformance.grading.near_limit import ValueErrors, near_limit_re
 from pantocheck.conformance.grading.start_agreement import list_verification_components
 from pantocheck.conformance.grading.verdicts import Verdict, judge, margin
 from pantocheck.conformance.input_files.trust import limit_counts
+from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, statistical_extremes
 from pantocheck.conformance.results.criterion_format import COMPONENT_NAMES
 from pantocheck.conformance.results.finding_format import count_findings, count_verdict, judge_finding
 from pantocheck.conformance.results.record_facts import RecordFacts
-from pantocheck.conformance.results.results_format import Results
+from pantocheck.conformance.results.results_format import STATEMENT, Results
 from pantocheck.conformance.results.scope import build_scope
 from pantocheck.model.statics.wave_factors import amplification_coefficient, doppler_factor
 
@@ -45,6 +46,8 @@ def find_discrepancies(results: dict[str, Any]) -> list[str]:
     if stated.criteria_verdict is not None:  # null: made by a version without a second verdict
         pairs.append(("EN 50318 criteria: ", stated.criteria_verdict, decided.criteria_verdict))
     findings = count_findings(row.finding for case in stated.cases for row in case.criteria)
+    if stated.statement != STATEMENT:
+        discrepancies.append(f"the report is called '{stated.statement}', expected '{STATEMENT}'")
     if stated.scope and stated.scope != build_scope(stated.cases):
         discrepancies.append("the scope does not follow from the cases")
     return [
@@ -62,8 +65,6 @@ def _check_case(case: dict[str, Any], trust: Any) -> Iterator[str]:
     yield from (f"{case['id']}, {text}" for text in check_combination(case))
     record = None if case["record"] is None else RecordFacts.model_validate(case["record"])
     ungraded = not case["criteria"] and case["reason"] and stated in ("skip", "error")
-    if record is None and case["run"]["evaluated_m"] is not None and not ungraded:
-        yield f"{case['id']}: the state of the record is missing"
     yield from _check_criteria(case, case["criteria"], trust)
     verdict = judge_case((row["verdict"] for row in case["criteria"]), record)
     if stated != verdict and not ungraded:
@@ -110,6 +111,9 @@ def _check_value(row: dict[str, Any], quantities: dict[str, Any]) -> Iterator[st
 
 def _check_grade(row: dict[str, Any], trust: Any) -> Iterator[str]:
     """Verdict, margin and remarks on a close limit must follow from value, limits, errors and trust."""
+    quantity = QUANTITIES.get(row["quantity"])
+    if quantity is not None and row["unit"] != quantity.unit:
+        yield f"unit '{row['unit']}' stated, '{quantity.unit}' is the unit of this quantity"
     value, lower, upper = row["value"], row["lower"], row["upper"]
     if lower is None and upper is None:
         # Only a rule without a bound for this record, which is skipped, may lack a limit.

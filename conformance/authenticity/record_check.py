@@ -1,5 +1,7 @@
 """Check of results against their record: every quantity is computed from the samples again."""
 
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,14 +16,27 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record_reading import open_record, record_digest
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.sidecar_tables import LineTable
-from pantocheck.conformance.results.results_building import key_by_owner, select_finite
+from pantocheck.conformance.results.record_facts import RecordState
+from pantocheck.conformance.results.results_building import describe_uncertainty, key_by_owner, select_finite
 from pantocheck.conformance.results.results_format import CaseResult, Results
 from pantocheck.conformance.systems.record_folder import RecordFolder
+
+RECORD_COMPONENTS = ("section", "length")
+"""Components of the uncertainty that follow from the record alone; the others need further runs."""
 
 RECORD_TOLERANCE = 1e-6
 """Largest relative difference of a quantity that is computed from a record again.
 
 A table of a record has at least nine significant digits; extremes and filters keep their accuracy."""
+
+
+@dataclass(frozen=True)
+class RecomputedRecord:
+    """Quantities of a record with the components of their uncertainty, by owner and name; its state, if judged."""
+
+    quantities: dict[str, Any]
+    components: dict[str, Any]
+    state: RecordState | None
 
 
 def check_record_quantities(results: Results, path: Path) -> list[DocumentCheck]:
@@ -44,16 +59,38 @@ def check_record_quantities(results: Results, path: Path) -> list[DocumentCheck]
     sidecar = path.with_suffix(".toml")
     files = (sidecar, sidecar.parent / opened.file) if isinstance(opened, RecordSidecar) else (sidecar,)
     computed = _compute(result, results, sidecar)
-    stated = result.model_dump(mode="json")["quantities"]
-    comparison = compare_numbers(_select(stated, computed), _select(computed, stated), RECORD_TOLERANCE)
-    proved = (
-        f"{result.id}: {comparison.count} quantities follow from the samples of {path.name} "
-        f"(largest relative difference {comparison.largest:.1e})."
+    return [
+        *_compare(result, computed, path.name),
+        *_name_others(result, computed),
+        _check_digest(result, record_digest(*files), path),
+    ]
+
+
+def _compare(result: CaseResult, computed: RecomputedRecord, name: str) -> Iterator[DocumentCheck]:
+    """Compare quantities, the parts of their uncertainty that follow from the record, and its state."""
+    stated = result.model_dump(mode="json")
+    pairs = (
+        (_select(stated["quantities"], computed.quantities), _select(computed.quantities, stated["quantities"])),
+        (_keep_components(stated["uncertainty_components"]), _keep_components(computed.components)),
     )
-    contradicted = f"{result.id}: quantities do not follow from the samples of {path.name}."
-    checks = [judge_details(proved, contradicted, comparison.differences)]
+    numbers, widths = (compare_numbers(*pair, RECORD_TOLERANCE) for pair in pairs)
+    differences = [*numbers.differences, *(f"uncertainty, {text}" for text in widths.differences)]
+    if computed.state is not None and result.record is not None and result.record.state != computed.state:
+        differences.append(f"state of the record '{result.record.state}' stated, '{computed.state}' computed")
+    largest = max(numbers.largest, widths.largest)
+    yield judge_details(
+        f"{result.id}: {numbers.count} quantities follow from the samples of {name} (largest relative difference "
+        f"{largest:.1e}).",
+        f"{result.id}: the results do not follow from the samples of {name}.",
+        differences,
+    )
+
+
+def _name_others(result: CaseResult, computed: RecomputedRecord) -> Iterator[DocumentCheck]:
+    """Quantities that need more than the record, such as those of the line at rest."""
     others = {
-        owner: [name for name in values if name not in computed.get(owner, {})] for owner, values in stated.items()
+        owner: [name for name in values if name not in computed.quantities.get(owner, {})]
+        for owner, values in result.quantities.items()
     }
     lines = tuple(
         f"{'the line' if owner == '0' else f'pantograph {owner}'}: {', '.join(names)}"
@@ -61,8 +98,7 @@ def check_record_quantities(results: Results, path: Path) -> list[DocumentCheck]
         if names
     )
     if lines:
-        checks.append(DocumentCheck("open", f"{result.id}: these quantities need more than the record.", lines))
-    return [*checks, _check_digest(result, record_digest(*files), path)]
+        yield DocumentCheck("open", f"{result.id}: these quantities need more than the record.", lines)
 
 
 def _select(quantities: dict[str, Any], others: dict[str, Any]) -> dict[str, Any]:
@@ -71,6 +107,17 @@ def _select(quantities: dict[str, Any], others: dict[str, Any]) -> dict[str, Any
         owner: {name: value for name, value in values.items() if name in others[owner]}
         for owner, values in quantities.items()
         if owner in others
+    }
+
+
+def _keep_components(components: dict[str, Any]) -> dict[str, Any]:
+    """Half-widths that follow from a record, by pantograph, quantity and component."""
+    return {
+        f"{owner} {name} {part}": parts[part]
+        for owner, quantities in components.items()
+        for name, parts in quantities.items()
+        for part in RECORD_COMPONENTS
+        if part in parts
     }
 
 
@@ -93,15 +140,18 @@ def _find_result(results: Results, case: str | None, path: Path) -> CaseResult:
     return matching[0]
 
 
-def _compute(result: CaseResult, results: Results, sidecar: Path) -> dict[str, Any]:
+def _compute(result: CaseResult, results: Results, sidecar: Path) -> RecomputedRecord:
     if result.profile is not None:
-        values = load_assessed_record(sidecar, load_profile(result.profile), LineTable()).values.values
-        return key_by_owner(select_finite(values))
+        assessed = load_assessed_record(sidecar, load_profile(result.profile), LineTable())
+        parts = describe_uncertainty(assessed.uncertainty)["uncertainty_components"]
+        return RecomputedRecord(key_by_owner(select_finite(assessed.values.values)), parts, None)
     known = list_library(library_folder())
     if result.id not in known:
         hint = "Only records of library cases and of assessments can be compared."
         raise InputError(f"record '{sidecar.name}'", f"{result.id} is not in the installed library", hint)
     system = RecordFolder(results.system.name, results.system.version, ((result.id, sidecar),))
     case = load_case(known[result.id])
-    quantities: dict[str, Any] = grade_case(case, system.run(case), results.trust).model_dump(mode="json")["quantities"]
-    return quantities
+    graded = grade_case(case, system.run(case), results.trust)
+    content = graded.model_dump(mode="json")
+    state = None if graded.record is None else graded.record.state
+    return RecomputedRecord(content["quantities"], content["uncertainty_components"], state)

@@ -6,14 +6,18 @@ from pathlib import Path
 from typing import Literal
 
 from pantocheck.conformance.authenticity.attachment import PdfCertificate
-from pantocheck.conformance.authenticity.authenticity_check import DocumentCheck, judge_details
-from pantocheck.conformance.authenticity.certificate_reading import Certificate, read_certificate
+from pantocheck.conformance.authenticity.authenticity_check import DocumentCheck, judge_details, shorten_details
+from pantocheck.conformance.authenticity.certificate_reading import Certificate, ResultsFile, read_certificate
 from pantocheck.conformance.authenticity.completeness import find_gaps
 from pantocheck.conformance.authenticity.library_check import check_library
 from pantocheck.conformance.authenticity.page_check import check_pages
 from pantocheck.conformance.authenticity.pdf_updates import check_updates
 from pantocheck.conformance.authenticity.recomputation import find_discrepancies
-from pantocheck.conformance.authenticity.version_differences import list_suite_differences, list_version_differences
+from pantocheck.conformance.authenticity.version_differences import (
+    find_false_version,
+    list_suite_differences,
+    list_version_differences,
+)
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.results.results_format import Results
 
@@ -108,17 +112,26 @@ def verify_certificate(document: Certificate) -> Verification:
         *check_library(results),
         *_name_reference(results),
     )
+    return Verification(results, (*_name_versions(document, checks), *checks))
+
+
+def _name_versions(document: Certificate, checks: Iterable[DocumentCheck]) -> list[DocumentCheck]:
+    """Other versions than the installed ones; nothing depends on them if the document was compared in full."""
+    has_pages = not isinstance(document, ResultsFile)
+    differences = tuple((list_version_differences if has_pages else list_suite_differences)(document.results))
     if any(check.outcome == "incomplete" for check in checks):
         text = "Other versions made this document; install them to compare it in full."
-        checks = (DocumentCheck("incomplete", text, tuple(list_version_differences(results))), *checks)
-    return Verification(results, checks)
+        return [DocumentCheck("incomplete", text, differences)]
+    if differences:
+        return [DocumentCheck("open", "The software that made the document: it states other versions.", differences)]
+    return []
 
 
 def _check_numbers(results: Results) -> DocumentCheck:
     return judge_details(
         "Verdicts, margins, uncertainties and statistics follow from the embedded numbers.",
         "The embedded numbers and verdicts contradict each other.",
-        find_discrepancies(results.to_dict()),
+        [*find_discrepancies(results.to_dict()), *find_false_version(results)],
     )
 
 
@@ -126,7 +139,8 @@ def _check_completeness(results: Results) -> list[DocumentCheck]:
     """Missing parts; a document of another version may state less."""
     gaps = tuple(find_gaps(results))
     if gaps and list_suite_differences(results):
-        return [DocumentCheck("incomplete", "The document states less than one of the installed version.", gaps)]
+        text = "The document states less than one of the installed version."
+        return [DocumentCheck("incomplete", text, shorten_details(gaps))]
     return [DocumentCheck("contradicted", "Parts that every run writes are missing.", gaps)] if gaps else []
 
 

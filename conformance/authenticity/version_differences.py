@@ -13,7 +13,7 @@ def list_suite_differences(results: Results) -> list[str]:
     """Differences of the suite that graded the system from the installed suite; none if their digests agree."""
     stated, installed = results.suite, build_suite()
     if stated.digest == installed.digest:
-        return []
+        return []  # `find_false_version` compares the versions
     if stated.digest is None:
         return [f"Pantocheck {stated.version} stated no digest of its files; installed is {installed.version}"]
     if stated.version != installed.version:
@@ -21,6 +21,14 @@ def list_suite_differences(results: Results) -> list[str]:
     return [
         f"Pantocheck {stated.version} with the digest {stated.digest[:19]}; installed is {str(installed.digest)[:19]}"
     ]
+
+
+def find_false_version(results: Results) -> list[str]:
+    """Contradiction of a stated version with the digest of the installed files; none if the digests differ."""
+    stated, installed = results.suite, build_suite()
+    if stated.digest != installed.digest or stated.version == installed.version:
+        return []
+    return [f"Pantocheck {stated.version} stated; the stated digest is that of Pantocheck {installed.version}"]
 
 
 def list_version_differences(results: Results) -> list[str]:

@@ -8,8 +8,8 @@ from types import ModuleType
 import pytest
 
 from pantocheck.conformance.authenticity import (
+    authenticity_check,
     certificate_reading,
-    page_check,
     pdf_comparison,
     pdf_structure,
     record_check,
@@ -86,7 +86,7 @@ ROWS = re.findall(
 )
 MODULES: list[ModuleType] = [
     input_values, track_position, record_preparation, events, arc_tables, contact_loss_list,
-    certificate_reading, page_check, pdf_comparison, pdf_structure, record_check, reported_numbers, rerun_check,
+    certificate_reading, authenticity_check, pdf_comparison, pdf_structure, record_check, reported_numbers, rerun_check,
     text_differences, trace_check,
     force_content, force_copy, force_dynamics, implied_force, mean_force, roll_off,
     rounding, support_coincidence, support_passing, assessed_record, baseline, discretisation,
