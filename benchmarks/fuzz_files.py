@@ -31,7 +31,9 @@ from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
 from pantocheck.conformance.mass_drops.drop_writing import write_drop_csv, write_drop_hdf5
 from pantocheck.conformance.mass_drops.uff_writing import write_drop_uff
+from pantocheck.conformance.own_files.new_files import read_template
 from pantocheck.conformance.plan import read_plan
+from pantocheck.conformance.procedure.dossier_reading import read_dossier
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
@@ -149,7 +151,7 @@ nominal_current_A = 600.0
 
 
 def _case_targets() -> Iterator[Target]:
-    """Case with line and pantograph, limits and plan."""
+    """Case with line and pantograph, limits, plan and dossier."""
     home = library_folder() / "en50318-2002"
     case = {name: (home / name).read_bytes() for name in ("250.toml", "line.toml", "pantograph.toml")}
     for name in case:
@@ -160,6 +162,8 @@ def _case_targets() -> Iterator[Target]:
         b'cases = ["en50318-2002/*"]\nsystem = "record:x"\nformats = ["json"]\nbaseline = "b.json"\ndrift_pct = 2.0\n'
     )
     yield Target("plan", {"p.toml": plan}, "p.toml", lambda path: read_plan(path / "p.toml"))
+    dossier = read_template("dossier").encode()
+    yield Target("dossier", {"d.toml": dossier}, "d.toml", lambda path: read_dossier(path / "d.toml"))
 
 
 def _result_targets() -> Iterator[Target]:
