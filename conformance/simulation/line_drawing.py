@@ -94,9 +94,22 @@ class LineDrawing:
         bottom = self._span_wires(field, row)[0] - 0.4 * size
         return bottom, bottom + 1.55 * size
 
+    def arms(self, row: DrawingRow) -> tuple[tuple[float, float, float], ...]:
+        """Position, and lateral position of claw and hinge, of every steady arm with a length in a row [m]."""
+        arms = []
+        for arm, force in zip(self.line.catenary.steady_arms, self.line.state.arm_force, strict=True):
+            if row.start <= arm.position <= row.end and force[0] != 0.0 and arm.length is not None:
+                claw = self.deflection(arm.wire, "y", arm.position)
+                # An arm that pulls has its hinge on the side of its force; an arm that pushes, on the other side.
+                towards = float(np.sign(force[0])) * (1 if arm.acts == "pull" else -1)
+                arms.append((arm.position, claw, claw + towards * arm.length))
+        return tuple(arms)
+
     def _span_wires(self, field: str, row: DrawingRow) -> tuple[float, float]:
-        """Lowest and highest deflection of the wires in a row [m]."""
-        values = np.concatenate([self.shape(wire, field, row)[1] for wire in self.line.catenary.wires])
+        """Lowest and highest deflection of the wires in a row, and of the hinges of its arms [m]."""
+        wires = [self.shape(wire, field, row)[1] for wire in self.line.catenary.wires]
+        hinges = [[hinge for _, _, hinge in self.arms(row)]] if field == "y" else []
+        values = np.concatenate([*wires, *hinges])
         return float(values.min()), float(values.max())
 
 
@@ -277,9 +290,5 @@ def _draw_marks(axes: Axes, drawing: LineDrawing, row: DrawingRow) -> None:
 
 def _draw_arms(axes: Axes, drawing: LineDrawing, row: DrawingRow) -> None:
     """Steady arms in the plan view, from the claw to the hinge."""
-    for arm, force in zip(drawing.line.catenary.steady_arms, drawing.line.state.arm_force, strict=True):
-        if row.start <= arm.position <= row.end and force[0] != 0.0 and arm.length is not None:
-            claw = drawing.deflection(arm.wire, "y", arm.position)
-            # An arm that pulls has its hinge on the side of its force; an arm that pushes, on the other side.
-            towards = np.sign(force[0]) * (1 if arm.acts == "pull" else -1)
-            axes.plot([arm.position] * 2, [claw, claw + towards * arm.length], color=INK, linewidth=1.0)
+    for position, claw, hinge in drawing.arms(row):
+        axes.plot([position] * 2, [claw, hinge], color=INK, linewidth=1.0)

@@ -25,6 +25,9 @@ from pantocheck.conformance.reports.page_text import format_value
 FORCE_LEVELS = {name: quantity.force_level for name, quantity in QUANTITIES.items() if quantity.force_level}
 
 
+MOST_SUPPORT_TICKS = 12
+"""Largest number of supports whose positions are the ticks of the track."""
+
 REFERENCE_STYLE: dict[str, Any] = {
     "color": INK,
     "linewidth": 1.1,
@@ -64,6 +67,8 @@ def draw_force(trace: dict[str, Any], limited: list[dict[str, Any]], reference: 
     for number, support in enumerate(trace["supports_m"]):
         left.axvline(support, color=INK, linewidth=0.8, linestyle=":", label=None if number else "support")
     left.set(xlim=(position[0], position[-1]), xlabel="position along the track [m]", ylabel="contact force [N]")
+    if 1 < len(trace["supports_m"]) <= MOST_SUPPORT_TICKS:
+        left.set_xticks(trace["supports_m"], [f"{support:g}" for support in trace["supports_m"]])
     add_legend(left, 3 if reference else 5)
     return figure
 

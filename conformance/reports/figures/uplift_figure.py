@@ -16,7 +16,7 @@ from pantocheck.conformance.reports.figures.figure_style import (
     render_svg,
 )
 
-MOST_NAMED = 4
+MOST_NAMED = 8
 """Largest number of supports with a line style each; of more, only the largest uplift stands out."""
 
 
@@ -27,7 +27,8 @@ def draw_uplift(supports: list[dict[str, Any]], criteria: list[dict[str, Any]]) 
     axes = figure.subplots()
     if len(supports) <= MOST_NAMED:
         for number, support in enumerate(supports):
-            shade, style = SHADES[number % 3], LINES[number % len(LINES)]
+            # Two shades times four dashes: neighbours differ in the shade, and no two of eight curves are equal.
+            shade, style = SHADES[number % 2], LINES[number // 2 % len(LINES)]
             name = f"support at {support['support_m']:g} m"
             axes.plot(support["time_s"], support["uplift_mm"], style, color=shade, linewidth=1.1, label=name)
     else:

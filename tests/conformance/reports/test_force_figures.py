@@ -6,7 +6,7 @@ from typing import Any
 import matplotlib
 import pytest
 
-from pantocheck.conformance.reports.figures.force_figures import select_limited
+from pantocheck.conformance.reports.figures.force_figures import draw_force, select_limited
 from pantocheck.conformance.reports.figures.uplift_figure import draw_uplift
 
 
@@ -15,6 +15,19 @@ def test_uplift_figure_names_only_the_largest_of_many_supports() -> None:
     supports = [{"support_m": 55.0 * i, "time_s": [0, 1, 2], "uplift_mm": [0, 40 + i % 7, 0]} for i in range(11)]
     named = draw_uplift.__wrapped__(supports, []).axes[0].get_legend().get_texts()
     assert [text.get_text() for text in named] == ["other supports", "largest: support at 330 m"]
+
+
+def test_no_two_of_eight_uplift_curves_look_alike() -> None:
+    """Colour and dashes of every named curve differ from those of all others."""
+    supports = [{"support_m": 55.0 * i, "time_s": [0, 1, 2], "uplift_mm": [0, 40 + i, 0]} for i in range(8)]
+    lines = draw_uplift.__wrapped__(supports, []).axes[0].lines
+    assert len({(line.get_color(), line.get_linestyle()) for line in lines}) == len(lines) == 8
+
+
+def test_ticks_of_the_force_stand_at_the_supports(passing: dict[str, Any]) -> None:
+    trace = passing["cases"][0]["traces"]["1"]
+    axes = draw_force.__wrapped__(trace, [], []).axes[0]
+    assert list(axes.get_xticks()) == trace["supports_m"] == [240, 300, 360]
 
 
 def test_force_figure_shows_limits_of_force_statistics_only() -> None:

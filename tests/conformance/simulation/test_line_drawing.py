@@ -283,3 +283,15 @@ def test_files_are_valid_and_the_same_every_time(staggered: tuple[DiscretisedLin
     pages = draw_line_pdf(drawing)
     assert pages == draw_line_pdf(drawing)
     assert pages.startswith(b"%PDF")
+
+
+def test_plan_view_shows_arms_to_their_hinges(staggered: tuple[DiscretisedLine, Geometry]) -> None:
+    """The hinge of an arm of more than a metre lies far outside the stagger of the wires."""
+    line, geometry = staggered
+    drawing = LineDrawing(line, "Line", geometry)
+    for row in drawing.rows:
+        bottom, top = drawing.extent("y", row)
+        hinges = [hinge for _, _, hinge in drawing.arms(row)]
+        assert hinges
+        assert bottom < min(hinges)
+        assert max(hinges) < top
