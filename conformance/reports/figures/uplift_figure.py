@@ -41,7 +41,7 @@ def draw_uplift(supports: list[dict[str, Any]], criteria: list[dict[str, Any]]) 
         elif levels:
             axes.axhline(levels[0], color=INK, linewidth=1.2, linestyle=LIMIT_LINE, label="limit of the maximum")
     axes.set(xlabel="time [s]", ylabel="uplift [mm]")
-    add_legend(axes)
+    add_legend(axes, columns=4)
     return figure
 
 
