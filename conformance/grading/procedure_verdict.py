@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import product
 
 from pantocheck.conformance.grading.criterion_grading import criterion_name
-from pantocheck.conformance.grading.verdicts import Verdict, judge_parts, worst_verdict
+from pantocheck.conformance.grading.verdicts import Verdict, judge_parts, normalise_distance, worst_verdict
 from pantocheck.conformance.results.criterion_format import Criterion
 from pantocheck.conformance.results.procedure_format import Evidence, Procedure, ProcedureStep, ValidityClaim
 from pantocheck.conformance.results.results_format import CaseResult
@@ -87,7 +87,7 @@ def describe_closest(criteria: Iterable[tuple[str | None, Criterion]]) -> dict[s
     Returns
     -------
     dict
-        `closest`, `margin` and `uncertainty`; None without a criterion that has a range.
+        `closest`, `margin`, and `uncertainty` on the scale of the margin; None without a criterion that has a range.
     """
     counted = [
         (case, row)
@@ -100,7 +100,11 @@ def describe_closest(criteria: Iterable[tuple[str | None, Criterion]]) -> dict[s
     case, row = min(counted, key=lambda item: item[1].margin or 0.0)
     width = math.hypot(row.uncertainty or 0.0, row.limit_uncertainty)
     name = criterion_name(row) if case is None else f"{case}, {criterion_name(row)}"
-    return {"closest": name, "margin": row.margin, "uncertainty": width or None}
+    return {
+        "closest": name,
+        "margin": row.margin,
+        "uncertainty": normalise_distance(width, row.lower, row.upper) or None,
+    }
 
 
 def judge_claim(claim: ValidityClaim, claims: Sequence[ValidityClaim], evidence: Sequence[Evidence]) -> ValidityClaim:

@@ -1,5 +1,6 @@
 """Verdict and normalised margin of a value between its limits."""
 
+import math
 from collections.abc import Iterable
 from typing import Literal, get_args
 
@@ -33,15 +34,34 @@ def margin(value: float, lower: float | None, upper: float | None) -> float:
     float
         Margin [-].
     """
+    if lower is not None and lower == upper:
+        return 0.0 if value == lower else -abs(value - lower) / max(abs(lower), 1.0)
+    below = math.inf if lower is None else value - lower
+    above = math.inf if upper is None else upper - value
+    return normalise_distance(min(below, above), lower, upper)
+
+
+def normalise_distance(distance: float, lower: float | None, upper: float | None) -> float:
+    """Distance divided by half the difference of two limits, or by the absolute limit (by 1 if the limit is 0).
+
+    Parameters
+    ----------
+    distance : float
+        Distance in the unit of the limits.
+    lower, upper : float or None
+        Limits that are not equal; at least one must be given.
+
+    Returns
+    -------
+    float
+        Distance [-].
+    """
     if lower is not None and upper is not None:
-        if lower == upper:
-            return 0.0 if value == lower else -abs(value - lower) / max(abs(lower), 1.0)
-        return 2 * (min(value - lower, upper - value) / (upper - lower))
-    if lower is not None:
-        return (value - lower) / (abs(lower) or 1.0)
-    if upper is not None:
-        return (upper - value) / (abs(upper) or 1.0)
-    raise ValueError("a margin needs at least one limit")
+        return 2 * (distance / (upper - lower))
+    limit = upper if lower is None else lower
+    if limit is None:
+        raise ValueError("a margin needs at least one limit")
+    return distance / (abs(limit) or 1.0)
 
 
 def worst_verdict(verdicts: Iterable[Verdict]) -> Verdict:

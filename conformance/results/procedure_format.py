@@ -44,7 +44,7 @@ class ProcedureStep(ResultsPart):
     margin: FiniteNumber | None = None
     uncertainty: Annotated[
         FiniteNumber | None,
-        Field(description="half-width of the 95 % interval of its value and of its limit"),
+        Field(description="half-width of the 95 % interval of its value and of its limit, on the scale of the margin"),
     ] = None
     cases: Annotated[list[str], Field(description="ids of the cases and pairs of this step")] = []
     criteria: Annotated[list[Criterion], Field(description="criteria that belong to no case")] = []
