@@ -90,6 +90,9 @@ def _compare_with(case: Case, result: CaseResult) -> Iterator[str]:
     missing = [group.group for group in expected.inputs if group not in result.inputs]
     if missing:
         yield f"sources or trust of the inputs differ from those of the library: {', '.join(missing)}"
+    others = [fact.name for fact in expected.derived if fact not in result.derived]
+    if result.derived and others:
+        yield f"derived values differ from those of the library: {', '.join(others)}"
     if not set(case.notes) <= set(result.notes):
         yield "a note of the library case is missing"
     if result.changes:

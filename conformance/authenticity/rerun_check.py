@@ -1,7 +1,7 @@
 """Check of results by a new run of the built-in simulator."""
 
 import platform as host
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from typing import Any
@@ -28,7 +28,7 @@ MOST_NUMBERS = 10
 
 NUMBER_PARTS = (
     *("quantities", "uncertainty", "uncertainty_components", "spread"),
-    *("traces", "uplift", "charts", "tables"),
+    *("derived", "traces", "uplift", "charts", "tables"),
 )
 """Parts of a result with the computed numbers. Limits and verdicts follow from them and are checked without a run."""
 
@@ -79,16 +79,16 @@ def check_rerun(results: Results) -> list[DocumentCheck]:
 def _rerun(case: Case, stated: CaseResult, results: Results, simulator: ReferenceSimulator, tolerance: float) -> Rerun:
     with_study = add_damping_study(case) if stated.tables else case
     result = run_case(with_study, simulator, results.trust)
-    return Rerun(
-        stated.id, compare_numbers(_select_parts(stated, tolerance), _select_parts(result, tolerance), tolerance)
-    )
+    # Results of older versions have no derived values.
+    keys = [key for key in (*NUMBER_PARTS, *(() if tolerance else TEXT_PARTS)) if key != "derived" or stated.derived]
+    return Rerun(stated.id, compare_numbers(_select_parts(stated, keys), _select_parts(result, keys), tolerance))
 
 
-def _select_parts(result: CaseResult, tolerance: float) -> dict[str, Any]:
+def _select_parts(result: CaseResult, keys: Sequence[str]) -> dict[str, Any]:
     """Parts of a result that a new run repeats; the computing time is left out."""
     content = result.model_dump(mode="json")
     del content["run"]["wall_s"]
-    return {key: content[key] for key in (*NUMBER_PARTS, *(() if tolerance else TEXT_PARTS))}
+    return {key: content[key] for key in keys}
 
 
 def _judge(results: Results, reruns: list[Rerun], tolerance: float) -> Iterator[DocumentCheck]:

@@ -15,6 +15,7 @@ from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.results.contact_loss_list import build_contact_losses
+from pantocheck.conformance.results.derived_facts import list_derived_facts
 from pantocheck.conformance.results.extreme_places import find_force_places, find_uplift_place
 from pantocheck.conformance.results.figure_data import ExtremePlace
 from pantocheck.conformance.results.input_values import list_input_values
@@ -137,6 +138,7 @@ def _build_result(case: Case, delivered: Delivered, notes: Sequence[str], **part
             "notes": [*case.notes, *delivered.notes, *notes],
             "model_uncertainty": list(delivered.model_uncertainty),
             "inputs": _list_inputs(case),
+            "derived": list_derived_facts(case, delivered.uplift_forces),
             "input_digest": case.digest,
             "changes": list(case.changes),
             "limits_digest": limits_digest(case.limits),

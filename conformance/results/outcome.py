@@ -58,6 +58,8 @@ class Delivered:
         SHA-256 of the files of the record; None for a record that was never in a file.
     start : StartTable or None
         Start of the run, as the system states it.
+    uplift_forces : tuple of float
+        Uplift force of every pantograph in the run [N]; empty: not known.
     refined : Delivered or None
         The same case with element length and time step halved, for the discretisation error.
     coarse : Delivered or None
@@ -77,6 +79,7 @@ class Delivered:
     case_digest: str | None = None
     digest: str | None = None
     start: StartTable | None = None
+    uplift_forces: tuple[float, ...] = ()
     refined: "Delivered | None" = None
     coarse: "Delivered | None" = None
     starts: "tuple[Delivered, ...]" = ()

@@ -14,6 +14,7 @@ from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.results.administration import Administration
 from pantocheck.conformance.results.contact_loss_list import ContactLossFacts
 from pantocheck.conformance.results.criterion_format import CaseVerification, ComponentName, Criterion
+from pantocheck.conformance.results.derived_facts import DerivedFact
 from pantocheck.conformance.results.event_format import EventFacts
 from pantocheck.conformance.results.figure_data import Chart, ExtremePlace, TextTable, Traces, UpliftTrace
 from pantocheck.conformance.results.finding_format import FindingCounts
@@ -142,6 +143,13 @@ class CaseResult(ResultsPart):
     notes: list[str]
     warnings: list[str]
     inputs: list[InputGroup]
+    derived: Annotated[
+        list[DerivedFact],
+        Field(
+            description="values that the suite derives from the inputs, and the uplift forces of its own run; empty: "
+            "made by an older version"
+        ),
+    ] = []
     input_digest: str
     changes: Annotated[
         list[str],

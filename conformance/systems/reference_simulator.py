@@ -83,5 +83,6 @@ def _deliver(
         warnings=(*resolution_warnings(case, discretisation), *window_warnings(case, line, discretisation)),
         model_uncertainty=list_model_uncertainty(case),
         start=case.start_table,
+        uplift_forces=passage.uplift_forces,
     )
     return delivered, passage.uplift_forces

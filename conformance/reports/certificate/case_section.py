@@ -10,6 +10,7 @@ from pantocheck.conformance.reports.certificate.case_facts import list_case_fact
 from pantocheck.conformance.reports.certificate.case_figures import draw_case_figures
 from pantocheck.conformance.reports.certificate.comparison_section import comparison_blocks
 from pantocheck.conformance.reports.certificate.criteria_table import criteria_blocks
+from pantocheck.conformance.reports.certificate.derived_table import derived_blocks
 from pantocheck.conformance.reports.certificate.event_section import event_blocks
 from pantocheck.conformance.reports.certificate.input_section import input_blocks
 from pantocheck.conformance.reports.certificate.quantity_tables import (
@@ -99,6 +100,8 @@ def _list_details(shown: ShownCase) -> Iterator[doc.Section]:
         yield doc.Section("Notes", (doc.BulletList(notes),), folded=True)
     if inputs := input_blocks(case, shown.earlier, f"{shown.anchor}-input-source"):
         yield doc.Section("Inputs", inputs, folded=True)
+    if derived := derived_blocks(case):
+        yield doc.Section("Derived values", derived, folded=True)
     yield doc.Section("Run", (list_case_facts(case),), folded=True)
 
 
