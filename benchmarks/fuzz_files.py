@@ -3,7 +3,9 @@
 import importlib
 import importlib.util
 import json
+import multiprocessing
 from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
 
@@ -170,7 +172,9 @@ def _result_targets() -> Iterator[Target]:
     """Results as baseline and as attachment of a certificate."""
     results = run_cases(select_cases([CASE]), open_record_folder(PASSING))
     yield Target("results as baseline", {"r.json": results.to_json()}, "r.json", use_baseline(results))
-    pdf = render_pdf(build_certificate(results.to_dict()))
+    # Threads of the typesetter do not survive a fork: a round that renders would wait for them forever.
+    with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
+        pdf = pool.submit(render_pdf, build_certificate(results.to_dict())).result()
     yield Target("certificate", {"c.pdf": pdf}, "c.pdf", lambda path: verify_document(path / "c.pdf"))
 
 
