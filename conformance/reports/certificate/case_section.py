@@ -13,6 +13,7 @@ from pantocheck.conformance.reports.certificate.criteria_table import criteria_b
 from pantocheck.conformance.reports.certificate.derived_table import derived_blocks
 from pantocheck.conformance.reports.certificate.event_section import event_blocks
 from pantocheck.conformance.reports.certificate.input_section import input_blocks
+from pantocheck.conformance.reports.certificate.pantograph_scheme import scheme_figures
 from pantocheck.conformance.reports.certificate.quantity_tables import (
     build_band_table,
     build_quantity_table,
@@ -98,8 +99,10 @@ def _list_details(shown: ShownCase) -> Iterator[doc.Section]:
         yield doc.Section("Skipped", (doc.BulletList(skipped),), folded=True)
     if notes := _list_notes(shown):
         yield doc.Section("Notes", (doc.BulletList(notes),), folded=True)
-    if inputs := input_blocks(case, shown.earlier, f"{shown.anchor}-input-source"):
-        yield doc.Section("Inputs", inputs, folded=True)
+    schemes = scheme_figures(case, shown.earlier)
+    inputs = input_blocks(case, shown.earlier, f"{shown.anchor}-input-source")
+    if inputs:
+        yield doc.Section("Inputs", (*((doc.Figures(schemes),) if schemes else ()), *inputs), folded=True)
     if derived := derived_blocks(case):
         yield doc.Section("Derived values", derived, folded=True)
     yield doc.Section("Run", (list_case_facts(case),), folded=True)

@@ -1,0 +1,117 @@
+"""Scheme of a pantograph that is a chain: base, masses, springs, dampers and contact, with their values."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from pantocheck.conformance.reports.figures.figure_style import GREY, HALF, INK, PALE, render_svg
+from pantocheck.conformance.reports.page_text import format_plain
+
+BOTTOM, GAP, BOX = 0.16, 0.38, 0.24
+"""Height of the base, length of a spring, height of a mass [in]."""
+
+LEFT, RIGHT = 1.05, 2.35
+"""Edges of a mass [in]."""
+
+SPRING_X, DAMPER_X = 1.45, 1.95
+"""Positions of springs and dampers [in]."""
+
+LONGEST_MASS_NAME = 14
+"""Largest number of characters of the name of a mass, which its box holds."""
+
+
+@dataclass(frozen=True)
+class DrawnChain:
+    """Chain of masses from base to head.
+
+    Parameters
+    ----------
+    masses, stiffness, damping : tuple of float
+        Masses [kg], and spring [N/m] and damper [N s/m] below each of them.
+    names : tuple of str
+        Name of each mass.
+    lifted : int
+        Index of the mass on which the uplift force acts.
+    contact_stiffness : float
+        Stiffness of the contact [N/m].
+    """
+
+    masses: tuple[float, ...]
+    stiffness: tuple[float, ...]
+    damping: tuple[float, ...]
+    names: tuple[str, ...]
+    lifted: int
+    contact_stiffness: float
+
+
+@render_svg
+def draw_chain(chain: DrawnChain) -> Figure:
+    """Scheme of a chain; a spring or damper of 0 is left out."""
+    wire = BOTTOM + len(chain.masses) * (GAP + BOX) + GAP
+    figure = Figure(figsize=(HALF, wire + 0.1))
+    figure.set_layout_engine("none")
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.set(xlim=(0, HALF), ylim=(0, wire + 0.1))
+    axes.set_axis_off()
+    _draw_base(axes)
+    values = zip(chain.masses, chain.stiffness, chain.damping, chain.names, strict=True)
+    for number, (mass, stiffness, damping, name) in enumerate(values):
+        below = BOTTOM + number * (GAP + BOX)
+        _draw_spring(axes, SPRING_X, below, stiffness)
+        _draw_damper(axes, below, damping)
+        middle = below + GAP + BOX / 2
+        axes.fill_between([LEFT, RIGHT], middle - BOX / 2, middle + BOX / 2, facecolor=PALE, edgecolor=INK)
+        _write(axes, (LEFT + RIGHT) / 2, middle, f"{_shorten(name)} {format_plain(mass)} kg", "center")
+        if number == chain.lifted:
+            _draw_uplift_force(axes, middle)
+    _draw_spring(axes, (LEFT + RIGHT) / 2, wire - GAP, chain.contact_stiffness)
+    axes.plot([0.7, 2.7], [wire, wire], color=INK, linewidth=1.8)
+    _write(axes, 2.75, wire, "contact wire", "left")
+    return figure
+
+
+def _draw_base(axes: Axes) -> None:
+    axes.plot([LEFT, RIGHT], [BOTTOM, BOTTOM], color=INK, linewidth=1.2)
+    for x in np.linspace(LEFT + 0.1, RIGHT, 10):
+        axes.plot([x - 0.08, x], [BOTTOM - 0.08, BOTTOM], color=GREY, linewidth=0.7)
+
+
+def _draw_spring(axes: Axes, x: float, below: float, stiffness: float) -> None:
+    """Spring from `below` upwards, with its stiffness on the left."""
+    if stiffness == 0:
+        return
+    offset = 0.06 * np.array([0, 0, 1, -1, 1, -1, 1, -1, 0, 0])
+    height = np.array([0.0, 0.18, 0.24, 0.35, 0.46, 0.57, 0.68, 0.77, 0.82, 1.0])
+    axes.plot(x + offset, below + GAP * height, color=INK, linewidth=0.9)
+    _write(axes, x - 0.12, below + GAP / 2, f"{format_plain(stiffness)} N/m", "right")
+
+
+def _draw_damper(axes: Axes, below: float, damping: float) -> None:
+    """Damper from `below` upwards, a piston in a cylinder, with its value on the right."""
+    if damping == 0:
+        return
+    low, piston, top = below + 0.3 * GAP, below + 0.52 * GAP, below + 0.7 * GAP
+    cylinder = [(-0.07, top), (-0.07, low), (0.07, low), (0.07, top)]
+    axes.plot([DAMPER_X + x for x, _ in cylinder], [y for _, y in cylinder], color=INK, linewidth=0.9)
+    axes.plot([DAMPER_X, DAMPER_X], [below, low], color=INK, linewidth=0.9)
+    axes.plot([DAMPER_X, DAMPER_X], [piston, below + GAP], color=INK, linewidth=0.9)
+    axes.plot([DAMPER_X - 0.05, DAMPER_X + 0.05], [piston, piston], color=INK, linewidth=1.6)
+    _write(axes, DAMPER_X + 0.12, below + GAP / 2, f"{format_plain(damping)} N s/m", "left")
+
+
+def _draw_uplift_force(axes: Axes, middle: float) -> None:
+    x = RIGHT + 0.12
+    axes.plot([RIGHT, x], [middle, middle], color=INK, linewidth=0.7)
+    arrow = {"arrowstyle": "-|>", "color": INK, "linewidth": 1.0, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 7}
+    axes.annotate("", xy=(x, middle + 0.2), xytext=(x, middle - 0.08), arrowprops=arrow)
+    _write(axes, x + 0.08, middle, "uplift force", "left")
+
+
+def _write(axes: Axes, x: float, y: float, text: str, side: str) -> None:
+    axes.text(x, y, text, ha=side, va="center", fontsize=7)
+
+
+def _shorten(name: str) -> str:
+    return name if len(name) <= LONGEST_MASS_NAME else f"{name[: LONGEST_MASS_NAME - 1]}…"
