@@ -13,6 +13,7 @@ from pantocheck.conformance.authenticity.signatures.certificates import (
 )
 from pantocheck.conformance.authenticity.signatures.cms_signing import ROLE_PREFIX
 from pantocheck.conformance.authenticity.signatures.signature_facts import SignatureFacts
+from pantocheck.conformance.authenticity.signatures.signature_package import run_apart
 from pantocheck.conformance.reports.page_text import clean_text
 
 NO_ROOT = "no trust root given"
@@ -94,15 +95,18 @@ def _validate(content: bytes, signed_data: Any, roots: list[Any], moment: dateti
             best_signature_time=time,
         )
 
-    return asyncio.run(
-        async_validate_detached_cms(
-            content,
-            signed_data,
-            signer_validation_context=build_context(moment),
-            ts_validation_context=build_context(datetime.now(UTC)),
-            key_usage_settings=KeyUsageConstraints(key_usage=set()),
+    def validate() -> Any:
+        return asyncio.run(
+            async_validate_detached_cms(
+                content,
+                signed_data,
+                signer_validation_context=build_context(moment),
+                ts_validation_context=build_context(datetime.now(UTC)),
+                key_usage_settings=KeyUsageConstraints(key_usage=set()),
+            )
         )
-    )
+
+    return run_apart(validate)
 
 
 def _find_distrust(status: Any, moment: datetime) -> str:

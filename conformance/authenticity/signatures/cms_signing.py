@@ -9,6 +9,7 @@ from urllib.parse import quote
 
 from pantocheck.conformance.authenticity.signatures.detached_file import parse_signatures
 from pantocheck.conformance.authenticity.signatures.key_files import SigningKey
+from pantocheck.conformance.authenticity.signatures.signature_package import run_apart
 from pantocheck.conformance.input_files.input_error import InputError
 
 ROLE_PREFIX = "urn:pantocheck:role:"
@@ -101,14 +102,19 @@ def sign_detached(content: bytes, signer: Signer, earlier: bytes | None, where: 
     attributes = PdfCMSSignedAttributes(
         signing_time=datetime.now(UTC).replace(microsecond=0), cades_signed_attrs=build_role_attributes(signer.role)
     )
-    signing = build_signer(signer.key).async_sign_general_data(
-        content,
-        select_digest(signer.key),
-        use_cades=True,
-        timestamper=signer.timestamp_client,
-        signed_attr_settings=attributes,
-    )
-    added = asyncio.run(signing)
+
+    def sign() -> Any:
+        return asyncio.run(
+            build_signer(signer.key).async_sign_general_data(
+                content,
+                select_digest(signer.key),
+                use_cades=True,
+                timestamper=signer.timestamp_client,
+                signed_attr_settings=attributes,
+            )
+        )
+
+    added = run_apart(sign)
     parts = [] if earlier is None else parse_signatures(earlier, where)
     return join_signatures([*parts, added["content"]])
 

@@ -14,6 +14,7 @@ from pantocheck.conformance.authenticity.signatures.cms_signing import (
     select_digest,
 )
 from pantocheck.conformance.authenticity.signatures.signature_box import BOXES, find_place
+from pantocheck.conformance.authenticity.signatures.signature_package import run_apart
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.reports.formats.signature_box_page import render_signature_box
 
@@ -66,7 +67,7 @@ def sign_pdf(content: bytes, signer: Signer, place: str | None, where: str) -> b
             stamp_style=None if place is None else _build_stamp(signer, BOXES[place]),
             new_field_spec=SigFieldSpec(name, readable_field_name=f"Signature of the {signer.role}", **box),
         )
-        return bytes(pdf_signer.sign_pdf(writer).getvalue())
+        return bytes(run_apart(lambda: pdf_signer.sign_pdf(writer)).getvalue())
 
 
 def _open_writer(content: bytes, where: str) -> Any:

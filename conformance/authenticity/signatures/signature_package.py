@@ -1,12 +1,23 @@
 """Package for signatures: pyHanko, which the extra `sign` installs."""
 
 import logging
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
+from typing import TypeVar
 
 from pantocheck.conformance.input_files.input_error import InputError
 
 INSTALL = "Install it: pip install 'pantocheck[sign]'"
+
+
+Result = TypeVar("Result")
+
+
+def run_apart(function: Callable[[], Result]) -> Result:
+    """Run a function in a thread of its own: pyHanko starts an event loop, and a notebook has a running one already."""
+    with ThreadPoolExecutor(1) as pool:
+        return pool.submit(function).result()
 
 
 @contextmanager

@@ -1,5 +1,6 @@
 """Detached signatures of results and pages: beside the document, in DER or PEM, several for one document."""
 
+import asyncio
 import shutil
 import subprocess
 from http.server import BaseHTTPRequestHandler
@@ -33,6 +34,16 @@ def test_signature_beside_the_document(document: Path, signers: Signers, roots_f
     report = check_signatures(document, roots_file)
     assert report.contradictions == ("signature 1 (Ada Author): the content was changed after signing",)
     assert check_signatures(document, None).contradictions == report.contradictions
+
+
+def test_signing_and_checking_inside_a_running_event_loop(document: Path, signers: Signers, roots_file: Path) -> None:
+    """A notebook runs its cells inside an event loop; the package starts one of its own."""
+
+    async def sign_and_check() -> bool:
+        sign(document, signers.author)
+        return check_signatures(document, roots_file).authentic
+
+    assert asyncio.run(sign_and_check())
 
 
 def test_two_signatures_in_one_file(document: Path, signers: Signers, roots_file: Path) -> None:
