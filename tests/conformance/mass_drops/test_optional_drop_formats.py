@@ -88,7 +88,8 @@ def test_mdf_with_channels_of_two_rates_is_refused(
         def __init__(self, path: Path) -> None:
             self.get = signals.__getitem__
             self.channels_db = {name: ((0, c),) for c, name in enumerate(signals)}
-            self.groups = [SimpleNamespace(channel_group=SimpleNamespace(cycles_nr=record.time.size))]
+            sizes = SimpleNamespace(cycles_nr=record.time.size, samples_byte_nr=8, invalidation_bytes_nr=0)
+            self.groups = [SimpleNamespace(channel_group=sizes)]
 
         def __enter__(self) -> "File":
             return self
