@@ -32,8 +32,11 @@ NUMBER_PARTS = (
 )
 """Parts of a result with the computed numbers. Limits and verdicts follow from them and are checked without a run."""
 
-TEXT_PARTS = ("warnings", "notes", "model_uncertainty", "skipped", "uncertainty_basis", "record", "run")
-"""Parts with texts, compared where the numbers are equal bit for bit: some texts quote rounded numbers."""
+TEXT_PARTS = (
+    *("warnings", "notes", "model_uncertainty", "skipped", "uncertainty_basis", "record", "run"),
+    "line_shape",
+)
+"""Parts with texts or rounded numbers, compared where the numbers are equal bit for bit."""
 
 
 @dataclass(frozen=True)
@@ -79,8 +82,9 @@ def check_rerun(results: Results) -> list[DocumentCheck]:
 def _rerun(case: Case, stated: CaseResult, results: Results, simulator: ReferenceSimulator, tolerance: float) -> Rerun:
     with_study = add_damping_study(case) if stated.tables else case
     result = run_case(with_study, simulator, results.trust)
-    # Results of older versions have no derived values.
-    keys = [key for key in (*NUMBER_PARTS, *(() if tolerance else TEXT_PARTS)) if key != "derived" or stated.derived]
+    # Results of older versions have neither derived values nor a drawing.
+    absent = {key for key in ("derived", "line_shape") if not getattr(stated, key)}
+    keys = [key for key in (*NUMBER_PARTS, *(() if tolerance else TEXT_PARTS)) if key not in absent]
     return Rerun(stated.id, compare_numbers(_select_parts(stated, keys), _select_parts(result, keys), tolerance))
 
 
@@ -88,7 +92,7 @@ def _select_parts(result: CaseResult, keys: Sequence[str]) -> dict[str, Any]:
     """Parts of a result that a new run repeats; the computing time is left out."""
     content = result.model_dump(mode="json")
     del content["run"]["wall_s"]
-    return {key: content[key] for key in keys}
+    return {key: content.get(key) for key in keys}
 
 
 def _judge(results: Results, reruns: list[Rerun], tolerance: float) -> Iterator[DocumentCheck]:

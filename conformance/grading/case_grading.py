@@ -139,6 +139,7 @@ def _build_result(case: Case, delivered: Delivered, notes: Sequence[str], **part
             "model_uncertainty": list(delivered.model_uncertainty),
             "inputs": _list_inputs(case),
             "derived": list_derived_facts(case, delivered.uplift_forces),
+            "line_shape": delivered.line_shape,
             "input_digest": case.digest,
             "changes": list(case.changes),
             "limits_digest": limits_digest(case.limits),

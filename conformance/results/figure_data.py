@@ -1,6 +1,8 @@
 """Curves, charts and tables of results.json: everything that a page draws."""
 
-from typing import Literal
+from typing import Annotated, Literal, Self, TypeVar
+
+from pydantic import Field, model_validator
 
 from pantocheck.conformance.results.results_part import FiniteNumber, ResultsPart
 
@@ -88,6 +90,70 @@ class Chart(ResultsPart):
     series: list[Series]
     marks: list[Mark] = []
     wide: bool = True
+
+
+Part = TypeVar("Part", bound=ResultsPart)
+
+
+def _check_lengths(part: Part, *lists: list[float]) -> Part:
+    """Return a part whose lists have one length."""
+    if len(set(map(len, lists))) > 1:
+        raise ValueError(
+            f"lists of {' and '.join(str(len(numbers)) for numbers in lists)} numbers, expected one length"
+        )
+    return part
+
+
+class DrawnCurve(ResultsPart):
+    """Wire in a view of a line at rest, thinned: heights or lateral positions along the line."""
+
+    kind: Literal["contact_wire", "messenger_wire", "stitch_wire"]
+    x_m: list[FiniteNumber]
+    y_m: list[FiniteNumber]
+
+    @model_validator(mode="after")
+    def _equal_lengths(self) -> Self:
+        return _check_lengths(self, self.x_m, self.y_m)
+
+
+class DrawnDroppers(ResultsPart):
+    """Droppers in a view of a line at rest: positions, and heights or lateral positions of both ends."""
+
+    x_m: list[FiniteNumber]
+    lower_m: list[FiniteNumber]
+    upper_m: list[FiniteNumber]
+
+    @model_validator(mode="after")
+    def _equal_lengths(self) -> Self:
+        return _check_lengths(self, self.x_m, self.lower_m, self.upper_m)
+
+
+class DrawnPoint(ResultsPart):
+    """Part that is drawn as a point, with a text beside it."""
+
+    symbol: Literal["anchor", "messenger support", "steady arm", "mass"]
+    x_m: FiniteNumber
+    y_m: FiniteNumber
+    text: str = ""
+
+
+class DrawnView(ResultsPart):
+    """Side view or plan view of a line at rest."""
+
+    curves: list[DrawnCurve]
+    droppers: DrawnDroppers
+    points: list[DrawnPoint]
+
+
+class LineShape(ResultsPart):
+    """Line at rest over some spans, for a drawing: `plan` is null for a line in the vertical plane."""
+
+    title: str
+    first_span: int
+    last_span: int
+    supports_m: Annotated[list[FiniteNumber], Field(min_length=2)]
+    side: DrawnView
+    plan: DrawnView | None
 
 
 class TextTable(ResultsPart):

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pantocheck.conformance.quantities.evaluation import Evaluation, Value
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.sidecar_tables import RunTable, StartTable
-from pantocheck.conformance.results.figure_data import Chart, TextTable
+from pantocheck.conformance.results.figure_data import Chart, LineShape, TextTable
 
 
 @dataclass(frozen=True)
@@ -60,6 +60,8 @@ class Delivered:
         Start of the run, as the system states it.
     uplift_forces : tuple of float
         Uplift force of every pantograph in the run [N]; empty: not known.
+    line_shape : LineShape or None
+        Line at rest for a drawing; None: not known.
     refined : Delivered or None
         The same case with element length and time step halved, for the discretisation error.
     coarse : Delivered or None
@@ -80,6 +82,7 @@ class Delivered:
     digest: str | None = None
     start: StartTable | None = None
     uplift_forces: tuple[float, ...] = ()
+    line_shape: LineShape | None = None
     refined: "Delivered | None" = None
     coarse: "Delivered | None" = None
     starts: "tuple[Delivered, ...]" = ()

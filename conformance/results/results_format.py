@@ -16,7 +16,7 @@ from pantocheck.conformance.results.contact_loss_list import ContactLossFacts
 from pantocheck.conformance.results.criterion_format import CaseVerification, ComponentName, Criterion
 from pantocheck.conformance.results.derived_facts import DerivedFact
 from pantocheck.conformance.results.event_format import EventFacts
-from pantocheck.conformance.results.figure_data import Chart, ExtremePlace, TextTable, Traces, UpliftTrace
+from pantocheck.conformance.results.figure_data import Chart, ExtremePlace, LineShape, TextTable, Traces, UpliftTrace
 from pantocheck.conformance.results.finding_format import FindingCounts
 from pantocheck.conformance.results.input_values import StoredValues
 from pantocheck.conformance.results.lift_force_facts import LawForces
@@ -230,6 +230,10 @@ class CaseResult(ResultsPart):
     comparison: Annotated[
         MeasuredRun | None,
         Field(exclude_if=is_absent, description="measured run beside this one; missing: nothing is compared"),
+    ] = None
+    line_shape: Annotated[
+        LineShape | None,
+        Field(exclude_if=is_absent, description="line at rest around the analysis section; missing: not known"),
     ] = None
     reference: Annotated[
         ReferenceValues | None,

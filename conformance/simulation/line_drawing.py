@@ -1,6 +1,5 @@
 """Drawing of a whole line at rest: side view and plan view in rows of a few spans, at one scale."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,7 +25,8 @@ from pantocheck.conformance.simulation.drawing_rows import (
     divide_into_rows,
     row_height,
 )
-from pantocheck.model import Catenary, DiscretisedLine, Kind, Wire
+from pantocheck.conformance.simulation.drawn_points import find_deflection, list_fixed_points
+from pantocheck.model import DiscretisedLine, Kind, Wire
 
 WIDTHS = {Kind.CONTACT_WIRE: 1.6, Kind.MESSENGER_WIRE: 1.0, Kind.STITCH_WIRE: 0.7}
 SYMBOLS = {"messenger support": "^", "steady arm": "o", "anchor": "D", "sensor": "s", "mass": "v"}
@@ -77,8 +77,7 @@ class LineDrawing:
 
     def deflection(self, wire: str, field: str, position: float) -> float:
         """Height (`z`) or lateral position (`y`) of a wire [m]."""
-        row, x = self.line.mesh.row_of[wire, field], self.line.mesh.position
-        return float(np.interp(position, x, self.line.state.deflection[row, :, 0]))
+        return float(find_deflection(self.line, wire, field, position))
 
     def shape(self, wire: Wire, field: str, row: DrawingRow) -> tuple[RealArray, RealArray]:
         """Positions and deflections of a wire inside a row [m]."""
@@ -207,22 +206,13 @@ def _add_view(figure: Figure, drawing: LineDrawing, row: DrawingRow, field: str,
         if row.start <= dropper.position <= row.end:
             ends = [drawing.deflection(name, field, dropper.position) for name in (dropper.lower, dropper.upper)]
             axes.plot([dropper.position] * 2, ends, color=GREY, linewidth=0.7)
-    for symbol, wire_name, position in _list_points(catenary):
+    for symbol, wire_name, position in list_fixed_points(catenary):
         if row.start <= position <= row.end:
             axes.plot(
                 position, drawing.deflection(wire_name, field, position), SYMBOLS[symbol], color=INK, markersize=3,
                 clip_on=False, markerfacecolor=_fill_colour(symbol),
             )  # fmt: skip
     return axes
-
-
-def _list_points(catenary: Catenary) -> Iterator[tuple[str, str, float]]:
-    """Symbol, wire and position of every anchor, messenger support and steady arm."""
-    for wire in catenary.wires:
-        if wire.kind is not Kind.STITCH_WIRE:
-            yield from (("anchor", wire.name, end) for end in (wire.start, wire.end))
-    yield from (("messenger support", support.wire, support.position) for support in catenary.messenger_supports)
-    yield from (("steady arm", arm.wire, arm.position) for arm in catenary.steady_arms)
 
 
 def _name_spans(axes: Axes, drawing: LineDrawing, row: DrawingRow) -> None:

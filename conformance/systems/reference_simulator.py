@@ -15,6 +15,7 @@ from pantocheck.conformance.simulation.model_uncertainty import list_model_uncer
 from pantocheck.conformance.simulation.resolution import resolution_warnings
 from pantocheck.conformance.simulation.static_quantities import compute_static_quantities
 from pantocheck.conformance.simulation.statics_along_line import compute_quantities_along_line
+from pantocheck.conformance.simulation.stored_drawing import build_line_shape
 from pantocheck.conformance.simulation.window_warning import window_warnings
 from pantocheck.model.failures import SimulationError
 
@@ -31,13 +32,14 @@ class ReferenceSimulator:
         """Run a case, with element length and time step halved and doubled, and from other starts."""
         discretisation = case.file.discretisation
         delivered, uplift_forces = _deliver(case, discretisation)
+        shape = build_line_shape(case, discretise_line(case.line, discretisation.element_m))
         refined, _ = _deliver(case, discretisation.scale(1 / 2), uplift_forces)
         try:
             coarse, _ = _deliver(case, discretisation.scale(2), uplift_forces)
         except SimulationError:  # too coarse to converge: the uncertainty follows from two meshes
             coarse = None
         starts = () if uplift_forces is None else _run_other_starts(case, discretisation, uplift_forces)
-        return replace(delivered, refined=refined, coarse=coarse, starts=starts)
+        return replace(delivered, refined=refined, coarse=coarse, starts=starts, line_shape=shape)
 
     def run_unrefined(self, case: Case) -> Delivered:
         """Run a case once, with the discretisation of the case."""

@@ -13,6 +13,7 @@ from pantocheck.conformance.reports.certificate.criteria_table import criteria_b
 from pantocheck.conformance.reports.certificate.derived_table import derived_blocks
 from pantocheck.conformance.reports.certificate.event_section import event_blocks
 from pantocheck.conformance.reports.certificate.input_section import input_blocks
+from pantocheck.conformance.reports.certificate.line_view import line_figures, line_reference
 from pantocheck.conformance.reports.certificate.pantograph_scheme import scheme_figures
 from pantocheck.conformance.reports.certificate.quantity_tables import (
     build_band_table,
@@ -99,10 +100,11 @@ def _list_details(shown: ShownCase) -> Iterator[doc.Section]:
         yield doc.Section("Skipped", (doc.BulletList(skipped),), folded=True)
     if notes := _list_notes(shown):
         yield doc.Section("Notes", (doc.BulletList(notes),), folded=True)
-    schemes = scheme_figures(case, shown.earlier)
+    figures = (*line_figures(case, shown.earlier), *scheme_figures(case, shown.earlier))
+    drawings = (*((doc.Figures(figures),) if figures else ()), *line_reference(case, shown.earlier))
     inputs = input_blocks(case, shown.earlier, f"{shown.anchor}-input-source")
-    if inputs:
-        yield doc.Section("Inputs", (*((doc.Figures(schemes),) if schemes else ()), *inputs), folded=True)
+    if drawings or inputs:
+        yield doc.Section("Inputs", (*drawings, *inputs), folded=True)
     if derived := derived_blocks(case):
         yield doc.Section("Derived values", derived, folded=True)
     yield doc.Section("Run", (list_case_facts(case),), folded=True)

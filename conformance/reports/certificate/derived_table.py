@@ -26,7 +26,7 @@ def derived_blocks(case: dict[str, Any]) -> tuple[doc.Block, ...]:
     if not case["derived"]:
         return ()
     rows = tuple(
-        (fact["name"], format_value(fact["value"], SHOWN_DIGITS), fact["unit"], fact["basis"])
+        (fact["name"], format_value(fact["value"], SHOWN_DIGITS), fact["unit"] or "–", fact["basis"])
         for fact in case["derived"]
     )
     text = "Computed by the suite from the inputs of the case. A tuned uplift force is a result of the run."

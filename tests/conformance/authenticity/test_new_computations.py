@@ -37,6 +37,18 @@ def static_results() -> Results:
     return run_cases([case], ReferenceSimulator())
 
 
+def test_rerun_compares_the_drawing_of_the_line(static_results: Results) -> None:
+    """Results of older versions have no drawing, and agree as well."""
+    content = static_results.to_dict()
+    content["cases"][0]["line_shape"]["side"]["points"][0]["y_m"] += 0.001
+    [changed] = check_rerun(Results.model_validate(content))
+    assert changed.outcome == "contradicted"
+    assert "line_shape" in " ".join(changed.details)
+    del content["cases"][0]["line_shape"]
+    [older] = check_rerun(Results.model_validate(content))
+    assert older.outcome == "proved"
+
+
 def change_quantity(results: Results, name: str, factor: float) -> Results:
     content = results.to_dict()
     values = content["cases"][0]["quantities"]

@@ -1,0 +1,46 @@
+"""Drawing of the line of a case; a drawing that an earlier case has is named only."""
+
+from typing import Any
+
+from pantocheck.conformance.reports.document import Figure, SmallPrint
+from pantocheck.conformance.reports.figures.line_figure import draw_line_shape
+
+
+def line_figures(case: dict[str, Any], earlier: tuple[dict[str, Any], ...]) -> tuple[Figure, ...]:
+    """Drawing of the line at rest; none without its shape, or if an earlier case has the same drawing.
+
+    Parameters
+    ----------
+    case : dict
+        Case of results.json.
+    earlier : tuple of dict
+        Cases that stand before it in the report.
+    """
+    shape = case.get("line_shape")
+    if shape is None or _find_equal(case, earlier) is not None:
+        return ()
+    views = "side view" if shape["plan"] is None else "side view and plan view"
+    masses = sum(point["symbol"] == "mass" for point in shape["side"]["points"])
+    parts = f" {masses} point {'mass' if masses == 1 else 'masses'}." if masses else ""
+    section = case["run"]["evaluated_m"]
+    ground = "" if section is None else " Grey ground: analysis section."
+    caption = (
+        f"Line at rest, spans {shape['first_span']} to {shape['last_span']}: {views}, heights enlarged.{parts}{ground}"
+    )
+    return (Figure(draw_line_shape(shape, section), caption, caption),)
+
+
+def line_reference(case: dict[str, Any], earlier: tuple[dict[str, Any], ...]) -> tuple[SmallPrint, ...]:
+    """Name of the earlier case that has the drawing of this one; parameters as in `line_figures`."""
+    other = _find_equal(case, earlier)
+    return () if other is None else (SmallPrint(f"Line: as drawn in {other}."),)
+
+
+def _find_equal(case: dict[str, Any], earlier: tuple[dict[str, Any], ...]) -> str | None:
+    """Id of the first earlier case with the same line and analysis section."""
+    if case.get("line_shape") is None:
+        return None
+    drawn = (case["line_shape"], case["run"]["evaluated_m"])
+    return next(
+        (other["id"] for other in earlier if (other.get("line_shape"), other["run"]["evaluated_m"]) == drawn), None
+    )
