@@ -284,6 +284,7 @@ issuer.
 
 
 def main() -> int:
+    """Forge documents of every kind, print the outcomes, and renew the page on request."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seed", type=int, default=SEED)
     parser.add_argument("--only", default="", help="part of the names of the kinds")

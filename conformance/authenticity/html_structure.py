@@ -32,6 +32,7 @@ class _Parts(HTMLParser):
         self.close()
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Note elements, events, styles and addresses that can change or load a part of the page."""
         self.open = tag
         if tag in ACTIVE_ELEMENTS:
             text = " ".join(f"{name}={value}" for name, value in attrs)

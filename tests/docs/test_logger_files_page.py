@@ -37,8 +37,10 @@ def test_exclusion_of_the_page_is_valid() -> None:
 
 @pytest.mark.parametrize("text", [*SIDECARS[1:-3], SIDECARS[-2]])
 def test_sidecars_of_the_page_are_valid_and_follow_their_schema(text: str) -> None:
-    RecordSidecar.model_validate(tomllib.loads(text))
-    validate(tomllib.loads(text), build_schema("record"))
+    tables = tomllib.loads(text)
+    validate(tables, build_schema("record"))
+    read = RecordSidecar.model_validate(tables)
+    assert set(read.model_dump(by_alias=True, exclude_unset=True)) == tables.keys()
 
 
 def test_profile_of_the_page_is_valid() -> None:

@@ -1,6 +1,12 @@
 """Line files with their equal spans, and their supports, listed one by one."""
 
+from dataclasses import replace
 from typing import Any
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.library_folder import library_folder
+from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.input_files.toml_file import read_toml
 
 
 def list_spans(tables: dict[str, Any]) -> dict[str, Any]:
@@ -31,6 +37,26 @@ def list_supports(tables: dict[str, Any]) -> dict[str, Any]:
         name: tables[name] | {key: _other(key, value) for key, value in part.items()} for name, part in parts.items()
     }
     return tables | wrong | {"geometry": geometry}
+
+
+def vary_short_line(case: Case) -> Case:
+    """The same case on listed spans; supports 3 and 4 differ in height, one arm and one messenger support in stiffness.
+
+    The analysis section has the spans 3 and 4, of 60 m and 54 m.
+    """
+    tables = list_spans(read_toml(library_folder() / "en50318-2002" / "line.toml", "line"))
+    tables["geometry"]["span_list"] = [
+        {"length_m": 60.0},
+        {"length_m": 60.0},
+        {"length_m": 60.0},
+        {"length_m": 54.0, "droppers": {"x_m": [5.0, 12.0, 19.5, 27.0, 34.5, 42.0, 49.0]}},
+        {"length_m": 60.0},
+    ]
+    tables["geometry"]["support"] = [
+        {"number": 3, "contact_wire_height_m": 0.05, "steady_arm": {"vertical_stiffness_N_m": 600.0}},
+        {"number": 4, "contact_wire_height_m": 0.1, "messenger_support": {"stiffness_N_m": 2e5}},
+    ]
+    return replace(case, line=LineFile.model_validate(tables))
 
 
 def _numbers(table: dict[str, Any]) -> dict[str, Any]:

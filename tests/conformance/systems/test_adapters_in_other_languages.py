@@ -11,11 +11,8 @@ from pathlib import Path
 import pytest
 from numpy.testing import assert_allclose
 
-from helpers.listed_spans import list_spans
+from helpers.listed_spans import vary_short_line
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.input_files.toml_file import read_toml
 from pantocheck.conformance.quantities.evaluation import Value
 from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.results.outcome import Delivered, Skipped
@@ -60,19 +57,7 @@ def coarse() -> Case:
 @pytest.fixture(scope="module")
 def varied(coarse: Case) -> Case:
     """The same case on listed spans of different length, with supports of different height and stiffness."""
-    tables = list_spans(read_toml(library_folder() / "en50318-2002" / "line.toml", "line"))
-    tables["geometry"]["span_list"] = [
-        {"length_m": 60.0},
-        {"length_m": 60.0},
-        {"length_m": 60.0},
-        {"length_m": 54.0, "droppers": {"x_m": [5.0, 12.0, 19.5, 27.0, 34.5, 42.0, 49.0]}},
-        {"length_m": 60.0},
-    ]
-    tables["geometry"]["support"] = [
-        {"number": 3, "contact_wire_height_m": 0.05, "steady_arm": {"vertical_stiffness_N_m": 600.0}},
-        {"number": 4, "contact_wire_height_m": 0.1, "messenger_support": {"stiffness_N_m": 2e5}},
-    ]
-    return replace(coarse, line=LineFile.model_validate(tables))
+    return vary_short_line(coarse)
 
 
 def evaluate(system: System, case: Case) -> dict[str, Value]:

@@ -8,13 +8,11 @@ from pathlib import Path
 import pytest
 from numpy.testing import assert_allclose
 
-from helpers.listed_spans import list_spans
+from helpers.listed_spans import vary_short_line
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import load_case, select_cases
 from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.wire_changes import PointMassTable
-from pantocheck.conformance.input_files.toml_file import read_toml
 from pantocheck.conformance.quantities.evaluation import Value
 from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.results.outcome import Delivered, Outcome, Skipped
@@ -63,30 +61,10 @@ def test_plain_simulator_agrees_with_the_reference_simulator(short: Case, refere
     assert outcome.run.element_m == 0.5
 
 
-def list_short_line(case: Case) -> Case:
-    """The same case on listed spans; supports 3 and 4 differ in height, one arm and one messenger support in stiffness.
-
-    The analysis section has the spans 3 and 4, of 60 m and 54 m.
-    """
-    tables = list_spans(read_toml(library_folder() / "en50318-2002" / "line.toml", "line"))
-    tables["geometry"]["span_list"] = [
-        {"length_m": 60.0},
-        {"length_m": 60.0},
-        {"length_m": 60.0},
-        {"length_m": 54.0, "droppers": {"x_m": [5.0, 12.0, 19.5, 27.0, 34.5, 42.0, 49.0]}},
-        {"length_m": 60.0},
-    ]
-    tables["geometry"]["support"] = [
-        {"number": 3, "contact_wire_height_m": 0.05, "steady_arm": {"vertical_stiffness_N_m": 600.0}},
-        {"number": 4, "contact_wire_height_m": 0.1, "messenger_support": {"stiffness_N_m": 2e5}},
-    ]
-    return replace(case, line=LineFile.model_validate(tables))
-
-
 @pytest.mark.parametrize("name", ["string_catenary", "external_program"])
 def test_examples_run_a_line_with_listed_spans_and_supports(short: Case, name: str) -> None:
     """Lists by support arrive at the program. The external program is the same, the plain one agrees to a tenth."""
-    case = list_short_line(short)
+    case = vary_short_line(short)
     reference = evaluate(ReferenceSimulator().run_unrefined(case), case)
     command = f"'{Path(sysconfig.get_path('scripts'), 'pantocheck')}'"
     values = evaluate(adapter(name, *([command] if name == "external_program" else [])).run(case), case)
