@@ -16,7 +16,7 @@ author = "The Pantocheck authors"
 copyright = "2026, The Pantocheck authors"
 version = release = installed_version("pantocheck")
 
-extensions = ["myst_parser", "numpydoc", "sphinx.ext.autodoc", "sphinx.ext.mathjax"]
+extensions = ["myst_parser", "numpydoc", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "sphinx_gallery.gen_gallery"]
 source_suffix = {".md": "markdown"}
 root_doc = "contents"
 exclude_patterns = ["_build", "site_pages"]
@@ -25,3 +25,15 @@ myst_heading_anchors = 3
 numpydoc_show_class_members = False
 autosummary_generate = False
 html_theme = "furo"
+
+# Every example of the gallery runs when the site is built; a failed assertion ends the build.
+sphinx_gallery_conf = {
+    "examples_dirs": "../examples/gallery",
+    "gallery_dirs": "gallery",
+    "filename_pattern": r"\.py$",
+    "abort_on_example_error": True,
+    "plot_gallery": "True",
+    "show_memory": False,
+    "remove_config_comments": True,
+    "write_computation_times": False,
+}
