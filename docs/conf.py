@@ -17,7 +17,7 @@ copyright = "2026, The Pantocheck authors"
 version = release = installed_version("pantocheck")
 
 extensions = ["myst_parser", "numpydoc", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "sphinx_gallery.gen_gallery"]
-source_suffix = {".md": "markdown"}
+source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 root_doc = "contents"
 exclude_patterns = ["_build", "site_pages"]
 myst_enable_extensions = ["dollarmath", "deflist"]
