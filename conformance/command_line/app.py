@@ -70,7 +70,6 @@ app = typer.Typer(
     help="Open conformance suite and reference simulator for pantograph-catenary interaction.",
     epilog="Exit codes: 0 pass, 1 not passed, 2 error or bad input, 130, 143 or 129 interrupted.",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )

@@ -20,6 +20,7 @@ from pantocheck.conformance.campaigns.evaluation.campaign_evaluation import eval
 from pantocheck.conformance.campaigns.executor_choice import choose_executor
 from pantocheck.conformance.campaigns.short_form import parse_variation
 from pantocheck.conformance.command_line.campaign_progress import report_campaign
+from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.console import console, escape_text
 from pantocheck.conformance.command_line.options import SetOption, TrustOption
 from pantocheck.conformance.identification.rounded_model import write_model
@@ -39,7 +40,12 @@ STOPPED: dict[CampaignEnding, str] = {
 
 
 def campaign_command(
-    campaign: Annotated[str, typer.Argument(help="Campaign (TOML file or name), or id, glob or path of base cases.")],
+    campaign: Annotated[
+        str,
+        typer.Argument(
+            help="Campaign (TOML file or name), or id, glob or path of base cases.", autocompletion=complete_case
+        ),
+    ],
     out: Annotated[Path, typer.Option(help="Folder of the runs and tables; the same command resumes the campaign.")],
     vary: Annotated[
         list[str] | None,

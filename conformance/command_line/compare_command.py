@@ -9,6 +9,7 @@ import typer
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.input_changes import parse_changes
+from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.console import build_table, console, escape_text
 from pantocheck.conformance.command_line.options import SetOption, choose_case
 from pantocheck.conformance.comparison.compared_run import (
@@ -39,7 +40,9 @@ def compare_command(
             help="Records, results.json files or their folders, or systems: builtin, record:DIR, command:PROGRAM.",
         ),
     ],
-    case: Annotated[str | None, typer.Option(help="Compared case; required for systems.")] = None,
+    case: Annotated[
+        str | None, typer.Option(help="Compared case; required for systems.", autocompletion=complete_case)
+    ] = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for comparison.json, .html, .pdf and .csv.", show_default="none")
     ] = None,

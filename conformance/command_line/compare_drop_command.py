@@ -8,6 +8,7 @@ import typer
 
 from pantocheck.conformance.cases.damping_file import DampingFile
 from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.console import build_table, console, escape_text, format_number, style_verdict
 from pantocheck.conformance.command_line.options import read_line
 from pantocheck.conformance.command_line.results_output import EXIT_CODES
@@ -37,7 +38,12 @@ SHORTEST_WINDOW_S, LATEST_WINDOW_S = 1.0, 900.0
 
 def compare_drop_command(
     record: Annotated[Path, typer.Argument(help="Record of a mass drop, with its sidecar (docs/identification.md).")],
-    line: Annotated[str, typer.Option(help="Line of the record: id of a case, or path of a case or line file.")],
+    line: Annotated[
+        str,
+        typer.Option(
+            help="Line of the record: id of a case, or path of a case or line file.", autocompletion=complete_case
+        ),
+    ],
     out: Annotated[Path, typer.Option(help="Folder for drop_comparison.json, .html and .pdf.")],
     damping: Annotated[
         list[Path] | None,

@@ -6,6 +6,7 @@ from typing import Annotated
 import numpy as np
 import typer
 
+from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.console import build_table, console, escape_text, format_number, style_verdict
 from pantocheck.conformance.command_line.options import read_line
 from pantocheck.conformance.command_line.results_output import EXIT_CODES
@@ -27,7 +28,10 @@ ToleranceOption = float | None
 
 def compare_statics_command(
     table: Annotated[Path, typer.Argument(help="Table of the measured values, or its sidecar (docs/line-tables.md).")],
-    line: Annotated[str, typer.Option(help="Measured line: id of a case, or path of a case or line file.")],
+    line: Annotated[
+        str,
+        typer.Option(help="Measured line: id of a case, or path of a case or line file.", autocompletion=complete_case),
+    ],
     out: Annotated[Path, typer.Option(help="Folder for static_comparison.json, .html and .pdf, and a CSV per value.")],
     elasticity_tolerance: Annotated[
         ToleranceOption,

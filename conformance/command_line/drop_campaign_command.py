@@ -8,6 +8,7 @@ import typer
 from rich.progress import Progress
 
 from pantocheck.conformance.cases.drop_test import WireName
+from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.console import console, escape_text
 from pantocheck.conformance.command_line.drop_command import advance_bar, select_drop_writer
 from pantocheck.conformance.command_line.options import choose_case
@@ -29,7 +30,7 @@ TENSION_HELP = "Tension of {} [N]; repeat the option for several. Default: that 
 
 
 def drop_campaign_command(
-    case: Annotated[str, typer.Argument(help="Id or path of one case with a mass drop.")],
+    case: Annotated[str, typer.Argument(help="Id or path of one case with a mass drop.", autocompletion=complete_case)],
     out: Annotated[
         Path, typer.Option(help="Records to write: NAME.csv, .uff or .h5 gives NAME-01.csv, NAME-02.csv, ...")
     ],

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 from rich.progress import Progress, TaskID
 
+from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.console import console, escape_text
 from pantocheck.conformance.command_line.options import choose_case
 from pantocheck.conformance.input_files.atomic_writing import check_writable
@@ -26,7 +27,7 @@ WRITERS: dict[str, Callable[[DropRecord, Path], None]] = {
 
 
 def drop_command(
-    case: Annotated[str, typer.Argument(help="Id or path of one case with a mass drop.")],
+    case: Annotated[str, typer.Argument(help="Id or path of one case with a mass drop.", autocompletion=complete_case)],
     out: Annotated[Path, typer.Option(help="Record to write: NAME.uff, NAME.csv or NAME.h5.")],
     number: Annotated[
         int | None,

@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.console import console, escape_text
 from pantocheck.conformance.command_line.options import read_line
 from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
@@ -12,7 +13,9 @@ from pantocheck.conformance.line_tables.line_export import DecimalMark, export_d
 
 
 def export_line_command(
-    line: Annotated[str, typer.Argument(help="Id of a case, or path of a case or line file.")],
+    line: Annotated[
+        str, typer.Argument(help="Id of a case, or path of a case or line file.", autocompletion=complete_case)
+    ],
     out: Annotated[Path, typer.Option(help="Folder for supports.csv and droppers.csv.")],
     decimal: Annotated[
         DecimalMark, typer.Option(help="Decimal mark; beside commas, columns are separated by semicolons.")

@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.console import console, escape_text
 from pantocheck.conformance.command_line.options import read_line
 from pantocheck.conformance.identification.damping.damping_model import MODAL_GROUPS
@@ -26,7 +27,10 @@ from pantocheck.conformance.simulation.catenary_model import build_catenary
 
 def fit_damping_command(
     modes: Annotated[Path, typer.Argument(help="modes.json of `pantocheck identify`.")],
-    line: Annotated[str, typer.Option(help="Measured line: id of a case, or path of a case or line file.")],
+    line: Annotated[
+        str,
+        typer.Option(help="Measured line: id of a case, or path of a case or line file.", autocompletion=complete_case),
+    ],
     out: Annotated[
         Path, typer.Option(help="Folder for damping.toml, damping_with_modal.toml, damping.json, .html and .pdf.")
     ],

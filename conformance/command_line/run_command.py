@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.options import (
     AcceptUnverifiedOption,
     AdministrationOption,
@@ -30,7 +31,10 @@ from pantocheck.conformance.runner import RunInterrupted, run_cases
 def run_command(
     case: Annotated[
         list[str] | None,
-        typer.Argument(help="Ids, globs or paths of cases; default: those that count for the verdicts."),
+        typer.Argument(
+            help="Ids, globs or paths of cases; default: those that count for the verdicts.",
+            autocompletion=complete_case,
+        ),
     ] = None,
     plan: Annotated[
         Path | None, typer.Option(help="TOML file with the options of a run; see `pantocheck schema plan`.")

@@ -9,6 +9,7 @@ import typer
 from rich.table import Table
 
 from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.console import build_table, console, escape_text, style_verdict
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
@@ -25,7 +26,10 @@ NUMERICAL_CASES = ("en50318-2018/ac-simple/320-twin",)
 def self_test_command(
     case: Annotated[
         list[str] | None,
-        typer.Argument(help=f"Ids of cases that the reference simulator passes.  [default: {' '.join(DEFAULT_CASES)}]"),
+        typer.Argument(
+            help=f"Ids of cases that the reference simulator passes.  [default: {' '.join(DEFAULT_CASES)}]",
+            autocompletion=complete_case,
+        ),
     ] = None,
     markdown: Annotated[Path | None, typer.Option(help="Markdown file to write the tables to.")] = None,
 ) -> None:

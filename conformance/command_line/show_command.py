@@ -12,6 +12,7 @@ from pantocheck.conformance.cases.case_file import Discretisation
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.named_files import recognise_named_file
+from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.case_tables import build_case_tables
 from pantocheck.conformance.command_line.console import console, escape_text
 from pantocheck.conformance.command_line.derived_tables import build_derived_tables
@@ -34,7 +35,11 @@ DRAWING_FORMATS: dict[str, Callable[[LineDrawing], bytes]] = {
 
 def show_command(
     case: Annotated[
-        str, typer.Argument(help="Id, glob or path of a case, e.g. en50318-2002/250; a line file for --drawing.")
+        str,
+        typer.Argument(
+            help="Id, glob or path of a case, e.g. en50318-2002/250; a line file for --drawing.",
+            autocompletion=complete_case,
+        ),
     ],
     at_rest: Annotated[
         bool,

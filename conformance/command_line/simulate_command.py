@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from pantocheck.conformance.cases.input_changes import parse_changes
+from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.console import console, escape_text
 from pantocheck.conformance.command_line.options import SetOption, choose_case
 from pantocheck.conformance.input_files.atomic_writing import check_writable
@@ -17,7 +18,9 @@ from pantocheck.conformance.systems.system_choice import choose_system
 
 
 def simulate_command(
-    case: Annotated[str, typer.Argument(help="Id or path of one case, e.g. en50318-2002/250.")],
+    case: Annotated[
+        str, typer.Argument(help="Id or path of one case, e.g. en50318-2002/250.", autocompletion=complete_case)
+    ],
     out: Annotated[Path, typer.Option(help="Record to write: NAME.csv or NAME.h5; NAME.toml is written beside it.")],
     system: Annotated[
         str, typer.Option(help="System that simulates: builtin (reference simulator) or command:PROGRAM ARGUMENTS.")
