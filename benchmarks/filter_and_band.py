@@ -16,7 +16,7 @@ from pantocheck.conformance.cases.library import load_case
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.quantities.bands import BANDS, band_rms
 from pantocheck.conformance.quantities.filters import LowPass
-from pantocheck.conformance.quantities.signals import PantographSignals
+from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
 

@@ -11,7 +11,7 @@ from pantocheck.conformance.grading.assessed_record import load_assessed_record
 from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.quantities.evaluation import Value, ValuesByOwner
-from pantocheck.conformance.quantities.signals import PantographSignals
+from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.records.sidecar_tables import LineTable
 from pantocheck.conformance.results.figure_data import Traces
 from pantocheck.conformance.results.outcome import Delivered

@@ -8,7 +8,8 @@ import numpy as np
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.comparison.paired_forces import pair_forces
 from pantocheck.conformance.grading.assessed_record import AssessedRecord
-from pantocheck.conformance.quantities.signals import PantographSignals, supports_inside
+from pantocheck.conformance.quantities.line_signals import supports_inside
+from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.results.measured_run_format import (
     ForceStatistics,

@@ -7,7 +7,8 @@ import scipy
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.filters import needs_filter
-from pantocheck.conformance.quantities.signals import EXTENDED_CUTOFF_HZ, SHORTEST_PERIODS, PantographSignals
+from pantocheck.conformance.quantities.force_signals import EXTENDED_CUTOFF_HZ
+from pantocheck.conformance.quantities.pantograph_signals import SHORTEST_PERIODS, PantographSignals
 from pantocheck.conformance.quantities.unavailable import SectionNotCovered
 
 INTERPOLATION_RATE_HZ = 1000.0

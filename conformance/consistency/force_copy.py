@@ -14,7 +14,7 @@ from scipy.signal import correlate
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.consistency.check import Check, Finding, worst_finding
-from pantocheck.conformance.quantities.signals import SUPPORT_TOLERANCE_M
+from pantocheck.conformance.quantities.line_signals import SUPPORT_TOLERANCE_M
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.record_signals import RecordSignals
 

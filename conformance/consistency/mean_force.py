@@ -16,7 +16,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.lift_force import LiftForce
 from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.consistency.check import Check, Finding, worst_finding
-from pantocheck.conformance.quantities.signals import PantographSignals
+from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph

@@ -16,8 +16,8 @@ from pantocheck.conformance.grading.start_agreement import StartAgreement, compa
 from pantocheck.conformance.grading.uncertainty import Component, Uncertainty
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation
+from pantocheck.conformance.quantities.pantograph_signals import edge_warnings
 from pantocheck.conformance.quantities.registry import QUANTITIES
-from pantocheck.conformance.quantities.signals import edge_warnings
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.results.criterion_format import ComponentName, Criterion

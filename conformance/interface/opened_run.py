@@ -10,7 +10,7 @@ from pantocheck.conformance.comparison.compared_run import ComparedRun, read_rec
 from pantocheck.conformance.interface.column_table import tabulate_columns, tabulate_rows
 from pantocheck.conformance.quantities.bands import amplitude_spectrum
 from pantocheck.conformance.quantities.evaluation import Value
-from pantocheck.conformance.quantities.signals import PantographSignals
+from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.reports.words import quantity_label, quantity_unit

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.bands import Band
-from pantocheck.conformance.quantities.signals import ForceSignals
+from pantocheck.conformance.quantities.force_signals import ForceSignals
 
 
 class Sampling:

@@ -11,9 +11,9 @@ import numpy as np
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.contact_losses import loss_durations
 from pantocheck.conformance.quantities.force_quantities import FORCE_50
+from pantocheck.conformance.quantities.force_signals import ForceSignals
 from pantocheck.conformance.quantities.quantity import Need, PantographQuantity
 from pantocheck.conformance.quantities.sampling import Sampling
-from pantocheck.conformance.quantities.signals import ForceSignals
 from pantocheck.conformance.quantities.statistics import check_unfiltered
 from pantocheck.conformance.quantities.unavailable import ChannelMissing
 

@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.force_quantities import PANTOGRAPH_QUANTITIES
+from pantocheck.conformance.quantities.force_signals import ForceChannel
+from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.quantities.quantity import Need, Quantity
 from pantocheck.conformance.quantities.sampling import WHOLE_RECORD
-from pantocheck.conformance.quantities.signals import ForceChannel, PantographSignals
 from pantocheck.conformance.quantities.unavailable import BandNotObservable, ChannelMissing, QuantityUnavailable
 
 Stretch = tuple[float, float]

@@ -6,7 +6,7 @@ from typing import Annotated
 from pydantic import Field
 
 from pantocheck.conformance.quantities.contact_losses import list_losses
-from pantocheck.conformance.quantities.signals import PantographSignals
+from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.results.results_part import ResultsPart
 

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.quantities.signals import LineSignals, PantographSignals
+from pantocheck.conformance.quantities.line_signals import LineSignals
+from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.results.figure_data import ExtremePlace
 

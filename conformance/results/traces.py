@@ -7,10 +7,8 @@ from numpy.typing import NDArray
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.bands import amplitude_spectrum
-from pantocheck.conformance.quantities.signals import (
-    PantographSignals,
-    supports_inside,
-)
+from pantocheck.conformance.quantities.line_signals import supports_inside
+from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.quantities.statistics import force_histogram
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.record_signals import RecordSignals

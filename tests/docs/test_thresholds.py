@@ -67,7 +67,14 @@ from pantocheck.conformance.grading import (
     verification_limits,
 )
 from pantocheck.conformance.procedure import compared_sides
-from pantocheck.conformance.quantities import bands, filters, limit_text, signals
+from pantocheck.conformance.quantities import (
+    bands,
+    filters,
+    force_signals,
+    limit_text,
+    line_signals,
+    pantograph_signals,
+)
 from pantocheck.conformance.records import events, record
 from pantocheck.conformance.records.logger import arc_tables, track_position
 from pantocheck.conformance.records.measured import (
@@ -91,7 +98,8 @@ MODULES: list[ModuleType] = [
     force_content, force_copy, force_dynamics, implied_force, mean_force, roll_off,
     rounding, support_coincidence, support_passing, assessed_record, baseline, discretisation,
     extended_band, record_mismatch, record_uncertainty, start_agreement, start_and_section, validity_warnings,
-    verification_limits, bands, filters, limit_text, signals, record, block_bootstrap, force_checks, usable_sections,
+    verification_limits, bands, filters, force_signals, limit_text, line_signals, pantograph_signals,
+    record, block_bootstrap, force_checks, usable_sections,
     results_part, results_reading, traces, static_comparison, static_criteria, static_differences, static_record,
     drop_comparison, drop_motion, drop_statistics, force_difference, paired_forces, motion_bands, release_alignment,
     response_columns, response_comparison, response_deviation, response_record, procedure_verdict, compared_sides,

@@ -14,8 +14,9 @@ from scipy.ndimage import maximum_filter1d
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.bands import Band
 from pantocheck.conformance.quantities.force_quantities import PANTOGRAPH_QUANTITIES
+from pantocheck.conformance.quantities.force_signals import ForceSignals
+from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.quantities.sampling import Sampling
-from pantocheck.conformance.quantities.signals import ForceSignals, PantographSignals
 from pantocheck.conformance.quantities.stated_quantities import list_stated
 from pantocheck.conformance.quantities.stretch_quantities import SignalsOutside
 from pantocheck.conformance.quantities.unavailable import ChannelMissing, QuantityUnavailable, SectionNotCovered

@@ -8,7 +8,7 @@ from scipy.signal import medfilt, welch
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.filters import is_observable
-from pantocheck.conformance.quantities.signals import PantographSignals
+from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 
 FILTERED_RATIO = 0.08
 """RMS at 30-50 Hz over RMS at 5-20 Hz, below which a force counts as low-pass filtered, whatever the sidecar states.

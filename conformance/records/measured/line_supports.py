@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from pantocheck.conformance.quantities.signals import SUPPORT_TOLERANCE_M, supports_inside
+from pantocheck.conformance.quantities.line_signals import SUPPORT_TOLERANCE_M, supports_inside
 
 
 def list_line_supports(

@@ -10,13 +10,9 @@ from numpy.typing import NDArray
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.evaluation import Evaluation, evaluate_signals
 from pantocheck.conformance.quantities.filters import LowPass
-from pantocheck.conformance.quantities.signals import (
-    ForceChannel,
-    LineSignals,
-    PantographSignals,
-    edge_warnings,
-    has_gaps,
-)
+from pantocheck.conformance.quantities.force_signals import ForceChannel
+from pantocheck.conformance.quantities.line_signals import LineSignals, has_gaps
+from pantocheck.conformance.quantities.pantograph_signals import PantographSignals, edge_warnings
 from pantocheck.conformance.quantities.stretch_quantities import SignalsOutside
 from pantocheck.conformance.quantities.unavailable import SectionNotCovered
 from pantocheck.conformance.records.events import RecordEvent, TooManyEvents, list_events

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import DampingChange
 from pantocheck.conformance.quantities.bands import BAND_QUANTITIES
-from pantocheck.conformance.quantities.signals import EXTENDED_CUTOFF_HZ, ForceChannel
+from pantocheck.conformance.quantities.force_signals import EXTENDED_CUTOFF_HZ, ForceChannel
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals

@@ -15,7 +15,8 @@ from pantocheck.conformance.comparison.force_difference import (
 )
 from pantocheck.conformance.comparison.paired_forces import PairedForces, pair_forces
 from pantocheck.conformance.quantities.filters import LowPass
-from pantocheck.conformance.quantities.signals import ForceChannel, PantographSignals
+from pantocheck.conformance.quantities.force_signals import ForceChannel
+from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.quantities.unavailable import SectionNotCovered
 
 Force = Callable[[RealArray], RealArray]

@@ -23,7 +23,7 @@ from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
 from pantocheck.conformance.input_files.toml_file import read_toml
-from pantocheck.conformance.quantities.signals import UPLIFT_STRETCH_M
+from pantocheck.conformance.quantities.line_signals import UPLIFT_STRETCH_M
 from pantocheck.conformance.records.record import Record, RecordInvalid
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.results.outcome import Delivered

@@ -7,13 +7,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 from pantocheck.conformance.quantities.filters import LowPass
-from pantocheck.conformance.quantities.signals import (
-    ForceChannel,
-    LineSignals,
-    PantographSignals,
-    edge_warnings,
-    supports_inside,
-)
+from pantocheck.conformance.quantities.force_signals import ForceChannel
+from pantocheck.conformance.quantities.line_signals import LineSignals, supports_inside
+from pantocheck.conformance.quantities.pantograph_signals import PantographSignals, edge_warnings
 from pantocheck.conformance.quantities.unavailable import (
     BandNotObservable,
     ChannelMissing,

@@ -3,7 +3,9 @@
 import numpy as np
 
 from pantocheck.conformance.quantities.filters import LowPass
-from pantocheck.conformance.quantities.signals import ForceChannel, LineSignals, PantographSignals
+from pantocheck.conformance.quantities.force_signals import ForceChannel
+from pantocheck.conformance.quantities.line_signals import LineSignals
+from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.results.extreme_places import find_force_places, find_uplift_place
 
 RATE, SPEED = 1000.0, 60.0

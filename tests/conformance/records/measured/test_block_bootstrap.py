@@ -8,8 +8,9 @@ import pytest
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.bands import BANDS
 from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.force_signals import ForceChannel
+from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.quantities.sampling import WHOLE_RECORD, Sampling
-from pantocheck.conformance.quantities.signals import ForceChannel, PantographSignals
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered
 from pantocheck.conformance.records.measured.block_bootstrap import BlockReplicates, bootstrap_uncertainties
 

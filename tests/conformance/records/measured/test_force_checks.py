@@ -7,7 +7,8 @@ import pytest
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.filters import LowPass
-from pantocheck.conformance.quantities.signals import ForceChannel, PantographSignals
+from pantocheck.conformance.quantities.force_signals import ForceChannel
+from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.records.measured.force_checks import detect_filtered, find_outliers
 
 

@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.evaluation import Value, evaluate_signals
 from pantocheck.conformance.quantities.filters import LowPass
-from pantocheck.conformance.quantities.signals import LineSignals
+from pantocheck.conformance.quantities.line_signals import LineSignals
 from pantocheck.conformance.records.measured.force_checks import find_outliers
 from pantocheck.conformance.records.measured.record_preparation import PreparedRecord, prepare_record
 from pantocheck.conformance.records.record import Record, RecordInvalid

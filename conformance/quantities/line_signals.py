@@ -1,0 +1,166 @@
+"""Uplift of the contact wire at the supports, from which quantities are computed."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.quantities.unavailable import (
+    ChannelMissing,
+    SupportsMissing,
+)
+
+SUPPORT_TOLERANCE_M = 0.5
+"""Largest distance between the stated and the real position of a support [m].
+
+Positions are rounded, and surveyed with an accuracy of some decimetres. A span is at least ten times as long, so that
+supports are not confused. A support at this distance outside the analysis section still belongs to the section."""
+
+RUN_OUT_M = 5.0
+"""Distance that every pantograph runs beyond a support, so that the record contains the largest uplift there [m].
+
+In simulation and measurement, the uplift is largest when a pantograph is within some decimetres of the support."""
+
+UPLIFT_STRETCH_M = 60.0
+"""Distance of the last pantograph beyond a support up to which the uplift there counts [m].
+
+Reflections and speeds near the wave speed move the largest uplift by tens of metres. Uplift beyond this distance does
+not count, so that it may be missing."""
+
+
+@dataclass(frozen=True)
+class LineSignals:
+    """Uplift of the contact wire at the supports.
+
+    Parameters
+    ----------
+    section : tuple of float
+        Start and end of the analysis section [m].
+    support_position : (s,) ndarray or None
+        Positions of the supports along the track [m], or None.
+    support_uplift : (s, n) ndarray or None
+        Uplift at each support [m], or None; NaN where it is not known.
+    line_supports : tuple of float or None
+        Positions of all supports of the line [m]; None if they are not known.
+    last_position : (n,) ndarray or None
+        Positions of the last pantograph [m]; None if they are not known.
+    """
+
+    section: tuple[float, float]
+    support_position: RealArray | None = None
+    support_uplift: RealArray | None = None
+    line_supports: tuple[float, ...] | None = None
+    last_position: RealArray | None = None
+
+    @property
+    def supports(self) -> RealArray:
+        """Positions of the k supports of the analysis section, both ends included, (k,) [m]; errors as in `uplift`."""
+        return self._at_supports[0]
+
+    @property
+    def uplift(self) -> RealArray:
+        """Uplift at the k supports of the analysis section, both ends included, (k, n) [m]; NaN after the passage.
+
+        Raises
+        ------
+        ChannelMissing
+            The record has no uplift, none inside the analysis section, or values are missing that count.
+        """
+        return self._at_supports[1]
+
+    @property
+    def largest_uplift(self) -> float:
+        """Largest uplift that counts at any of these supports [m]; errors as in `uplift`."""
+        return float(self.uplift[self.largest_uplift_index])
+
+    @property
+    def largest_uplift_index(self) -> tuple[int, int]:
+        """Support and sample of the largest uplift that counts, indices of `uplift`; errors as in `uplift`."""
+        counted = counted_samples(self.supports, self.uplift, self.last_position)
+        support, sample = np.unravel_index(np.argmax(np.where(counted, self.uplift, -np.inf)), counted.shape)
+        return int(support), int(sample)
+
+    def check_supports(self) -> None:
+        """Check that every support of the analysis section has an uplift.
+
+        Raises
+        ------
+        SupportsMissing
+            A support has no uplift, the supports of the line are not known, or the record ends too early behind the
+            last support: the largest uplift may be missing in the record.
+        """
+        measured = self.supports
+        if self.line_supports is None:
+            raise SupportsMissing(
+                "the record does not state span_m, the length of the longest span, "
+                "so that the supports of the analysis section are not known"
+            )
+        line = np.asarray(self.line_supports, dtype=np.float64)
+        expected = line[supports_inside(line, self.section)]
+        distance = np.abs(expected[:, None] - measured).min(axis=1)
+        missing = expected[~(distance <= SUPPORT_TOLERANCE_M)]
+        if missing.size:
+            places = ", ".join(f"{position:g} m" for position in missing[:5])
+            raise SupportsMissing(
+                f"the record has no uplift at {missing.size} of {expected.size} supports of the analysis section: "
+                f"{places}{', ...' if missing.size > 5 else ''}"
+            )
+        end = np.inf if self.last_position is None else float(self.last_position[-1])
+        if not end >= measured.max() + RUN_OUT_M:
+            raise SupportsMissing(
+                f"the record ends at {end:.6g} m; for the largest uplift of the support at {measured.max():g} m "
+                f"it must extend to {measured.max() + RUN_OUT_M:g} m"
+            )
+
+    @cached_property
+    def _at_supports(self) -> tuple[RealArray, RealArray]:
+        if self.support_position is None or self.support_uplift is None:
+            raise ChannelMissing("the record has no uplift at supports")
+        # A passing pantograph lifts the wire at every support; an exactly constant channel is that of a dead sensor.
+        known = np.isfinite(self.support_uplift)
+        lowest, highest = (np.where(known, self.support_uplift, limit) for limit in (np.inf, -np.inf))
+        moves = highest.max(axis=1) > lowest.min(axis=1)
+        inside = supports_inside(self.support_position, self.section) & moves
+        if not inside.any():
+            start, end = self.section
+            raise ChannelMissing(f"the record has no uplift at a support between {start:g} m and {end:g} m")
+        supports, uplift = self.support_position[inside], self.support_uplift[inside]
+        gaps = has_gaps(supports, uplift, self.last_position)
+        if gaps.any():
+            places = ", ".join(f"{position:g} m" for position in supports[gaps][:5])
+            raise SupportsMissing(
+                f"the uplift is incomplete at {gaps.sum()} of {gaps.size} supports of the analysis section: "
+                f"{places}{', ...' if gaps.sum() > 5 else ''}; it must be known until the last pantograph is "
+                f"{UPLIFT_STRETCH_M:g} m past the support"
+            )
+        return supports, uplift
+
+
+def counted_samples(supports: RealArray, uplift: RealArray, last_position: RealArray | None) -> NDArray[np.bool_]:
+    """Samples whose uplift counts, (s, n): from the start until the last pantograph is far enough past the support.
+
+    Parameters
+    ----------
+    supports : (s,) ndarray
+        Positions of the supports [m].
+    uplift : (s, n) ndarray
+        Uplift at the supports [m].
+    last_position : (n,) ndarray or None
+        Positions of the last pantograph [m]; None: every sample counts.
+    """
+    if last_position is None:
+        return np.ones(uplift.shape, dtype=np.bool_)
+    return np.asarray(last_position <= supports[:, None] + UPLIFT_STRETCH_M)
+
+
+def has_gaps(supports: RealArray, uplift: RealArray, last_position: RealArray | None) -> NDArray[np.bool_]:
+    """Whether values that count are missing at each support, (s,); parameters as of `counted_samples`."""
+    return np.asarray((~np.isfinite(uplift) & counted_samples(supports, uplift, last_position)).any(axis=1))
+
+
+def supports_inside(supports: RealArray, section: tuple[float, float]) -> NDArray[np.bool_]:
+    """Whether each support lies inside a section, both ends included; positions [m]."""
+    start, end = section
+    return (supports >= start - SUPPORT_TOLERANCE_M) & (supports <= end + SUPPORT_TOLERANCE_M)

@@ -1,0 +1,166 @@
+"""Channels of one pantograph, cut to the analysis section."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.quantities.bands import band_part, band_rms
+from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE
+from pantocheck.conformance.quantities.force_signals import EXTENDED_CUTOFF_HZ, ForceChannel
+from pantocheck.conformance.quantities.unavailable import (
+    BandNotObservable,
+    ChannelMissing,
+    SectionNotCovered,
+)
+
+SHORTEST_PERIODS = 4
+"""Shortest analysis section, in periods of the cut-off frequency; a shorter one has no meaningful statistics."""
+
+SETTLING_PERIODS = 2.0
+"""Periods of the cut-off after which the filter transient at the end of a record has decayed."""
+
+
+@dataclass(frozen=True)
+class PantographSignals:
+    """Signals of one pantograph: channels of the whole record, cut to the analysis section.
+
+    Parameters
+    ----------
+    position : (n,) ndarray
+        Contact point along the track [m].
+    force : ForceChannel
+        Contact force of the whole record.
+    section : tuple of float
+        Start (included) and end (excluded) of the analysis section [m].
+    contact_height : (n,) ndarray or None
+        Height of the contact point [m], or None.
+    arc_channels : (2, n) ndarray or None
+        Arcs, and time under load, as 1, 0 or NaN; None without an arc detector.
+    shortest_loss_s : float or None
+        Shortest duration of a long contact loss [s]; None if it is not stated.
+    """
+
+    position: RealArray
+    force: ForceChannel
+    section: tuple[float, float]
+    contact_height: RealArray | None = None
+    arc_channels: RealArray | None = None
+    shortest_loss_s: float | None = None
+
+    @property
+    def rate(self) -> float:
+        """Sampling rate [Hz]."""
+        return self.force.rate
+
+    @property
+    def has_arcs(self) -> bool:
+        """Whether the record has an arc detector for this pantograph."""
+        return self.arc_channels is not None
+
+    @property
+    def arcs(self) -> tuple[RealArray, RealArray] | None:
+        """Arcs and time under load over the analysis section, as 1, 0 or NaN; None without an arc detector."""
+        if self.arc_channels is None:
+            return None
+        return self.arc_channels[0][self.inside], self.arc_channels[1][self.inside]
+
+    @property
+    def filter_applied_Hz(self) -> float | None:
+        """Cut-off of the low-pass filter applied before delivery [Hz]; None: unfiltered."""
+        return self.force.filter_applied_Hz
+
+    @property
+    def highest_frequency(self) -> float:
+        """Frequency up to which the force is known [Hz], at most 50 Hz."""
+        return min(EXTENDED_CUTOFF_HZ, HIGHEST_SHARE_OF_RATE * self.force.rate, self.filter_applied_Hz or np.inf)
+
+    @cached_property
+    def inside(self) -> slice:
+        """Samples inside the analysis section.
+
+        Raises
+        ------
+        SectionNotCovered
+            The record begins after the start or ends before the end of the section.
+        """
+        start, end = self.section
+        # One sample of tolerance: a section that ends with the record ends between two samples.
+        step = float(np.max(np.diff(self.position)))
+        if self.position[0] > start + step or self.position[-1] < end - step:
+            raise SectionNotCovered(
+                f"the record covers {self.position[0]:.6g} m to {self.position[-1]:.6g} m, "
+                f"but the analysis section extends from {start:g} m to {end:g} m"
+            )
+        first, last = np.searchsorted(self.position, [start - 1e-9, end - 1e-9])
+        return slice(int(first), int(last))
+
+    @property
+    def delivered(self) -> RealArray:
+        """Contact force as delivered, over the analysis section [N]."""
+        return self.force.delivered[self.inside]
+
+    @property
+    def graded(self) -> RealArray:
+        """Contact force after the filter of the case (0-20 Hz), over the analysis section [N]."""
+        self._check_duration(self.force.low_pass.cutoff_Hz)
+        return self.force.graded[self.inside]
+
+    @property
+    def extended(self) -> RealArray:
+        """Contact force after the same kind of filter at 50 Hz, over the analysis section [N]."""
+        self._check_duration(EXTENDED_CUTOFF_HZ)
+        return self.force.extended[self.inside]
+
+    def band(self, low: float, high: float) -> float:
+        """RMS of the contact force in the band ]low, high] Hz, over the analysis section [N]."""
+        return band_rms(self.delivered, self.force.rate, low, high, self.filter_applied_Hz)
+
+    def band_part(self, low: float, high: float) -> RealArray:
+        """Contact force in the band ]low, high] Hz, over the analysis section [N]."""
+        return band_part(self.delivered, self.force.rate, low, high)
+
+    def _check_duration(self, cutoff_Hz: float) -> None:
+        duration, shortest = self.delivered.size / self.force.rate, SHORTEST_PERIODS / cutoff_Hz
+        if duration < shortest:
+            raise BandNotObservable(
+                f"the analysis section lasts {duration:.3g} s; "
+                f"statistics up to {cutoff_Hz:g} Hz need at least {shortest:g} s"
+            )
+
+    @property
+    def height(self) -> RealArray:
+        """Height of the contact point over the analysis section [m].
+
+        Raises
+        ------
+        ChannelMissing
+            The record has no contact height.
+        """
+        if self.contact_height is None:
+            raise ChannelMissing("the record has no contact height")
+        return self.contact_height[self.inside]
+
+
+def edge_warnings(pantographs: Mapping[int, PantographSignals], speed: float) -> list[str]:
+    """Warnings on pantographs whose record is too short for the filter to settle outside the analysis section.
+
+    Parameters
+    ----------
+    pantographs : mapping of int to PantographSignals
+        Signals of the pantographs by number from 1.
+    speed : float
+        Speed of the train [m/s].
+    """
+    warnings = []
+    for number, signals in pantographs.items():
+        settling = SETTLING_PERIODS / signals.force.low_pass.cutoff_Hz * speed
+        start, end = signals.section
+        if signals.position[0] > start - settling or signals.position[-1] < end + settling:
+            warnings.append(
+                f"the record of pantograph {number} begins or ends less than {settling:.1f} m outside the analysis "
+                "section: transients of the filter reach into the section"
+            )
+    return warnings
