@@ -9,16 +9,26 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from pantocheck.conformance.input_files.input_error import InputError
     from pantocheck.conformance.interface.campaign_session import run_campaign
+    from pantocheck.conformance.interface.fitted_damping import FittedDamping
     from pantocheck.conformance.interface.graded_results import GradedResults, assess_run, grade_cases, open_results
-    from pantocheck.conformance.interface.identified_lines import IdentifiedLines, identify_line, open_modes
+    from pantocheck.conformance.interface.identified_lines import (
+        IdentifiedLines,
+        IdentifiedRecords,
+        identify_line,
+        open_modes,
+    )
     from pantocheck.conformance.interface.opened_case import OpenedCase, list_cases, open_case
+    from pantocheck.conformance.interface.opened_drop import OpenedDrop, open_drop
     from pantocheck.conformance.interface.opened_run import OpenedRun, SimulatedRun, open_run
 
 __all__ = [
+    "FittedDamping",
     "GradedResults",
     "IdentifiedLines",
+    "IdentifiedRecords",
     "InputError",
     "OpenedCase",
+    "OpenedDrop",
     "OpenedRun",
     "SimulatedRun",
     "assess_run",
@@ -26,6 +36,7 @@ __all__ = [
     "identify_line",
     "list_cases",
     "open_case",
+    "open_drop",
     "open_modes",
     "open_results",
     "open_run",
@@ -33,10 +44,13 @@ __all__ = [
 ]
 
 _MODULES = {
+    "FittedDamping": "interface.fitted_damping",
     "GradedResults": "interface.graded_results",
     "IdentifiedLines": "interface.identified_lines",
+    "IdentifiedRecords": "interface.identified_lines",
     "InputError": "input_files.input_error",
     "OpenedCase": "interface.opened_case",
+    "OpenedDrop": "interface.opened_drop",
     "OpenedRun": "interface.opened_run",
     "SimulatedRun": "interface.opened_run",
     "assess_run": "interface.graded_results",
@@ -44,6 +58,7 @@ _MODULES = {
     "identify_line": "interface.identified_lines",
     "list_cases": "interface.opened_case",
     "open_case": "interface.opened_case",
+    "open_drop": "interface.opened_drop",
     "open_modes": "interface.identified_lines",
     "open_results": "interface.graded_results",
     "open_run": "interface.opened_run",

@@ -1,8 +1,10 @@
 """Configuration of the documentation site: `sphinx-build -W docs OUT`."""
 
+import re
 import sys
 from importlib.metadata import version as installed_version
 from pathlib import Path
+from typing import Any
 
 DOCS = Path(__file__).parent
 sys.path.insert(0, str(DOCS))
@@ -37,3 +39,13 @@ sphinx_gallery_conf = {
     "remove_config_comments": True,
     "write_computation_times": False,
 }
+
+
+def link_gallery(app: Any, page: str, source: list[str]) -> None:
+    """Turn links to the scripts of the gallery, which work in the repository, into links to their pages."""
+    source[0] = re.sub(r"\(\.\./examples/gallery/(\w+)\.py\)", r"(gallery/\1.rst)", source[0])
+
+
+def setup(app: Any) -> None:
+    """Connect the events of Sphinx."""
+    app.connect("source-read", link_gallery)

@@ -58,6 +58,7 @@ class CaseFiles:
         line, line_changes = self._read_line(file.line)
         if file.damping is not None:
             damping = _read_damping(path, file.damping, "damping") if isinstance(file.damping, str) else file.damping
+            self._refuse_hidden_changes(damping)
             line = line.model_copy(update={"damping": overlay_damping(line.damping, damping)})
         pantographs = [self._read_pantograph(use.model, i) for i, use in enumerate(file.pantograph)]
         static_pantograph = None
@@ -76,6 +77,23 @@ class CaseFiles:
             dampings,
             tuple(dict.fromkeys(descriptions)),
         )
+
+    def _refuse_hidden_changes(self, damping: Damping) -> None:
+        """Refuse changes of the damping of the line that the damping of the case replaces.
+
+        Raises
+        ------
+        InputError
+            A change would have no effect.
+        """
+        replaced = {(), *((name,) for name in (*damping.model_fields_set, "modal"))}
+        for change in self.changes:
+            if change.part == "line" and change.path[0] == "damping" and change.path[1:2] in replaced:
+                raise InputError(
+                    change.where,
+                    "has no effect: the case replaces this damping of its line",
+                    'Change the key damping of the case: a table, such as {"contact_wire": {...}}, or a file.',
+                )
 
     def list_errors(self) -> Iterator[InputError]:
         """Errors of the line and of the pantographs that the case file names, whether or not it is valid."""

@@ -10,11 +10,12 @@ from rich.progress import Progress
 from pantocheck.conformance.cases.drop_test import WireName
 from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.console import console, escape_text
-from pantocheck.conformance.command_line.drop_command import advance_bar, select_drop_writer
+from pantocheck.conformance.command_line.drop_command import advance_bar
 from pantocheck.conformance.command_line.options import choose_case
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.measured_table import Axis
+from pantocheck.conformance.mass_drops.drop_formats import select_drop_writer
 from pantocheck.conformance.simulation.drop_campaign import (
     WIRE_NAMES,
     DropCampaign,

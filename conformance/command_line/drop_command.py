@@ -1,6 +1,5 @@
 """`pantocheck drop`: simulated mass drops as records that can be identified like measured ones."""
 
-from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -13,17 +12,8 @@ from pantocheck.conformance.command_line.console import console, escape_text
 from pantocheck.conformance.command_line.options import choose_case
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.mass_drops.drop_record import DropRecord
-from pantocheck.conformance.mass_drops.drop_writing import write_drop_csv, write_drop_hdf5
-from pantocheck.conformance.mass_drops.uff_writing import write_drop_uff
+from pantocheck.conformance.mass_drops.drop_formats import select_drop_writer
 from pantocheck.conformance.simulation.drop_simulation import require_mass_drop, simulate_drop
-
-WRITERS: dict[str, Callable[[DropRecord, Path], None]] = {
-    ".uff": write_drop_uff,
-    ".csv": write_drop_csv,
-    ".h5": lambda record, path: write_drop_hdf5((record,), path),
-}
-"""Writer of a record by the suffix of its file."""
 
 
 def drop_command(
@@ -59,19 +49,6 @@ def drop_command(
             droppers = "no slack dropper after the release" if slack is None else f"last slack dropper at {slack:.2f} s"
             text = f"{path}: {record.duration:g} s, {len(record.channels)} sensors, {droppers}"
             output.print(escape_text(text), soft_wrap=True)
-
-
-def select_drop_writer(out: Path) -> Callable[[DropRecord, Path], None]:
-    """Writer of the format of a file, by its suffix.
-
-    Raises
-    ------
-    InputError
-        Drop records are not written in this format.
-    """
-    if (write := WRITERS.get(out.suffix.lower())) is None:
-        raise InputError(str(out), f"format '{out.suffix}' cannot be written", f"Write one of {', '.join(WRITERS)}.")
-    return write
 
 
 def advance_bar(bar: Progress, task: TaskID, share: float) -> None:

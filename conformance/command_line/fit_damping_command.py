@@ -18,10 +18,8 @@ from pantocheck.conformance.identification.damping.damping_toml import write_dam
 from pantocheck.conformance.identification.damping.line_comparison import compare_line, refuse_other_line
 from pantocheck.conformance.identification.damping.mode_matching import select_usable
 from pantocheck.conformance.identification.mode import read_modes
-from pantocheck.conformance.identification.rounded_model import write_model
-from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
-from pantocheck.conformance.reports.formats.report_writers import write_report
-from pantocheck.conformance.reports.mass_drop.damping_report import build_damping_document
+from pantocheck.conformance.input_files.atomic_writing import check_writable
+from pantocheck.conformance.interface.fitted_damping import FIT_FILES, write_damping_fit
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 
 
@@ -65,19 +63,9 @@ def fit_damping_command(
     output = console()
     with output.status("modes of the line"):
         results = build_damping_results(identified, catenary, element, modes.name, FitOptions(wires, modal_groups))
-        block = write_damping_toml(results)
-        document = build_damping_document(results.model_dump(mode="json", by_alias=True), block)
-        write_atomically(out / "damping.toml", block.encode("utf-8"))
-        with_modal = write_damping_toml(results, results.modal)
-        write_atomically(out / "damping_with_modal.toml", with_modal.encode("utf-8"))
-        write_model(out / "damping.json", results)
-        for suffix in (".html", ".pdf"):
-            write_report(document, out / f"damping{suffix}")
+        document = write_damping_fit(results, out)
     output.print(escape_text(document.header.headline))
     for text in results.warnings:
         output.print(escape_text(f"warning: {text}"))
-    output.print(escape_text(block))
-    output.print(
-        escape_text(f"{out}: damping.toml, damping_with_modal.toml, damping.json, damping.html, damping.pdf"),
-        soft_wrap=True,
-    )
+    output.print(escape_text(write_damping_toml(results)))
+    output.print(escape_text(f"{out}: {', '.join(FIT_FILES)}"), soft_wrap=True)

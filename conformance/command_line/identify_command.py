@@ -9,7 +9,6 @@ from pantocheck.conformance.command_line.console import console, escape_text, fo
 from pantocheck.conformance.command_line.population_output import write_population
 from pantocheck.conformance.identification.hand_placed_poles import read_poles
 from pantocheck.conformance.identification.identification_analysis import analyse_identification
-from pantocheck.conformance.identification.identification_format import IdentificationFile
 from pantocheck.conformance.identification.identify import identify_modes
 from pantocheck.conformance.identification.mode import ModesFile
 from pantocheck.conformance.identification.mode_export import MODE_FORMATS, select_mode_writer
@@ -17,12 +16,9 @@ from pantocheck.conformance.identification.population import identify_population
 from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.table_formats import TABLE_FORMATS, list_suffixes
+from pantocheck.conformance.interface.identified_lines import write_identification
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
-from pantocheck.conformance.reports.formats.report_writers import write_report
-from pantocheck.conformance.reports.mass_drop.identification_report import (
-    build_identification_document,
-    collect_warnings,
-)
+from pantocheck.conformance.reports.mass_drop.identification_report import collect_warnings
 
 
 def identify_command(
@@ -73,14 +69,11 @@ def identify_command(
         status.update("writing the report")
         lines = tuple(analyse_identification(identification) for identification in identifications)
         data = [line.model_dump(mode="json", by_alias=True) for line in lines]
-        document = build_identification_document(data)
         modes = tuple(mode for line in lines for mode in line.modes)
         write_model(out / "modes.json", ModesFile(modes))
         for path, write_modes in exports:
             write_modes(modes, path)
-        write_model(out / "identification.json", IdentificationFile(lines=lines))
-        for suffix in (".html", ".pdf"):
-            write_report(document, out / f"identification{suffix}")
+        document = write_identification(lines, out)
         population_lines = () if population is None else tuple(write_population(population, out))
     output.print(escape_text(document.header.headline))
     for group in (group for line in lines for group in line.groups):

@@ -1,23 +1,50 @@
 """Mass drops in Python: modes of a line, and a damping model fitted to them."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.identification.damping.damping_format import DampingResults
-from pantocheck.conformance.identification.damping.damping_results import FitOptions, build_damping_results
+from pantocheck.conformance.identification.damping.damping_results import (
+    FitOptions,
+    WireCoefficients,
+    build_damping_results,
+)
 from pantocheck.conformance.identification.damping.line_comparison import compare_line, refuse_other_line
 from pantocheck.conformance.identification.damping.mode_matching import select_usable
 from pantocheck.conformance.identification.identification_analysis import analyse_identification
+from pantocheck.conformance.identification.identification_format import IdentificationFile, IdentifiedLine
 from pantocheck.conformance.identification.identify import identify_modes
-from pantocheck.conformance.identification.mode import Mode, read_modes
+from pantocheck.conformance.identification.mode import Mode, ModesFile, read_modes
+from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.interface.column_table import tabulate_rows
+from pantocheck.conformance.interface.drawn_axes import provide_axes
+from pantocheck.conformance.interface.fitted_damping import FittedDamping
+from pantocheck.conformance.interface.opened_case import OpenedCase
+from pantocheck.conformance.interface.opened_drop import OpenedDrop
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
+from pantocheck.conformance.mass_drops.drop_record import DropRecord
+from pantocheck.conformance.reports.document import Document
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 
 HIGHEST_FREQUENCY_HZ = 10.0
 """Highest frequency of a mode, if none is given [Hz]."""
+
+REPORT_FILES = ("identification.json", "identification.html", "identification.pdf")
+"""Files of the report on an identification."""
+
+MODE_KEYS = (
+    "frequency_Hz",
+    "frequency_std_Hz",
+    "damping_ratio",
+    "damping_ratio_std",
+    "group",
+    "certain",
+    "lateral",
+    "outlier",
+    "record",
+)
+"""Columns of the table of modes, with the keys of modes.json."""
 
 
 @dataclass(frozen=True)
@@ -33,31 +60,117 @@ class IdentifiedLines:
     modes: tuple[Mode, ...]
 
     def to_dataframe(self) -> Any:
-        """Modes, one per row: a table of pandas, or columns of numpy."""
-        rows = [mode.model_dump(mode="json") for mode in self.modes]
-        names = [name for name, value in rows[0].items() if isinstance(value, float | int | str)] if rows else []
-        return tabulate_rows(rows, names)
+        """Modes, one per row: a table of pandas, or columns of numpy.
 
-    def fit_damping(self, case: Case, element_m: float = 0.5) -> DampingResults:
+        Columns have the keys of modes.json; `damping_ratio_std` is the standard deviation of `damping_ratio`.
+        """
+        return tabulate_rows([mode.model_dump(mode="json") for mode in self.modes], MODE_KEYS)
+
+    def plot(self, axes: Any = None) -> Any:
+        """Plot the damping ratios of the certain modes over their frequency, with 95 % intervals; returns axes."""
+        axes = provide_axes(axes)
+        certain = [mode for mode in self.modes if mode.certain and not mode.lateral]
+        axes.errorbar(
+            [mode.frequency_Hz for mode in certain],
+            [100 * mode.damping_ratio for mode in certain],
+            yerr=[196 * mode.damping_ratio_std for mode in certain],
+            fmt="o",
+            color="0.1",
+            markersize=4,
+            capsize=2,
+            label="identified, 95 % interval",
+        )
+        axes.set(xlabel="frequency [Hz]", ylabel="damping ratio [%]")
+        axes.legend()
+        return axes
+
+    def fit_damping(
+        self, case: OpenedCase, element_m: float = 0.5, wires: WireCoefficients = "separate"
+    ) -> FittedDamping:
         """Fit a damping model of the line of a case to the modes, as `pantocheck fit-damping` does.
+
+        Parameters
+        ----------
+        case : OpenedCase
+            Case with the line of the records.
+        element_m : float
+            Element length [m].
+        wires : {"separate", "common"}
+            Whether contact and messenger wire have their own coefficients, or the same.
 
         Raises
         ------
         InputError
             The line is not that of the record, or the modes do not determine a model.
         """
-        catenary, name = build_catenary(case.line), "modes"
+        catenary, name = build_catenary(case.case.line), "modes"
         refuse_other_line(compare_line(select_usable(self.modes, name), catenary), name)
-        return build_damping_results(self.modes, catenary, element_m, name, FitOptions())
+        return FittedDamping(build_damping_results(self.modes, catenary, element_m, name, FitOptions(wires)))
+
+    def write(self, folder: str | Path) -> list[Path]:
+        """Write modes.json; returns the paths of the files.
+
+        Raises
+        ------
+        InputError
+            A file cannot be written.
+        """
+        path = Path(folder) / "modes.json"
+        write_model(path, ModesFile(self.modes))
+        return [path]
 
 
-def identify_line(*paths: str | Path, highest_Hz: float = HIGHEST_FREQUENCY_HZ) -> IdentifiedLines:
-    """Identify the modes of a line from mass-drop records, as `pantocheck identify` does.
+@dataclass(frozen=True)
+class IdentifiedRecords(IdentifiedLines):
+    """Modes of the lines of mass-drop records, with the records and the course of the identification.
 
     Parameters
     ----------
-    *paths : str or Path
-        Records of one or more drops.
+    lines : tuple of IdentifiedLine
+        Content of identification.json, line by line.
+    """
+
+    lines: tuple[IdentifiedLine, ...]
+
+    def write(self, folder: str | Path) -> list[Path]:
+        """Write modes.json, identification.json and the report as HTML and PDF; returns the paths of the files.
+
+        Raises
+        ------
+        InputError
+            A file cannot be written.
+        """
+        paths = super().write(folder)
+        write_identification(self.lines, Path(folder))
+        return [*paths, *(Path(folder) / name for name in REPORT_FILES)]
+
+
+def write_identification(lines: tuple[IdentifiedLine, ...], folder: Path) -> Document:
+    """Write identification.json and the report; returns the report.
+
+    Raises
+    ------
+    InputError
+        A file cannot be written.
+    """
+    from pantocheck.conformance.reports.formats.report_writers import write_report
+    from pantocheck.conformance.reports.mass_drop.identification_report import build_identification_document
+
+    data, *reports = (folder / name for name in REPORT_FILES)
+    document = build_identification_document([line.model_dump(mode="json", by_alias=True) for line in lines])
+    write_model(data, IdentificationFile(lines=lines))
+    for path in reports:
+        write_report(document, path)
+    return document
+
+
+def identify_line(*drops: str | Path | OpenedDrop, highest_Hz: float = HIGHEST_FREQUENCY_HZ) -> IdentifiedRecords:
+    """Identify the modes of a line from mass drops, as `pantocheck identify` does.
+
+    Parameters
+    ----------
+    *drops : str, Path or OpenedDrop
+        Records, or simulated drops, of one or more drops.
     highest_Hz : float
         Highest frequency of a mode [Hz].
 
@@ -66,9 +179,17 @@ def identify_line(*paths: str | Path, highest_Hz: float = HIGHEST_FREQUENCY_HZ) 
     InputError
         A record cannot be read, or holds no decay.
     """
-    records = tuple(record for path in paths for record in read_drop_records(Path(path)))
-    lines = map(analyse_identification, identify_modes(records, highest_Hz))
-    return IdentifiedLines(tuple(mode for line in lines for mode in line.modes))
+    records = tuple(record for drop in drops for record in _list_records(drop))
+    lines = tuple(map(analyse_identification, identify_modes(records, highest_Hz)))
+    return IdentifiedRecords(tuple(mode for line in lines for mode in line.modes), lines)
+
+
+def _list_records(drop: str | Path | OpenedDrop) -> Iterator[DropRecord]:
+    """Records of a file, or that of a simulated drop."""
+    if isinstance(drop, OpenedDrop):
+        yield drop.record
+    else:
+        yield from read_drop_records(Path(drop))
 
 
 def open_modes(path: str | Path) -> IdentifiedLines:

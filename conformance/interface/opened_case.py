@@ -11,6 +11,7 @@ from pantocheck.conformance.cases.library import find_case_files, list_library, 
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.comparison.compared_run import deliver_case, describe_delivery
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.interface.opened_drop import OpenedDrop
 from pantocheck.conformance.interface.opened_run import SimulatedRun
 from pantocheck.conformance.results.outcome import missing_record_reason
 from pantocheck.conformance.systems.system import System
@@ -99,6 +100,27 @@ class OpenedCase:
             The system does not run the case, fails, or delivers no record.
         """
         return self._run_on(choose_system(system))
+
+    def simulate_drop(self, number: int = 1) -> OpenedDrop:
+        """Simulate a mass drop of the case with the reference simulator, as `pantocheck drop` does.
+
+        Parameters
+        ----------
+        number : int
+            Number of the drop, from 1.
+
+        Raises
+        ------
+        InputError
+            The case has no such mass drop.
+        """
+        from pantocheck.conformance.simulation.drop_simulation import simulate_drop
+
+        drops = () if self.case.file.mass_drop is None else self.case.file.mass_drop.drop
+        if not 1 <= number <= len(drops):
+            hint = "Choose a case with a [mass_drop] table." if not drops else "Drops are numbered from 1."
+            raise InputError(f"case '{self.id}'", f"has {len(drops)} mass drops, not drop {number}", hint)
+        return OpenedDrop(simulate_drop(self.case, number).record)
 
     def _run_on(self, system: System) -> SimulatedRun:
         delivered = deliver_case(self.case, system)

@@ -8,6 +8,7 @@ from typing import Any
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.comparison.compared_run import ComparedRun, read_record_run
 from pantocheck.conformance.interface.column_table import tabulate_columns, tabulate_rows
+from pantocheck.conformance.interface.drawn_axes import provide_axes
 from pantocheck.conformance.quantities.bands import amplitude_spectrum
 from pantocheck.conformance.quantities.evaluation import Value
 from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
@@ -97,7 +98,7 @@ class OpenedRun:
     def plot(self, pantograph: int = 1, axes: Any = None) -> Any:
         """Plot the force over the position, as delivered and as graded; returns matplotlib axes."""
         signals = self.run.signals[pantograph]
-        axes = _provide_axes(axes)
+        axes = provide_axes(axes)
         position = signals.position[signals.inside]
         axes.plot(position, signals.delivered, color="0.7", linewidth=0.8, label="as delivered")
         axes.plot(position, signals.graded, color="0.1", linewidth=1.2, label="0-20 Hz")
@@ -108,7 +109,7 @@ class OpenedRun:
     def plot_spectrum(self, pantograph: int = 1, axes: Any = None) -> Any:
         """Plot the amplitude spectrum of the force up to 50 Hz; returns matplotlib axes."""
         signals: PantographSignals = self.run.signals[pantograph]
-        axes = _provide_axes(axes)
+        axes = provide_axes(axes)
         axes.plot(*amplitude_spectrum(signals.delivered, signals.force.rate, signals.highest_frequency), color="0.1")
         axes.set(xlabel="frequency [Hz]", ylabel="amplitude [N]", title=self._title(pantograph))
         return axes
@@ -171,12 +172,3 @@ def open_run(path: str | Path) -> OpenedRun:
 def _select_number(values: Mapping[str, Value], name: str) -> float | None:
     value = values.get(name)
     return value if isinstance(value, float) else None
-
-
-def _provide_axes(axes: Any) -> Any:
-    """The given axes, or those of a new figure."""
-    if axes is not None:
-        return axes
-    from matplotlib import pyplot
-
-    return pyplot.subplots(figsize=(8, 3), layout="constrained")[1]

@@ -1,0 +1,131 @@
+"""Damping fits in Python: coefficients with their intervals, figures, and the files of a report."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pantocheck.conformance.identification.damping.damping_format import Coefficient, DampingResults
+from pantocheck.conformance.identification.damping.damping_toml import write_damping_toml
+from pantocheck.conformance.identification.rounded_model import write_model
+from pantocheck.conformance.input_files.atomic_writing import write_atomically
+from pantocheck.conformance.interface.column_table import tabulate_columns, tabulate_rows
+from pantocheck.conformance.interface.drawn_axes import provide_axes
+from pantocheck.conformance.reports.document import Document
+
+COEFFICIENT_COLUMNS = ("kind", "matrix", "value", "low_95", "high_95", "determined", "reason")
+"""Columns of the table of coefficients, with the keys of damping.json."""
+
+FIT_FILES = ("damping.toml", "damping_with_modal.toml", "damping.json", "damping.html", "damping.pdf")
+"""Files of a fit."""
+
+MODEL_STYLES = ("--", "-", ":")
+"""Lines of the models in a figure."""
+
+
+@dataclass(frozen=True)
+class FittedDamping:
+    """Damping model of a line, fitted to identified modes: C = sum over the components of (a M + b K).
+
+    Parameters
+    ----------
+    results : DampingResults
+        Content of damping.json.
+    """
+
+    results: DampingResults
+
+    @property
+    def toml(self) -> str:
+        """Table `damping` of a line file, without the coefficients that the modes do not determine."""
+        return write_damping_toml(self.results)
+
+    def coefficient(self, kind: str, matrix: str) -> Coefficient:
+        """Fitted coefficient of one kind of component.
+
+        Parameters
+        ----------
+        kind : str
+            Kind of component, for example `contact_wire`.
+        matrix : {"stiffness", "mass"}
+            Matrix of the coefficient: `stiffness` [s] or `mass` [1/s].
+
+        Returns
+        -------
+        Coefficient
+            With `value`, `low_95`, `high_95` and `determined`.
+
+        Raises
+        ------
+        KeyError
+            The fit has no such coefficient.
+        """
+        found = {(row.kind, row.matrix): row for row in self.results.coefficients}
+        return found[kind, matrix]
+
+    def to_dataframe(self) -> Any:
+        """Coefficients with their 95 % intervals, one per row: a table of pandas, or columns of numpy."""
+        return tabulate_rows([row.model_dump(mode="json") for row in self.results.coefficients], COEFFICIENT_COLUMNS)
+
+    def models(self) -> Any:
+        """Damping ratios of the computed modes: a table of pandas, or columns of numpy.
+
+        Columns are `frequency_Hz` and one per model: `line as it is` (the damping of the line file), `Rayleigh` (the
+        fit) and `Rayleigh + modal`.
+        """
+        comparison = self.results.comparison
+        columns = {"frequency_Hz": comparison.frequency_Hz, **comparison.models}
+        return tabulate_columns({name: np.array(values) for name, values in columns.items()})
+
+    def plot(self, axes: Any = None) -> Any:
+        """Plot the damping ratios over the frequency, identified and of the models; returns matplotlib axes."""
+        axes, comparison = provide_axes(axes), self.results.comparison
+        measured = comparison.measured
+        axes.errorbar(
+            measured.frequency_Hz,
+            [100 * ratio for ratio in measured.damping_ratio],
+            yerr=[196 * std for std in measured.std],
+            fmt="o",
+            color="0.1",
+            markersize=4,
+            label="identified, 95 % interval",
+        )
+        for (name, ratios), style in zip(comparison.models.items(), MODEL_STYLES, strict=False):
+            axes.plot(comparison.frequency_Hz, [100 * ratio for ratio in ratios], style, label=name)
+        axes.set(xlabel="frequency [Hz]", ylabel="damping ratio [%]")
+        axes.legend()
+        return axes
+
+    def write(self, folder: str | Path) -> list[Path]:
+        """Write damping.toml, damping_with_modal.toml, damping.json and the report; returns the paths of the files.
+
+        Raises
+        ------
+        InputError
+            A file cannot be written.
+        """
+        write_damping_fit(self.results, Path(folder))
+        return [Path(folder) / name for name in FIT_FILES]
+
+
+def write_damping_fit(results: DampingResults, folder: Path) -> Document:
+    """Write all files of a fit; returns the report.
+
+    Raises
+    ------
+    InputError
+        A file cannot be written.
+    """
+    from pantocheck.conformance.reports.formats.report_writers import write_report
+    from pantocheck.conformance.reports.mass_drop.damping_report import build_damping_document
+
+    block, with_modal, data, *reports = (folder / name for name in FIT_FILES)
+    text = write_damping_toml(results)
+    document = build_damping_document(results.model_dump(mode="json", by_alias=True), text)
+    write_atomically(block, text.encode("utf-8"))
+    write_atomically(with_modal, write_damping_toml(results, results.modal).encode("utf-8"))
+    write_model(data, results)
+    for path in reports:
+        write_report(document, path)
+    return document

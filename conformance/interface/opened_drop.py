@@ -1,0 +1,95 @@
+"""Mass drops in Python: signals, figures and files of a simulated or recorded drop."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.units import SI_UNITS
+from pantocheck.conformance.interface.column_table import tabulate_columns
+from pantocheck.conformance.interface.drawn_axes import provide_axes
+from pantocheck.conformance.mass_drops.drop_formats import select_drop_writer
+from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
+from pantocheck.conformance.mass_drops.drop_record import DropRecord
+
+
+@dataclass(frozen=True)
+class OpenedDrop:
+    """A mass drop with the signals of its sensors: simulated, or read from a record.
+
+    Parameters
+    ----------
+    record : DropRecord
+        Signals, sensors and description of the drop.
+    """
+
+    record: DropRecord
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Names of the channels."""
+        return tuple(channel.name for channel in self.record.channels)
+
+    def signals(self) -> Any:
+        """Signals in SI units: a table of pandas, or columns of numpy.
+
+        Columns are `time_s`, from the first sample, and one per channel.
+        """
+        return tabulate_columns(
+            {"time_s": self.record.time, **dict(zip(self.channels, self.record.signals.T, strict=True))}
+        )
+
+    def plot(self, channel: str | None = None, axes: Any = None) -> Any:
+        """Plot the signal of a channel over the time; returns matplotlib axes.
+
+        Parameters
+        ----------
+        channel : str or None
+            Name of the channel; None: the first one.
+        axes : matplotlib.axes.Axes or None
+            Axes of the plot; None: those of a new figure.
+
+        Raises
+        ------
+        ValueError
+            There is no such channel.
+        """
+        column = 0 if channel is None else self.channels.index(channel)
+        axes, record = provide_axes(axes), self.record
+        axes.plot(record.time, record.signals[:, column], color="0.1", linewidth=0.6)
+        label = f"{record.quantity} of {self.channels[column]} [{SI_UNITS[record.quantity]}]"
+        axes.set(xlabel="time [s]", ylabel=label, title=record.name)
+        return axes
+
+    def write(self, path: str | Path) -> Path:
+        """Write the drop as a record, `.csv`, `.uff` or `.h5` by its suffix; returns the path.
+
+        Raises
+        ------
+        InputError
+            The suffix is none of these, or the file cannot be written.
+        """
+        file = Path(path)
+        select_drop_writer(file)(self.record, file)
+        return file
+
+
+def open_drop(path: str | Path, run: int = 1) -> OpenedDrop:
+    """Read a mass-drop record.
+
+    Parameters
+    ----------
+    path : str or Path
+        Record in one of the formats of `pantocheck identify`; its sidecar has the same stem.
+    run : int
+        Number of the run in a record with several, from 1.
+
+    Raises
+    ------
+    InputError
+        The record cannot be read, or has no such run.
+    """
+    records = read_drop_records(Path(path))
+    if not 1 <= run <= len(records):
+        raise InputError(f"record '{Path(path).name}'", f"there is no run {run}", f"It has {len(records)}, from 1.")
+    return OpenedDrop(records[run - 1])
