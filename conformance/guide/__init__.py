@@ -1,0 +1,1 @@
+"""Verification and validation guide: computations of its parts, and the driver that stores them."""

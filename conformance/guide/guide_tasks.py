@@ -1,0 +1,61 @@
+"""Parts of the guide: name and computation of each, in the order of the guide."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+from pantocheck.conformance.cases.library import list_library
+from pantocheck.conformance.cases.library_folder import library_folder
+from pantocheck.conformance.guide.library_values import compute_library_case
+from pantocheck.conformance.guide.verification.long_string_passage import study_long_string
+from pantocheck.conformance.guide.verification.moving_load import study_moving_load
+from pantocheck.conformance.guide.verification.passage_balance import study_balances
+from pantocheck.conformance.guide.verification.string_droppers import study_dropper_lengths
+from pantocheck.conformance.guide.verification.time_integration import study_time_integration
+from pantocheck.conformance.guide.verification.wire_at_rest import study_elasticity, study_sag
+from pantocheck.conformance.guide.verification.wire_modes import study_frequencies
+from pantocheck.conformance.guide.verification.wire_waves import study_waves
+from pantocheck.conformance.results.guide_format import LibraryCase, Topic
+from pantocheck.conformance.results.results_part import ResultsPart
+
+TOPICS: dict[str, Callable[[], Topic]] = {
+    "wire-sag": study_sag,
+    "wire-elasticity": study_elasticity,
+    "wire-frequencies": study_frequencies,
+    "dropper-lengths": study_dropper_lengths,
+    "waves": study_waves,
+    "time-integration": study_time_integration,
+    "moving-load": study_moving_load,
+    "long-string": study_long_string,
+    "balances": study_balances,
+}
+"""Topics of the verification against closed forms."""
+
+
+@dataclass(frozen=True)
+class GuideTask:
+    """Part of the guide.
+
+    Parameters
+    ----------
+    name : str
+        Section and name within it.
+    content : type of ResultsPart
+        Type of the content.
+    compute : callable
+        Computation of the content; it can be sent to another process.
+    """
+
+    name: str
+    content: type[ResultsPart]
+    compute: Callable[[], ResultsPart]
+
+
+def list_tasks() -> list[GuideTask]:
+    """All parts of the guide."""
+    topics = [GuideTask(f"verification/{name}", Topic, study) for name, study in TOPICS.items()]
+    cases = [
+        GuideTask(f"library/{name}", LibraryCase, partial(compute_library_case, name))
+        for name in list_library(library_folder())
+    ]
+    return [*topics, *cases]

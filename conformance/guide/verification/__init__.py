@@ -1,0 +1,1 @@
+"""Verification of the reference simulator against closed forms: one file per topic."""

@@ -1,0 +1,46 @@
+"""Time steps of a line from a given state, as the closed forms prescribe it."""
+
+import numpy as np
+
+from pantocheck.conformance.array_types import RealArray
+from pantocheck.model import DiscretisedLine, SimulationError
+from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
+from pantocheck.model.dynamics.motion import build_motion, end_of_step
+from pantocheck.model.dynamics.newmark import step
+from pantocheck.model.dynamics.train import build_empty_train
+
+
+def advance_freely(
+    line: DiscretisedLine, time_step: float, steps: int, fields: tuple[RealArray, RealArray], every: int
+) -> RealArray:
+    """Deflection of the first row in free motion from a given state.
+
+    Parameters
+    ----------
+    line : DiscretisedLine
+        Line without lateral field.
+    time_step : float
+        Time step [s].
+    steps : int
+        Number of time steps.
+    fields : tuple of (3, B, S) ndarray
+        Displacement, velocity and acceleration at the start: deflections, and slopes.
+    every : int
+        Steps between two rows of the result.
+
+    Returns
+    -------
+    (steps // every, S) ndarray
+        Deflection after every `every` steps [m].
+    """
+    kernel = build_kernel_arrays(line, time_step)
+    train = build_empty_train(1)
+    motion = build_motion(kernel.layout, time_step, fields, line.connectors.preload)
+    work = build_workspace(kernel, train)
+    rows = []
+    for n in range(1, steps + 1):
+        if not step(kernel, motion, train, work):
+            raise SimulationError("the forces of a time step did not converge")
+        if n % every == 0:
+            rows.append(end_of_step(motion, kernel.layout, time_step)[0][0, 0].copy())
+    return np.array(rows)

@@ -1,0 +1,1 @@
+"""Pages of the verification and validation guide, from guide.json."""
