@@ -9,9 +9,10 @@ from typing import Any
 DOCS = Path(__file__).parent
 sys.path.insert(0, str(DOCS))
 
-from site_pages import write_generated_pages  # noqa: E402
+from site_pages import write_generated_pages, write_pictures  # noqa: E402
 
 write_generated_pages(DOCS / "generated")
+write_pictures(DOCS / "generated" / "pictures")
 
 project = "Pantocheck"
 author = "The Pantocheck authors"
@@ -20,7 +21,6 @@ version = release = installed_version("pantocheck")
 
 extensions = ["myst_parser", "numpydoc", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "sphinx_gallery.gen_gallery"]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
-root_doc = "contents"
 exclude_patterns = ["_build", "site_pages"]
 myst_enable_extensions = ["dollarmath", "deflist"]
 myst_heading_anchors = 3

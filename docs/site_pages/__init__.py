@@ -1,19 +1,30 @@
-"""Pages of the documentation site that are generated from the code: commands, formats, quantities and interface."""
+"""Pages and pictures of the documentation site that are generated from the code, the pages and their examples."""
 
+from functools import partial
 from pathlib import Path
 
 from site_pages.command_pages import build_command_page
 from site_pages.format_pages import build_format_page
 from site_pages.interface_pages import build_interface_page
+from site_pages.page_list import build_page_list
+from site_pages.picture_folder import keep_pictures
 from site_pages.quantity_pages import build_quantity_page
+from site_pages.start_pictures import write_start_pictures
+from site_pages.tutorial_pages import write_tutorial_pictures
+
+DOCS = Path(__file__).parents[1]
 
 PAGES = {
     "commands": build_command_page,
     "formats": build_format_page,
     "quantity-reference": build_quantity_page,
     "interface": build_interface_page,
+    "all-pages": build_page_list,
 }
 """Builder of each page by its name."""
+
+TUTORIALS = sorted((DOCS / "tutorials").glob("*-*.md"))
+"""Pages of the tutorials: `ROLE-ROLE.md`."""
 
 
 def write_generated_pages(folder: Path) -> None:
@@ -23,3 +34,10 @@ def write_generated_pages(folder: Path) -> None:
         path, content = folder / f"{name}.md", build()
         if not path.exists() or path.read_text("utf-8") != content:
             path.write_text(content, "utf-8")
+
+
+def write_pictures(folder: Path) -> None:
+    """Write the pictures of the start page and of the tutorials, unless nothing has changed since the last time."""
+    keep_pictures(folder / "start", "", write_start_pictures)
+    for page in TUTORIALS:
+        keep_pictures(folder / page.stem, page.read_text("utf-8"), partial(write_tutorial_pictures, page))

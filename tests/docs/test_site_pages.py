@@ -47,9 +47,11 @@ def test_every_quantity_and_public_name_is_described(pages: dict[str, str]) -> N
     assert {name for name in public if name not in pages["interface"]} == set()
 
 
-def test_contents_list_every_page_once(pages: dict[str, str]) -> None:
-    blocks = re.findall(r"```\{toctree\}\n(.*?)```", (DOCS / "contents.md").read_text("utf-8"), re.DOTALL)
+def test_navigation_lists_every_page_once(pages: dict[str, str]) -> None:
+    """A new page belongs into a toctree of docs/index.md."""
+    blocks = re.findall(r"```\{toctree\}\n(.*?)```", (DOCS / "index.md").read_text("utf-8"), re.DOTALL)
     listed = [line for block in blocks for line in block.splitlines() if line and not line.startswith(":")]
-    written = {path.stem for path in DOCS.glob("*.md")} - {"contents"}
+    written = {path.stem for path in DOCS.glob("*.md")} - {"index"}
+    tutorials = {f"tutorials/{path.stem}" for path in (DOCS / "tutorials").glob("*.md")}
     generated = {f"generated/{name}" for name in pages} | {"gallery/index"}
-    assert sorted(listed) == sorted(written | generated)
+    assert sorted(listed) == sorted(written | tutorials | generated)

@@ -1,0 +1,41 @@
+"""Tutorials: each runs when the site is built, and its results become its pictures."""
+
+import re
+import shutil
+import tempfile
+from pathlib import Path
+
+from site_pages.page_blocks import list_pictures, read_blocks
+from site_pages.page_run import PageRun, copy_clone
+from site_pages.picture_folder import draw_page
+from site_pages.unrun_blocks import is_run_by_hand
+
+PDF_PAGE = re.compile(r"(?P<file>.+\.pdf)-(?P<page>\d+)\.png")
+"""Name of a picture that is a page of a PDF document: `certificate.pdf-1.png`."""
+
+
+def run_tutorial(page: Path, folder: Path) -> PageRun:
+    """Run every block of a page in a folder; raises `BlockFault`."""
+    copy_clone(folder)
+    run = PageRun(folder)
+    for block in read_blocks(page):
+        if not is_run_by_hand(block):
+            run.take(block)
+    return run
+
+
+def write_tutorial_pictures(page: Path, target: Path) -> None:
+    """Run a tutorial, and write the pictures that it shows."""
+    with tempfile.TemporaryDirectory() as folder:
+        run = run_tutorial(page, Path(folder))
+        for name in list_pictures(page):
+            place_picture(run.current, name.removeprefix(f"{page.stem}/"), target)
+
+
+def place_picture(folder: Path, name: str, target: Path) -> None:
+    """Copy a picture from the folder of a run, or draw the page of the document that its name states."""
+    (target / name).parent.mkdir(parents=True, exist_ok=True)
+    if found := PDF_PAGE.fullmatch(name):
+        draw_page(folder / found["file"], int(found["page"]), target / name)
+    else:
+        shutil.copy(folder / name, target / name)
