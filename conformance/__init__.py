@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     )
     from pantocheck.conformance.interface.opened_case import OpenedCase, list_cases, open_case
     from pantocheck.conformance.interface.opened_drop import OpenedDrop, open_drop
+    from pantocheck.conformance.interface.opened_line import OpenedLine
     from pantocheck.conformance.interface.opened_run import OpenedRun, SimulatedRun, open_run
 
 __all__ = [
@@ -29,6 +30,7 @@ __all__ = [
     "InputError",
     "OpenedCase",
     "OpenedDrop",
+    "OpenedLine",
     "OpenedRun",
     "SimulatedRun",
     "assess_run",
@@ -51,6 +53,7 @@ _MODULES = {
     "InputError": "input_files.input_error",
     "OpenedCase": "interface.opened_case",
     "OpenedDrop": "interface.opened_drop",
+    "OpenedLine": "interface.opened_line",
     "OpenedRun": "interface.opened_run",
     "SimulatedRun": "interface.opened_run",
     "assess_run": "interface.graded_results",

@@ -26,8 +26,12 @@ if TYPE_CHECKING:
     from pantocheck.model.dynamics.passage import History, Passage
     from pantocheck.model.dynamics.simulation import simulate_passage
     from pantocheck.model.failures import SimulationError
+    from pantocheck.model.fem.beam import wave_speed
     from pantocheck.model.irregularity import Irregularity, SpectralDensity, realise_irregularity
+    from pantocheck.model.modal.modes import Modes, compute_modes, damping_ratios
     from pantocheck.model.pantograph import Pantograph, chain
+    from pantocheck.model.statics.elasticity import rest_height, static_uplift
+    from pantocheck.model.statics.wave_factors import doppler_factor, reflection_coefficient
 
 __all__ = [
     "Catenary",
@@ -39,6 +43,7 @@ __all__ = [
     "Kind",
     "MessengerSupport",
     "ModalBand",
+    "Modes",
     "Pantograph",
     "Passage",
     "PointMass",
@@ -51,10 +56,17 @@ __all__ = [
     "TrackCurve",
     "Wire",
     "chain",
+    "compute_modes",
+    "damping_ratios",
     "discretise",
+    "doppler_factor",
     "make_droppers_bilateral",
     "realise_irregularity",
+    "reflection_coefficient",
+    "rest_height",
     "simulate_passage",
+    "static_uplift",
+    "wave_speed",
 ]
 
 _MODULES = {
@@ -63,14 +75,22 @@ _MODULES = {
     "History": "dynamics.passage",
     "Irregularity": "irregularity",
     "Pantograph": "pantograph",
+    "Modes": "modal.modes",
     "Passage": "dynamics.passage",
     "SimulationError": "failures",
     "SpectralDensity": "irregularity",
     "chain": "pantograph",
+    "compute_modes": "modal.modes",
+    "damping_ratios": "modal.modes",
     "discretise": "discretised_line",
+    "doppler_factor": "statics.wave_factors",
     "make_droppers_bilateral": "discretised_line",
     "realise_irregularity": "irregularity",
+    "reflection_coefficient": "statics.wave_factors",
+    "rest_height": "statics.elasticity",
     "simulate_passage": "dynamics.simulation",
+    "static_uplift": "statics.elasticity",
+    "wave_speed": "fem.beam",
 }
 """Modules of the public names that are not defined in `catenary`."""
 

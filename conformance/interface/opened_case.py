@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.input_changes import InputChange, build_change
@@ -16,6 +16,9 @@ from pantocheck.conformance.interface.opened_run import SimulatedRun
 from pantocheck.conformance.results.outcome import missing_record_reason
 from pantocheck.conformance.systems.system import System
 from pantocheck.conformance.systems.system_choice import choose_system
+
+if TYPE_CHECKING:
+    from pantocheck.conformance.interface.opened_line import OpenedLine
 
 ORIGIN = "with_"
 """Origin of a change in messages."""
@@ -55,6 +58,13 @@ class OpenedCase:
                 for pantograph in self.case.pantographs
             ],
         }
+
+    @property
+    def line(self) -> "OpenedLine":
+        """Line of the case at rest, in the elements of the case."""
+        from pantocheck.conformance.interface.opened_line import OpenedLine
+
+        return OpenedLine(self.case.line, self.case.file.discretisation.element_m)
 
     def with_(self, changes: Mapping[str, object] | None = None, /, **further: object) -> "OpenedCase":
         """Copy of the case with other inputs.

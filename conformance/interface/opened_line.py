@@ -1,0 +1,180 @@
+"""Lines in Python: shape at rest, droppers, elasticity, and a figure of some spans."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.interface.column_table import tabulate_columns
+from pantocheck.conformance.interface.drawn_axes import provide_axes
+from pantocheck.conformance.simulation.drawn_points import find_deflection, list_fixed_points
+from pantocheck.conformance.simulation.line_discretisation import discretise_line
+from pantocheck.model import Catenary, DiscretisedLine, Kind, static_uplift
+from pantocheck.model.one_thread import use_one_thread
+
+WIRE_STYLES = {
+    Kind.CONTACT_WIRE: {"color": "0.1", "linewidth": 1.6},
+    Kind.MESSENGER_WIRE: {"color": "tab:blue", "linewidth": 1.2},
+    Kind.STITCH_WIRE: {"color": "tab:orange", "linewidth": 1.2},
+}
+FIXED_POINT_MARKERS = {"anchor": "D", "messenger support": "^", "steady arm": "o"}
+"""Marker of each part that holds a wire."""
+
+
+@dataclass(frozen=True)
+class OpenedLine:
+    """A line at rest, in the elements of its case.
+
+    Parameters
+    ----------
+    file : LineFile
+        Content of the line file.
+    element_m : float
+        Largest length of an element [m].
+    """
+
+    file: LineFile
+    element_m: float
+
+    @property
+    def span_limits(self) -> RealArray:
+        """Positions of the supports, with both ends of the line [m]."""
+        return np.array(self.file.geometry.span_limits)
+
+    @property
+    def discretised(self) -> DiscretisedLine:
+        """Finite elements of the line at rest, for the functions of `pantocheck.model`.
+
+        Raises
+        ------
+        SimulationError
+            The prescribed geometry has no equilibrium.
+        """
+        return discretise_line(self.file, self.element_m)
+
+    @property
+    def catenary(self) -> Catenary:
+        """Description of the line for `pantocheck.model`."""
+        return self.discretised.catenary
+
+    def shape(self) -> Any:
+        """Shape of all wires at rest: a table of pandas, or columns of numpy.
+
+        Columns are `wire`, `position_m`, `height_m` above the datum of the line and, if the line has a stagger,
+        `lateral_m`.
+        """
+        line = self.discretised
+        stations = {wire.name: self._stations(wire.start, wire.end) for wire in line.catenary.wires}
+        columns = {
+            "wire": np.array([name for name, x in stations.items() for _ in x], dtype=object),
+            "position_m": np.concatenate(list(stations.values())),
+        }
+        for field, name in (("z", "height_m"), ("y", "lateral_m")):
+            if field == "z" or line.catenary.has_lateral_field:
+                columns[name] = np.concatenate([find_deflection(line, wire, field, x) for wire, x in stations.items()])
+        return tabulate_columns(columns)
+
+    def droppers(self) -> Any:
+        """Droppers at rest: a table of pandas, or columns of numpy.
+
+        Columns are `position_m`, `lower` and `upper` (names of the wires), `length_m` between the wires and `force_N`.
+        """
+        droppers, state = self.catenary.droppers, self.discretised.state
+        return tabulate_columns(
+            {
+                "position_m": np.array([dropper.position for dropper in droppers]),
+                "lower": np.array([dropper.lower for dropper in droppers], dtype=object),
+                "upper": np.array([dropper.upper for dropper in droppers], dtype=object),
+                "length_m": state.dropper_length.copy(),
+                "force_N": state.dropper_tension.copy(),
+            }
+        )
+
+    @use_one_thread
+    def elasticity(self, position_m: ArrayLike, force_N: float = 1.0) -> RealArray:
+        """Elasticity: static uplift of the contact wire under a force, over that force; droppers may slacken.
+
+        Parameters
+        ----------
+        position_m : array_like
+            Positions of the force, which acts at one of them at a time [m].
+        force_N : float
+            Force upwards [N].
+
+        Returns
+        -------
+        (n,) ndarray
+            Elasticity at every position [mm/N].
+
+        Raises
+        ------
+        InputError
+            A position is not on the line, or the force is not positive.
+        """
+        positions, limits = np.atleast_1d(np.asarray(position_m, dtype=float)), self.span_limits
+        outside = positions[~((limits[0] <= positions) & (positions <= limits[-1]))]
+        if outside.size:
+            hint = f"Give positions from {limits[0]:g} to {limits[-1]:g} m."
+            raise InputError("elasticity, position_m", f"{outside[0]:g} m is not on the line", hint)
+        if not force_N > 0:
+            raise InputError("elasticity, force_N", f"found {force_N:g} N", "Give a force above zero, in newtons.")
+        return 1e3 * static_uplift(self.discretised, positions, force_N) / force_N
+
+    def plot(self, first_span: int = 1, last_span: int | None = None, axes: Any = None) -> Any:
+        """Plot some spans in elevation, the height enlarged; returns matplotlib axes.
+
+        Parameters
+        ----------
+        first_span, last_span : int
+            Numbers of the spans, from 1; default: all spans.
+        axes : matplotlib axes or None
+            Axes of the figure; None: those of a new one.
+
+        Raises
+        ------
+        InputError
+            The line does not have these spans.
+        """
+        start, end = self._section(first_span, last_span)
+        axes = provide_axes(axes)
+        for x, heights, style in self._list_curves(start, end):
+            axes.plot(x, heights, **style)
+        for symbol, wire, place in list_fixed_points(self.catenary):
+            if start <= place <= end:
+                height = find_deflection(self.discretised, wire, "z", place)
+                axes.plot(
+                    place, height, FIXED_POINT_MARKERS[symbol], color="0.1", markerfacecolor="white", markersize=5
+                )
+        axes.set(xlabel="position along the track [m]", ylabel="height [m]", title=self.file.title)
+        return axes
+
+    def _section(self, first: int, last: int | None) -> tuple[float, float]:
+        """Both ends of a stretch of spans [m]."""
+        spans = self.file.geometry.spans
+        if not 1 <= first <= (last or spans) <= spans:
+            hint = f"Give spans from 1 to {spans}."
+            raise InputError("plot, first_span and last_span", f"found {first} to {last or spans}", hint)
+        return self.file.geometry.section(first, last or spans)
+
+    def _stations(self, start: float, end: float) -> RealArray:
+        """Stations of the mesh between two positions [m]."""
+        x = self.discretised.mesh.position
+        return x[(x >= start - 1e-6) & (x <= end + 1e-6)]
+
+    def _list_curves(self, start: float, end: float) -> Iterator[tuple[RealArray, RealArray, dict[str, Any]]]:
+        """Positions, heights and style of every wire and dropper between two positions."""
+        line = self.discretised
+        for wire in line.catenary.wires:
+            x = self._stations(max(wire.start, start), min(wire.end, end))
+            if x.size:
+                yield x, find_deflection(line, wire.name, "z", x), WIRE_STYLES[wire.kind]
+        for dropper in line.catenary.droppers:
+            if start <= dropper.position <= end:
+                x = np.full(2, dropper.position)
+                ends = [find_deflection(line, name, "z", dropper.position) for name in (dropper.lower, dropper.upper)]
+                yield x, np.array(ends), {"color": "0.55", "linewidth": 0.8}
