@@ -10,6 +10,7 @@ from typing import Annotated
 from pydantic import Field
 
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.catalogue import open_catalogue
 from pantocheck.conformance.cases.input_changes import parse_changes
 from pantocheck.conformance.cases.library import overlay_limits, read_limits, select_cases
 from pantocheck.conformance.cases.library_folder import library_folder
@@ -41,6 +42,12 @@ class Plan(InputTable):
         Field(
             description="ids, globs or paths of cases; default: cases whose limits count, and with verification cases "
             "that have converged values"
+        ),
+    ] = ()
+    case_folders: Annotated[
+        Names,
+        Field(
+            description="folders with further cases, whose ids begin with own/; they take part without a list of cases"
         ),
     ] = ()
     set: Annotated[
@@ -135,7 +142,7 @@ def prepare_plan(plan: Plan) -> PreparedPlan:
     """
     if plan.set and not plan.cases:
         raise InputError("option --set", "no case is named", "Name the cases whose inputs you want to change.")
-    cases = select_cases(plan.cases or ["*"], parse_changes(plan.set))
+    cases = select_cases(plan.cases or ["*"], parse_changes(plan.set), open_catalogue(plan.case_folders))
     if plan.limits is not None:
         cases = overlay_limits(cases, read_limits(Path(plan.limits)))
     requested = choose_verdicts(plan.verdicts, plan.system, [case.id for case in cases])
@@ -186,6 +193,7 @@ def read_plan(path: Path) -> Plan:
     return plan.model_copy(
         update={
             "cases": place_cases(plan.cases, folder),
+            "case_folders": tuple(str(folder / name) for name in plan.case_folders),
             "system": place_system(plan.system, folder),
             "out": str(folder / plan.out),
             "baseline": None if plan.baseline is None else str(folder / plan.baseline),

@@ -11,8 +11,9 @@ from pantocheck.conformance.authenticity.limit_comparison import (
 from pantocheck.conformance.authenticity.profile_comparison import compare_profile
 from pantocheck.conformance.authenticity.version_differences import list_suite_differences
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import list_library, load_case
+from pantocheck.conformance.cases.library import load_case
 from pantocheck.conformance.cases.library_folder import library_folder
+from pantocheck.conformance.cases.library_list import list_library
 from pantocheck.conformance.cases.profile_file import list_profiles, load_profile
 from pantocheck.conformance.grading.case_grading import build_ungraded
 from pantocheck.conformance.grading.extended_band import find_unvalidated
@@ -76,10 +77,11 @@ def _compare_case(result: CaseResult) -> Iterator[str]:
     elif result.profile is not None:
         yield from compare_profile(load_profile(result.profile), result)
     else:
-        yield from _compare_with(load_case(known[name]), result)
+        yield from compare_with_case(load_case(known[name]), result)
 
 
-def _compare_with(case: Case, result: CaseResult) -> Iterator[str]:
+def compare_with_case(case: Case, result: CaseResult) -> Iterator[str]:
+    """Differences of a result from the facts and limits of its case, one sentence each."""
     expected = build_ungraded(case, "skip", "only the facts of the case are compared")
     for key, words in STATED_FACTS.items():
         if (stated := getattr(result, key)) != (wanted := getattr(expected, key)) and stated is not None:
@@ -128,7 +130,7 @@ def _describe_others(result: CaseResult) -> Iterator[str]:
         yield f"modified copy of the library case, with {inputs}"
         yield from (f"limit {text}" for text in list_own_limits(case, result))
     elif result.library == "own":
-        yield "an own case"
+        yield "an own case" if result.origin is None else f"an own case, {result.origin.text}"
     elif result.id in known and result.limits_digest != result.stated_limits_digest:
         yield from (f"limit of a limits file: {text}" for text in list_own_limits(load_case(known[result.id]), result))
 

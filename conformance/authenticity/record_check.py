@@ -7,8 +7,8 @@ from typing import Any
 
 from pantocheck.conformance.authenticity.authenticity_check import DocumentCheck, judge_details
 from pantocheck.conformance.authenticity.number_comparison import compare_numbers
-from pantocheck.conformance.cases.library import list_library, load_case
-from pantocheck.conformance.cases.library_folder import library_folder
+from pantocheck.conformance.cases.catalogue import LIBRARY, Catalogue
+from pantocheck.conformance.cases.library import load_entry
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
 from pantocheck.conformance.grading.case_grading import grade_case
@@ -39,7 +39,7 @@ class RecomputedRecord:
     state: RecordState | None
 
 
-def check_record_quantities(results: Results, path: Path) -> list[DocumentCheck]:
+def check_record_quantities(results: Results, path: Path, catalogue: Catalogue = LIBRARY) -> list[DocumentCheck]:
     """Compute the quantities of a record again and compare them with the results.
 
     Parameters
@@ -48,6 +48,8 @@ def check_record_quantities(results: Results, path: Path) -> list[DocumentCheck]
         Results of a document.
     path : Path
         Record: its sidecar, its table, or a summary record.
+    catalogue : Catalogue
+        Cases at hand.
 
     Raises
     ------
@@ -58,7 +60,7 @@ def check_record_quantities(results: Results, path: Path) -> list[DocumentCheck]
     result = _find_result(results, opened.case, path)
     sidecar = path.with_suffix(".toml")
     files = (sidecar, sidecar.parent / opened.file) if isinstance(opened, RecordSidecar) else (sidecar,)
-    computed = _compute(result, results, sidecar)
+    computed = _compute(result, results, sidecar, catalogue)
     return [
         *_compare(result, computed, path.name),
         *_name_others(result, computed),
@@ -140,17 +142,16 @@ def _find_result(results: Results, case: str | None, path: Path) -> CaseResult:
     return matching[0]
 
 
-def _compute(result: CaseResult, results: Results, sidecar: Path) -> RecomputedRecord:
+def _compute(result: CaseResult, results: Results, sidecar: Path, catalogue: Catalogue) -> RecomputedRecord:
     if result.profile is not None:
         assessed = load_assessed_record(sidecar, load_profile(result.profile), LineTable())
         parts = describe_uncertainty(assessed.uncertainty)["uncertainty_components"]
         return RecomputedRecord(key_by_owner(select_finite(assessed.values.values)), parts, None)
-    known = list_library(library_folder())
-    if result.id not in known:
-        hint = "Only records of library cases and of assessments can be compared."
+    if (entry := catalogue.find_id(result.id)) is None:
+        hint = "Give the folder of the case by --cases, or install the distribution that offers it."
         raise InputError(f"record '{sidecar.name}'", f"{result.id} is not in the installed library", hint)
     system = RecordFolder(results.system.name, results.system.version, ((result.id, sidecar),))
-    case = load_case(known[result.id])
+    case = load_entry(entry)
     graded = grade_case(case, system.run(case), results.trust)
     content = graded.model_dump(mode="json")
     state = None if graded.record is None else graded.record.state

@@ -10,8 +10,8 @@ from pantocheck.conformance.authenticity.authenticity_check import DocumentCheck
 from pantocheck.conformance.authenticity.number_comparison import NumberComparison, compare_numbers
 from pantocheck.conformance.authenticity.version_differences import list_suite_differences
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import list_library, load_case
-from pantocheck.conformance.cases.library_folder import library_folder
+from pantocheck.conformance.cases.catalogue import LIBRARY, Catalogue
+from pantocheck.conformance.cases.library import load_entry
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.results.results_format import CaseResult, Results
 from pantocheck.conformance.runner import run_case
@@ -47,13 +47,15 @@ class Rerun:
     comparison: NumberComparison
 
 
-def check_rerun(results: Results) -> list[DocumentCheck]:
-    """Run the library cases of results again and compare all computed numbers.
+def check_rerun(results: Results, catalogue: Catalogue = LIBRARY) -> list[DocumentCheck]:
+    """Run the cases of results again and compare all computed numbers.
 
     Parameters
     ----------
     results : Results
         Results of the built-in simulator.
+    catalogue : Catalogue
+        Cases at hand; others are named and not run.
 
     Raises
     ------
@@ -67,16 +69,15 @@ def check_rerun(results: Results) -> list[DocumentCheck]:
             f"the system '{results.system.name}' is not the built-in simulator",
             "Run this system again with 'pantocheck run --system', or give its record with --record.",
         )
-    known = list_library(library_folder())
     computed = [case for case in results.cases if case.quantities]
-    skipped = [case.id for case in computed if case.library == "own" or case.id not in known]
+    entries = {case.id: catalogue.find_id(case.id) for case in computed}
     tolerance = 0.0 if _is_same_platform(results) else OTHER_PLATFORM
     reruns = [
-        _rerun(load_case(known[case.id]), case, results, simulator, tolerance)
+        _rerun(load_entry(entry), case, results, simulator, tolerance)
         for case in computed
-        if case.id not in skipped
+        if (entry := entries[case.id]) is not None
     ]
-    return [*_judge(results, reruns, tolerance), *_name_skipped(skipped)]
+    return [*_judge(results, reruns, tolerance), *_name_skipped([name for name in entries if entries[name] is None])]
 
 
 def _rerun(case: Case, stated: CaseResult, results: Results, simulator: ReferenceSimulator, tolerance: float) -> Rerun:
@@ -111,7 +112,7 @@ def _judge(results: Results, reruns: list[Rerun], tolerance: float) -> Iterator[
 
 def _name_skipped(skipped: list[str]) -> Iterator[DocumentCheck]:
     if skipped:
-        text = "These cases were not run again: they are not in the installed library."
+        text = "These cases were not run again: neither the installed library nor a given folder has them."
         yield DocumentCheck("open", text, tuple(skipped))
 
 

@@ -183,6 +183,9 @@ class CampaignFile(InputTable):
     cases: Annotated[
         Texts, Field(min_length=1, description="ids, globs or paths of the base cases, relative to the campaign")
     ]
+    case_folders: Annotated[
+        Texts, Field(description="folders with further cases, whose ids begin with own/, relative to the campaign")
+    ] = ()
     set: Annotated[Texts, Field(description='inputs changed in all runs, e.g. "speed_km_h=300"')] = ()
     vary: Annotated[
         tuple[InputVariation, ...], Field(strict=False, max_length=100, description="variations, combined as a grid")

@@ -14,8 +14,11 @@ from pantocheck.conformance.campaigns.design_axes import build_axis, sample_inpu
 from pantocheck.conformance.campaigns.design_conditions import parse_condition
 from pantocheck.conformance.campaigns.profile_limits import ProfileLimits
 from pantocheck.conformance.cases.case import Case, drop_keys, json_digest
+from pantocheck.conformance.cases.case_origin import CaseOrigin
+from pantocheck.conformance.cases.catalogue import Catalogue, open_catalogue
+from pantocheck.conformance.cases.claimed_names import repeated_id
 from pantocheck.conformance.cases.input_changes import parse_changes
-from pantocheck.conformance.cases.library import find_case_files, load_case, overlay_limits, read_limits
+from pantocheck.conformance.cases.library import find_entries, load_entry, overlay_limits, read_limits
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.grading.case_identity import limits_digest
@@ -27,7 +30,7 @@ from pantocheck.conformance.plan import place_cases, place_system
 from pantocheck.conformance.results.suite_identity import suite_digest
 from pantocheck.conformance.systems.system_choice import choose_system
 
-OUTSIDE_IDENTITY = {"execution", "title", "cases", "limits", "profile"}
+OUTSIDE_IDENTITY = {"execution", "title", "cases", "case_folders", "limits", "profile"}
 """Keys of a campaign file on which its results do not depend, or whose content has its own digest."""
 
 
@@ -48,6 +51,8 @@ class PreparedCampaign:
     limits : dict
         Lower and upper bound of each limit by the column of its value, such as `1.std_force_N`; limits that differ
         between the cases are left out.
+    origins : dict
+        Source of each case from outside, by its id.
     """
 
     file: CampaignFile
@@ -55,6 +60,7 @@ class PreparedCampaign:
     execute: RunExecution
     identity: dict[str, Any]
     limits: dict[str, tuple[float | None, float | None]]
+    origins: dict[str, CaseOrigin]
 
 
 def find_campaign_file(name: str) -> Path | None:
@@ -90,7 +96,8 @@ def prepare_campaign(file: CampaignFile, folder: Path) -> PreparedCampaign:
         A case, table, key, condition, limit or system is wrong.
     """
     changes = parse_changes(file.set)
-    cases = _read_cases(place_cases(file.cases, folder))
+    catalogue = open_catalogue([folder / name for name in file.case_folders])
+    cases = _read_cases(place_cases(file.cases, folder), catalogue)
     limits = () if file.limits is None else read_limits(folder / file.limits)
     profile = _read_profile(file, folder)
     design = _build_design(file, folder, tuple(cases))
@@ -107,7 +114,8 @@ def prepare_campaign(file: CampaignFile, folder: Path) -> PreparedCampaign:
         "profile": None if profile is None else profile.profile.model_dump(mode="json"),
         "suite": suite_digest(),
     }
-    return PreparedCampaign(file, design, execute, identity, _list_limits(first_cases))
+    origins = {case.id: case.origin for _, case in cases.values() if case.origin is not None}
+    return PreparedCampaign(file, design, execute, identity, _list_limits(first_cases), origins)
 
 
 def _list_limits(cases: Sequence[Case]) -> dict[str, tuple[float | None, float | None]]:
@@ -127,14 +135,13 @@ def _read_profile(file: CampaignFile, folder: Path) -> ProfileLimits | None:
     return ProfileLimits(load_profile(name), file.uplift_space_mm)
 
 
-def _read_cases(patterns: Sequence[str]) -> dict[str, tuple[Path, Case]]:
+def _read_cases(patterns: Sequence[str], catalogue: Catalogue) -> dict[str, tuple[Path, Case]]:
     """Base cases with their files, by id; a changed input may be valid only beside a varied one."""
     cases: dict[str, tuple[Path, Case]] = {}
-    for path in find_case_files(patterns):
-        case = load_case(path)
-        if case.id in cases:
-            raise InputError(f"case '{case.id}'", "two files have this id", "Give each case a different id.")
-        cases[case.id] = path.resolve(), case
+    for entry in find_entries(patterns, catalogue):
+        case, path = load_entry(entry), entry.path.resolve()
+        if cases.setdefault(case.id, (path, case))[0] != path:
+            raise repeated_id(case.id, str(cases[case.id][0]), str(path))
     return cases
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from pantocheck.conformance.cases.case_file import CaseFile, PantographByLaw
+from pantocheck.conformance.cases.case_origin import CaseOrigin
 from pantocheck.conformance.cases.damping_file import Damping, overlay_damping
 from pantocheck.conformance.cases.lift_force import LiftForce, resolve_lift_force
 from pantocheck.conformance.cases.limits import Limit
@@ -57,6 +58,8 @@ class Case:
         Further damping models of a study or a comparison, by name.
     changes : tuple of str
         Inputs that were changed on the command line, with the values of the files.
+    origin : CaseOrigin, optional
+        Source of a case from outside; None: the library.
     """
 
     file: CaseFile
@@ -66,6 +69,7 @@ class Case:
     static_pantograph: PantographFile | None = None
     dampings: Mapping[str, Damping] = field(default_factory=dict)
     changes: tuple[str, ...] = ()
+    origin: CaseOrigin | None = field(default=None, compare=False)
 
     @property
     def pantograph_files(self) -> tuple[PantographFile, ...]:

@@ -1,37 +1,29 @@
 """Library of reference cases, and reading of case files by id, pattern or path."""
 
-import re
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from fnmatch import fnmatchcase
 from functools import cache
 from pathlib import Path
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_agreement import find_disagreements
+from pantocheck.conformance.cases.case_origin import CaseOrigin
 from pantocheck.conformance.cases.case_parts import CaseFiles
+from pantocheck.conformance.cases.catalogue import LIBRARY, CaseEntry, Catalogue
 from pantocheck.conformance.cases.input_changes import InputChange
 from pantocheck.conformance.cases.library_folder import library_folder
+from pantocheck.conformance.cases.library_list import list_library
 from pantocheck.conformance.cases.limits import Limit, LimitOverride, LimitsFile, spread_limits
 from pantocheck.conformance.cases.named_files import recognise_named_file
 from pantocheck.conformance.input_files.input_error import InputError, join_errors
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.toml_file import read_model, read_toml
 
-_ID = re.compile(r"^id\s*=", re.MULTILINE)
 
-
-@cache
-def list_library(folder: Path) -> dict[str, Path]:
-    """Files of all cases below a folder, by id; the id of a case is its path in the folder."""
-    # Lines, pantographs and the bibliography are in the same folders; only a case file has an id.
-    return {
-        path.relative_to(folder).with_suffix("").as_posix(): path
-        for path in sorted(folder.rglob("*.toml"))
-        if _ID.search(path.read_text(encoding="utf-8"))
-    }
-
-
-def select_cases(patterns: Sequence[str], changes: Sequence[InputChange] = ()) -> list[Case]:
+def select_cases(
+    patterns: Sequence[str], changes: Sequence[InputChange] = (), catalogue: Catalogue = LIBRARY
+) -> list[Case]:
     """Read cases by id, pattern or path, in this order, each after the cases that it requires.
 
     Parameters
@@ -40,6 +32,8 @@ def select_cases(patterns: Sequence[str], changes: Sequence[InputChange] = ()) -
         Ids, patterns with `*` and `?`, and paths of case files.
     changes : sequence of InputChange
         Changes of the selected cases; those of the line apply to the required cases, too.
+    catalogue : Catalogue
+        Cases that have an id.
 
     Returns
     -------
@@ -51,57 +45,52 @@ def select_cases(patterns: Sequence[str], changes: Sequence[InputChange] = ()) -
     InputError
         A pattern matches no case, or a file is invalid.
     """
-    known = list_library(library_folder())
-    named = {path: load_case(path, changes) for path in find_case_files(patterns)}
+    named = {entry: load_entry(entry, changes) for entry in find_entries(patterns, catalogue)}
     of_line = [change for change in changes if change.part == "line"]
 
-    def load_required(path: Path) -> Case:
-        return named[path] if path in named else load_case(path, of_line)
+    def find_required(name: str) -> Case | None:
+        entry = catalogue.find_id(name)
+        if entry is None:
+            return None
+        return named[entry] if entry in named else load_entry(entry, of_line)
 
     chosen: dict[str, Case] = {}
     for case in named.values():
-        _add(case, known, chosen, load_required, ())
+        _add(case, catalogue, chosen, find_required, ())
     return list(chosen.values())
 
 
-def find_case_files(patterns: Sequence[str]) -> list[Path]:
-    """Files of cases by id, pattern or path, in this order and each once; parameter and errors as in `select_cases`."""
-    known = list_library(library_folder())
-    return list(dict.fromkeys(path for pattern in patterns for path in _match_pattern(pattern, known)))
+def load_entry(entry: CaseEntry, changes: Sequence[InputChange] = ()) -> Case:
+    """Read the case of an entry of a catalogue; parameters and errors as in `load_case`."""
+    return load_case(entry.path, changes, entry.origin)
 
 
-def _match_pattern(pattern: str, known: dict[str, Path]) -> list[Path]:
-    if pattern in known:
-        return [known[pattern]]
-    if pattern.endswith(".toml"):
-        return [Path(pattern)]
-    matches = [path for name, path in known.items() if fnmatchcase(name, pattern)]
-    if not matches:
-        raise InputError(
-            f"case '{pattern}'",
-            "there is no case with this id",
-            suggest_names(pattern, list(known)) + " `pantocheck cases` lists all cases.",
-        )
-    return matches
+def find_entries(patterns: Sequence[str], catalogue: Catalogue = LIBRARY) -> list[CaseEntry]:
+    """Find cases by id, pattern or path, in this order and each once; parameters and errors as in `select_cases`."""
+    return list(dict.fromkeys(entry for pattern in patterns for entry in catalogue.find(pattern)))
 
 
 def _add(
-    case: Case, known: dict[str, Path], chosen: dict[str, Case], load: Callable[[Path], Case], above: tuple[str, ...]
+    case: Case,
+    catalogue: Catalogue,
+    chosen: dict[str, Case],
+    find_required: Callable[[str], Case | None],
+    above: tuple[str, ...],
 ) -> None:
     """Add a case after all cases that it requires; `above` holds the ids of the cases that require it."""
     where = f"case '{case.id}', key requires"
     if case.id in above:
         circle = " > ".join((*above, case.id))
         raise InputError(where, f"the case requires itself ({circle})", "Remove one of these requirements.")
-    for required in case.file.requires:
-        if required not in known:
-            raise InputError(where, f"there is no case {required!r}", suggest_names(required, list(known)))
-        _add(load(known[required]), known, chosen, load, (*above, case.id))
+    for name in case.file.requires:
+        if (required := find_required(name)) is None:
+            raise InputError(where, f"there is no case {name!r}", suggest_names(name, list(catalogue.listed)))
+        _add(required, catalogue, chosen, find_required, (*above, case.id))
     if chosen.setdefault(case.id, case) != case:
         raise InputError(f"case '{case.id}'", "two different files have this id", "Give each case a different id.")
 
 
-def load_case(path: Path, changes: Sequence[InputChange] = ()) -> Case:
+def load_case(path: Path, changes: Sequence[InputChange] = (), origin: CaseOrigin | None = None) -> Case:
     """Read a case file with its line and pantographs, and check that they agree.
 
     Parameters
@@ -110,6 +99,8 @@ def load_case(path: Path, changes: Sequence[InputChange] = ()) -> Case:
         Case file.
     changes : sequence of InputChange
         Changes of the case, its line and its pantographs. A changed case with the id of a library case has no limits.
+    origin : CaseOrigin or None
+        Source of a case from outside the library.
 
     Returns
     -------
@@ -131,7 +122,7 @@ def load_case(path: Path, changes: Sequence[InputChange] = ()) -> Case:
         )
     files = CaseFiles(path, tree, tuple(changes))
     try:
-        case = files.read()
+        case = replace(files.read(), origin=origin)
     except InputError as error:
         raise join_errors([error, *files.list_errors()]) from None
     if disagreements := [*find_disagreements(case, f"case '{path.name}'")]:

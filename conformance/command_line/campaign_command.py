@@ -22,7 +22,7 @@ from pantocheck.conformance.campaigns.short_form import parse_variation
 from pantocheck.conformance.command_line.campaign_progress import report_campaign
 from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.console import console, escape_text
-from pantocheck.conformance.command_line.options import SetOption, TrustOption
+from pantocheck.conformance.command_line.options import CasesOption, SetOption, TrustOption
 from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_toml, validate_model
@@ -52,6 +52,7 @@ def campaign_command(
         typer.Option(metavar="KEY=VALUES", help="Vary an input: START:STOP:STEP or VALUE,VALUE; repeat for a grid."),
     ] = None,
     changed: SetOption = None,
+    folders: CasesOption = None,
     system: Annotated[
         list[str] | None,
         typer.Option(help="System: builtin, record:DIR or command:PROGRAM; repeat to compare.", show_default="builtin"),
@@ -116,7 +117,8 @@ def campaign_command(
         "time_budget_s": time_budget,
         "traces": traces,
     }
-    prepared = _prepare(campaign, design, {key: value for key, value in execution.items() if value is not None})
+    places = tuple(str(folder.resolve()) for folder in folders or ())
+    prepared = _prepare(campaign, design, {key: value for key, value in execution.items() if value is not None}, places)
     if compare is not None:
         with read_store(compare):
             pass  # a wrong folder is refused before the first run
@@ -138,13 +140,15 @@ def campaign_command(
     raise typer.Exit(interrupted or int(results.finished < results.total or results.failed > 0))
 
 
-def _prepare(source: str, design: dict[str, object], execution: dict[str, object]) -> PreparedCampaign:
-    """Prepare a campaign file, or the cases and variations of the command line."""
+def _prepare(
+    source: str, design: dict[str, object], execution: dict[str, object], folders: tuple[str, ...]
+) -> PreparedCampaign:
+    """Prepare a campaign file, or the cases and variations of the command line; `folders` have further cases."""
     given = {key: value for key, value in design.items() if value is not None}
     path = find_campaign_file(source) or Path(source)
     tree = read_toml(path, "campaign") if path.suffix == ".toml" else {"id": source}
     if "id" in tree:  # only a case has an id
-        content = {"title": source, "cases": [source], **given, "execution": execution}
+        content = {"title": source, "cases": [source], "case_folders": folders, **given, "execution": execution}
         return prepare_campaign(validate_model(content, CampaignFile, "command line"), Path())
     if given:
         raise InputError(
@@ -153,7 +157,9 @@ def _prepare(source: str, design: dict[str, object], execution: dict[str, object
     file = validate_model(tree, CampaignFile, f"campaign '{path.name}'")
     stated = file.execution.model_dump(exclude_unset=True)
     changed = validate_model({**stated, **execution}, Execution, "command line")
-    return prepare_campaign(file.model_copy(update={"execution": changed}), path.parent)
+    return prepare_campaign(
+        file.model_copy(update={"execution": changed, "case_folders": (*file.case_folders, *folders)}), path.parent
+    )
 
 
 def _drive(prepared: PreparedCampaign, store: CampaignStore) -> CampaignEnding:

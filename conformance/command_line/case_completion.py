@@ -1,7 +1,7 @@
 """Shell completion of the ids of cases."""
 
-from pantocheck.conformance.cases.library import list_library
 from pantocheck.conformance.cases.library_folder import library_folder
+from pantocheck.conformance.cases.library_list import list_library
 
 
 def complete_case(incomplete: str) -> list[str]:

@@ -37,6 +37,8 @@ def build_case_tables(case: Case) -> list[RenderableType]:
         parts.append(escape_text(f"force law of pantograph {number}: {force.text}"))
     parts.append(escape_text(f"mesh of the reference simulator: {mesh.element_m:g} m, {mesh.time_step_s:g} s"))
     parts.append(Text(case.digest, overflow="fold"))
+    if case.origin is not None:
+        parts.append(escape_text(f"not in the library: {case.origin.text}; its author states inputs, limits and trust"))
     blocks: list[RenderableType] = [_build_input_table(case)]
     blocks.append(
         _build_limit_table(case)

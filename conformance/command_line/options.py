@@ -8,6 +8,7 @@ import typer
 from pydantic import ValidationError
 
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.catalogue import LIBRARY, Catalogue
 from pantocheck.conformance.cases.input_changes import InputChange
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.cases.line_file import LineFile
@@ -23,6 +24,14 @@ SetOption = Annotated[
         "--set",
         metavar="KEY=VALUE",
         help="Change an input of the case, its line or its pantographs; repeat the option for several.",
+    ),
+]
+CasesOption = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--cases",
+        metavar="DIR",
+        help="Folder with further cases, whose ids begin with own/; repeat the option for several.",
     ),
 ]
 OutOption = Annotated[Path | None, typer.Option(help="Folder for the results.", show_default="report")]
@@ -107,7 +116,13 @@ def build_options(plan: Path | None = None, formats: str | None = None, **option
         raise build_input_error(error, Plan, "command line") from None
 
 
-def choose_case(name: str, accept: Callable[[Case], bool], kind: str, changes: Sequence[InputChange] = ()) -> Case:
+def choose_case(
+    name: str,
+    accept: Callable[[Case], bool],
+    kind: str,
+    changes: Sequence[InputChange] = (),
+    catalogue: Catalogue = LIBRARY,
+) -> Case:
     """Find the only case of a kind.
 
     Parameters
@@ -120,13 +135,15 @@ def choose_case(name: str, accept: Callable[[Case], bool], kind: str, changes: S
         Condition in words, for the message.
     changes : sequence of InputChange
         Changes of the inputs of the case.
+    catalogue : Catalogue
+        Cases that have an id.
 
     Raises
     ------
     InputError
         No case, or several cases, meet the condition.
     """
-    cases = [case for case in select_cases([name], changes) if accept(case)]
+    cases = [case for case in select_cases([name], changes, catalogue) if accept(case)]
     if len(cases) != 1:
         ids = ", ".join(case.id for case in cases) or "none"
         raise InputError(f"case '{name}'", f"expected one case {kind}, found {ids}", "Give the id of one case.")

@@ -10,6 +10,7 @@ from pantocheck.conformance.command_line.options import (
     AcceptUnverifiedOption,
     AdministrationOption,
     BaselineOption,
+    CasesOption,
     DriftOption,
     FormatsOption,
     OutOption,
@@ -39,6 +40,7 @@ def run_command(
     plan: Annotated[
         Path | None, typer.Option(help="TOML file with the options of a run; see `pantocheck schema plan`.")
     ] = None,
+    folders: CasesOption = None,
     system: Annotated[
         str | None,
         typer.Option(help="System under test: builtin, record:DIR or command:PROGRAM.", show_default="builtin"),
@@ -88,11 +90,14 @@ def run_command(
 
     pantocheck run 'en50318-2002/*' --system record:records --with-reference
 
+    pantocheck run 'own/*' --cases my-cases
+
     pantocheck run --plan conformance.toml --baseline results.json --drift 2
     """
     options = build_options(
         plan,
         cases=tuple(case) if case else None,
+        case_folders=tuple(map(str, folders)) if folders else None,
         set=tuple(changed) if changed else None,
         system=system,
         out=out,

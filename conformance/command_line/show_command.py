@@ -9,6 +9,7 @@ import typer
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import Discretisation
+from pantocheck.conformance.cases.catalogue import open_catalogue
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.named_files import recognise_named_file
@@ -16,6 +17,7 @@ from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.case_tables import build_case_tables
 from pantocheck.conformance.command_line.console import console, escape_text
 from pantocheck.conformance.command_line.derived_tables import build_derived_tables
+from pantocheck.conformance.command_line.options import CasesOption
 from pantocheck.conformance.command_line.rest_tables import build_rest_tables
 from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
 from pantocheck.conformance.input_files.input_error import InputError
@@ -56,6 +58,7 @@ def show_command(
         Path | None,
         typer.Option(help="SVG or PDF file for a drawing of the whole line to scale, in elevation and in plan."),
     ] = None,
+    folders: CasesOption = None,
 ) -> None:
     """Show the inputs, the limits and the notes of a case with their trust and source.
 
@@ -80,7 +83,7 @@ def show_command(
         _draw_line(read_model(Path(case), LineFile, "line"), drawing)
         output.print(escape_text(str(drawing)), soft_wrap=True)
         return
-    cases = _without_required(case, select_cases([case]))
+    cases = _without_required(case, select_cases([case], (), open_catalogue(folders or ())))
     if request is not None:
         _write_request(cases, request)
     if drawing is not None:

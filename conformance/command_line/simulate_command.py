@@ -5,10 +5,11 @@ from typing import Annotated
 
 import typer
 
+from pantocheck.conformance.cases.catalogue import open_catalogue
 from pantocheck.conformance.cases.input_changes import parse_changes
 from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.console import console, escape_text
-from pantocheck.conformance.command_line.options import SetOption, choose_case
+from pantocheck.conformance.command_line.options import CasesOption, SetOption, choose_case
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record_writing import check_record_path, write_record
@@ -26,6 +27,7 @@ def simulate_command(
         str, typer.Option(help="System that simulates: builtin (reference simulator) or command:PROGRAM ARGUMENTS.")
     ] = "builtin",
     changed: SetOption = None,
+    folders: CasesOption = None,
 ) -> None:
     """Simulate a case and write its record.
 
@@ -36,7 +38,8 @@ def simulate_command(
     pantocheck simulate my-case.toml --set speed_km_h=300 --out 300.csv
     """
     check_record_path(out)
-    chosen = choose_case(case, lambda each: not each.is_static, "with a train", parse_changes(changed or ()))
+    catalogue, changes = open_catalogue(folders or ()), parse_changes(changed or ())
+    chosen = choose_case(case, lambda each: not each.is_static, "with a train", changes, catalogue)
     simulator = choose_system(system)
     check_writable(out.parent)
     # A record holds one run, so the refined run of the reference simulator is not needed.

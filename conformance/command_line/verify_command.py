@@ -9,11 +9,14 @@ import typer
 
 from pantocheck.conformance.authenticity.authenticity_check import CheckOutcome
 from pantocheck.conformance.authenticity.origin_check import check_origin
+from pantocheck.conformance.authenticity.outside_check import check_outside_cases
 from pantocheck.conformance.authenticity.record_check import check_record_quantities
 from pantocheck.conformance.authenticity.rerun_check import check_rerun
 from pantocheck.conformance.authenticity.signatures.signature_check import check_signatures
 from pantocheck.conformance.authenticity.verification import Verification, verify_document
+from pantocheck.conformance.cases.catalogue import open_catalogue
 from pantocheck.conformance.command_line.guard import strip_control_characters
+from pantocheck.conformance.command_line.options import CasesOption
 from pantocheck.conformance.command_line.results_output import EXIT_CODES
 
 WIDTH = 80
@@ -38,6 +41,7 @@ def verify_command(
     record: Annotated[
         list[Path] | None, typer.Option(help="Record of a case: its quantities are computed from the samples again.")
     ] = None,
+    folders: CasesOption = None,
     rerun: Annotated[
         bool, typer.Option("--rerun", help="Run the built-in simulator again and compare every number.")
     ] = False,
@@ -68,9 +72,11 @@ def verify_command(
     """
     verification = verify_document(document)
     report = check_signatures(document, trust_roots)
-    records = [check for path in record or () for check in check_record_quantities(verification.results, path)]
-    reruns = check_rerun(verification.results) if rerun else []
-    verification = verification.add_checks([*records, *reruns, *check_origin(report)])
+    results, catalogue = verification.results, open_catalogue(folders or ())
+    outside = check_outside_cases(results, catalogue)
+    records = [check for path in record or () for check in check_record_quantities(results, path, catalogue)]
+    reruns = check_rerun(results, catalogue) if rerun else []
+    verification = verification.add_checks([*outside, *records, *reruns, *check_origin(report)])
     word = "authentic" if report.authentic else "consistent"
     typer.echo("\n".join(_describe(verification, word)))
     raise typer.Exit(_exit_code(verification, any_verdict))

@@ -20,6 +20,7 @@ from pantocheck.conformance.results.extreme_places import find_force_places, fin
 from pantocheck.conformance.results.figure_data import ExtremePlace
 from pantocheck.conformance.results.input_values import list_input_values
 from pantocheck.conformance.results.lift_force_facts import list_law_forces
+from pantocheck.conformance.results.origin_format import describe_case_origin
 from pantocheck.conformance.results.outcome import Delivered, Errored, Outcome, Skipped
 from pantocheck.conformance.results.results_building import describe_uncertainty, key_by_owner, select_finite
 from pantocheck.conformance.results.results_format import (
@@ -146,6 +147,7 @@ def _build_result(case: Case, delivered: Delivered, notes: Sequence[str], **part
             "stated_limits_digest": limits_digest(case.file.limit),
             "limit_changes": list_limit_changes(case),
             "library": library,
+            "origin": None if library == "identical" else describe_case_origin(case),
             "edition": file.edition,
             "superseded_by": file.superseded_by,
             "steps": _list_steps(case, library),

@@ -4,8 +4,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from pantocheck.conformance.cases.case import Case, json_digest
-from pantocheck.conformance.cases.library import list_library, load_case
+from pantocheck.conformance.cases.library import load_case
 from pantocheck.conformance.cases.library_folder import library_folder
+from pantocheck.conformance.cases.library_list import list_library
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.profile_file import Profile, list_profiles, load_profile
 from pantocheck.conformance.cases.study_tables import DampingSensitivity

@@ -4,8 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
-from pantocheck.conformance.cases.library import list_library
 from pantocheck.conformance.cases.library_folder import library_folder
+from pantocheck.conformance.cases.library_list import list_library
 from pantocheck.conformance.guide.library_values import compute_library_case
 from pantocheck.conformance.guide.verification.long_string_passage import study_long_string
 from pantocheck.conformance.guide.verification.moving_load import study_moving_load

@@ -81,6 +81,7 @@ def grade_cases(
     trust: Trust = "secondary",
     changes: Sequence[str] = (),
     limits: str | Path | None = None,
+    case_folders: Sequence[str | Path] = (),
 ) -> GradedResults:
     """Run cases on a system and grade them, as `pantocheck run` does.
 
@@ -96,6 +97,8 @@ def grade_cases(
         Changes of the inputs, `KEY=VALUE` as with `--set`.
     limits : str, Path or None
         File of own limits.
+    case_folders : sequence of str or Path
+        Folders with further cases, whose ids begin with `own/`.
 
     Raises
     ------
@@ -105,6 +108,8 @@ def grade_cases(
     options: dict[str, Any] = {"cases": tuple(map(str, cases)), "system": system, "trust": trust}
     if changes:
         options["set"] = tuple(changes)
+    if case_folders:
+        options["case_folders"] = tuple(map(str, case_folders))
     if limits is not None:
         options["limits"] = str(limits)
     prepared = prepare_plan(Plan.model_validate(options))

@@ -1,14 +1,14 @@
 """Cases in Python: open, change, simulate and grade."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.catalogue import open_catalogue
 from pantocheck.conformance.cases.input_changes import InputChange, build_change
-from pantocheck.conformance.cases.library import find_case_files, list_library, load_case
-from pantocheck.conformance.cases.library_folder import library_folder
+from pantocheck.conformance.cases.library import load_case, load_entry
 from pantocheck.conformance.comparison.compared_run import deliver_case, describe_delivery
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.interface.opened_drop import OpenedDrop
@@ -85,7 +85,7 @@ class OpenedCase:
         values = {**(changes or {}), **further}
         kept = (change for change in self.changes if change.key not in values)
         every = (*kept, *(build_change(key, value, ORIGIN) for key, value in values.items()))
-        return OpenedCase(self.path, load_case(self.path, every), every)
+        return OpenedCase(self.path, load_case(self.path, every, self.case.origin), every)
 
     def simulate(self) -> SimulatedRun:
         """Simulate the passage once with the reference simulator, with the discretisation of the case.
@@ -139,25 +139,42 @@ class OpenedCase:
         return SimulatedRun(describe_delivery(self.case, system, delivered), self.case, system, delivered.record)
 
 
-def open_case(name: str | Path) -> OpenedCase:
-    """Open a case of the library by its id, or a case file by its path.
+def open_case(name: str | Path, cases: str | Path | Sequence[str | Path] = ()) -> OpenedCase:
+    """Open a case by its id, or a case file by its path.
 
     Parameters
     ----------
     name : str or Path
         Id such as `en50318-2018/ac-simple/320-twin`, or path of a case file.
+    cases : str, Path or sequence of them
+        Folders with further cases, whose ids begin with `own/`.
 
     Raises
     ------
     InputError
-        There is no such case, it is invalid, or several cases have this name.
+        There is no such case, it is invalid, several cases have this name, or a folder of cases is refused.
     """
-    paths = find_case_files([str(name)])
-    if len(paths) != 1:
-        raise InputError(f"case '{name}'", f"{len(paths)} cases have this name", "Give the id of one case.")
-    return OpenedCase(paths[0], load_case(paths[0]))
+    entries = open_catalogue(_list_folders(cases)).find(str(name))
+    if len(entries) != 1:
+        raise InputError(f"case '{name}'", f"{len(entries)} cases have this name", "Give the id of one case.")
+    return OpenedCase(entries[0].path, load_entry(entries[0]))
 
 
-def list_cases() -> list[str]:
-    """Ids of all cases of the library."""
-    return list(list_library(library_folder()))
+def list_cases(cases: str | Path | Sequence[str | Path] = ()) -> list[str]:
+    """Ids of all cases of the library, of folders with further cases, and of installed distributions.
+
+    Parameters
+    ----------
+    cases : str, Path or sequence of them
+        Folders with further cases, whose ids begin with `own/`.
+
+    Raises
+    ------
+    InputError
+        A folder of cases, or an installed distribution with cases, is refused.
+    """
+    return list(open_catalogue(_list_folders(cases)).every)
+
+
+def _list_folders(cases: str | Path | Sequence[str | Path]) -> list[str | Path]:
+    return [cases] if isinstance(cases, str | Path) else [*cases]

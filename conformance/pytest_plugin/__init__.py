@@ -28,6 +28,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         help="lowest trust of limits that count; replaces that of the plan",
     )
     group.addoption(
+        "--pantocheck-cases",
+        action="append",
+        default=[],
+        metavar="DIR",
+        help="folder with further cases, whose ids begin with own/; added to those of the plan",
+    )
+    group.addoption(
         "--pantocheck-verdicts",
         choices=("criteria", "verification", "both"),
         help="verdicts that decide; replaces those of the plan",
@@ -107,4 +114,5 @@ def pantocheck_assess(pytestconfig: pytest.Config) -> "Callable[..., GradedCase]
 def _options(config: pytest.Config) -> dict[str, Any]:
     """Options of the session for the grading of a case."""
     trust = config.getoption("pantocheck_trust") or "secondary"
-    return {"trust": trust, "verdicts": config.getoption("pantocheck_verdicts")}
+    folders = tuple(str(config.invocation_params.dir / name) for name in config.getoption("pantocheck_cases"))
+    return {"trust": trust, "verdicts": config.getoption("pantocheck_verdicts"), "case_folders": folders}

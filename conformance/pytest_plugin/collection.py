@@ -44,7 +44,10 @@ def _open_session(config: pytest.Config, path: Path, folder: Path) -> PlanSessio
         options["trust"] = trust
     if (verdicts := config.getoption("pantocheck_verdicts")) is not None:
         options["verdicts"] = verdicts
-    return PlanSession(path, prepare_plan(read_plan(path).model_copy(update=options)), folder)
+    plan = read_plan(path)
+    further = [str(config.invocation_params.dir / name) for name in config.getoption("pantocheck_cases")]
+    options["case_folders"] = (*plan.case_folders, *further)
+    return PlanSession(path, prepare_plan(plan.model_copy(update=options)), folder)
 
 
 class PlanFile(pytest.File):

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.catalogue import open_catalogue
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.grading.case_selection import VerdictChoice, choose_verdicts
@@ -134,6 +135,7 @@ def run_and_grade(
     trust: Trust = "secondary",
     verdicts: VerdictChoice | None = None,
     timeout_s: float = TIMEOUT_S,
+    case_folders: Sequence[str | Path] = (),
 ) -> GradedCase:
     """Run a case on a system and grade it.
 
@@ -149,6 +151,8 @@ def run_and_grade(
         Verdicts that decide; default: the criteria for the built-in simulator, both for any other system.
     timeout_s : float
         Time limit of a program [s].
+    case_folders : sequence of str or Path
+        Folders with further cases; default: those of `--pantocheck-cases`.
 
     Returns
     -------
@@ -161,7 +165,7 @@ def run_and_grade(
         There is no such case or system.
     """
     tested = choose_system(system, timeout_s) if isinstance(system, str) else system
-    selected = _select_case(case)
+    selected = _select_case(case, case_folders)
     return _decide(run_case(selected, tested, trust), choose_verdicts(verdicts, tested.kind, [selected.id]))
 
 
@@ -178,6 +182,7 @@ def grade_arrays(
     filter_applied_Hz: float | None = None,
     trust: Trust = "secondary",
     verdicts: VerdictChoice | None = None,
+    case_folders: Sequence[str | Path] = (),
 ) -> GradedCase:
     """Grade a record as a run of a case.
 
@@ -203,6 +208,8 @@ def grade_arrays(
         Lowest trust of limits that count.
     verdicts : {"criteria", "verification", "both"}, optional
         Verdicts that decide; default: the criteria for the built-in simulator, both for any other system.
+    case_folders : sequence of str or Path
+        Folders with further cases; default: those of `--pantocheck-cases`.
 
     Returns
     -------
@@ -214,7 +221,7 @@ def grade_arrays(
     InputError
         There is no such case, or the record is invalid.
     """
-    graded_case = _select_case(case)
+    graded_case = _select_case(case, case_folders)
     if isinstance(record, str | Path):
         record, _ = read_record(Path(record), None if graded_case.is_static else graded_case.analysis_section)
     if record is None:
@@ -244,8 +251,10 @@ def _decide(result: CaseResult, requested: tuple[VerdictName, ...]) -> GradedCas
     return GradedCase(Participation(requested=requested).decide_case(result), requested)
 
 
-def _select_case(name: str) -> Case:
-    cases = [case for case in select_cases([name]) if case.id == name or name.endswith(".toml")]
+def _select_case(name: str, folders: Sequence[str | Path]) -> Case:
+    cases = [
+        case for case in select_cases([name], (), open_catalogue(folders)) if case.id == name or name.endswith(".toml")
+    ]
     if len(cases) != 1:
         raise InputError(f"case '{name}'", f"{len(cases)} cases match", "Give the id or the file of one case.")
     return cases[0]

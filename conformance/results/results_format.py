@@ -21,6 +21,7 @@ from pantocheck.conformance.results.finding_format import FindingCounts
 from pantocheck.conformance.results.input_values import StoredValues
 from pantocheck.conformance.results.lift_force_facts import LawForces
 from pantocheck.conformance.results.measured_run_format import MeasuredRun
+from pantocheck.conformance.results.origin_format import OriginFacts
 from pantocheck.conformance.results.procedure_format import Procedure
 from pantocheck.conformance.results.record_facts import RecordFacts
 from pantocheck.conformance.results.reference_format import ReferenceValues
@@ -167,6 +168,10 @@ class CaseResult(ResultsPart):
     library: Annotated[
         LibraryIdentity | None,
         Field(description="comparison with the library case or profile of this name; null: made by an older version"),
+    ] = None
+    origin: Annotated[
+        OriginFacts | None,
+        Field(exclude_if=is_absent, description="source of a case from outside; missing: the library, or not known"),
     ] = None
     profile: Annotated[str | None, Field(description="name of the profile of an assessment; null: a case")] = None
     edition: Annotated[str | None, Field(description="edition of the standard that defines the case")] = None

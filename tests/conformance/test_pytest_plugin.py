@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 
 from helpers.converged_fixtures import StateConverged
+from helpers.outside_cases import write_case
 from helpers.toml_edit import edit_toml, write_toml
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
@@ -417,3 +418,20 @@ def test_modules_of_a_user_with_names_of_our_folders_do_not_collide(pytester: py
     done = process(pytester, "conformance.toml", "--pantocheck-formats=html,md")
     assert done.parseoutcomes()["passed"] > 0
     assert (pytester.path / "report" / "certificate.html").is_file()
+
+
+def test_plans_and_fixtures_take_folders_of_cases(pytester: pytest.Pytester) -> None:
+    """Cases from outside are named by id in a plan and in a test."""
+    path = write_case(pytester.path / "lines" / "fast.toml", "own/acme/fast")
+    write_record(pytester.path / "records" / "fast.csv", Wave().record(load_case(path)), "own/acme/fast")
+    plan = {"cases": ["own/acme/fast"], "system": "record:records", "formats": ["json"]}
+    write_toml(pytester.path / "conformance.toml", plan)
+    pytester.makepyfile("""
+        def test_mean(pantocheck_run):
+            graded = pantocheck_run("own/acme/fast", "record:records")
+            assert 118 < graded.value("mean_force_N") < 120  # the record has a mean of 119 N
+    """)
+    done = session(pytester, "conformance.toml", "test_plans_and_fixtures_take_folders_of_cases.py",
+                   "--pantocheck-cases", "lines")  # fmt: skip
+    assert sum(done.parseoutcomes()[word] for word in ("passed", "failed")) == 8 + 1
+    assert "test_mean" not in "".join(line for line in done.outlines if "FAILED" in line)

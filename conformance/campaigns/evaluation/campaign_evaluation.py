@@ -83,7 +83,9 @@ def _describe_inputs(prepared: PreparedCampaign) -> Iterator[tuple[str, str]]:
 
 
 def _list_sources(prepared: PreparedCampaign) -> Iterator[tuple[str, str]]:
-    """Varied inputs whose source is stated, with source and trust."""
+    """Cases from outside, and varied inputs whose source is stated, with their source."""
+    for case_id, origin in prepared.origins.items():
+        yield case_id, f"{origin.text}, {origin.digest}, stated by its author"
     file = prepared.file
     tables: list[tuple[tuple[str, ...], SourcedTable]] = [
         (axis.keys, table) for axis, table in zip(prepared.design.axes, file.vary, strict=False)

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from pantocheck.conformance.reports.certificate.scope_page import list_sources
 from pantocheck.conformance.reports.document import Facts, Section
 from pantocheck.conformance.reports.formats.reproducibility import format_date
 
@@ -36,6 +37,7 @@ def build_document_section(results: dict[str, Any], digest: str, date: int) -> S
         *list_administration(results),
         ("Date of this document", format_date(date)),
         ("Digest of the results", digest),
+        *list_sources(results),
         ("Signature", SIGNATURE),
         ("Verification", VERIFICATION),
     )

@@ -13,6 +13,8 @@ SCOPE_HEADING = "Scope: steps of the EN 50318 procedure"
 CASES_SHOWN = 10
 """Number of cases outside the steps that page 1 names; the table of cases has all."""
 
+SOURCE_LABEL = "Cases from outside the library"
+
 CHANGES_SHOWN = 5
 """Number of weakened limits of a case on page 1; the section of the case shows all."""
 
@@ -83,9 +85,30 @@ def describe_origin(case: dict[str, Any]) -> str:
     """Origin of a case or profile: the library with the edition, a modified copy, or a user; a dash if unknown."""
     kind = _kind(case)
     if case["library"] != "identical":
-        return {"modified": "modified copy", "own": f"own {kind}"}.get(case["library"], "–")
+        text = {"modified": "modified copy", "own": f"own {kind}"}.get(case["library"], "–")
+        return f"{text}, {_name_source(case['origin'])}" if case.get("origin") else text
     edition = f" of {case['edition']}" if case["edition"] else ""
     return f"library {kind}{edition}" + (f", superseded by {case['superseded_by']}" if case["superseded_by"] else "")
+
+
+def list_sources(results: dict[str, Any]) -> list[tuple[str, str]]:
+    """Label and text for each source of cases from outside the library: its name, digest and cases."""
+    cases: dict[tuple[str, str], list[str]] = {}
+    for case in results["cases"]:
+        if origin := case.get("origin"):
+            cases.setdefault((_name_source(origin), origin["digest"]), []).append(case["id"])
+    return [(SOURCE_LABEL, _describe_source(*source, names)) for source, names in cases.items()]
+
+
+def _describe_source(name: str, digest: str, cases: list[str]) -> str:
+    shown, more = cases[:CASES_SHOWN], len(cases) - CASES_SHOWN
+    listed = f"{', '.join(shown)}{f' and {more} more' if more > 0 else ''}"
+    return f"{name}, {digest}: {listed}. Inputs, limits and their trust are stated by the author of this source."
+
+
+def _name_source(origin: dict[str, Any]) -> str:
+    """Source of a case, such as `distribution acme-lines 1.0`."""
+    return f"{origin['kind']} {origin['name']} {origin['version']}".strip()
 
 
 def _kind(case: dict[str, Any]) -> str:

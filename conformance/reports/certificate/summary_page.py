@@ -15,6 +15,7 @@ from pantocheck.conformance.reports.certificate.procedure_page import (
 from pantocheck.conformance.reports.certificate.scope_page import (
     build_scope_section,
     list_identity_warnings,
+    list_sources,
     prepare_results,
 )
 from pantocheck.conformance.reports.certificate.two_verdicts import NAMES, build_verdict_section
@@ -28,7 +29,8 @@ def build_summary(results: dict[str, Any]) -> doc.Document:
     header = build_header(results)
     warnings = list_identity_warnings(results)
     scope = (*_build_scope(results), *build_findings_section(results))
-    stated = (doc.Facts(list_administration(results)),) if results["administration"] else ()
+    facts = (*(list_administration(results) if results["administration"] else ()), *list_sources(results))
+    stated = (doc.Facts(facts),) if facts else ()
     first = (*stated, *((doc.WarningBox(warnings),) if warnings else ()), *scope, *list_reasons(results))
     return doc.Document(header.heading, header, (*first, *map(_case_section, results["cases"])))
 

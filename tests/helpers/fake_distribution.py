@@ -1,0 +1,32 @@
+"""Installed distribution without an installation: a package and its metadata in a folder on `sys.path`."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+
+def write_distribution(
+    site: Path, name: str, version: str, entries: Mapping[str, Mapping[str, str]], files: Mapping[str, str]
+) -> None:
+    """Write a distribution.
+
+    Parameters
+    ----------
+    site : Path
+        Folder of installed packages.
+    name, version : str
+        Name and version of the distribution.
+    entries : mapping
+        Value of every entry point by its group and name.
+    files : mapping of str to str
+        Texts of the files of its packages by their paths.
+    """
+    metadata = site / f"{name.replace('-', '_')}-{version}.dist-info"
+    lines = [line for group, row in entries.items() for line in (f"[{group}]", *(f"{k} = {row[k]}" for k in row))]
+    contents = {
+        metadata / "METADATA": f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n",
+        metadata / "entry_points.txt": "\n".join(lines),
+        **{site / path: text for path, text in files.items()},
+    }
+    for path, text in contents.items():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
