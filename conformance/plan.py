@@ -61,7 +61,10 @@ class Plan(InputTable):
     accept_unverified: Annotated[Names, Field(description="names of systems whose unverified records may pass")] = ()
     timeout_s: Annotated[float, Field(gt=0, description="time limit of a program for a case [s]")] = TIMEOUT_S
     out: Annotated[str, Field(description="folder of the results")] = "report"
-    formats: Annotated[Names, Field(description="formats of the report: html, pdf, json, csv, junit, md, badge")] = (
+    formats: Annotated[
+        Names,
+        Field(description="formats of the report: html, pdf, json, csv, junit, md, badge, annotations, codequality"),
+    ] = (
         "html",
         "pdf",
         "json",

@@ -30,6 +30,7 @@ from pantocheck.conformance.grading.profile_grading import assess_record
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.validation_messages import build_input_error
+from pantocheck.conformance.plan_places import locate_record
 from pantocheck.conformance.records.sidecar_tables import LineTable
 from pantocheck.conformance.reports.formats.report_writers import check_formats, write_all
 
@@ -89,13 +90,14 @@ def assess_command(
     _check_pantographs(own_limits, len(assessed.pantographs))
     own_limits = spread_limits(own_limits, len(assessed.pantographs))
     check_writable(folder)
+    places = locate_record(record, profile, limits)
     participation = Participation(accepted_unverified=tuple(accept_unverified or ()))
     results = assess_record(assessed, rules, options.trust, reference, own_limits, participation)
     results = results.model_copy(update={"administration": options.administration})
     if earlier is not None and baseline is not None:
         write_all(results, folder, ("json",))  # kept if the comparison fails
         results = compare_with_baseline(results, earlier, options.drift_pct, baseline.name)
-    print_results(results, write_all(results, folder, report_formats))
+    print_results(results, write_all(results, folder, report_formats, places))
     raise typer.Exit(EXIT_CODES[results.verdict])
 
 

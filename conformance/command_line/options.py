@@ -38,7 +38,7 @@ OutOption = Annotated[Path | None, typer.Option(help="Folder for the results.", 
 FormatsOption = Annotated[
     str | None,
     typer.Option(
-        help="Formats to write, separated by commas: html, pdf, json, csv, junit, md, badge.",
+        help="Formats to write, separated by commas: html, pdf, json, csv, junit, md, badge, annotations, codequality.",
         show_default=",".join(Plan.model_fields["formats"].default),
     ),
 ]

@@ -24,6 +24,7 @@ from pantocheck.conformance.command_line.options import (
 from pantocheck.conformance.command_line.results_output import EXIT_CODES, print_results, report_progress
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.plan import prepare_plan
+from pantocheck.conformance.plan_places import locate_plan
 from pantocheck.conformance.reference_run import add_reference
 from pantocheck.conformance.reports.formats.report_writers import write_all
 from pantocheck.conformance.runner import RunInterrupted, run_cases
@@ -116,6 +117,7 @@ def run_command(
     if with_reference:
         _refuse_reference_beside_itself(options.system)
     prepared = prepare_plan(options)
+    places = locate_plan(options, plan)
     system_under_test, cases = prepared.start_system(), prepared.cases
     interrupted = 0
     jobs = min(options.jobs, len(cases))
@@ -132,7 +134,7 @@ def run_command(
     if prepared.baseline is not None:
         write_all(results, prepared.out, ("json",))  # kept if the comparison fails
         results = prepared.compare(results)
-    print_results(results, write_all(results, prepared.out, prepared.formats))
+    print_results(results, write_all(results, prepared.out, prepared.formats, places))
     raise typer.Exit(interrupted or EXIT_CODES[results.verdict])
 
 

@@ -24,6 +24,7 @@ from pantocheck.conformance.reports.certificate.procedure_page import describe_s
 from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline
 from pantocheck.conformance.reports.formats.report_writers import check_formats, write_all
 from pantocheck.conformance.reports.words import read_words
+from pantocheck.conformance.results.file_places import FilePlace, ReportPlaces
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.runner import RunInterrupted
 from pantocheck.conformance.systems.system_choice import choose_system
@@ -59,7 +60,7 @@ def validate_command(
         results, interrupted = interruption.results, interruption.exit_code
         typer.echo("Interrupted: the results of the finished steps are written.", err=True)
     results = results.model_copy(update={"administration": options.administration})
-    files = write_all(results, folder, report_formats)
+    files = write_all(results, folder, report_formats, ReportPlaces(FilePlace(dossier)))
     _print_steps(results)
     for path in files:
         console().print(escape_text(str(path)), soft_wrap=True)

@@ -12,6 +12,7 @@ from pantocheck.conformance.grading.case_verification import find_obstacle
 from pantocheck.conformance.grading.verification_limits import build_requirements
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.plan import prepare_plan, read_plan
+from pantocheck.conformance.plan_places import locate_plan
 from pantocheck.conformance.pytest_plugin.campaign import PlanSession, list_registered
 from pantocheck.conformance.pytest_plugin.session import shared_folder
 from pantocheck.conformance.pytest_plugin.user_fixtures import (
@@ -222,7 +223,7 @@ def write_certificates(config: pytest.Config, folder: Path) -> tuple[list[str], 
             continue
         (results, drifted, verdict), prepared = session_results, session.prepared
         not_passed |= verdict != "pass"
-        write_all(results, prepared.out, prepared.formats)
+        write_all(results, prepared.out, prepared.formats, locate_plan(prepared.plan, path))
         shown = next((FILES[name] for name in ("html", "pdf", "md") if name in prepared.formats), FILES["json"])
         lines.append(
             f"{path.name}: {results.verdict.upper()}: {build_headline(results.to_dict())} {prepared.out / shown}"

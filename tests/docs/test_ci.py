@@ -1,6 +1,7 @@
 """The workflow files: valid YAML for their services, and steps that gate in a temporary project."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -31,7 +32,7 @@ def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     script.write_text('#!/bin/sh\nmkdir -p "$1" && cp solver/*.toml "$1"\n')
     script.chmod(0o755)
     plan = tmp_path / "conformance.toml"
-    formats = ["json", "junit", "md", "badge"]  # the certificate is tested elsewhere
+    formats = ["json", "junit", "md", "badge", "annotations", "codequality"]  # the certificate is tested elsewhere
     accepted = {"accept_unverified": ["published passing code (Wang et al.)"], "verdicts": "criteria"}
     edit_toml(plan, accepted | {"formats": formats})
     gated = plan.read_text()
@@ -55,8 +56,16 @@ def run_job(folder: Path) -> int:
             shell = ["bash", "-eo", "pipefail", "-c", step["run"]]
             done = subprocess.run(shell, cwd=folder, env=environment, capture_output=True, text=True, check=False)
             assert "Traceback" not in done.stderr
+            check_suspended_commands(done.stdout)
             code = code or done.returncode
     return code
+
+
+def check_suspended_commands(output: str) -> None:
+    """Everything between the suspension of commands and its end is text; the annotations follow."""
+    if found := re.search(r"^::stop-commands::(\w{32})$", output, re.MULTILINE):
+        assert output.count(f"::{found[1]}::") == 1
+        assert "::error" not in output.split(f"::{found[1]}::", 1)[0]
 
 
 def test_job_passes_and_fails_by_the_baseline(project: Path) -> None:
@@ -66,6 +75,8 @@ def test_job_passes_and_fails_by_the_baseline(project: Path) -> None:
     edit_toml(solver, {"pantograph.0.std_force_N": 28.15})
     assert run_job(project) == 1
     assert "drift of std_force_N" in (project / "report" / "junit.xml").read_text()
+    [line] = (project / "report" / "annotations.txt").read_text().splitlines()
+    assert re.match(r"::error file=conformance\.toml,line=\d+,title=.*drift of std_force_N of pantograph 1::28", line)
     assert [line.split(":")[0] for line in (project / "page.md").read_text().splitlines() if line[:2] == "# "] == [
         "# PASS", "# FAIL",
     ]  # fmt: skip
@@ -73,7 +84,8 @@ def test_job_passes_and_fails_by_the_baseline(project: Path) -> None:
 
 def test_both_services_run_the_same_commands() -> None:
     job = [step["run"] for step in STEPS if step.get("if") != "always()"]
-    assert GITLAB["conformance"]["script"] == job
+    assert GITLAB["conformance"]["script"][0] == job[0]
+    assert GITLAB["conformance"]["script"][1] in job[1]
 
 
 def test_files_have_the_keys_of_their_services() -> None:

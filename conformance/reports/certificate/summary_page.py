@@ -1,5 +1,6 @@
 """The summary of a run for the page of a CI job."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from pantocheck.conformance.reports import document as doc
@@ -23,16 +24,37 @@ from pantocheck.conformance.reports.certificate.verdict_reasons import describe_
 from pantocheck.conformance.reports.words import read_words
 
 
-def build_summary(results: dict[str, Any]) -> doc.Document:
-    """Verdict, reasons and criteria of a run, from results.json as a dictionary."""
+def build_summary(results: dict[str, Any], certificates: Sequence[str] = ()) -> doc.Document:
+    """Verdict, reasons and criteria of a run.
+
+    Parameters
+    ----------
+    results : dict
+        results.json as a dictionary.
+    certificates : sequence of str
+        Names of the certificates in the same folder, which the page links.
+
+    Returns
+    -------
+    Document
+        The page.
+    """
     results = prepare_results(results)
     header = build_header(results)
     warnings = list_identity_warnings(results)
     scope = (*_build_scope(results), *build_findings_section(results))
     facts = (*(list_administration(results) if results["administration"] else ()), *list_sources(results))
     stated = (doc.Facts(facts),) if facts else ()
-    first = (*stated, *((doc.WarningBox(warnings),) if warnings else ()), *scope, *list_reasons(results))
-    return doc.Document(header.heading, header, (*first, *map(_case_section, results["cases"])))
+    first = (*_link_certificates(certificates), *stated, *((doc.WarningBox(warnings),) if warnings else ()))
+    return doc.Document(
+        header.heading, header, (*first, *scope, *list_reasons(results), *map(_case_section, results["cases"]))
+    )
+
+
+def _link_certificates(names: Sequence[str]) -> tuple[doc.Paragraph, ...]:
+    links = [doc.PageLink(name, name) for name in names]
+    separated = [part for link in links[1:] for part in (", ", link)]
+    return (doc.Paragraph(("Certificate: ", links[0], *separated)),) if links else ()
 
 
 def _build_scope(results: dict[str, Any]) -> tuple[doc.Section, ...]:

@@ -79,6 +79,8 @@ def _inline(element: doc.Inline) -> str:
             return escape_markdown(element)
         case doc.Code() if not re.search(r"[`|\\]", element.text):
             return f"`{element.text}`"
+        case doc.PageLink():
+            return f"[{escape_markdown(element.text)}]({element.address})"
         case doc.VerdictMark():
             return _word(element.verdict)
         case doc.TrustMark():

@@ -14,6 +14,7 @@ from pantocheck.conformance.reports.document import Document
 from pantocheck.conformance.reports.formats.badge import render_badge
 from pantocheck.conformance.reports.formats.embedded_results import strip_times
 from pantocheck.conformance.reports.formats.reproducibility import read_source_date
+from pantocheck.conformance.results.file_places import ReportPlaces
 
 if TYPE_CHECKING:
     from pantocheck.conformance.results.results_format import Results
@@ -26,8 +27,13 @@ FILES = {
     "junit": "junit.xml",
     "md": "summary.md",
     "badge": "badge.svg",
+    "annotations": "annotations.txt",
+    "codequality": "codequality.json",
 }
 """File that each format is written to."""
+
+NO_PLACES = ReportPlaces()
+"""Places of a report whose input files are not known."""
 
 
 def write_report(document: Document, path: Path) -> None:
@@ -68,8 +74,19 @@ def check_formats(names: Sequence[str]) -> tuple[str, ...]:
     return ("json", *(name for name in FILES if name in names and name != "json"))
 
 
-def write_all(results: "Results", folder: Path, formats: Sequence[str]) -> list[Path]:
+def write_all(results: "Results", folder: Path, formats: Sequence[str], places: ReportPlaces = NO_PLACES) -> list[Path]:
     """Write results in several formats.
+
+    Parameters
+    ----------
+    results : Results
+        Results of a run.
+    folder : Path
+        Folder of the files.
+    formats : sequence of str
+        Names of formats, keys of `FILES`.
+    places : ReportPlaces
+        Places of cases and limits in the files of the user, for annotations.
 
     Returns
     -------
@@ -83,11 +100,13 @@ def write_all(results: "Results", folder: Path, formats: Sequence[str]) -> list[
     """
     if "json" in formats:
         write_atomically(folder / FILES["json"], results.to_json())
-    write_pages(results.to_dict(), folder, formats)
+    write_pages(results.to_dict(), folder, formats, places)
     return [folder / FILES[name] for name in formats]
 
 
-def write_pages(results: dict[str, Any], folder: Path, formats: Sequence[str]) -> None:
+def write_pages(
+    results: dict[str, Any], folder: Path, formats: Sequence[str], places: ReportPlaces = NO_PLACES
+) -> None:
     """Write every format but results.json; the certificate is composed once for all its formats.
 
     If the environment sets `SOURCE_DATE_EPOCH`, the times of the run are left out, so that a second run of the same
@@ -96,6 +115,7 @@ def write_pages(results: dict[str, Any], folder: Path, formats: Sequence[str]) -
     if read_source_date() is not None:
         results = strip_times(results)
     pages = [name for name in formats if name in ("html", "pdf")]
+    certificates = [FILES[name] for name in pages]
     if pages:
         from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
 
@@ -105,14 +125,28 @@ def write_pages(results: dict[str, Any], folder: Path, formats: Sequence[str]) -
     if "md" in formats:
         from pantocheck.conformance.reports.certificate.summary_page import build_summary
 
-        write_report(build_summary(results), folder / FILES["md"])
+        write_report(build_summary(results, certificates), folder / FILES["md"])
     if "junit" in formats:
         from pantocheck.conformance.reports.formats.junit import render_junit
 
-        write_atomically(folder / FILES["junit"], render_junit(results))
+        write_atomically(folder / FILES["junit"], render_junit(results, certificates))
     if "csv" in formats:
         from pantocheck.conformance.reports.formats.quantity_list import render_quantity_list
 
         write_atomically(folder / FILES["csv"], render_quantity_list(results).encode("utf-8"))
     if "badge" in formats:
         write_atomically(folder / FILES["badge"], render_badge(results).encode("utf-8"))
+    if "annotations" in formats or "codequality" in formats:
+        _write_annotations(results, folder, formats, places)
+
+
+def _write_annotations(results: dict[str, Any], folder: Path, formats: Sequence[str], places: ReportPlaces) -> None:
+    from pantocheck.conformance.reports.formats.annotations import list_annotations
+    from pantocheck.conformance.reports.formats.code_quality import render_code_quality
+    from pantocheck.conformance.reports.formats.workflow_commands import render_workflow_commands
+
+    found = list_annotations(results, places)
+    if "annotations" in formats:
+        write_atomically(folder / FILES["annotations"], render_workflow_commands(found))
+    if "codequality" in formats:
+        write_atomically(folder / FILES["codequality"], render_code_quality(found, folder / FILES["json"]))
