@@ -13,6 +13,8 @@ from scipy.optimize import brentq
 from pantocheck.model.modal.modes import compute_modes
 from pantocheck.model.statics.elasticity import static_uplift
 
+pytestmark = pytest.mark.thorough
+
 SPAN, SPANS, POINTS, TENSION, MASS, AXIAL_STIFFNESS = 55.0, 2, 221, 16e3, 1.08, 13.8e6
 WEIGHT = 25.0
 """Weight per length of the whole catenary, which hangs on the messenger wire [N/m]."""

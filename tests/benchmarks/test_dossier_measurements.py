@@ -16,6 +16,8 @@ from dossier_measurements import (
     write_statics,
 )
 
+pytestmark = pytest.mark.thorough
+
 
 def test_command_writes_the_stored_files(tmp_path: Path) -> None:
     """Static values, responses and one passage, which takes three seconds; the others are written in the same way."""

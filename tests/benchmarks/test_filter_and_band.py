@@ -14,6 +14,8 @@ sys.path.append(str(Path(__file__).parents[2] / "benchmarks"))
 
 from filter_and_band import CASES, FILTERS, band_changes, filter_changes, load_signals
 
+pytestmark = pytest.mark.thorough
+
 ROOT = Path(__file__).parents[2]
 TOLERANCE = 0.3
 """Percentage points: about the discretisation error of a statistic."""

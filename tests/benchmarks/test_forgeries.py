@@ -39,6 +39,7 @@ def test_forged_results_are_found(genuine: Genuine, tmp_path: Path, kind: str) -
     assert (outcome == "consistent") == (kind in OUTSIDE), outcome
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("carrier", "kind"), [*(("PDF", kind) for kind in PDF_KINDS), *(("HTML", kind) for kind in HTML_KINDS)]
 )
@@ -47,6 +48,7 @@ def test_forged_files_are_found(genuine: Genuine, tmp_path: Path, carrier: str, 
     assert {"pages", "appended bytes"} & set(attempt(kind, *item, tmp_path).outcome.split(", "))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("carrier", ["PDF, attachment alone", "HTML, data alone"])
 def test_pages_beside_other_results_are_found(genuine: Genuine, tmp_path: Path, carrier: str) -> None:
     """Results that are consistent in themselves contradict the genuine pages."""

@@ -130,6 +130,7 @@ def test_every_pattern_of_the_committed_settings_matches_a_file() -> None:
     assert [pattern for pattern in patterns if not sources.files([pattern])] == []
 
 
+@pytest.mark.thorough
 def test_outcomes_on_a_toy_package(toy: Path, tmp_path: Path) -> None:
     pytest.importorskip("coverage", reason="the extra `mutation` is not installed")
     before = (toy / "toy" / "limits.py").read_bytes()

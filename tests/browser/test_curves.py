@@ -13,6 +13,8 @@ from helpers.example_results import SPEED, example
 from pantocheck.conformance.quantities.bands import amplitude_spectrum
 from pantocheck.conformance.reports.words import TEMPLATES
 
+pytestmark = pytest.mark.thorough
+
 FIGURE = "#case-1-force-1"
 TRACE = example()["cases"][0]["traces"]["1"]
 POSITION = np.array(TRACE["position_m"])

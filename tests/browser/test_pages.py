@@ -10,6 +10,8 @@ import pytest
 
 from helpers.example_results import example
 
+pytestmark = pytest.mark.thorough
+
 AXE = Path(__file__).parents[1] / "data" / "axe-core"
 
 AXE_SCRIPT = lzma.decompress((AXE / "axe.min.js.xz").read_bytes())

@@ -14,6 +14,8 @@ from helpers.example_results import example
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
 from pantocheck.conformance.reports.document import to_plain
 
+pytestmark = pytest.mark.thorough
+
 PRINTED_WIDTH = 688
 """Width between the margins of an A4 page [px], 182 mm."""
 

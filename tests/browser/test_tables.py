@@ -2,7 +2,11 @@
 
 from typing import Any
 
+import pytest
+
 from helpers.example_results import example
+
+pytestmark = pytest.mark.thorough
 
 CRITERIA = "table.cards"
 ROWS = "tbody tr:not(.filtered)"

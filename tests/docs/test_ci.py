@@ -68,6 +68,7 @@ def check_suspended_commands(output: str) -> None:
         assert "::error" not in output.split(f"::{found[1]}::", 1)[0]
 
 
+@pytest.mark.thorough
 def test_job_passes_and_fails_by_the_baseline(project: Path) -> None:
     assert run_job(project) == 0
     solver = project / "solver" / "250.toml"

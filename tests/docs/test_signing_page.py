@@ -14,6 +14,7 @@ from pantocheck.conformance.results.results_format import Results
 PAGE = Path(__file__).parents[2] / "docs" / "signing.md"
 
 
+@pytest.mark.thorough
 @pytest.mark.skipif(shutil.which("openssl") is None, reason="openssl is not installed")
 @pytest.mark.skipif(shutil.which("bash") is None, reason="the commands are those of a shell")
 def test_commands_of_the_test_authority(accepted_wave: Results, tmp_path: Path) -> None:

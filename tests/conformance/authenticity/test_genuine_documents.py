@@ -86,6 +86,7 @@ CHANGED_VERDICT = {"ac-simple/results.json.xz": ("verdict 'pass' stated, 'info' 
 """Discrepancies that follow from a changed rule, which docs/verdicts.md lists under "Changes of verdicts"."""
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ["en50318-2002/certificate.pdf", *OLDER])
 def test_documents_of_an_older_version_are_compared_in_part(tmp_path: Path, name: str) -> None:
     """Files of commit 07ce9e7 do not contradict themselves; the output says that another version made them."""

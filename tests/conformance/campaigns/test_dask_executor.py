@@ -43,12 +43,14 @@ def run_helper(module: str, *arguments: str, **environment: str) -> None:
     assert result.returncode == 0, result.stderr[-2000:]
 
 
+@pytest.mark.thorough
 def test_table_of_a_cluster_with_lost_and_added_workers_is_that_of_one_process(tmp_path: Path) -> None:
     pytest.importorskip("distributed")
     run_helper("dask_campaign", str(tmp_path / "cluster"), str(RUNS))
     assert (tmp_path / "cluster" / "campaign.csv").read_bytes() == build_table(tmp_path / "one", RUNS)
 
 
+@pytest.mark.thorough
 def test_jobs_are_submitted_to_a_batch_system(tmp_path: Path) -> None:
     """Slurm is not installed here: a mocked `sbatch` starts the job script on this machine."""
     pytest.importorskip("dask_jobqueue")

@@ -162,6 +162,7 @@ def whole_file(kind: str, folder: Path, record: DropRecord) -> Path:
     return folder / "r.mat"
 
 
+@pytest.mark.thorough
 @pytest.mark.filterwarnings("ignore")  # what the libraries have to say of damaged files
 @pytest.mark.parametrize("kind", ["h5", "mat 5", "mat 7.3", "tdms"])
 def test_flipped_bytes_are_read_or_refused(tmp_path: Path, record: DropRecord, kind: str) -> None:

@@ -19,6 +19,8 @@ from pantocheck.conformance.reports.certificate.certificate_page import build_ce
 from pantocheck.conformance.reports.formats.pdf import render_pdf
 from pantocheck.conformance.reports.formats.report_writers import write_pages
 
+pytestmark = pytest.mark.thorough
+
 PAGE = Path(__file__).parents[3] / "docs" / "archival.md"
 
 

@@ -39,6 +39,7 @@ def test_pdf_does_not_depend_on_the_time_of_the_run(
     assert (tmp_path / "a.pdf").read_bytes() == (tmp_path / "b.pdf").read_bytes()
 
 
+@pytest.mark.thorough
 def test_html_and_pdf_do_not_depend_on_the_process(passing: dict[str, Any], tmp_path: Path) -> None:
     """Another interpreter with another hash seed and time zone writes the same HTML and PDF."""
     source = tmp_path / "results.json"

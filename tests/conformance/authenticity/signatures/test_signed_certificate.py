@@ -84,6 +84,7 @@ def test_commands_from_signing_to_authentic(
     assert passing_certificate.read_bytes() == unsigned
 
 
+@pytest.mark.thorough
 def test_failing_certificate_may_be_authentic(
     wave_results: Results, signers: Signers, roots_file: Path, tmp_path: Path
 ) -> None:
@@ -163,6 +164,7 @@ def test_without_the_package(
     assert not check_signatures(signed, None).authentic
 
 
+@pytest.mark.thorough
 def test_signed_copy_shows_the_same_pages(passing_certificate: Path, signers: Signers) -> None:
     signed = sign(passing_certificate, signers.author, place="top-centre")
     before, after = (PdfReader(io.BytesIO(path.read_bytes())) for path in (passing_certificate, signed))
@@ -192,6 +194,7 @@ def invent(results: dict[str, Any]) -> dict[str, Any]:
     return results | {"system": results["system"] | {"name": "my simulator"}}
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ["certificate.pdf", "certificate.html", "results.json"])
 @pytest.mark.parametrize("signature", ["removed", "kept", "of the forger"])
 def test_invented_results_are_detected_by_the_signature(
