@@ -240,6 +240,8 @@ CARRIERS = ("results.json", "PDF, attachment alone", "PDF made again", "HTML, da
 
 TEXT = """# Forged certificates
 
+Kinds of forged certificates, and the check that finds each.
+
 `python benchmarks/forgeries.py --write` makes this page (seed {seed}). The genuine document is a run of
 `en50318-2002/250` that fails. {kinds} kinds of forgery give {files} files. `pantocheck verify` finds {found} of them
 without a record, a new run or a signature; {caught} kinds are found in every file. {missed} kinds are consistent in at

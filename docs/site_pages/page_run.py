@@ -25,6 +25,12 @@ ROOT = Path(__file__).parents[2]
 CLONE = ("examples", "reference_cases", "docs/ci", "README.md")
 """Files of the clone that pages name."""
 
+BUILT = ("__pycache__", "*.egg-info", ".*_cache", "build", "dist", "report", "generated")
+"""Patterns of files that are made in a clone and belong to no commit."""
+
+PACKAGES = ("model", "conformance", "reference_cases", "templates")
+"""Folders of the clone that are packages of `pantocheck`."""
+
 SHELL = """
 set -u
 trap 'echo "$?" >> "$PAGE_CODES"' ERR
@@ -46,9 +52,12 @@ class PageRun:
     ----------
     root : Path
         Folder with the files of the clone.
+    environment : dict of str to str
+        Environment of the commands.
     """
 
     root: Path
+    environment: dict[str, str]
     current: Path = field(init=False)
     names: dict[str, Any] = field(default_factory=lambda: {"__name__": "__main__"})
     output: str = ""
@@ -75,12 +84,12 @@ class PageRun:
         return printed.getvalue()
 
     def _run_shell(self, block: Block) -> str:
-        codes, folder = self.root / ".codes", self.root / ".folder"
+        codes, folder = (self.root.parent / f"{self.root.name}.{name}" for name in ("codes", "folder"))
         codes.write_text("")
         done = subprocess.run(
             ["bash", "-c", SHELL.format(commands=block.text)],
             cwd=self.current,
-            env=build_environment() | {"PAGE_CODES": str(codes), "PAGE_FOLDER": str(folder)},
+            env=self.environment | {"PAGE_CODES": str(codes), "PAGE_FOLDER": str(folder)},
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             stdin=subprocess.DEVNULL,
@@ -101,15 +110,44 @@ def build_environment() -> dict[str, str]:
     return {**os.environ, "PATH": path, "COLUMNS": "80", "MPLBACKEND": "agg", "OMP_NUM_THREADS": "1", "NO_COLOR": "1"}
 
 
-def copy_clone(folder: Path) -> None:
+def start_page_run(root: Path, whole: bool) -> PageRun:
+    """Run in a new folder with the files of the clone that pages name, or with a whole clone whose code counts."""
+    environment = build_environment()
+    if whole:
+        copy_repository(root)
+        packages = root.parent / f"{root.name}.packages"
+        (packages / "pantocheck").mkdir(parents=True)
+        for name in PACKAGES:
+            (packages / "pantocheck" / name).symlink_to(root / name)
+        environment["PYTHONPATH"] = str(packages)
+        environment["GIT_CEILING_DIRECTORIES"] = str(root.parent)
+    else:
+        copy_files(root)
+    return PageRun(root, environment)
+
+
+def copy_files(root: Path) -> None:
     """Copy the files of the clone that pages name."""
     for name in CLONE:
-        source, target = ROOT / name, folder / name
+        source, target = ROOT / name, root / name
         target.parent.mkdir(parents=True, exist_ok=True)
         if source.is_dir():
             shutil.copytree(source, target, ignore=shutil.ignore_patterns("__pycache__"))
         else:
             shutil.copy(source, target)
+
+
+def copy_repository(root: Path) -> None:
+    """Copy all files of the clone into a new repository with one commit."""
+    built = shutil.ignore_patterns(*BUILT)
+    root.mkdir(parents=True)
+    for source in ROOT.iterdir():
+        if source.is_dir() and source.name not in (".git", ".venv", ".hypothesis"):
+            shutil.copytree(source, root / source.name, ignore=built)
+        elif source.is_file() and source.name != ".git":
+            shutil.copy(source, root)
+    for arguments in ("init", "add .", "-c user.name=me -c user.email=me@example.org commit --quiet -m clone"):
+        subprocess.run(["git", *arguments.split()], cwd=root, check=True, capture_output=True)
 
 
 def compare_output(block: Block, output: str) -> None:
@@ -123,7 +161,9 @@ def compare_output(block: Block, output: str) -> None:
 
 
 def is_same_line(shown: str, printed: str) -> bool:
-    """Whether two lines have the same words; numbers may differ by one unit of the last digit that is shown."""
+    """Whether two lines have the same words; `...` is any text, and numbers may differ by a unit of the last digit."""
+    if "..." in shown:
+        return re.fullmatch(".*".join(map(re.escape, shown.split("..."))), printed) is not None
     first, second = shown.split(), printed.split()
     return len(first) == len(second) and all(map(_is_same_word, first, second))
 

@@ -6,7 +6,7 @@ import tempfile
 from pathlib import Path
 
 from site_pages.page_blocks import list_pictures, read_blocks
-from site_pages.page_run import PageRun, copy_clone
+from site_pages.page_run import PageRun, start_page_run
 from site_pages.picture_folder import draw_page
 from site_pages.unrun_blocks import is_run_by_hand
 
@@ -14,10 +14,13 @@ PDF_PAGE = re.compile(r"(?P<file>.+\.pdf)-(?P<page>\d+)\.png")
 """Name of a picture that is a page of a PDF document: `certificate.pdf-1.png`."""
 
 
+WHOLE_CLONE = ("contributor",)
+"""Tutorials that change the code or the library."""
+
+
 def run_tutorial(page: Path, folder: Path) -> PageRun:
     """Run every block of a page in a folder; raises `BlockFault`."""
-    copy_clone(folder)
-    run = PageRun(folder)
+    run = start_page_run(folder, whole=page.stem in WHOLE_CLONE)
     for block in read_blocks(page):
         if not is_run_by_hand(block):
             run.take(block)
@@ -27,7 +30,7 @@ def run_tutorial(page: Path, folder: Path) -> PageRun:
 def write_tutorial_pictures(page: Path, target: Path) -> None:
     """Run a tutorial, and write the pictures that it shows."""
     with tempfile.TemporaryDirectory() as folder:
-        run = run_tutorial(page, Path(folder))
+        run = run_tutorial(page, Path(folder) / "clone")
         for name in list_pictures(page):
             place_picture(run.current, name.removeprefix(f"{page.stem}/"), target)
 
