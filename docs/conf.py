@@ -41,11 +41,12 @@ sphinx_gallery_conf = {
 }
 
 
-def link_gallery(app: Any, page: str, source: list[str]) -> None:
-    """Turn links to the scripts of the gallery, which work in the repository, into links to their pages."""
-    source[0] = re.sub(r"\(\.\./examples/gallery/(\w+)\.py\)", r"(gallery/\1.rst)", source[0])
+def link_repository_files(app: Any, page: str, source: list[str]) -> None:
+    """Turn links to scripts of the gallery and to CONTRIBUTING.md, which hold in the repository, into links to pages."""
+    source[0] = re.sub(r"\(((?:\.\./)*)\.\./examples/gallery/(\w+)\.py\)", r"(\1gallery/\2.rst)", source[0])
+    source[0] = re.sub(r"\(((?:\.\./)*)\.\./CONTRIBUTING\.md", r"(\1generated/contributing.md", source[0])
 
 
 def setup(app: Any) -> None:
     """Connect the events of Sphinx."""
-    app.connect("source-read", link_gallery)
+    app.connect("source-read", link_repository_files)

@@ -4,6 +4,7 @@ from functools import partial
 from pathlib import Path
 
 from site_pages.command_pages import build_command_page
+from site_pages.contributing_page import build_contributing_page
 from site_pages.format_pages import build_format_page
 from site_pages.interface_pages import build_interface_page
 from site_pages.page_list import build_page_list
@@ -19,6 +20,7 @@ PAGES = {
     "formats": build_format_page,
     "quantity-reference": build_quantity_page,
     "interface": build_interface_page,
+    "contributing": build_contributing_page,
     "all-pages": build_page_list,
 }
 """Builder of each page by its name."""
