@@ -16,7 +16,7 @@ from pantocheck.conformance.identification.identify import identify_modes
 from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.model import Kind, Rayleigh
-from pantocheck.model.dynamics.mass_drop import MassDropSetup as SimulatedDrop
+from pantocheck.model.dynamics.drop_values import MassDropSetup as SimulatedDrop
 from pantocheck.model.dynamics.mass_drop import simulate_mass_drop
 
 PUT_IN = {

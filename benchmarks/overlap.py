@@ -23,7 +23,8 @@ from pantocheck.conformance.cases.section_tables import OverlapTable, SectionTab
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.model import DiscretisedLine, History, Passage, discretise, simulate_passage
-from pantocheck.model.dynamics.active_window import build_window_arrays, max_wave_speed
+from pantocheck.model.discretised_line import max_wave_speed
+from pantocheck.model.dynamics.active_window import build_window_arrays
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays
 from pantocheck.model.dynamics.recording import allocate_recording, simulate_steps
 from pantocheck.model.dynamics.simulation import start_motion

@@ -99,4 +99,9 @@ def __getattr__(name: str) -> Any:
     """Load a public name from its module."""
     if name not in __all__:
         raise AttributeError(f"module 'pantocheck.model' has no attribute {name!r}")
-    return getattr(import_module(f"pantocheck.model.{_MODULES.get(name, 'catenary')}"), name)
+    try:
+        module = import_module(f"pantocheck.model.{_MODULES.get(name, 'catenary')}")
+    except ModuleNotFoundError as error:
+        error.add_note("The compiled simulations need an extra: pip install 'pantocheck[simulator]'")
+        raise
+    return getattr(module, name)

@@ -5,7 +5,7 @@ import math
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import Discretisation
 from pantocheck.model import DiscretisedLine
-from pantocheck.model.dynamics.active_window import max_wave_speed
+from pantocheck.model.discretised_line import max_wave_speed
 
 
 def smallest_reach(wave_speed: float, speed: float, duration: float) -> float:

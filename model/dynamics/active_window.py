@@ -20,7 +20,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from pantocheck.model.arrays import Array
-from pantocheck.model.discretised_line import DiscretisedLine
+from pantocheck.model.discretised_line import DiscretisedLine, max_wave_speed
 from pantocheck.model.dynamics.binary_search import search
 from pantocheck.model.dynamics.kernel_compilation import kernel
 from pantocheck.model.dynamics.passage import Passage
@@ -91,15 +91,6 @@ def build_window_arrays(line: DiscretisedLine, passage: Passage) -> WindowArrays
 def whole_line(line: DiscretisedLine) -> WindowArrays:
     """Active window that is the whole line at all times."""
     return WindowArrays(line.mesh.position, max_wave_speed(line), math.inf, math.inf, math.inf, math.inf, True)
-
-
-def max_wave_speed(line: DiscretisedLine) -> float:
-    """Upper bound of the speed of all waves of interest on any wire [m/s].
-
-    Bending makes short waves faster: 10 % above sqrt(T / m) is sufficient up to about 60 Hz on a contact wire.
-    """
-    present = line.beams.mass_per_length > 0
-    return 1.1 * math.sqrt(float(np.max(line.beams.tension[present] / line.beams.mass_per_length[present])))
 
 
 @kernel

@@ -31,7 +31,7 @@ from pantocheck.model.dynamics.vectors import LANES
 from pantocheck.model.fem.mesh import find_element
 from pantocheck.model.fem.residual_flexibility import residual_flexibility
 
-_find_element = kernel(find_element)
+_find_element, _residual_flexibility = kernel(find_element), kernel(residual_flexibility)
 
 
 @kernel
@@ -104,7 +104,7 @@ def _predict_contact(
         motion.w[2, row, e + i] += n[2 * i] * force
         motion.r[2, row, e + i] += n[2 * i + 1] * force
     work.stiffness[p, wire] = 1 / (
-        1 / train.contact_stiffness[p] + residual_flexibility(contact.flexibility[row, e], s)
+        1 / train.contact_stiffness[p] + _residual_flexibility(contact.flexibility[row, e], s)
     )
     work.overlap[p, wire] -= height + height_of_irregularity(contact.irregularity, wire, train.position[p])
 

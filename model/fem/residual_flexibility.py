@@ -11,7 +11,6 @@ point. G_exact follows from the stiffness of a tensioned beam in closed form (`e
 """
 
 import numpy as np
-from numba import njit
 
 from pantocheck.model.arrays import Array
 from pantocheck.model.fem import beam
@@ -84,9 +83,11 @@ def station_flexibility(elements: Array) -> Array:
     return np.asarray((at_start + at_end) / np.maximum(known, 1.0))
 
 
-@njit(cache=True)
 def residual_flexibility(coefficients: Array, s: float) -> float:
-    """Residual flexibility at the share s of the length of an element [m/N]; see `element_flexibility`."""
+    """Residual flexibility at the share s of the length of an element [m/N]; see `element_flexibility`.
+
+    The time step compiles this function, too.
+    """
     value = coefficients[-1]
     for k in range(coefficients.size - 2, -1, -1):
         value = value * s + coefficients[k]

@@ -14,7 +14,8 @@ from pantocheck.conformance.comparison.drop_comparison import DampingChoice, Dro
 from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.simulation.drop_simulation import decimate
-from pantocheck.model.dynamics.mass_drop import MassDropSetup, simulate_mass_drop
+from pantocheck.model.dynamics.drop_values import MassDropSetup
+from pantocheck.model.dynamics.mass_drop import simulate_mass_drop
 
 ELEMENT, TIME_STEP = 2.25, 1e-3
 RATE, EVERY = 200.0, 5

@@ -75,9 +75,9 @@ def test_second_process_loads_the_kernels_of_the_first(tmp_path: Path) -> None:
     """Also a worker of a pool or of pytest: a fresh process with the same folder compiles nothing."""
     code = """
 import numpy as np
-from pantocheck.model.fem.residual_flexibility import residual_flexibility
-residual_flexibility(np.ones(7), 0.5)
-print(sum(residual_flexibility.stats.cache_misses.values()), sum(residual_flexibility.stats.cache_hits.values()))
+from pantocheck.model.dynamics.binary_search import search
+search(np.arange(7.0), 0, 7, 0.5)
+print(sum(search.stats.cache_misses.values()), sum(search.stats.cache_hits.values()))
 """
     environment = os.environ | {kernel_cache.VARIABLE: str(tmp_path)}
     runs = [

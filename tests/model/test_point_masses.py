@@ -10,7 +10,7 @@ from helpers.lines import DAMPED, PANTOGRAPH_2002, bare_wire, simple_line
 from helpers.step_differences import THREE_MASSES, largest_differences
 from pantocheck.model import Passage, PointMass, SectionChange, discretise, simulate_passage
 from pantocheck.model.catenary import GRAVITY, TensionChange
-from pantocheck.model.dynamics.active_window import max_wave_speed
+from pantocheck.model.discretised_line import max_wave_speed
 from pantocheck.model.failures import NoInitialState
 from pantocheck.model.modal.modes import compute_modes
 

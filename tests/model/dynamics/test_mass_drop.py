@@ -5,7 +5,8 @@ import numpy as np
 from helpers.lines import bare_wire, simple_line
 from pantocheck.model import Kind, Rayleigh, discretise
 from pantocheck.model.catenary import GRAVITY
-from pantocheck.model.dynamics.mass_drop import MassDropSetup, simulate_mass_drop
+from pantocheck.model.dynamics.drop_values import MassDropSetup
+from pantocheck.model.dynamics.mass_drop import simulate_mass_drop
 from pantocheck.model.modal.modes import compute_modes, damping_ratios
 
 DAMPING = dict.fromkeys(Kind, Rayleigh(0.1, 1e-4))
