@@ -62,16 +62,12 @@ class Plan(InputTable):
     timeout_s: Annotated[float, Field(gt=0, description="time limit of a program for a case [s]")] = TIMEOUT_S
     out: Annotated[str, Field(description="folder of the results")] = "report"
     formats: Annotated[
-        Names,
-        Field(description="formats of the report: html, pdf, json, csv, junit, md, badge, annotations, codequality"),
-    ] = (
-        "html",
-        "pdf",
-        "json",
-        "csv",
-        "junit",
-        "md",
-    )
+        Names | None,
+        Field(
+            description="formats of the report: html, pdf, json, csv, junit, md, badge, annotations, codequality; "
+            "default: the first six, pdf only if the extra `pdf` is installed"
+        ),
+    ] = None
     trust: Annotated[Trust, Field(description="lowest trust of the limits that count")] = "secondary"
     verdicts: Annotated[
         VerdictChoice | None,

@@ -2,15 +2,18 @@
 
 from dataclasses import dataclass
 from io import BytesIO
-
-from pypdf import PdfReader
+from typing import TYPE_CHECKING
 
 from pantocheck.conformance.authenticity.revision_ends import cut_original_revision
+from pantocheck.conformance.input_files.extras import refuse_missing_package
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.reports.formats.embedded_results import NAME
 from pantocheck.conformance.reports.page_text import clean_text
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.results.results_reading import parse_results
+
+if TYPE_CHECKING:
+    from pypdf import PdfReader
 
 
 @dataclass(frozen=True)
@@ -36,7 +39,7 @@ class PdfCertificate:
     name: str
     content: bytes
     original: bytes
-    reader: PdfReader
+    reader: "PdfReader"
     attachment: bytes
     results: Results
 
@@ -64,14 +67,16 @@ def parse_pdf_certificate(content: bytes, name: str) -> PdfCertificate:
     )
 
 
-def open_document(content: bytes, name: str) -> PdfReader:
+def open_document(content: bytes, name: str) -> "PdfReader":
     """Open a PDF for reading; parameters as in `parse_pdf_certificate`.
 
     Raises
     ------
     InputError
-        It is damaged, encrypted or without pages.
+        It is damaged, encrypted or without pages, or the extra `pdf` is not installed.
     """
+    with refuse_missing_package(name):
+        from pypdf import PdfReader
     try:
         reader = PdfReader(BytesIO(content), strict=True)
         encrypted = reader.is_encrypted
@@ -85,7 +90,7 @@ def open_document(content: bytes, name: str) -> PdfReader:
     return reader
 
 
-def read_attachment(reader: PdfReader, name: str) -> bytes:
+def read_attachment(reader: "PdfReader", name: str) -> bytes:
     """Content of the attached results.
 
     Raises

@@ -19,13 +19,6 @@ from pantocheck.conformance.authenticity.html_comparison import (
     read_title,
 )
 from pantocheck.conformance.authenticity.html_structure import list_active_parts, list_foreign_elements
-from pantocheck.conformance.authenticity.pdf_comparison import (
-    compare_pdfs,
-    compare_texts,
-    read_date,
-    read_title_and_heading,
-)
-from pantocheck.conformance.authenticity.pdf_structure import list_foreign_parts
 from pantocheck.conformance.authenticity.text_differences import quote
 from pantocheck.conformance.authenticity.version_differences import list_version_differences
 from pantocheck.conformance.input_files.input_error import InputError
@@ -80,7 +73,7 @@ def check_pages(document: Certificate) -> DocumentCheck:
         return DocumentCheck("contradicted", contradicted, (text,))
     if found.same:
         return DocumentCheck("proved", proved)
-    if not list_version_differences(document.results):
+    if not list_version_differences(document):
         return judge_details(proved, contradicted, shorten_details(found.all))
     if wrong := [*found.foreign, *_find_other_verdict(document)]:
         return judge_details(proved, "The document shows something else than its embedded results.", wrong)
@@ -118,6 +111,9 @@ def _compare(document: Certificate) -> PageDifferences:
 
 
 def _compare_pdf(document: PdfCertificate) -> PageDifferences:
+    from pantocheck.conformance.authenticity.pdf_comparison import compare_pdfs, compare_texts, read_date
+    from pantocheck.conformance.authenticity.pdf_structure import list_foreign_parts
+
     date = read_date(document.reader, document.name)
     page = render_pdf(build_dated_certificate(document.results.to_dict(), date))
     if document.original == page:
@@ -140,6 +136,8 @@ def _find_other_verdict(document: Certificate) -> Iterator[str]:
         case HtmlCertificate(_, text, _):
             title = heading = read_title(text)
         case PdfCertificate():
+            from pantocheck.conformance.authenticity.pdf_comparison import read_title_and_heading
+
             title, heading = read_title_and_heading(document.reader, HEADING)
         case never:
             assert_never(never)

@@ -7,7 +7,7 @@ from typing import Literal
 
 from pantocheck.conformance.authenticity.attachment import PdfCertificate
 from pantocheck.conformance.authenticity.authenticity_check import DocumentCheck, judge_details, shorten_details
-from pantocheck.conformance.authenticity.certificate_reading import Certificate, ResultsFile, read_certificate
+from pantocheck.conformance.authenticity.certificate_reading import Certificate, read_certificate
 from pantocheck.conformance.authenticity.completeness import find_gaps
 from pantocheck.conformance.authenticity.library_check import check_library
 from pantocheck.conformance.authenticity.page_check import check_pages
@@ -117,8 +117,7 @@ def verify_certificate(document: Certificate) -> Verification:
 
 def _name_versions(document: Certificate, checks: Iterable[DocumentCheck]) -> list[DocumentCheck]:
     """Other versions than the installed ones; nothing depends on them if the document was compared in full."""
-    has_pages = not isinstance(document, ResultsFile)
-    differences = tuple((list_version_differences if has_pages else list_suite_differences)(document.results))
+    differences = tuple(list_version_differences(document))
     if any(check.outcome == "incomplete" for check in checks):
         text = "Other versions made this document; install them to compare it in full."
         return [DocumentCheck("incomplete", text, differences)]

@@ -4,6 +4,12 @@ Only the same versions lay out the same pages. Their differences are named, beca
 compared.
 """
 
+from collections.abc import Collection
+from typing import assert_never
+
+from pantocheck.conformance.authenticity.attachment import PdfCertificate
+from pantocheck.conformance.authenticity.certificate_reading import Certificate, ResultsFile
+from pantocheck.conformance.authenticity.html_certificate import HtmlCertificate
 from pantocheck.conformance.results.renderer_identity import identify_renderer
 from pantocheck.conformance.results.results_building import build_suite
 from pantocheck.conformance.results.results_format import Renderer, Results
@@ -31,18 +37,33 @@ def find_false_version(results: Results) -> list[str]:
     return [f"Pantocheck {stated.version} stated; the stated digest is that of Pantocheck {installed.version}"]
 
 
-def list_version_differences(results: Results) -> list[str]:
+def list_version_differences(document: Certificate) -> list[str]:
     """All differences of the software that made a document from the installed one, as sentences."""
-    return [*list_suite_differences(results), *list_renderer_differences(results)]
+    return [*list_suite_differences(document.results), *_list_renderer_differences(document.results, _layout(document))]
 
 
-def list_renderer_differences(results: Results) -> list[str]:
+def _layout(document: Certificate) -> frozenset[str]:
+    """Fields of `Renderer` on which a document depends: Typst lays out no HTML page, and nothing a results.json."""
+    match document:
+        case ResultsFile():
+            return frozenset()
+        case HtmlCertificate():
+            return frozenset(Renderer.model_fields) - {"typst"}
+        case PdfCertificate():
+            return frozenset(Renderer.model_fields)
+        case never:
+            assert_never(never)
+
+
+def _list_renderer_differences(results: Results, software: Collection[str]) -> list[str]:
     """Differences of the software that made the pages from the installed one."""
     stated, installed = results.renderer, identify_renderer()
+    if not software:
+        return []
     if stated is None:
         return ["the versions of Typst, matplotlib and the fonts are not stated"]
     return [
         f"{name} {getattr(stated, name)}; installed is {getattr(installed, name)}"
         for name in Renderer.model_fields
-        if getattr(stated, name) != getattr(installed, name)
+        if name in software and getattr(stated, name) != getattr(installed, name)
     ]

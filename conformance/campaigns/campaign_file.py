@@ -167,6 +167,11 @@ class Execution(InputTable):
     ] = "none"
     timeout_s: Annotated[Positive, Field(description="time limit of a program for a case [s]")] = TIMEOUT_S
 
+    @property
+    def is_local(self) -> bool:
+        """Whether the runs are executed by processes of this machine."""
+        return self.scheduler is None and self.cluster is None
+
     @cross_check
     def _check_cluster(self) -> Problems:
         if self.scheduler is not None and self.cluster is not None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from pantocheck.conformance.campaigns.campaign_design import CampaignDesign
-from pantocheck.conformance.campaigns.campaign_file import CampaignFile
+from pantocheck.conformance.campaigns.campaign_file import CampaignFile, Execution
 from pantocheck.conformance.campaigns.campaign_run import RunExecution, name_column, vary_inputs
 from pantocheck.conformance.campaigns.design_axes import build_axis, sample_inputs
 from pantocheck.conformance.campaigns.design_conditions import parse_condition
@@ -22,6 +22,7 @@ from pantocheck.conformance.cases.library import find_entries, load_entry, overl
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.grading.case_identity import limits_digest
+from pantocheck.conformance.input_files.extras import require_package
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.sourced_table import PROVENANCE
 from pantocheck.conformance.input_files.suggestions import suggest_names
@@ -104,7 +105,7 @@ def prepare_campaign(file: CampaignFile, folder: Path) -> PreparedCampaign:
     files = {case_id: str(path) for case_id, (path, _) in cases.items()}
     timeout, stored = file.execution.timeout_s, file.execution.traces
     execute = RunExecution(files, changes, limits, profile, file.trust, file.refined, timeout, stored)
-    _check_systems(design.systems, file.execution.timeout_s)
+    _check_systems(design.systems, file.execution)
     first_cases = _check_first_designs(design, execute)
     limited = overlay_limits([case for _, case in cases.values()], limits)
     identity = {
@@ -171,11 +172,14 @@ def _first_values(axes: Sequence[Any], key: str) -> Iterator[object]:
             yield axis.row(0)[key]
 
 
-def _check_systems(systems: Sequence[str], timeout_s: float) -> None:
+def _check_systems(systems: Sequence[str], execution: Execution) -> None:
     """Refuse a system that does not exist; a folder per design is looked up by its run."""
     for system in systems:
-        if system != "builtin" and "{design}" not in system:  # the workers alone need the compiled kernels
-            choose_system(system, timeout_s)
+        if system == "builtin":
+            if execution.is_local:  # the workers alone need the compiled kernels
+                require_package("numba", "system 'builtin'")
+        elif "{design}" not in system:
+            choose_system(system, execution.timeout_s)
 
 
 def _check_first_designs(design: CampaignDesign, execute: RunExecution) -> list[Case]:

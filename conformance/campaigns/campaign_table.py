@@ -1,7 +1,6 @@
 """Tables of a campaign: one row per run with all inputs, verdicts and quantities."""
 
 import csv
-import importlib.util
 import json
 from collections.abc import Iterator
 from pathlib import Path
@@ -12,6 +11,7 @@ import numpy as np
 from pantocheck.conformance.campaigns.campaign_run import RunRow
 from pantocheck.conformance.campaigns.campaign_store import CampaignStore
 from pantocheck.conformance.input_files.atomic_writing import produce_atomically
+from pantocheck.conformance.input_files.extras import is_installed
 
 RUN_COLUMNS = ("run", "design", "case", "system")
 UNCERTAINTY = ".uncertainty"
@@ -57,7 +57,7 @@ def list_values(row: RunRow) -> dict[str, float]:
 
 def write_parquet(table: Path) -> Path | None:
     """Write a CSV table as Parquet beside it; None if the package pyarrow is not installed."""
-    if importlib.util.find_spec("pyarrow") is None:
+    if not is_installed("pyarrow"):
         return None
     import pyarrow.csv
     import pyarrow.parquet

@@ -8,6 +8,7 @@ from pantocheck.conformance.campaigns.campaign_design import PlannedRun
 from pantocheck.conformance.campaigns.campaign_file import ClusterKind
 from pantocheck.conformance.campaigns.campaign_run import RunRow, build_failed_row
 from pantocheck.conformance.campaigns.run_executor import MOST_ATTEMPTS, PROCESS_ENDED, Execute
+from pantocheck.conformance.input_files.extras import refuse_missing_package
 from pantocheck.conformance.input_files.input_error import InputError
 
 RUNS_PER_THREAD = 2
@@ -99,7 +100,7 @@ def connect_scheduler(address: str) -> Iterator[DaskExecutor]:
     InputError
         Dask is not installed, or there is no scheduler at this address.
     """
-    with _refuse_missing_package():
+    with refuse_missing_package("campaign"):
         import distributed
     try:
         client = distributed.Client(address, timeout=CONNECTION_TIMEOUT_S)
@@ -129,7 +130,7 @@ def start_cluster(kind: ClusterKind, jobs: int, options: Mapping[str, Any]) -> I
     InputError
         Dask is not installed, an option is wrong, or no job can be submitted.
     """
-    with _refuse_missing_package():
+    with refuse_missing_package("campaign"):
         import dask
         import dask_jobqueue
         import distributed
@@ -143,12 +144,3 @@ def start_cluster(kind: ClusterKind, jobs: int, options: Mapping[str, Any]) -> I
     with dask.config.set(limit), cluster, distributed.Client(cluster) as client:
         cluster.scale(jobs=jobs)
         yield DaskExecutor(client)
-
-
-@contextmanager
-def _refuse_missing_package() -> Iterator[None]:
-    try:
-        yield
-    except ModuleNotFoundError as error:
-        hint = "Install it: pip install 'pantocheck[cluster]'"
-        raise InputError("campaign", f"needs the package {error.name}, which is not installed", hint) from None

@@ -97,7 +97,7 @@ def assess_command(
     if earlier is not None and baseline is not None:
         write_all(results, folder, ("json",))  # kept if the comparison fails
         results = compare_with_baseline(results, earlier, options.drift_pct, baseline.name)
-    print_results(results, write_all(results, folder, report_formats, places))
+    print_results(results, write_all(results, folder, report_formats, places), options.formats)
     raise typer.Exit(EXIT_CODES[results.verdict])
 
 

@@ -22,12 +22,13 @@ from pantocheck.conformance.campaigns.short_form import parse_variation
 from pantocheck.conformance.command_line.campaign_progress import report_campaign
 from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.console import console, escape_text
+from pantocheck.conformance.command_line.file_list import print_files
 from pantocheck.conformance.command_line.options import CasesOption, SetOption, TrustOption
 from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_toml, validate_model
 from pantocheck.conformance.reports.campaign.campaign_page import build_campaign_report
-from pantocheck.conformance.reports.formats.report_writers import write_report
+from pantocheck.conformance.reports.formats.report_writers import write_document
 from pantocheck.conformance.results.campaign_format import CampaignEnding, CampaignResults
 from pantocheck.conformance.systems.process_control import interruption_exit_code
 
@@ -135,8 +136,7 @@ def campaign_command(
         files = _write_results(results, store, out)
     counts = f"{results.finished} of {results.total} runs finished, {results.failed} failed"
     output.print(escape_text(STOPPED[ending] + counts))
-    for path in files:
-        output.print(escape_text(str(path)), soft_wrap=True)
+    print_files(files)
     raise typer.Exit(interrupted or int(results.finished < results.total or results.failed > 0))
 
 
@@ -178,12 +178,10 @@ def _pair_runs(prepared: PreparedCampaign, store: CampaignStore, folder: Path) -
 
 def _write_results(results: CampaignResults, store: CampaignStore, folder: Path) -> list[Path]:
     """Write the table, the evaluation and the report of a campaign; return their paths."""
-    files = [folder / name for name in ("campaign.csv", "campaign.json", "campaign.html", "campaign.pdf")]
+    files = [folder / name for name in ("campaign.csv", "campaign.json")]
     write_campaign_table(store, files[0])
     if (parquet := write_parquet(files[0])) is not None:
         files.append(parquet)
     write_model(files[1], results)
     report = build_campaign_report(results.model_dump(mode="json", by_alias=True))
-    for path in (folder / "campaign.html", folder / "campaign.pdf"):
-        write_report(report, path)
-    return files
+    return [*files, *write_document(report, folder / "campaign")]

@@ -11,6 +11,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.input_changes import parse_changes
 from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.console import build_table, console, escape_text
+from pantocheck.conformance.command_line.file_list import print_files
 from pantocheck.conformance.command_line.options import SetOption, choose_case
 from pantocheck.conformance.comparison.compared_run import (
     RESULTS_FILE,
@@ -25,7 +26,7 @@ from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.reports.comparison.run_comparison_page import build_run_comparison, format_compared
-from pantocheck.conformance.reports.formats.report_writers import write_report
+from pantocheck.conformance.reports.formats.report_writers import write_document
 from pantocheck.conformance.reports.words import name_pantograph
 from pantocheck.conformance.systems.system_choice import choose_system
 
@@ -75,8 +76,7 @@ def compare_command(
     comparison = compare_subjects(runs, simulated.id if simulated is not None else case)
     files = [] if out is None else _write_comparison(comparison, out)
     _print_comparison(comparison)
-    for path in files:
-        output.print(escape_text(str(path)), soft_wrap=True)
+    print_files(files)
 
 
 def _choose_simulated_case(subjects: list[str], case: str | None, changed: list[str] | None) -> Case | None:
@@ -100,13 +100,12 @@ def _load_subject(text: str, case: Case | None) -> list[ComparedRun]:
 
 def _write_comparison(comparison: RunComparison, folder: Path) -> list[Path]:
     """Write all files of a comparison; return their paths."""
-    paths = [folder / f"comparison{suffix}" for suffix in (".json", ".html", ".pdf", ".csv")]
-    write_model(paths[0], comparison)
+    data, values = folder / "comparison.json", folder / "comparison.csv"
+    write_model(data, comparison)
     document = build_run_comparison(comparison.model_dump(mode="json", by_alias=True))
-    for path in paths[1:3]:
-        write_report(document, path)
-    write_atomically(paths[3], _list_values(comparison).encode())
-    return paths
+    pages = write_document(document, folder / "comparison")
+    write_atomically(values, _list_values(comparison).encode())
+    return [data, *pages, values]
 
 
 def _list_values(comparison: RunComparison) -> str:

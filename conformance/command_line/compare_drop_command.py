@@ -10,6 +10,7 @@ from pantocheck.conformance.cases.damping_file import DampingFile
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.console import build_table, console, escape_text, format_number, style_verdict
+from pantocheck.conformance.command_line.file_list import print_files
 from pantocheck.conformance.command_line.options import read_line
 from pantocheck.conformance.command_line.results_output import EXIT_CODES
 from pantocheck.conformance.comparison.drop_comparison import DampingChoice, DropTask, compare_drop
@@ -27,7 +28,7 @@ from pantocheck.conformance.reports.comparison.drop_comparison_page import (
     build_drop_comparison,
     name_criterion,
 )
-from pantocheck.conformance.reports.formats.report_writers import write_report
+from pantocheck.conformance.reports.formats.report_writers import write_document
 
 DEFAULT_WINDOWS = ((0.0, 10.0), (60.0, 70.0))
 """Windows after the release [s]: the first ten seconds, and ten seconds a minute later."""
@@ -88,8 +89,7 @@ def compare_drop_command(
         files = _write(comparison, out)
     output.print(style_verdict(comparison.verdict), escape_text(f" {DROP_HEADLINES[comparison.verdict]}"))
     _print_agreement(comparison)
-    for path in files:
-        output.print(escape_text(str(path)), soft_wrap=True)
+    print_files(files)
     raise typer.Exit(EXIT_CODES[comparison.verdict])
 
 
@@ -133,9 +133,7 @@ def _write(comparison: DropComparison, folder: Path) -> list[Path]:
     files = [folder / "drop_comparison.json"]
     write_model(files[0], comparison)
     document = build_drop_comparison(comparison.model_dump(mode="json", by_alias=True))
-    for suffix in (".html", ".pdf"):
-        files.append(folder / f"drop_comparison{suffix}")
-        write_report(document, files[-1])
+    files += write_document(document, folder / "drop_comparison")
     return files
 
 

@@ -7,6 +7,7 @@ import typer
 
 from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.command_line.console import build_table, console, escape_text, format_number, style_verdict
+from pantocheck.conformance.command_line.file_list import print_files
 from pantocheck.conformance.command_line.results_output import EXIT_CODES
 from pantocheck.conformance.comparison.response_comparison import compare_responses
 from pantocheck.conformance.comparison.response_comparison_format import ResponseComparison
@@ -22,7 +23,7 @@ from pantocheck.conformance.reports.comparison.response_comparison_page import (
     list_response_remarks,
     name_response_criterion,
 )
-from pantocheck.conformance.reports.formats.report_writers import write_report
+from pantocheck.conformance.reports.formats.report_writers import write_document
 
 PRINTED_DEVIATIONS: tuple[ResponseQuantity, ...] = (
     "modulus_deviation_pct",
@@ -57,8 +58,7 @@ def compare_response_command(
         files = _write(comparison, out)
     output.print(style_verdict(comparison.verdict), escape_text(f" {RESPONSE_HEADLINES[comparison.verdict]}"))
     _print_deviations(comparison)
-    for path in files:
-        output.print(escape_text(str(path)), soft_wrap=True)
+    print_files(files)
     raise typer.Exit(EXIT_CODES[comparison.verdict])
 
 
@@ -67,9 +67,7 @@ def _write(comparison: ResponseComparison, folder: Path) -> list[Path]:
     files = [folder / "response_comparison.json"]
     write_model(files[0], comparison)
     document = build_response_comparison(comparison.model_dump(mode="json", by_alias=True))
-    for suffix in (".html", ".pdf"):
-        files.append(folder / f"response_comparison{suffix}")
-        write_report(document, files[-1])
+    files += write_document(document, folder / "response_comparison")
     return files
 
 

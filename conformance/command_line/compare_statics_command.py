@@ -8,6 +8,7 @@ import typer
 
 from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.console import build_table, console, escape_text, format_number, style_verdict
+from pantocheck.conformance.command_line.file_list import print_files
 from pantocheck.conformance.command_line.options import read_line
 from pantocheck.conformance.command_line.results_output import EXIT_CODES
 from pantocheck.conformance.comparison.static_comparison import compare_statics
@@ -21,7 +22,7 @@ from pantocheck.conformance.reports.comparison.static_comparison_page import (
     build_static_comparison,
     list_remarks,
 )
-from pantocheck.conformance.reports.formats.report_writers import write_report
+from pantocheck.conformance.reports.formats.report_writers import write_document
 
 ToleranceOption = float | None
 
@@ -69,8 +70,7 @@ def compare_statics_command(
         files = _write(comparison, out)
     output.print(style_verdict(comparison.verdict), escape_text(f" {HEADLINES[comparison.verdict]}"))
     _print_differences(comparison)
-    for path in files:
-        output.print(escape_text(str(path)), soft_wrap=True)
+    print_files(files)
     raise typer.Exit(EXIT_CODES[comparison.verdict])
 
 
@@ -79,9 +79,7 @@ def _write(comparison: StaticComparison, folder: Path) -> list[Path]:
     files = [folder / "static_comparison.json"]
     write_model(files[0], comparison)
     document = build_static_comparison(comparison.model_dump(mode="json", by_alias=True))
-    for suffix in (".html", ".pdf"):
-        files.append(folder / f"static_comparison{suffix}")
-        write_report(document, files[-1])
+    files += write_document(document, folder / "static_comparison")
     for values in comparison.values:
         files.append(folder / f"{values.name}.csv")
         _write_differences(values, files[-1])

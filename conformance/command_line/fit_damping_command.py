@@ -7,6 +7,7 @@ import typer
 
 from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.console import console, escape_text
+from pantocheck.conformance.command_line.file_list import print_files
 from pantocheck.conformance.command_line.options import read_line
 from pantocheck.conformance.identification.damping.damping_model import MODAL_GROUPS
 from pantocheck.conformance.identification.damping.damping_results import (
@@ -19,7 +20,7 @@ from pantocheck.conformance.identification.damping.line_comparison import compar
 from pantocheck.conformance.identification.damping.mode_matching import select_usable
 from pantocheck.conformance.identification.mode import read_modes
 from pantocheck.conformance.input_files.atomic_writing import check_writable
-from pantocheck.conformance.interface.fitted_damping import FIT_FILES, write_damping_fit
+from pantocheck.conformance.interface.fitted_damping import write_damping_fit
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 
 
@@ -63,9 +64,9 @@ def fit_damping_command(
     output = console()
     with output.status("modes of the line"):
         results = build_damping_results(identified, catenary, element, modes.name, FitOptions(wires, modal_groups))
-        document = write_damping_fit(results, out)
+        document, files = write_damping_fit(results, out)
     output.print(escape_text(document.header.headline))
     for text in results.warnings:
         output.print(escape_text(f"warning: {text}"))
     output.print(escape_text(write_damping_toml(results)))
-    output.print(escape_text(f"{out}: {', '.join(FIT_FILES)}"), soft_wrap=True)
+    print_files(files)

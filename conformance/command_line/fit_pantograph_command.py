@@ -12,6 +12,7 @@ import typer
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.command_line.console import build_table, console, escape_text, format_number
+from pantocheck.conformance.command_line.file_list import print_files
 from pantocheck.conformance.comparison.response_comparison import compare_responses
 from pantocheck.conformance.comparison.response_record import ResponseRecord, read_response
 from pantocheck.conformance.identification.pantograph_fit.chain_selection import MASS_COUNTS, FitTask, fit_chains
@@ -29,7 +30,7 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.toml_file import validate_model
 from pantocheck.conformance.reports.comparison.pantograph_fit_page import build_pantograph_fit_document
-from pantocheck.conformance.reports.formats.report_writers import write_report
+from pantocheck.conformance.reports.formats.report_writers import write_document
 
 LONGEST_SOURCE = 500
 """Largest number of characters of a source in a pantograph file."""
@@ -82,8 +83,7 @@ def fit_pantograph_command(
         write_atomically(out, tomli_w.dumps(tables).encode())
         files = [out, *_write_reports(report, out)]
     _print_fit(report)
-    for path in files:
-        output.print(escape_text(str(path)), soft_wrap=True)
+    print_files(files)
 
 
 def _refuse_other_suffix(path: Path) -> None:
@@ -142,12 +142,10 @@ def _name_source(records: list[ResponseRecord]) -> str:
 
 def _write_reports(report: PantographFit, out: Path) -> list[Path]:
     """Write the reports beside the pantograph file; return their paths."""
-    files = [out.with_name(f"{out.stem}-fit{suffix}") for suffix in (".json", ".html", ".pdf")]
-    write_model(files[0], report)
+    data = out.with_name(f"{out.stem}-fit.json")
+    write_model(data, report)
     document = build_pantograph_fit_document(report.model_dump(mode="json", by_alias=True))
-    for path in files[1:]:
-        write_report(document, path)
-    return files
+    return [data, *write_document(document, data.with_suffix(""))]
 
 
 def _print_fit(report: PantographFit) -> None:

@@ -7,13 +7,15 @@ from typing import Annotated
 import typer
 
 from pantocheck.conformance.command_line.console import console, escape_text
+from pantocheck.conformance.command_line.file_list import print_files
 from pantocheck.conformance.guide.guide_building import build_guide, guide_identity, list_deviations
 from pantocheck.conformance.guide.guide_driver import compute_parts
 from pantocheck.conformance.guide.guide_store import GuideStore
 from pantocheck.conformance.guide.guide_tasks import list_tasks
 from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import check_writable
-from pantocheck.conformance.reports.formats.report_writers import write_report
+from pantocheck.conformance.input_files.extras import require_package
+from pantocheck.conformance.reports.formats.report_writers import write_document
 from pantocheck.conformance.reports.guide.guide_page import build_guide_page
 
 
@@ -28,16 +30,14 @@ def guide_command(
 
     Example: pantocheck guide --out guide --jobs 2
     """
+    require_package("numba", "the guide")
     check_writable(out)
     store = GuideStore(out, guide_identity())
     guide = build_guide(compute_parts(list_tasks(), store, jobs, _print_progress))
     write_model(out / "guide.json", guide)
     page = build_guide_page(guide.model_dump(mode="json", by_alias=True))
     output = console()
-    for name in ("guide.html", "guide.pdf"):
-        write_report(page, out / name)
-    for name in ("guide.html", "guide.pdf", "guide.json"):
-        output.print(escape_text(str(out / name)), soft_wrap=True)
+    print_files([*write_document(page, out / "guide"), out / "guide.json"])
     deviations = list_deviations(guide)
     for name in deviations:
         output.print(escape_text(f"outside its tolerance, or not computed: {name}"), soft_wrap=True)

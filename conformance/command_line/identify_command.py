@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from pantocheck.conformance.command_line.console import console, escape_text, format_number
+from pantocheck.conformance.command_line.file_list import print_files
 from pantocheck.conformance.command_line.population_output import write_population
 from pantocheck.conformance.identification.hand_placed_poles import read_poles
 from pantocheck.conformance.identification.identification_analysis import analyse_identification
@@ -73,7 +74,7 @@ def identify_command(
         write_model(out / "modes.json", ModesFile(modes))
         for path, write_modes in exports:
             write_modes(modes, path)
-        document = write_identification(lines, out)
+        document, files = write_identification(lines, out)
         population_lines = () if population is None else tuple(write_population(population, out))
     output.print(escape_text(document.header.headline))
     for group in (group for line in lines for group in line.groups):
@@ -86,10 +87,6 @@ def identify_command(
         )
     for text in collect_warnings(data):
         output.print(escape_text(f"warning: {text}"))
-    output.print(
-        escape_text(f"{out}: modes.json, identification.json, identification.html, identification.pdf"), soft_wrap=True
-    )
-    for path, _ in exports:
-        output.print(escape_text(str(path)), soft_wrap=True)
+    print_files([out / "modes.json", *files, *(path for path, _ in exports)])
     for text in population_lines:
         output.print(escape_text(text), soft_wrap=True)

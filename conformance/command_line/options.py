@@ -16,6 +16,7 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_model, read_toml
 from pantocheck.conformance.input_files.validation_messages import build_input_error
 from pantocheck.conformance.plan import Plan, read_plan
+from pantocheck.conformance.reports.formats.report_writers import DEFAULT_FORMATS
 from pantocheck.conformance.results.administration import read_administration
 
 SetOption = Annotated[
@@ -39,7 +40,7 @@ FormatsOption = Annotated[
     str | None,
     typer.Option(
         help="Formats to write, separated by commas: html, pdf, json, csv, junit, md, badge, annotations, codequality.",
-        show_default=",".join(Plan.model_fields["formats"].default),
+        show_default=",".join(DEFAULT_FORMATS),
     ),
 ]
 TrustOption = Annotated[

@@ -8,7 +8,7 @@ from pantocheck.conformance.identification.population import Population
 from pantocheck.conformance.identification.population_analysis import analyse_population
 from pantocheck.conformance.identification.population_format import PooledGroup
 from pantocheck.conformance.identification.rounded_model import write_model
-from pantocheck.conformance.reports.formats.report_writers import write_report
+from pantocheck.conformance.reports.formats.report_writers import write_document
 from pantocheck.conformance.reports.mass_drop.population_report import build_population_document
 
 
@@ -23,12 +23,11 @@ def write_population(population: Population, out: Path) -> Iterator[str]:
     content = analyse_population(population)
     document = build_population_document(content.model_dump(mode="json", by_alias=True))
     write_model(out / "population.json", content)
-    for suffix in (".html", ".pdf"):
-        write_report(document, out / f"population{suffix}")
+    pages = write_document(document, out / "population")
     yield document.header.headline
     yield from map(_format_group, content.groups)
     yield from (f"warning: {text}" for text in content.warnings)
-    yield f"{out}: population.json, population.html, population.pdf"
+    yield from map(str, (out / "population.json", *pages))
 
 
 def _format_group(group: PooledGroup) -> str:

@@ -10,6 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from pantocheck.conformance.command_line.console import build_table, console, escape_text, format_number, style_verdict
+from pantocheck.conformance.command_line.file_list import print_files
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.quantities.limit_text import format_graded, format_margin, name_value
 from pantocheck.conformance.quantities.registry import QUANTITIES
@@ -43,8 +44,18 @@ def report_progress(cases: int, task: str = "running cases") -> Iterator[ResultC
         yield lambda result: bar.advance(number)
 
 
-def print_results(results: Results, files: Sequence[Path]) -> None:
-    """Print the verdict, the criteria of each case, and the paths of the files."""
+def print_results(results: Results, files: Sequence[Path], formats: Sequence[str] | None = None) -> None:
+    """Print the verdict, the criteria of each case, and the paths of the files.
+
+    Parameters
+    ----------
+    results : Results
+        Results of a run.
+    files : sequence of Path
+        The written files.
+    formats : sequence of str or None
+        Formats that the user states; None: the default formats.
+    """
     output = console()
     system = f"{results.system.name} {results.system.version}".strip()
     output.print(style_verdict(results.verdict), escape_text(f" {build_headline(results.to_dict())} System: {system}"))
@@ -73,8 +84,7 @@ def print_results(results: Results, files: Sequence[Path]) -> None:
     output.print()
     if any(case.criteria for case in results.cases):
         output.print(Text(LEGEND, "dim"))
-    for path in files:
-        output.print(escape_text(str(path)), soft_wrap=True)
+    print_files(files, formats)
 
 
 def _print_criteria(output: Console, criteria: Sequence[Criterion]) -> None:

@@ -134,7 +134,7 @@ def run_command(
     if prepared.baseline is not None:
         write_all(results, prepared.out, ("json",))  # kept if the comparison fails
         results = prepared.compare(results)
-    print_results(results, write_all(results, prepared.out, prepared.formats, places))
+    print_results(results, write_all(results, prepared.out, prepared.formats, places), options.formats)
     raise typer.Exit(interrupted or EXIT_CODES[results.verdict])
 
 

@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from pantocheck.conformance.command_line.console import build_table, console, escape_text, format_number, style_verdict
+from pantocheck.conformance.command_line.file_list import print_files
 from pantocheck.conformance.command_line.options import (
     AdministrationOption,
     FormatsOption,
@@ -62,8 +63,7 @@ def validate_command(
     results = results.model_copy(update={"administration": options.administration})
     files = write_all(results, folder, report_formats, ReportPlaces(FilePlace(dossier)))
     _print_steps(results)
-    for path in files:
-        console().print(escape_text(str(path)), soft_wrap=True)
+    print_files(files, options.formats)
     raise typer.Exit(interrupted or EXIT_CODES[results.verdict])
 
 

@@ -13,8 +13,9 @@ from pantocheck.conformance.comparison.release_alignment import ALIGNED_S, SEARC
 from pantocheck.conformance.identification.release import MIN_REST, Release, find_release
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.simulation.drop_simulation import ORDER, decimate
+from pantocheck.conformance.simulation.time_steps import integrate_mass_drop
 from pantocheck.model import Catenary
-from pantocheck.model.dynamics.mass_drop import MassDropSetup, simulate_mass_drop
+from pantocheck.model.dynamics.drop_values import MassDropSetup
 
 WORKING_RATE_HZ = 200.0
 """Rate to which faster records are decimated [Hz]: the highest band ends at half of its Nyquist frequency."""
@@ -197,7 +198,7 @@ def _simulate(
     rate, lead, duration = grid
     steps = ceil(1 / (rate * settings.time_step) - 1e-9)
     wire, position = drop.places[-1]
-    decay = simulate_mass_drop(
+    decay = integrate_mass_drop(
         catenary,
         settings.element,
         MassDropSetup(

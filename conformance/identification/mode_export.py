@@ -5,6 +5,7 @@ from pathlib import Path
 
 from pantocheck.conformance.identification.mode import Mode
 from pantocheck.conformance.identification.mode_table import write_modes_csv
+from pantocheck.conformance.input_files.extras import require_package
 from pantocheck.conformance.input_files.input_error import InputError
 
 ModeWriter = Callable[[tuple[Mode, ...], Path], None]
@@ -31,10 +32,12 @@ def select_mode_writer(path: Path) -> ModeWriter:
     Raises
     ------
     InputError
-        No writer has this suffix.
+        No writer has this suffix, or its package is not installed.
     """
     if (writer := MODE_FORMATS.get(path.suffix.lower())) is None:
         raise InputError(
             str(path), f"format '{path.suffix}' cannot be written", f"Write one of {', '.join(MODE_FORMATS)}."
         )
+    if writer is _write_universal_file:
+        require_package("pyuff", str(path))
     return writer

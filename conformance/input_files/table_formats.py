@@ -6,6 +6,7 @@ from importlib import import_module
 from pathlib import Path
 
 from pantocheck.conformance.input_files.bounded_file import MAX_FILE_BYTES, open_file
+from pantocheck.conformance.input_files.extras import refuse_missing_package, require_package
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.measured_table import ChannelNames, MeasuredTable
 from pantocheck.conformance.input_files.text_settings import TextSettings
@@ -27,41 +28,47 @@ class TableFormat:
         Module of its reader in `formats/`; the reader is called `read_` and the name of the module.
     suffixes : tuple of str
         Suffixes of its files in lower case, the usual one first.
-    extra : str
-        Optional extra of the package that installs its library; empty if it is always installed.
+    library : str
+        Package of an extra that reads and writes it; empty if none is needed.
     """
 
     module: str
     suffixes: tuple[str, ...]
-    extra: str = ""
+    library: str = ""
 
     def read(self, path: Path, names: ChannelNames, largest: int, *layout: TextSettings) -> list[MeasuredTable]:
         """Read a file of this format; arguments and errors as in `Reader`.
 
         The library of the format is imported only here, because imports take time.
         """
-        try:
+        with refuse_missing_package(f"record '{path.name}'"):
             module = import_module(f"pantocheck.conformance.input_files.formats.{self.module}")
             reader: Callable[..., list[MeasuredTable]] = getattr(module, f"read_{self.module}")
             return reader(path, names, largest, *layout)
-        except ModuleNotFoundError as error:
-            raise InputError(
-                f"record '{path.name}'",
-                f"needs the package {error.name}, which is not installed",
-                f"Install it: pip install 'pantocheck[{self.extra}]'",
-            ) from None
+
+    def require_library(self, path: Path) -> None:
+        """Require the package of this format before a file of it is computed.
+
+        Raises
+        ------
+        InputError
+            The package is not installed.
+        """
+        if self.library:
+            require_package(self.library, f"record '{path.name}'")
 
 
 CSV = TableFormat("csv_table", (".csv", ".txt", ".asc", ".dat"))
-MDF = TableFormat("mdf_table", (".mf4", ".mdf"), extra="mdf")
-HDF5 = TableFormat("hdf5_table", (".h5", ".hdf5"))
+MDF = TableFormat("mdf_table", (".mf4", ".mdf"), library="asammdf")
+UFF = TableFormat("uff_table", (".uff", ".unv", ".uf", ".uff58", ".58"), library="pyuff")
+HDF5 = TableFormat("hdf5_table", (".h5", ".hdf5"), library="h5py")
 
 TABLE_FORMATS = (
     CSV,
-    TableFormat("uff_table", (".uff", ".unv", ".uf", ".uff58", ".58")),
-    TableFormat("matlab_table", (".mat",)),
+    UFF,
+    TableFormat("matlab_table", (".mat",), library="h5py"),
     HDF5,
-    TableFormat("tdms_table", (".tdms",), extra="tdms"),
+    TableFormat("tdms_table", (".tdms",), library="nptdms"),
     MDF,
 )
 

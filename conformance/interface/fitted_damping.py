@@ -12,13 +12,14 @@ from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import write_atomically
 from pantocheck.conformance.interface.column_table import tabulate_columns, tabulate_rows
 from pantocheck.conformance.interface.drawn_axes import provide_axes
+from pantocheck.conformance.interface.missing_formats import warn_missing_formats
 from pantocheck.conformance.reports.document import Document
 
 COEFFICIENT_COLUMNS = ("kind", "matrix", "value", "low_95", "high_95", "determined", "reason")
 """Columns of the table of coefficients, with the keys of damping.json."""
 
-FIT_FILES = ("damping.toml", "damping_with_modal.toml", "damping.json", "damping.html", "damping.pdf")
-"""Files of a fit."""
+DATA_FILES = ("damping.toml", "damping_with_modal.toml", "damping.json")
+"""Files of a fit beside its report."""
 
 MODEL_STYLES = ("--", "-", ":")
 """Lines of the models in a figure."""
@@ -105,27 +106,25 @@ class FittedDamping:
         InputError
             A file cannot be written.
         """
-        write_damping_fit(self.results, Path(folder))
-        return [Path(folder) / name for name in FIT_FILES]
+        warn_missing_formats()
+        return write_damping_fit(self.results, Path(folder))[1]
 
 
-def write_damping_fit(results: DampingResults, folder: Path) -> Document:
-    """Write all files of a fit; returns the report.
+def write_damping_fit(results: DampingResults, folder: Path) -> tuple[Document, list[Path]]:
+    """Write all files of a fit; returns the report and the paths of the files.
 
     Raises
     ------
     InputError
         A file cannot be written.
     """
-    from pantocheck.conformance.reports.formats.report_writers import write_report
+    from pantocheck.conformance.reports.formats.report_writers import write_document
     from pantocheck.conformance.reports.mass_drop.damping_report import build_damping_document
 
-    block, with_modal, data, *reports = (folder / name for name in FIT_FILES)
+    block, with_modal, data = (folder / name for name in DATA_FILES)
     text = write_damping_toml(results)
     document = build_damping_document(results.model_dump(mode="json", by_alias=True), text)
     write_atomically(block, text.encode("utf-8"))
     write_atomically(with_modal, write_damping_toml(results, results.modal).encode("utf-8"))
     write_model(data, results)
-    for path in reports:
-        write_report(document, path)
-    return document
+    return document, [block, with_modal, data, *write_document(document, folder / "damping")]

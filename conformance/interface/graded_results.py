@@ -11,6 +11,7 @@ from pantocheck.conformance.grading.profile_grading import assess_record
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.interface.column_table import tabulate_rows
+from pantocheck.conformance.interface.missing_formats import warn_missing_formats
 from pantocheck.conformance.plan import Plan, prepare_plan
 from pantocheck.conformance.records.sidecar_tables import LineTable
 from pantocheck.conformance.reports.formats.report_writers import check_formats, write_all
@@ -46,22 +47,24 @@ class GradedResults:
         ]
         return tabulate_rows(rows, ("case", *names))
 
-    def write(self, folder: str | Path, formats: Sequence[str] = ("html", "pdf", "json", "csv")) -> list[Path]:
+    def write(self, folder: str | Path, formats: Sequence[str] | None = None) -> list[Path]:
         """Write the report; returns the paths of its files.
 
         Parameters
         ----------
         folder : str or Path
             Folder of the files.
-        formats : sequence of str
-            Formats: html, pdf, json, csv, junit, md, badge.
+        formats : sequence of str or None
+            Formats: html, pdf, json, csv, junit, md, badge. None: all but badge; a warning tells if no PDF can be
+            written.
 
         Raises
         ------
         InputError
-            A format does not exist, or a file cannot be written.
+            A format does not exist or needs an extra that is not installed, or a file cannot be written.
         """
-        return write_all(self.results, Path(folder), check_formats(tuple(formats)))
+        warn_missing_formats(formats)
+        return write_all(self.results, Path(folder), check_formats(formats))
 
 
 def open_results(path: str | Path) -> GradedResults:

@@ -20,6 +20,7 @@ from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.interface.column_table import tabulate_rows
 from pantocheck.conformance.interface.drawn_axes import provide_axes
 from pantocheck.conformance.interface.fitted_damping import FittedDamping
+from pantocheck.conformance.interface.missing_formats import warn_missing_formats
 from pantocheck.conformance.interface.opened_case import OpenedCase
 from pantocheck.conformance.interface.opened_drop import OpenedDrop
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
@@ -29,9 +30,6 @@ from pantocheck.conformance.simulation.catenary_model import build_catenary
 
 HIGHEST_FREQUENCY_HZ = 10.0
 """Highest frequency of a mode, if none is given [Hz]."""
-
-REPORT_FILES = ("identification.json", "identification.html", "identification.pdf")
-"""Files of the report on an identification."""
 
 MODE_KEYS = (
     "frequency_Hz",
@@ -141,27 +139,24 @@ class IdentifiedRecords(IdentifiedLines):
             A file cannot be written.
         """
         paths = super().write(folder)
-        write_identification(self.lines, Path(folder))
-        return [*paths, *(Path(folder) / name for name in REPORT_FILES)]
+        warn_missing_formats()
+        return [*paths, *write_identification(self.lines, Path(folder))[1]]
 
 
-def write_identification(lines: tuple[IdentifiedLine, ...], folder: Path) -> Document:
-    """Write identification.json and the report; returns the report.
+def write_identification(lines: tuple[IdentifiedLine, ...], folder: Path) -> tuple[Document, list[Path]]:
+    """Write identification.json and the report; returns the report and the paths of the files.
 
     Raises
     ------
     InputError
         A file cannot be written.
     """
-    from pantocheck.conformance.reports.formats.report_writers import write_report
+    from pantocheck.conformance.reports.formats.report_writers import write_document
     from pantocheck.conformance.reports.mass_drop.identification_report import build_identification_document
 
-    data, *reports = (folder / name for name in REPORT_FILES)
     document = build_identification_document([line.model_dump(mode="json", by_alias=True) for line in lines])
-    write_model(data, IdentificationFile(lines=lines))
-    for path in reports:
-        write_report(document, path)
-    return document
+    write_model(folder / "identification.json", IdentificationFile(lines=lines))
+    return document, [folder / "identification.json", *write_document(document, folder / "identification")]
 
 
 def identify_line(*drops: str | Path | OpenedDrop, highest_Hz: float = HIGHEST_FREQUENCY_HZ) -> IdentifiedRecords:

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.table_formats import CSV, HDF5, UFF, TableFormat
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
 from pantocheck.conformance.mass_drops.drop_writing import write_drop_csv, write_drop_hdf5
 
@@ -14,12 +15,12 @@ def _write_universal_file(record: DropRecord, path: Path) -> None:
     write_drop_uff(record, path)
 
 
-DROP_WRITERS: dict[str, Callable[[DropRecord, Path], None]] = {
-    ".uff": _write_universal_file,
-    ".csv": write_drop_csv,
-    ".h5": lambda record, path: write_drop_hdf5((record,), path),
+DROP_WRITERS: dict[TableFormat, Callable[[DropRecord, Path], None]] = {
+    UFF: _write_universal_file,
+    CSV: write_drop_csv,
+    HDF5: lambda record, path: write_drop_hdf5((record,), path),
 }
-"""Writer of a record by the suffix of its file."""
+"""Writer of a record by its format."""
 
 
 def select_drop_writer(out: Path) -> Callable[[DropRecord, Path], None]:
@@ -28,10 +29,10 @@ def select_drop_writer(out: Path) -> Callable[[DropRecord, Path], None]:
     Raises
     ------
     InputError
-        Drop records are not written in this format.
+        Drop records are not written in this format, or its package is not installed.
     """
-    if (write := DROP_WRITERS.get(out.suffix.lower())) is None:
-        raise InputError(
-            str(out), f"format '{out.suffix}' cannot be written", f"Write one of {', '.join(DROP_WRITERS)}."
-        )
-    return write
+    suffixes = {table_format.suffixes[0]: table_format for table_format in DROP_WRITERS}
+    if (table_format := suffixes.get(out.suffix.lower())) is None:
+        raise InputError(str(out), f"format '{out.suffix}' cannot be written", f"Write one of {', '.join(suffixes)}.")
+    table_format.require_library(out)
+    return DROP_WRITERS[table_format]

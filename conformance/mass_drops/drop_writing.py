@@ -8,7 +8,6 @@ import tomli_w
 
 from pantocheck.conformance.input_files.atomic_writing import produce_atomically, write_atomically
 from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
-from pantocheck.conformance.input_files.formats.hdf5_table import write_hdf5_table
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.units import SI_UNITS
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
@@ -60,6 +59,8 @@ def write_drop_hdf5(records: tuple[DropRecord, ...], path: Path) -> None:
     InputError
         The runs differ in channels, rate, quantity or drop, or the file cannot be written.
     """
+    from pantocheck.conformance.input_files.formats.hdf5_table import write_hdf5_table
+
     first = records[0]
     for other in records[1:]:
         same = (other.channels, other.rate, other.drop) == (first.channels, first.rate, first.drop)

@@ -23,7 +23,7 @@ from pantocheck.conformance.pytest_plugin.user_fixtures import (
 )
 from pantocheck.conformance.quantities.limit_text import name_value
 from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline
-from pantocheck.conformance.reports.formats.report_writers import FILES, write_all
+from pantocheck.conformance.reports.formats.report_writers import FILES, remark_missing_formats, write_all
 from pantocheck.conformance.results.results_format import CaseResult, VerdictName
 
 Target = tuple[str, int, int | None]
@@ -228,6 +228,7 @@ def write_certificates(config: pytest.Config, folder: Path) -> tuple[list[str], 
         lines.append(
             f"{path.name}: {results.verdict.upper()}: {build_headline(results.to_dict())} {prepared.out / shown}"
         )
+        lines += (f"{path.name}: {remark}" for remark in remark_missing_formats(prepared.plan.formats))
         if drifted:
             lines.append(f"{path.name}: {drifted} values drifted from the baseline {prepared.plan.baseline}")
     return lines, not_passed

@@ -12,7 +12,6 @@ from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.input_files.atomic_writing import produce_atomically, write_atomically
 from pantocheck.conformance.input_files.bounded_file import file_digest
 from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
-from pantocheck.conformance.input_files.formats.hdf5_table import write_hdf5_table
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.table_formats import CSV, HDF5, TableFormat, find_table_format
 from pantocheck.conformance.input_files.toml_file import read_toml
@@ -88,9 +87,9 @@ def check_record_path(path: Path) -> None:
     Raises
     ------
     InputError
-        The suffix is not that of a record, or the sidecar would overwrite another file.
+        The suffix is not that of a record, its package is not installed, or the sidecar would overwrite another file.
     """
-    find_table_format(path, tuple(RECORD_WRITERS))
+    find_table_format(path, tuple(RECORD_WRITERS)).require_library(path)
     target = path.with_suffix(".toml")
     if target.exists() and read_toml(target, "sidecar").get("schema") != RECORD_SCHEMA:
         raise InputError(
@@ -119,6 +118,8 @@ def _write_csv(path: Path, rows: Rows) -> None:
 
 
 def _write_hdf5(path: Path, rows: Rows) -> None:
+    from pantocheck.conformance.input_files.formats.hdf5_table import write_hdf5_table
+
     write_hdf5_table(path, {}, {channel.key: values for channel, values in rows.items()})
 
 

@@ -102,22 +102,22 @@ def check_adapter(system: System) -> AdapterCheck:
     system : System
         The adapter.
     """
-    case = build_short_case()
+    case, simulator = build_short_case(), ReferenceSimulator()
     outcome = system.run(case)
     if isinstance(outcome, Delivered):
-        return _check_delivery(case, outcome)
+        return _check_delivery(case, outcome, simulator)
     state: FindingState = "missing" if isinstance(outcome, Skipped) else "wrong"
     return AdapterCheck((AdapterFinding(state, "short case", outcome.reason),))
 
 
-def _check_delivery(case: Case, delivered: Delivered) -> AdapterCheck:
+def _check_delivery(case: Case, delivered: Delivered, simulator: ReferenceSimulator) -> AdapterCheck:
     if delivered.record is None:
         text = "'delivered' without a record. Write a table of samples and a sidecar, and name both in the answer."
         return AdapterCheck((AdapterFinding("missing", "record", text),))
     result = grade_case(case, delivered, "secondary")
     if result.record is None:
         return AdapterCheck((AdapterFinding("wrong", "record", result.reason or "it cannot be graded"),))
-    reference = grade_case(case, ReferenceSimulator().run_unrefined(case), "secondary")
+    reference = grade_case(case, simulator.run_unrefined(case), "secondary")
     values = tuple(_compare(result, reference))
     findings = (
         AdapterFinding("ok", "short case", "a record was delivered, and its files have the stated digests."),

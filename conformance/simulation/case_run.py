@@ -15,10 +15,11 @@ from pantocheck.conformance.quantities.line_signals import UPLIFT_STRETCH_M
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.records.sidecar_tables import RunTable
+from pantocheck.conformance.simulation.time_steps import integrate_passage
 from pantocheck.conformance.simulation.uplift_estimate import estimate_uplift_forces
 from pantocheck.conformance.simulation.uplift_tuning import tune_uplift
 from pantocheck.conformance.simulation.working_height import build_pantographs
-from pantocheck.model import DiscretisedLine, History, Pantograph, Passage, simulate_passage
+from pantocheck.model import DiscretisedLine, History, Pantograph, Passage
 from pantocheck.model.fem.contact_wires import touched_wires
 
 KEPT_SPANS = 1.5
@@ -74,7 +75,7 @@ def run_passage(
     start = uplift_forces or estimate_uplift_forces(case, line)
     # The computing time must not include the compilation of the kernels: one time step compiles all of them.
     first_step = replace(build_passage(case, line, discretisation, start), duration=discretisation.time_step_s)
-    simulate_passage(line, first_step)
+    integrate_passage(line, first_step)
     return tune_uplift(
         lambda forces: _run_once(case, line, discretisation, forces),
         lambda passage_run: _mean_forces(case, passage_run.record),
@@ -94,7 +95,7 @@ def run_starts(
     pantographs = build_pantographs(case, line, uplift_forces)
     for start in starts:
         passage = replace(_place_train(start.case, line, discretisation, pantographs), ramp=start.ramp_s)
-        yield record_passage(start.case, passage, simulate_passage(line, passage))
+        yield record_passage(start.case, passage, integrate_passage(line, passage))
 
 
 def _run_once(
@@ -102,7 +103,7 @@ def _run_once(
 ) -> PassageRun:
     passage = build_passage(case, line, discretisation, uplift_forces)
     begin = time.perf_counter()
-    history = simulate_passage(line, passage)
+    history = integrate_passage(line, passage)
     record = record_passage(case, passage, history)
     return PassageRun(record, build_run_table(discretisation, passage.duration, begin), uplift_forces)
 

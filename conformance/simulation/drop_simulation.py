@@ -13,8 +13,9 @@ from pantocheck.conformance.cases.drop_test import MassDrop
 from pantocheck.conformance.input_files.measured_table import Axis
 from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
 from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.simulation.time_steps import integrate_mass_drop
 from pantocheck.model import Catenary, Kind
-from pantocheck.model.dynamics.mass_drop import FreeDecay, MassDropSetup, simulate_mass_drop
+from pantocheck.model.dynamics.drop_values import FreeDecay, MassDropSetup
 
 SHORT_NAME = {"contact_wire": "CW", "messenger_wire": "MW"}
 ORDER = {"displacement": 0, "velocity": 1, "acceleration": 2}
@@ -73,7 +74,7 @@ def simulate_drop(
     """
     mass_drop, discretisation = require_mass_drop(case), case.file.discretisation
     drop, catenary = mass_drop.drop[number - 1], line or build_catenary(case.line)
-    decay = simulate_mass_drop(
+    decay = integrate_mass_drop(
         catenary,
         discretisation.element_m,
         MassDropSetup(

@@ -7,6 +7,7 @@ from typing import Literal
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import Discretisation
 from pantocheck.conformance.cases.start_and_section import list_other_starts
+from pantocheck.conformance.input_files.extras import require_package
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.simulation.case_run import run_passage, run_starts
@@ -27,6 +28,10 @@ class ReferenceSimulator:
     name: str = "Pantocheck reference simulator"
     version: str = version("pantocheck")
     kind: Literal["builtin"] = "builtin"
+
+    def __post_init__(self) -> None:
+        """Require the compiler of the time steps at once: later, each case would end as `error`."""
+        require_package("numba", "reference simulator")
 
     def run(self, case: Case) -> Delivered:
         """Run a case, with element length and time step halved and doubled, and from other starts."""

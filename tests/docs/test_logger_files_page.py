@@ -8,6 +8,7 @@ import pytest
 from jsonschema import validate
 
 from pantocheck.conformance.cases.profile_file import ExclusionRule, Profile, load_profile
+from pantocheck.conformance.input_files.extras import EXTRA_OF_PACKAGE
 from pantocheck.conformance.input_files.table_formats import TABLE_FORMATS
 from pantocheck.conformance.input_files.text_settings import TextSettings
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
@@ -20,7 +21,8 @@ def test_page_lists_the_suffixes_and_extras_of_all_formats() -> None:
     """The table has one row per format of `TABLE_FORMATS`."""
     rows = [row.split("|") for row in PAGE.read_text(encoding="utf-8").splitlines() if re.match(r"\| .*\(`\.", row)]
     listed = {(*re.findall(r"`(\.\w+)`", row[1]), *re.findall(r"extra `(\w+)`", row[2])) for row in rows}
-    assert listed == {(*row.suffixes, *filter(None, [row.extra])) for row in TABLE_FORMATS}
+    extras = {row: [EXTRA_OF_PACKAGE[row.library]] if row.library else [] for row in TABLE_FORMATS}
+    assert listed == {(*row.suffixes, *extras[row]) for row in TABLE_FORMATS}
 
 
 SIDECARS = re.findall(r"```toml\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)

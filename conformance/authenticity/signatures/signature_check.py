@@ -11,9 +11,9 @@ from pantocheck.conformance.authenticity.signatures.detached_file import (
     parse_signatures,
 )
 from pantocheck.conformance.authenticity.signatures.signature_facts import SignatureFacts, SignatureReport
-from pantocheck.conformance.authenticity.signatures.signature_package import INSTALL, use_signature_package
+from pantocheck.conformance.authenticity.signatures.signature_package import use_signature_package
 from pantocheck.conformance.input_files.bounded_file import read_bytes
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.extras import MissingPackage
 
 
 def check_signatures(path: Path, trust_roots: Path | None) -> SignatureReport:
@@ -40,10 +40,10 @@ def check_signatures(path: Path, trust_roots: Path | None) -> SignatureReport:
         with use_signature_package():
             roots = None if trust_roots is None else read_certificates(trust_roots, f"trust roots '{trust_roots.name}'")
             return _check(content, detached, roots)
-    except InputError as error:
-        if error.hint != INSTALL or given:
+    except MissingPackage as error:
+        if given:
             raise
-        return SignatureReport((), (), given, f"signatures were not checked: they {error.found}. {INSTALL}")
+        return SignatureReport((), (), given, f"signatures were not checked: the check {error.found}. {error.hint}")
 
 
 def _check(content: bytes, detached: Path, roots: list[Any] | None) -> SignatureReport:

@@ -6,10 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from typing import TypeVar
 
-from pantocheck.conformance.input_files.input_error import InputError
-
-INSTALL = "Install it: pip install 'pantocheck[sign]'"
-
+from pantocheck.conformance.input_files.extras import refuse_missing_package
 
 Result = TypeVar("Result")
 
@@ -33,9 +30,7 @@ def use_signature_package() -> Iterator[None]:
     level = log.level
     log.setLevel(logging.CRITICAL + 1)
     try:
-        yield
-    except ModuleNotFoundError as error:
-        found = f"need the package {error.name}, which is not installed"
-        raise InputError("signatures", found, INSTALL) from None
+        with refuse_missing_package("a signature"):
+            yield
     finally:
         log.setLevel(level)

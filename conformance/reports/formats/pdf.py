@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib
-import typst
 from matplotlib.ft2font import FT2Font
 
+from pantocheck.conformance.input_files.extras import refuse_missing_package
 from pantocheck.conformance.reports.document import Document, to_plain
 from pantocheck.conformance.reports.formats.embedded_results import NAME, encode_attachment
 from pantocheck.conformance.reports.page_text import change_texts
@@ -32,8 +32,7 @@ def render_pdf(document: Document) -> bytes:
         "verdicts": words["verdict"],
         "trusts": words["trust"],
     }
-    # typst takes a dictionary of files, which its type hints do not know.
-    files: Any = {name: (TEMPLATES / name).read_bytes() for name in ("page.typ", "elements.typ")}
+    files = {name: (TEMPLATES / name).read_bytes() for name in ("page.typ", "elements.typ")}
     options: dict[str, Any] = {}
     if document.results is not None:
         data["attachment"] = NAME
@@ -41,7 +40,22 @@ def render_pdf(document: Document) -> bytes:
         options = {"pdf_standards": "a-3a", "timestamp": document.date}
     files["main.typ"] = files.pop("page.typ")
     files["page.json"] = json.dumps(change_texts(data, replace_missing_glyphs)).encode("ascii")
-    return bytes(typst.compile(files, ignore_system_fonts=True, font_paths=[str(FONTS)], **options))
+    return typeset(files, **options)
+
+
+def typeset(files: dict[str, bytes], **options: Any) -> bytes:
+    """PDF of a source `main.typ` with its other files, with the fonts of the suite alone.
+
+    Raises
+    ------
+    InputError
+        The extra `pdf` is not installed.
+    """
+    with refuse_missing_package("a report as PDF"):
+        import typst
+    # typst takes a dictionary of files, which its type hints do not know.
+    sources: Any = files
+    return bytes(typst.compile(sources, ignore_system_fonts=True, font_paths=[str(FONTS)], **options))
 
 
 @cache

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pantocheck.conformance.input_files.atomic_writing import write_atomically
+from pantocheck.conformance.input_files.extras import install_line, is_installed, require_package
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.reports.document import Document
@@ -35,6 +36,12 @@ FILES = {
 NO_PLACES = ReportPlaces()
 """Places of a report whose input files are not known."""
 
+DEFAULT_FORMATS = ("html", "pdf", "json", "csv", "junit", "md")
+"""Formats of a run that states none."""
+
+NO_PDF = f"no PDF is written, because the package typst is not installed. Install it: {install_line('typst')}"
+"""Remark on a report without the extra `pdf`."""
+
 
 def write_report(document: Document, path: Path) -> None:
     """Write a document as HTML, PDF or Markdown, by the suffix of the file name.
@@ -60,18 +67,64 @@ def write_report(document: Document, path: Path) -> None:
     write_atomically(path, content)
 
 
-def check_formats(names: Sequence[str]) -> tuple[str, ...]:
+def check_formats(stated: Sequence[str] | None) -> tuple[str, ...]:
     """Formats in the order of writing; results.json is always written.
+
+    Parameters
+    ----------
+    stated : sequence of str or None
+        Formats that the user states. None: `DEFAULT_FORMATS`, without PDF if its extra is not installed
+        (`remark_missing_formats` says so).
 
     Raises
     ------
     InputError
-        Unknown format.
+        Unknown format, or PDF is stated and its extra is not installed.
     """
+    if stated is None:
+        return tuple(name for name in _order_formats(DEFAULT_FORMATS) if name != "pdf" or is_installed("typst"))
+    if "pdf" in stated:
+        require_package("typst", "format 'pdf'")
+    return _order_formats(stated)
+
+
+def _order_formats(names: Sequence[str]) -> tuple[str, ...]:
     for name in names:
         if name not in FILES:
             raise InputError(f"format '{name}'", "there is no such format", suggest_names(name, list(FILES)))
     return ("json", *(name for name in FILES if name in names and name != "json"))
+
+
+def remark_missing_formats(stated: Sequence[str] | None = None) -> tuple[str, ...]:
+    """Remarks on default formats that are not written; none if the user states the formats."""
+    return () if stated is not None or is_installed("typst") else (NO_PDF,)
+
+
+def write_document(document: Document, stem: Path) -> list[Path]:
+    """Write a document as HTML and PDF; without the extra `pdf` as HTML alone (`remark_missing_formats` says so).
+
+    Parameters
+    ----------
+    document : Document
+        Content of the pages.
+    stem : Path
+        Path of the files without their suffix.
+
+    Returns
+    -------
+    list of Path
+        The written files.
+
+    Raises
+    ------
+    InputError
+        A file cannot be written.
+    """
+    suffixes = (".html", ".pdf") if is_installed("typst") else (".html",)
+    files = [stem.with_name(f"{stem.name}{suffix}") for suffix in suffixes]
+    for path in files:
+        write_report(document, path)
+    return files
 
 
 def write_all(results: "Results", folder: Path, formats: Sequence[str], places: ReportPlaces = NO_PLACES) -> list[Path]:

@@ -2,11 +2,8 @@
 
 import json
 from collections.abc import Sequence
-from typing import Any
 
-import typst
-
-from pantocheck.conformance.reports.formats.pdf import FONTS, replace_missing_glyphs
+from pantocheck.conformance.reports.formats.pdf import replace_missing_glyphs, typeset
 from pantocheck.conformance.reports.words import TEMPLATES
 
 
@@ -21,9 +18,8 @@ def render_signature_box(lines: Sequence[str], width: int, height: int) -> bytes
         Size of the box [points].
     """
     data = {"lines": [replace_missing_glyphs(line) for line in lines], "width": width, "height": height}
-    # typst takes a dictionary of files, which its type hints do not know.
-    files: Any = {
+    files = {
         "main.typ": (TEMPLATES / "signature-box.typ").read_bytes(),
         "box.json": json.dumps(data).encode("ascii"),
     }
-    return bytes(typst.compile(files, ignore_system_fonts=True, font_paths=[str(FONTS)], pdf_tags=False))
+    return typeset(files, pdf_tags=False)

@@ -27,8 +27,9 @@ from pantocheck.conformance.results.outcome import Delivered, StudyResult
 from pantocheck.conformance.results.traces import thin_series
 from pantocheck.conformance.simulation.case_run import build_passage, build_run_table, record_passage
 from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.simulation.time_steps import integrate_passage
 from pantocheck.conformance.studies.vovan2015.paper_tables import build_provenance_table
-from pantocheck.model import Catenary, DiscretisedLine, Kind, Passage, Rayleigh, discretise, simulate_passage
+from pantocheck.model import Catenary, DiscretisedLine, Kind, Passage, Rayleigh, discretise
 from pantocheck.model.discretised_line import keep_viscous_part, with_damping
 
 TRANSITION_SHARE = 0.1
@@ -75,14 +76,14 @@ def run_dropper_damping(case: Case, study: DropperDamping) -> Delivered:
         )
     mesh = discretise(line, discretisation.element_m)
     passage = _keep_dropper(build_passage(case, mesh, discretisation, forces), case.end, study.x_m)
-    history = simulate_passage(mesh, passage)
+    history = integrate_passage(mesh, passage)
     coefficients = np.array(study.coefficients_s)
     force = {
         law: np.array([_largest_force(mesh, passage, dropper, value, law) for value in coefficients]) for law in LAWS
     }
     record = record_passage(case, passage, history)
     damping = dict(line.damping) | {Kind.DROPPER: Rayleigh(stiffness_coefficient=float(coefficients[0]))}
-    least_damped = simulate_passage(with_damping(mesh, damping), passage)
+    least_damped = integrate_passage(with_damping(mesh, damping), passage)
     bands = [_band_values(case, each) for each in (record, record_passage(case, passage, least_damped))]
     findings = {LINE: find_transition(coefficients, force[GRADED]) | compare_bands(*bands)}
     runs = 2 + len(LAWS) * coefficients.size
@@ -185,7 +186,7 @@ def _largest_force(mesh: DiscretisedLine, passage: Passage, number: int, coeffic
     line = with_damping(mesh, damping)
     dropper, bars = mesh.catenary.droppers[number], line.connectors
     watched = ((dropper.upper, dropper.position), (dropper.lower, dropper.position))
-    history = simulate_passage(apply_law(line), replace(passage, watched=watched))
+    history = integrate_passage(apply_law(line), replace(passage, watched=watched))
     change = history.motion[0] - history.motion[1]
     taut = bars.preload[number] + bars.stiffness[number] * change[:, 0]
     taut += viscous_share * bars.damping[number] * change[:, 1]

@@ -157,7 +157,7 @@ def test_without_the_package(
         monkeypatch.setitem(sys.modules, name, None)
     result = invoke("verify", signed)
     assert result.exit_code == 1
-    assert "signatures were not checked: they need the package pyhanko" in one_line(result.stdout)
+    assert "signatures were not checked: the check needs the package pyhanko" in one_line(result.stdout)
     assert "pip install 'pantocheck[sign]'" in one_line(result.stdout)
     demanded = invoke("verify", signed, "--trust-roots", roots_file)
     assert demanded.exit_code == 2
