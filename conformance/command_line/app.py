@@ -1,6 +1,7 @@
 """The commands. The file of a command is imported when the command runs, so that help is fast."""
 
 from importlib import import_module
+from types import ModuleType
 from typing import Annotated, Any
 
 import typer
@@ -8,6 +9,7 @@ from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command
 
 from pantocheck.conformance.command_line.guard import guard_command
+from pantocheck.conformance.input_files.extras import refuse_missing_package
 
 COMMANDS = {
     "run": "Run cases on a system, grade them, and write the results and the certificate.",
@@ -56,10 +58,16 @@ class LazyGroup(TyperGroup):
         return name, load_command(name) if name in COMMANDS else command, rest
 
 
+def _import_command(name: str, name_in_code: str) -> ModuleType:
+    """File of a command. Those that compute with the compiled kernels themselves need the extra `simulator`."""
+    with refuse_missing_package(f"pantocheck {name}"):
+        return import_module(f"pantocheck.conformance.command_line.{name_in_code}")
+
+
 def load_command(name: str) -> Any:
     """Command of a name, imported from its file."""
     name_in_code = f"{name.replace('-', '_')}_command"
-    module = import_module(f"pantocheck.conformance.command_line.{name_in_code}")
+    module = guard_command(_import_command)(name, name_in_code)
     single = typer.Typer(add_completion=False, rich_markup_mode=None)
     single.command(name)(guard_command(getattr(module, name_in_code)))
     return get_command(single)

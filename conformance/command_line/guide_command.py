@@ -14,7 +14,6 @@ from pantocheck.conformance.guide.guide_store import GuideStore
 from pantocheck.conformance.guide.guide_tasks import list_tasks
 from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import check_writable
-from pantocheck.conformance.input_files.extras import require_package
 from pantocheck.conformance.reports.formats.report_writers import write_document
 from pantocheck.conformance.reports.guide.guide_page import build_guide_page
 
@@ -30,7 +29,6 @@ def guide_command(
 
     Example: pantocheck guide --out guide --jobs 2
     """
-    require_package("numba", "the guide")
     check_writable(out)
     store = GuideStore(out, guide_identity())
     guide = build_guide(compute_parts(list_tasks(), store, jobs, _print_progress))

@@ -16,7 +16,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.input_files.extras import EXTRA_OF_PACKAGE, refuse_missing_package, require_package
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record_writing import write_record
-from pantocheck.conformance.reports.formats.report_writers import FILES
+from pantocheck.conformance.reports.formats.report_writers import DEFAULT_FORMATS, FILES
 
 ROOT = Path(__file__).parents[3]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
@@ -35,7 +35,10 @@ NEEDS_AN_EXTRA = (
     *("conformance.input_files.formats.hdf5_table", "conformance.input_files.formats.matlab_table"),
     *("conformance.input_files.formats.uff_sets", "conformance.input_files.formats.uff_table"),
 )
-"""Files beside the compiled time steps (`model.dynamics`) that import an optional package on loading."""
+"""Readers and writers that import an optional package on loading."""
+
+COMPUTE_WITH_KERNELS = ("model.dynamics.", "conformance.guide", "conformance.command_line.guide_command")
+"""Compiled time steps, and the guide, which verifies single kernels."""
 
 
 def run_without_extras(code: str, *arguments: str, folder: Path) -> dict[str, Any]:
@@ -85,8 +88,8 @@ for top in ("model", "conformance"):
 print(json.dumps(failed))
 """
     failed = run_without_extras(code, folder=tmp_path)
-    assert {name for name in failed if not name.startswith("model.dynamics.")} == set(NEEDS_AN_EXTRA)
-    assert {failed[name] for name in failed if name.startswith("model.")} <= {"numba", "llvmlite"}
+    assert {name for name in failed if not name.startswith(COMPUTE_WITH_KERNELS)} == set(NEEDS_AN_EXTRA)
+    assert {failed[name] for name in failed if name.startswith(COMPUTE_WITH_KERNELS)} <= {"numba", "llvmlite"}
 
 
 def test_record_is_graded_and_verified_without_extras(tmp_path: Path, wave: type[Wave], case_250: Case) -> None:
@@ -110,6 +113,7 @@ commands = {
     "pdf": run("run", case, "--system", "record:records", "--formats", "pdf", "--out", "report"),
     "builtin": run("run", case),
     "hdf5": run("simulate", case, "--out", "a.h5"),
+    "guide": run("guide", "--out", "guide"),
     "statics": run("show", case),
     "compare": run("compare", "report/results.json", "report/results.json", "--out", "comparison"),
 }
@@ -121,14 +125,12 @@ print(json.dumps({"loaded": loaded, **commands}))
     no_pdf = "remark: no PDF is written, because the package typst is not installed. "
     exit_code, _, errors = done["run"]
     assert (exit_code, errors) == (1, f"{no_pdf}Install it: pip install 'pantocheck[pdf]'\n"), done["run"]
-    assert {path.name for path in (tmp_path / "report").iterdir()} == set(FILES.values()) - {
-        "certificate.pdf",
-        "badge.svg",
-    }
+    written = {path.name for path in (tmp_path / "report").iterdir()}
+    assert written == {FILES[name] for name in DEFAULT_FORMATS} - {"certificate.pdf"}
     for document in ("html", "json"):
         assert "Proved" in done[document][1]
         assert "Contradict" not in done[document][1]
-    for command, extra in (("pdf", "pdf"), ("builtin", "simulator"), ("hdf5", "massdrop")):
+    for command, extra in (("pdf", "pdf"), ("builtin", "simulator"), ("guide", "simulator"), ("hdf5", "massdrop")):
         exit_code, _, errors = done[command]
         assert exit_code == 2
         assert errors.endswith(f"Install it: pip install 'pantocheck[{extra}]'\n")
