@@ -10,6 +10,7 @@ DOCS = Path(__file__).parent
 sys.path.insert(0, str(DOCS))
 
 from site_pages import write_generated_pages, write_pictures  # noqa: E402
+from site_pages.equations import add_equations  # noqa: E402
 
 write_generated_pages(DOCS / "generated")
 write_pictures(DOCS / "generated" / "pictures")
@@ -19,7 +20,7 @@ author = "The Pantocheck authors"
 copyright = "2026, The Pantocheck authors"
 version = release = installed_version("pantocheck")
 
-extensions = ["myst_parser", "numpydoc", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "sphinx_gallery.gen_gallery"]
+extensions = ["myst_parser", "numpydoc", "sphinx.ext.autodoc", "sphinx_gallery.gen_gallery"]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 exclude_patterns = ["_build", "site_pages"]
 myst_enable_extensions = ["dollarmath", "deflist"]
@@ -27,6 +28,12 @@ myst_heading_anchors = 3
 numpydoc_show_class_members = False
 autosummary_generate = False
 html_theme = "furo"
+html_title = f"Pantocheck {version}"
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
+html_logo = html_favicon = "_static/logo.svg"
+add_module_names = False
+html_math_renderer = "mathml"
 
 # Every example of the gallery runs when the site is built; a failed assertion ends the build.
 sphinx_gallery_conf = {
@@ -49,4 +56,5 @@ def link_repository_files(app: Any, page: str, source: list[str]) -> None:
 
 def setup(app: Any) -> None:
     """Connect the events of Sphinx."""
+    add_equations(app)
     app.connect("source-read", link_repository_files)
