@@ -7,6 +7,7 @@ pip install -c constraints.txt ".[EXTRA,...]"
 import re
 import sys
 import tomllib
+from collections.abc import Iterator
 from pathlib import Path
 
 PROJECT = Path(__file__).resolve().parents[1] / "pyproject.toml"
@@ -22,12 +23,22 @@ def pin_lowest(requirement: str) -> str:
 
 
 def build_constraints(extras: list[str]) -> list[str]:
-    """Lines of a constraints file for the dependencies and the chosen extras."""
+    """Lines of a constraints file for the dependencies and the chosen extras, with those that they contain."""
     project = tomllib.loads(PROJECT.read_text(encoding="utf-8"))["project"]
-    requirements = list(project["dependencies"])
+    requirements = [*project["dependencies"]]
     for extra in extras:
-        requirements += project["optional-dependencies"][extra]
-    return [pin_lowest(requirement) for requirement in requirements]
+        requirements += _list_requirements(extra, project["optional-dependencies"])
+    return list(dict.fromkeys(pin_lowest(requirement) for requirement in requirements))
+
+
+def _list_requirements(extra: str, optional: dict[str, list[str]]) -> Iterator[str]:
+    """Requirements of an extra; one on the project itself names other extras."""
+    for requirement in optional[extra]:
+        if match := re.fullmatch(r"pantocheck\[(.*)\]", requirement):
+            for other in match[1].split(","):
+                yield from _list_requirements(other, optional)
+        else:
+            yield requirement
 
 
 if __name__ == "__main__":
